@@ -290,7 +290,10 @@ CASES: dict[str, Case] = {
     ),
     "fewer values than parameters": Case(
         lambda: da.identify(SUM.first(2), _exact(SUM, [1.0, 0.5]).first(2), weights=[[0.0], [1.0]]),
-        ("Converged to one of many solutions.", "1 value cannot determine 2 parameters: other parameters explain"),
+        (
+            "Converged to one of many solutions: the data have fewer",
+            "1 value cannot determine 2 parameters: other parameters explain",
+        ),
     ),
     "as many values as parameters": Case(
         lambda: da.identify(SLOPE.first(2), _exact(SLOPE, [1.0]).first(2), weights=[[0.0], [1.0]]),
@@ -731,11 +734,11 @@ CASES: dict[str, Case] = {
     ),
     "bands of zero width": Case(
         lambda: da.identify_bands(DECAY, Bands.of(TIMES, {"x": (1 + np.cos(3 * TIMES), 1 + np.cos(3 * TIMES))})),
-        ("at rms in 'x', where the given bands have no width",),
+        ("(SI unit; the given bands have no width)",),
     ),
     "noisy bands": Case(
         lambda: da.identify_bands(DECAY, _noisy_bands()),
-        ("of their mean width at rms in 'x', most in the", "The remaining differences are not correlated."),
+        ("of their mean width; the largest difference", "The remaining differences are not correlated."),
     ),
     "a slip in the bands": Case(
         lambda: da.identify_bands(DECAY, _spoilt_bands()), ("One bound is an outlier:", "Check it.")

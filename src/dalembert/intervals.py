@@ -120,7 +120,7 @@ class Box:
                 f"expected {shape} twice"
             )
         if several := repeated(self.names):
-            raise InputError(f"names of a box must differ; repeated: {', '.join(several)}")
+            raise InputError(f"a box has one interval for each name; given more than once: {', '.join(several)}")
         for name, lower, upper in zip(self.names, self.lower, self.upper, strict=True):
             if not (np.isfinite(lower) and np.isfinite(upper) and lower <= upper):
                 raise InputError(f"interval of {name!r}: ({lower}, {upper}) was given; expected {_EXPECTED}")

@@ -325,7 +325,9 @@ def test_fewer_data_than_parameters_are_no_plain_success(deviations: float | Non
     fit = of_three(2, deviations)
     finding = next(finding for finding in fit.findings if finding.code == "too-few-data")
     assert (finding.severity, dict(finding.values)) == ("warning", {"values": 2, "parameters": 3})
-    assert only(fit, "converged").message == snapshot("Converged to one of many solutions.")
+    assert only(fit, "converged").message == snapshot(
+        "Converged to one of many solutions: the data have fewer values than there are parameters."
+    )
     assert "misfit-at-noise" not in codes(fit)
     assert not np.any(np.isfinite(fit.deviations))
     assert finding in fit.doubts

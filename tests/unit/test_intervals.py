@@ -91,7 +91,7 @@ def test_a_box_that_is_none_is_refused(given: dict, sentence: str) -> None:
 def test_names_and_shapes_of_a_box_are_checked(box: Box) -> None:
     with refused(InputError, snapshot("unknown interval 'd'; known: a, b, c")):
         box["d"]
-    with refused(InputError, snapshot("names of a box must differ; repeated: a")):
+    with refused(InputError, snapshot("a box has one interval for each name; given more than once: a")):
         Box(("a", "a"), np.zeros(2), np.ones(2))
     sentence = "a box of 1 names has bounds of shapes (2,) and (1,); expected (1,) twice"
     with pytest.raises(InputError, match=says(sentence)):

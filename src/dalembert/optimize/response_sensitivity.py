@@ -40,15 +40,17 @@ class ResponseSensitivity(SquaresMinimiser):
     gain : float
         Ends with a step that is foreseen to lower the sum of squares by less than this fraction.
     noise : float, optional
-        Standard deviation of a residual, for "discrepancy"; 1 where the weights are those of known deviations.
+        Standard deviation of a weighted residual, required for "discrepancy": 1 if the data have deviations and there
+        are no other weights.
 
     Notes
     -----
     Steps, choice of μ and agreement are the published ones. Beyond them,
 
     - a rejected μ is raised by more than σ where it takes more to halve the step;
-    - the first step is no longer than one ``scale`` a parameter, and the next ones no longer than thrice the longest
-      that went better than agreed, or as the last one that had to be shortened;
+    - the length of a step is limited, at first to one ``scale`` a parameter. A step that is accepted at its first trial
+      with a ratio of agreement above 0.75 raises the limit to three times its length; a step that had to be shortened
+      sets the limit to its length;
     - a step that meets a bound is the minimum of the same linear model between the bounds;
     - where the L-curve has no corner, every direction is told by the data, and the step is Gauss and Newton's. As the
       residual falls towards zero the corner moves towards μ = 0 with it, so that convergence is quadratic.

@@ -272,7 +272,7 @@ def extremes(
     at : array, shape (2, boxes, outputs, d)
         Filled with where they are.
     room : Room
-        For as many starts as points of the scan to refine from, at most.
+        Work space. Its number of starts limits how many points of the scan are refined for each extreme.
     """
     eta, size = room.eta, low.shape[1]
     for b in range(len(low)):

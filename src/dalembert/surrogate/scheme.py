@@ -42,7 +42,8 @@ class Scheme(Protocol):
         runs : Runs
         seed : int
         held_out : HeldOut
-            For a scheme that adds terms until they agree.
+            Runs that the polynomial is not fitted to. An adaptive scheme adds terms until the polynomial agrees with
+            them.
         scale : callable
             The sizes (outputs,) to which a tolerance is relative, from all runs so far.
         """

@@ -54,10 +54,13 @@ def _differences(problem: BandProblem, found: BandSolution) -> Iterator[Finding]
     share = _shares(problem, apart)
     worst = int(np.argmax(share))
     name = given.channels[worst]
-    by = f"{share[worst]:.2g} of their mean width at rms in {name!r}"
+    size = f"{share[worst]:.2g} of their mean width"
     if not width[worst] > 0:
-        by = f"{rms[worst]:.2g} at rms in {name!r}, where the given bands have no width"
-    message = f"The reproduced bands differ from the given ones by {by}, {_largest(problem, apart)}."
+        size = f"{rms[worst]:.2g} (SI unit; the given bands have no width)"
+    message = (
+        f"The rms difference between the reproduced and the given bands of {name!r} is {size}; "
+        f"{_largest(problem, apart)}."
+    )
     yield Finding(
         "bands-differ", "note", {"channel": name, "share": float(share[worst]), "rms": float(rms[worst])}, message
     )
@@ -123,4 +126,5 @@ def _largest(problem: BandProblem, apart: np.ndarray) -> str:
     flat = apart.reshape(2, -1)
     side, output = np.unravel_index(np.argmax(np.abs(flat) / scale(problem)), flat.shape)
     bound = ("lower", "upper")[side]
-    return f"most in the {bound} bound of {place(problem.bands, int(output))}, by {abs(flat[side, output]):.2g}"
+    at = f"in the {bound} bound of {place(problem.bands, int(output))}"
+    return f"the largest difference relative to a channel's range is {abs(flat[side, output]):.2g} (SI unit), {at}"

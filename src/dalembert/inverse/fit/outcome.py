@@ -41,7 +41,8 @@ def outcome(
         Whether other findings say that the residuals are correlated.
     """
     few = lacking(problem)
-    yield converged(best.success, best.message, "Converged to one of many solutions." if few else "Converged.")
+    many = "Converged to one of many solutions: the data have fewer values than there are parameters."
+    yield converged(best.success, best.message, many if few else "Converged.")
     fitnesses = [start.fitness for start in problem.journal.starts]
     if len(fitnesses) > 1:
         there = sum(fitness <= best.fitness * (1 + 1e-3) + floor.fitness * 1e-3 for fitness in fitnesses)

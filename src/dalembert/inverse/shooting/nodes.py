@@ -24,15 +24,16 @@ class Nodes:
     gap : float
         Largest difference of the two, in parts of the states' ranges.
     growth : float
-        How much a small change of the initial state has grown by the last node, both in parts of the ranges.
+        Factor by which a small change of the initial state grows until the last node, the largest of all motions; both
+        changes are relative to the ranges of the states.
     segments : int
-        Those that the fit of each motion consists of, at most: 1 where they merged into one run.
+        Number of segments of a motion at the end of the fit, the largest of all motions; 1 if they merged into one run.
     units : tuple of str
         Of the states.
     experiments : tuple of str
         Of each node; empty names for a single experiment.
     times : array, shape (nodes,)
-        Values of the coordinate at the nodes.
+        Times of the nodes, in the data's unit (s).
     """
 
     states: tuple[str, ...]

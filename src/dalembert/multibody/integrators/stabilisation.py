@@ -107,8 +107,9 @@ class Projection(Stabilisation):
 class Partitioning(Stabilisation):
     """Only independent coordinates are integrated; the others follow from the constraints, by Newton's iteration.
 
-    The dependent ones are those of the pivots of the constraint Jacobian, and are chosen anew where one of them comes
-    to move ``limit`` times as fast as an independent one. The matrices are dense: it is for small models.
+    The dependent ones are those of the pivots of the constraint Jacobian. They are chosen anew when one of them changes
+    more than ``limit`` times as much as an independent one that moves it, each relative to its scale. The matrices are
+    dense: it is for small models.
 
     Parameters
     ----------
@@ -151,8 +152,8 @@ def posed(
 def _weighed(problem: Problem, lowered: Lowered) -> np.ndarray:
     """Scales with those of the multipliers: one for forces, a lever for torques, (N + 1,).
 
-    The lever is the power of ten of metres next to the mechanism's extent, so that it is the same for all parameters
-    of a model. A multiplier is a torque where its constraint depends on no position.
+    The lever is the power of ten, in m, nearest to the mechanism's extent where the model is built first, so that it is
+    the same for all parameters of a model. A multiplier is a torque where its constraint depends on no position.
     """
     n, scale = problem.n, problem.scale.copy()
     positions = np.array(lowered.structure.kinds) == "position"

@@ -30,7 +30,9 @@ class DesignTable(StudyTable):
     deviations: NumberOfEach = Field(description="standard deviation of the noise: a number, or one for each channel")
     sensors: Sets = Field("singles", description="'singles', 'pairs', 'all', or lists of channels")
     horizons: Samples | None = Field(None, description="ends of the measurement; the last sample if not given")
-    criterion: Literal["D", "E"] = Field("D", description="'D' the mean deviation, 'E' the largest")
+    criterion: Literal["D", "E"] = Field(
+        "D", description="'D': mean semi-axis of the confidence ellipsoid, 'E': the longest"
+    )
     at: dict[str, Number] = Field({}, description="values of parameters; first guesses where not given")
 
 

@@ -43,7 +43,7 @@ class HarmonicBalance(Checked):
         Halvings of a step, after which the point is marked as not converged. With 0, a first point is not sought along
         a path over the force either.
     resolution : float
-        Largest step of a path between two frequencies, as part of the way.
+        Largest step of a curve between two frequencies, as a fraction of their distance.
 
     Raises
     ------

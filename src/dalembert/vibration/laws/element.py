@@ -40,8 +40,8 @@ class LawElement(Checked):
         Whether the stiffness jumps between two values, as where a stop is touched.
     events : Law, optional
         ``events(u, v, z, numbers, crossings)`` writes functions whose zeros divide the motion into smooth parts, such
-        as ``v[0]`` where a law changes with the direction of motion. ``z`` is the state that the law has written last,
-        and is not changed. Harmonic balance finds the zeros between samples.
+        as ``v[0]`` where a law changes with the direction of motion. ``z`` is the state that the law wrote at the
+        point before, a sample or a zero, and is not changed. Harmonic balance finds the zeros between samples.
     event_count : int
         Number of these functions.
     """

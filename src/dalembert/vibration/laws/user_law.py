@@ -35,9 +35,9 @@ class UserLaw(LawElement):
         Internal numbers, which are 0 at rest.
     events : callable, optional
         ``events(u, v, z, numbers, crossings)`` writes functions whose zeros divide the motion into smooth parts, such
-        as ``crossings[0] = v[0]`` where the law changes with the direction of motion. ``z`` is the state that
-        ``function`` has written last; ``events`` must not change it. Harmonic balance finds the zeros between samples,
-        and so needs fewer samples.
+        as ``crossings[0] = v[0]`` where the law changes with the direction of motion. ``z`` is the state
+        that ``function`` wrote at the point before, a sample or a zero; ``events`` must not change it. Harmonic balance
+        finds the zeros between samples, and so needs fewer samples.
     event_count : int
         Number of these functions.
 

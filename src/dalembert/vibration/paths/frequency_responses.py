@@ -73,12 +73,18 @@ class CurveFamily(Result):
         return next((curve.dofs for curve in self.curves if curve is not None), ())
 
     def peaks(self, dof: str, kind: str = "peak") -> tuple[Peak, ...]:
-        """The largest response of each curve; NaN where there is none.
+        """The largest amplitude of a degree of freedom on each curve; NaN if no point of the curve converged.
+
+        Parameters
+        ----------
+        dof : str
+        kind : str
+            ``"peak"``, ``"rms"``, or ``"harmonic 1"`` and so on.
 
         Raises
         ------
         InputError
-            For another kind, or a degree of freedom that was not observed.
+            For an unknown kind, or a degree of freedom that was not observed.
         """
         found = (one.peak(dof, kind) if one is not None and one.converged.any() else None for one in self.curves)
         return tuple(peak or Peak(float("nan"), float("nan")) for peak in found)

@@ -186,7 +186,7 @@ def test_bands_that_no_box_has_show_themselves():
     upper[20] += 0.5
     fit = identify_bands(DECAY, Bands.of(TIMES, {"x": (lower[:, 0], upper[:, 0])}))
     assert only(fit, "bands-differ").message == snapshot(
-        "The reproduced bands differ from the given ones by 0.21 of their mean width at rms in 'x', most in the upper bound of channel 'x', time 2 s, by 0.48."
+        "The rms difference between the reproduced and the given bands of 'x' is 0.21 of their mean width; the largest difference relative to a channel's range is 0.48 (SI unit), in the upper bound of channel 'x', time 2 s."
     )
     assert 8 < only(fit, "outlying-bound").values["ratio"] < 9
 

@@ -20,8 +20,8 @@ def intervals(
 ) -> go.Figure:
     """Each identified interval as a bar between the parameter's search bounds, its middle marked.
 
-    Whiskers are two standard deviations of the two ends, at most the width of the search bounds. Diamonds are the ends
-    of the true intervals where these are known.
+    A whisker extends from each end by two standard deviations of that end to both sides, on each side by at most the
+    width of the search bounds. Diamonds are the ends of the true intervals if these are known.
 
     Parameters
     ----------

@@ -722,7 +722,7 @@ CASES: dict[str, Case] = {
     # ── intervals from bands ────────────────────────────────────────────────────────────────────────────────────────
     "exact bands": Case(
         lambda: da.identify_bands(DECAY, BANDS),
-        ("points where the surrogate has its bounds, it differs from runs of the model by at most",),
+        ("points where the surrogate has its minima and maxima, it differs from runs of the model by at most",),
         ("intervals", "residual-bands-1", "convergence"),
         {"truth": {"size": (1.8, 2.2)}},
     ),

@@ -37,8 +37,8 @@ def outcome(problem: BandProblem, found: BandSolution) -> Iterator[Finding]:
     else:
         worst, points = float(np.max(found.check.error / scale(problem))), len(found.check.points)
         message = (
-            f"At the {points} points where the surrogate has its bounds, it differs from runs of the model by at most "
-            f"{worst:.1g} of a channel's range."
+            f"At the {points} parameter points where the surrogate has its minima and maxima, it differs from runs "
+            f"of the model by at most {worst:.1g} of a channel's range."
         )
         yield Finding("surrogate-checked", "note", {"points": points, "difference": worst}, message)
 

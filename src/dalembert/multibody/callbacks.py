@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numba import cfunc, complex128, float64, njit, types
@@ -15,8 +15,19 @@ from numba.core.registry import CPUDispatcher
 from numba.np.numpy_support import carray
 
 _C_FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)
-GIVEN, ANSWER = 13, 3  # numbers that the function of a user force is given, and that it returns
 _RATE_STEP = 1e-5  # s, of the differences that stand in for a rate that is not given
+
+
+class Sizes(NamedTuple):
+    """Numbers of the state of a marker that the function of a user force is given, and that it returns."""
+
+    state: int
+    answer: int
+
+    @property
+    def given(self) -> int:
+        """Time, and the states of both markers."""
+        return 1 + 2 * self.state
 
 
 @dataclass
@@ -47,18 +58,19 @@ def in_complex_numbers(strict: bool) -> Iterator[None]:
         yield
 
 
-def force_callback(function: Callable[..., Any], owner: str, failures: Failures) -> Callback:
-    """Callback of ``function(t, at, against) -> (fx, fy, torque)``."""
+def force_callback(function: Callable[..., Any], owner: str, failures: Failures, sizes: Sizes) -> Callback:
+    """Callback of ``function(t, at, against)``, which returns a force and a torque."""
+    first, last = 1 + sizes.state, sizes.given
 
     def plain(*functions: Callable[..., Any]) -> Callback:
-        called = [lambda given, own=own: own(given[0].real, given[1:7], given[7:13]) for own in functions]
-        return _plain(called[0], called[-1], GIVEN, ANSWER, owner, failures)
+        called = [lambda given, own=own: own(given[0].real, given[1:first], given[first:last]) for own in functions]
+        return _plain(called[0], called[-1], sizes.given, sizes.answer, owner, failures)
 
     if not isinstance(function, CPUDispatcher):
         return plain(function)
-    real = _compiled_force(function, float64)
+    real = _compiled_force(function, float64, sizes)
     try:
-        complex_state = _compiled_force(function, complex128)
+        complex_state = _compiled_force(function, complex128, sizes)
         return Callback(real.address, complex_state.address, (real, complex_state))
     except NumbaError as error:
         reason = error
@@ -125,14 +137,17 @@ def _view(address: int, count: int, dtype: type) -> np.ndarray:
 
 
 @lru_cache(maxsize=128)
-def _compiled_force(function: CPUDispatcher, kind: Any) -> Any:
+def _compiled_force(function: CPUDispatcher, kind: Any, sizes: Sizes) -> Any:
     # A function that closes over a parameter may answer in complex numbers even to real ones.
     part = njit(lambda x: x.real) if kind is float64 else njit(lambda x: x)
+    first, count, answers = 1 + sizes.state, sizes.given, sizes.answer
 
     @cfunc(types.void(types.CPointer(kind), types.CPointer(kind)))
     def call(source: Any, target: Any) -> None:
-        given, into = carray(source, GIVEN), carray(target, ANSWER)
-        fx, fy, torque = function(given[0].real, given[1:7], given[7:13])
-        into[0], into[1], into[2] = part(fx), part(fy), part(torque)
+        given, into = carray(source, count), carray(target, answers)
+        answer = function(given[0].real, given[1:first], given[first:count])
+        into[0], into[1], into[2] = part(answer[0]), part(answer[1]), part(answer[2])
+        if answers == 6:
+            into[3], into[4], into[5] = part(answer[3]), part(answer[4]), part(answer[5])
 
     return call

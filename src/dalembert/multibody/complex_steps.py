@@ -16,7 +16,6 @@ import numpy as np
 from dalembert.errors import InputError
 from dalembert.forward.complex_steps import DROPPING, REMEDY, Lost, attempted, check_steps, lost_step
 from dalembert.multibody.callbacks import in_complex_numbers
-from dalembert.multibody.components.planar.user_force import USER_FORCE, UserForce
 from dalembert.multibody.components.signals import Custom
 from dalembert.multibody.evaluate import residual
 from dalembert.multibody.kernels.kind import Kind
@@ -88,7 +87,7 @@ def _built(builder: Callable[..., Mechanism], parameters: Parameters, vector: np
     given = [value if value.imag else value.real for value in vector.tolist()]  # one of them is complex at most
     system = copy(builder(**parameters.arguments(given)))
     system.loads = [
-        replace(load, function=_plain(load.function)) if isinstance(load, UserForce) else load for load in system.loads
+        replace(load, function=_plain(load.function)) if hasattr(load, "function") else load for load in system.loads
     ]
     return system
 
@@ -188,7 +187,7 @@ def check_forces(lowered: Lowered, along: Along, scale: np.ndarray, remedy: str 
 
 
 def _foreign(kind: Kind) -> bool:
-    return kind is USER_FORCE or (kind.source.__module__ or "").partition(".")[0] != __name__.partition(".")[0]
+    return "function" in kind.integers or (kind.source.__module__ or "").partition(".")[0] != __name__.partition(".")[0]
 
 
 def _directions(lowered: Lowered, states: MotionState, scale: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:

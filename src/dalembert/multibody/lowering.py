@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from dalembert.errors import InputError, ModelError, shown
-from dalembert.multibody.callbacks import Callback, Failures, force_callback, signal_callback
+from dalembert.multibody.callbacks import Callback, Failures, Sizes, force_callback, signal_callback
 from dalembert.multibody.carried_rates import carried_rates
 from dalembert.multibody.components.body import BaseBody
 from dalembert.multibody.components.fields import Number
@@ -99,9 +99,9 @@ class MechanismLowering(ABC):
         (self._changes if signal.steps else self._jumps).update(signal.jumps)
         return len(self._signals) - 1
 
-    def callback(self, function: Callable[..., Any], owner: str) -> int:
+    def callback(self, function: Callable[..., Any], owner: str, sizes: Sizes) -> int:
         """Number of a force function of the user's."""
-        self._callbacks.append(force_callback(function, owner, self._failures))
+        self._callbacks.append(force_callback(function, owner, self._failures, sizes))
         return len(self._callbacks) - 1
 
     # -- placing --------------------------------------------------------------------------------------------------

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
+from dalembert.multibody.callbacks import Sizes
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.points import Side
 from dalembert.multibody.components.signals import Course
@@ -52,7 +53,7 @@ class Rows(Protocol):
         """Number of a function of time."""
         ...
 
-    def callback(self, function: Callable[..., Any], owner: str) -> int:
+    def callback(self, function: Callable[..., Any], owner: str, sizes: Sizes) -> int:
         """Number of a force function of the user's."""
         ...
 

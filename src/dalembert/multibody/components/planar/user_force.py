@@ -12,7 +12,7 @@ from typing import Any
 
 from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import call_with, stack
-from dalembert.multibody.callbacks import ANSWER, GIVEN
+from dalembert.multibody.callbacks import Sizes
 from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.markers import angle, position, spin, velocity
@@ -20,6 +20,8 @@ from dalembert.multibody.components.planar.pairs import pair_kind, push_pair, tw
 from dalembert.multibody.components.points import Side
 
 _TIME = 0  # signal that holds the time
+_SIZES = Sizes(state=6, answer=3)
+GIVEN, ANSWER = _SIZES.given, _SIZES.answer
 
 
 @inlined
@@ -85,5 +87,5 @@ class UserForce(Load):
 
     def lower(self, lowering: Lowering) -> None:
         pair = lowering.pair(self.at, self.against, self.name)
-        integers = [*pair.integers, lowering.callback(self.function, self.name)]
+        integers = [*pair.integers, lowering.callback(self.function, self.name, _SIZES)]
         lowering.add(USER_FORCE, pair.slots, pair.data, integers)

@@ -105,6 +105,7 @@ SPATIAL_HOMES = {
     "Torque": "components.spatial.force",
     "TorsionSpring": "components.spatial.spring",
     "UniversalJoint": "components.spatial.universal_joint",
+    "UserForce": "components.spatial.user_force",
 }
 """Module in ``dalembert.multibody`` of each public name of ``dalembert.multibody.spatial``."""
 
@@ -123,6 +124,16 @@ SPATIAL_KINDS = {
         "SphericalJoint",
         "UniversalJoint",
     ),
-    "Load": ("Armature", "Bushing", "Force", "InertialSensor", "Motor", "Spring", "Torque", "TorsionSpring"),
+    "Load": (
+        "Armature",
+        "Bushing",
+        "Force",
+        "InertialSensor",
+        "Motor",
+        "Spring",
+        "Torque",
+        "TorsionSpring",
+        "UserForce",
+    ),
 }
 """What a model or a study in space may name, by base class."""

@@ -32,4 +32,5 @@ from dalembert.multibody.components.spatial.spring import Spring as Spring
 from dalembert.multibody.components.spatial.spring import TorsionSpring as TorsionSpring
 from dalembert.multibody.components.spatial.universal_joint import ConstantVelocityJoint as ConstantVelocityJoint
 from dalembert.multibody.components.spatial.universal_joint import UniversalJoint as UniversalJoint
+from dalembert.multibody.components.spatial.user_force import UserForce as UserForce
 from dalembert.multibody.spatial_system import SpatialSystem as SpatialSystem

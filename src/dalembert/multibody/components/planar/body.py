@@ -29,7 +29,7 @@ class Marker(NamedTuple):
 
 @dataclass(frozen=True)
 class Body(BaseBody):
-    """Base of all planar bodies: a name, an initial placement and an initial rigid motion. The frame is (x, y, angle)."""
+    """Base of all planar bodies: a name, an initial placement, an initial rigid motion; the frame is (x, y, angle)."""
 
     FRAME: ClassVar[tuple[str, ...]] = ("x", "y", "angle")
     sensor: ClassVar[Kind] = SENSOR

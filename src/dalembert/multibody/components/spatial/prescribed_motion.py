@@ -88,7 +88,8 @@ def _kind(name: str, coordinates: int) -> Kind:
     )
 
 
-KINDS = TO_GROUND, BETWEEN = (_kind("prescribed_motion_in_space", 2 * SLOTS),) * 2
+MOTION = _kind("prescribed_motion_in_space", 2 * SLOTS)
+KINDS = MOTION, MOTION
 
 
 @dataclass(frozen=True)

@@ -27,8 +27,8 @@ ALONG = {"N*m*s": "N*s/m", "N*m": "N", "rad/s": "m/s"}
 class Friction(Checked):
     """Friction about the axis of a revolute joint (torques, rad/s), or along that of a prismatic one (forces, m/s).
 
-    Torque = viscous x rate + (coulomb + coefficient x radius x reaction force + stribeck x exp(-|rate /
-    stribeck_rate|^stribeck_exponent)) x tanh(rate / slip). In prismatic joints there is no radius: the force grows by
+    Torque = viscous x rate + (coulomb + coefficient x radius x reaction force + stribeck x exp(-\\|rate /
+    stribeck_rate\\|^stribeck_exponent)) x tanh(rate / slip). In prismatic joints there is no radius: the force grows by
     the coefficient times the reaction force across the axis.
 
     Parameters

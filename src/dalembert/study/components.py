@@ -91,6 +91,8 @@ def table_of(
     fields = target.__dataclass_fields__  # dataclasses.fields leaves out the arguments that are no fields
     keys: dict[str, Any] = {"kind": (Literal[kind], kind if default else ...)}  # pyright: ignore[reportInvalidTypeForm]
     for name, argument in inspect.signature(target).parameters.items():
+        if not fields[name].metadata.get("key", True):  # for Python only
+            continue
         unit = fields[name].metadata.get("unit")
         numeric = (number if varying else fixed)(units.get(unit, unit))
         own = part(fields[name].metadata.get("table", ""))

@@ -1,7 +1,7 @@
 """Fields of components: numbers with a unit, and checks of their values."""
 
 from dataclasses import MISSING, Field, field
-from typing import Any
+from typing import Any, ClassVar, get_origin
 
 from dalembert.arguments import limited
 
@@ -25,4 +25,5 @@ def arguments(component: type) -> tuple[Field, ...]:
     Unlike ``dataclasses.fields`` it includes those that are not kept under the same name, such as the ``start`` of a
     bar, where the attribute is the point and not its place.
     """
-    return tuple(entry for entry in component.__dataclass_fields__.values() if entry.init)
+    entries = component.__dataclass_fields__.values()
+    return tuple(entry for entry in entries if entry.init and get_origin(entry.type) is not ClassVar)

@@ -145,7 +145,7 @@ class InertialSensor(Load):
             *self.acceleration_bias, *_gain(owner, "acceleration_gain", self.acceleration_gain),
             *self.rate_bias, *_gain(owner, "rate_gain", self.rate_gain),
         ]  # fmt: skip
-        lowering.add(INERTIAL_SENSOR, pair.slots, numbers, pair.integers, self.name)
+        lowering.add(INERTIAL_SENSOR, pair.slots[:SLOTS], numbers, pair.integers, self.name)
 
 
 def _gain(owner: str, what: str, given: Any) -> list[Number]:

@@ -111,7 +111,7 @@ class RigidBody(Body):
     points: Mapping[str, Vector | Pose] = field(default_factory=dict, metadata={"unit": "m"})
     velocity: Vector | None = number("m/s", None)
     angular_velocity: Vector | None = number("rad/s", None)
-    shapes: Sequence[Shape] = ()
+    shapes: Sequence[Shape] = field(default=(), metadata={"key": False})
 
     def __post_init__(self) -> None:
         for taken in ("origin", "centre"):

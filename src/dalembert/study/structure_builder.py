@@ -49,6 +49,10 @@ class StructureBuilder:
                 system.add(part)
         return system
 
+    def full(self) -> "Structure":
+        """The matrices as they were read, clamped but not reduced."""
+        return self._matrices
+
     def expanded(self, names: Iterable[str]) -> list[str]:
         """Names with the nodes of sets in the place of these, as far as these nodes are not clamped."""
         sets, known = self._table.sets, self._matrices.dofs if self._table.source else None

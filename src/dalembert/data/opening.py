@@ -25,8 +25,10 @@ def reading(path: Path, what: str) -> Iterator[None]:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # what matters is refused by name afterwards
             yield
-    except DataError:
-        raise
+    except DataError as error:
+        if str(path) in str(error):
+            raise
+        raise DataError(f"{path}: {error}") from error
     except Exception as error:  # a malformed file may meet any error of a library
         reason = next(iter(str(error).splitlines()), "") or type(error).__name__
         raise DataError(f"{path}: cannot be read as {what} ({reason})") from error

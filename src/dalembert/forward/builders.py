@@ -56,7 +56,9 @@ def built(builder: Callable[..., Any], arguments: Mapping[str, Any], kind: type[
     except (Exception, SystemExit) as error:
         raise ModelError(told(error) if users_place(error) else f"{named(builder)} raised {told(error)}") from error
     if not isinstance(system, kind):
-        raise InputError(f"{named(builder)} returned {shown(system)}; expected a {kind.__name__}: end it with 'return'")
+        raise InputError(
+            f"{named(builder)} returned {shown(system)}; expected a {getattr(kind, 'IN_WORDS', kind.__name__)}: end it with 'return'"
+        )
     return system
 
 

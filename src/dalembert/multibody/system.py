@@ -34,6 +34,7 @@ class Mechanism:
         Where a motion begins.
     """
 
+    IN_WORDS = "System"
     KINDS: ClassVar[tuple[type, type, type]]
     """Base classes of its bodies, joints and loads."""
     SPACE: ClassVar[str]

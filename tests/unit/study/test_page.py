@@ -76,7 +76,18 @@ TABLES = {
 
 BODIES = {"AncfBeam", "AncfCable", "RigidBar", "RigidBarBetween", "RigidBody", "PointMass"}
 JOINTS = {name.removeprefix("Spatial") for name in DEFINITIONS if name.endswith(("Joint", "PrescribedMotion"))}
-LOADS = {"Force", "Torque", "Spring", "TorsionSpring", "UserForce", "Bushing", "Motor", "Servo"}
+LOADS = {
+    "Force",
+    "Torque",
+    "Spring",
+    "TorsionSpring",
+    "UserForce",
+    "Bushing",
+    "Motor",
+    "Servo",
+    "Armature",
+    "InertialSensor",
+}
 EVERYWHERE = {kind: {"name"} for kind in BODIES | LOADS} | {kind: {"name", "a", "b"} for kind in JOINTS}
 """Keys that the page gives once for all kinds."""
 

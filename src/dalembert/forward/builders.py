@@ -56,9 +56,8 @@ def built(builder: Callable[..., Any], arguments: Mapping[str, Any], kind: type[
     except (Exception, SystemExit) as error:
         raise ModelError(told(error) if users_place(error) else f"{named(builder)} raised {told(error)}") from error
     if not isinstance(system, kind):
-        raise InputError(
-            f"{named(builder)} returned {shown(system)}; expected a {getattr(kind, 'IN_WORDS', kind.__name__)}: end it with 'return'"
-        )
+        expected = getattr(kind, "IN_WORDS", kind.__name__)
+        raise InputError(f"{named(builder)} returned {shown(system)}; expected a {expected}: end it with 'return'")
     return system
 
 

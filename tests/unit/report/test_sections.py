@@ -46,9 +46,9 @@ def test_plots_are_those_of_all_blocks():
 
 
 def test_sections_of_a_user_replace_those_of_the_package(tmp_path: Path, monkeypatch):
-    monkeypatch.setattr("dalembert.report.registry._SECTIONS", dict(_SECTIONS))
     trajectory = motion()
-    assert "mechanism" in figures(trajectory)
+    assert "mechanism" in figures(trajectory)  # imports the sections before the registry is replaced
+    monkeypatch.setattr("dalembert.report.registry._SECTIONS", dict(_SECTIONS))
     sections_of(Trajectory)(lambda result, asked: [Part("Mine", ("As I like it.",))])
     assert "As I like it." in read_page(report(replace(trajectory), tmp_path / "a.html")).text
     assert figures(trajectory) == {}

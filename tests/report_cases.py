@@ -12,6 +12,7 @@ from correlated_noise import autoregressive
 from dalembert.data import Bands, Measurements
 from dalembert.forward import Channel, PythonModel
 from dalembert.inverse import Experiment, GlobalSurrogate, design, identifiability, predict, profile
+from dalembert.multibody.spatial import Inertia, Orientation, RigidBody, SpatialSystem, SphericalJoint
 from dalembert.optimize import LeastSquares, Minimiser, ParticleSwarm, ResponseSensitivity
 from dalembert.parameters import Parameter
 from dalembert.study import load, run_study
@@ -250,6 +251,14 @@ def _pendulum(gravity: float = -9.81) -> Any:
     return da.simulate(system, end=0.1, solver=da.GeneralizedAlpha(step=2e-3))
 
 
+def _ball() -> Any:
+    system = SpatialSystem()
+    rod = Inertia.box(1.0, (0.1, 0.1, 0.5)).moved((0.0, 0.0, -0.25))
+    body = system.add(RigidBody("rod", rod, orientation=Orientation.by_angles("x", [0.5])))
+    system.add(SphericalJoint("ball", system.ground, body.point("origin")))
+    return da.simulate(system, end=0.1, solver=da.GeneralizedAlpha(step=2e-3))
+
+
 def _moved_fit() -> tuple[Any, Any]:
     model = _model(lambda a: np.stack([a * TIMES, -TIMES], axis=1), "bar.end.x bar.end.y", a=(0.0, 2.0))
     return da.identify(model, _exact(model, [1.0], noise=0.1)), {"trajectory": _pendulum()}
@@ -269,6 +278,7 @@ def _moved_experiments() -> tuple[Any, Any]:
 
 
 CASES: dict[str, Case] = {
+    "motion in space": Case(_ball, ("Drag to turn, scroll to zoom.",), ("mechanism",)),
     # ── identification: how it went ─────────────────────────────────────────────────────────────────────────────────
     "exact data": Case(
         lambda: da.identify(DECAY, _exact(DECAY, [2.0, 0.8])),

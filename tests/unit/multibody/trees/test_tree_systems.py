@@ -163,7 +163,7 @@ def test_a_number_that_is_zero_may_be_a_parameter(arm):
 def test_armatures_are_refused_by_methods_that_need_constant_masses(arm, solver):
     sentence = (
         f"{type(solver).__name__} needs masses that do not change with the coordinates, as those of "
-        "'turning_armature_to_ground' (armature inertia) do. Use GeneralizedAlpha, RungeKutta4 or OdeSolver"
+        "'turning_armature' (armature inertia) do. Use GeneralizedAlpha, RungeKutta4 or OdeSolver"
     )
     with pytest.raises(ModelError, match=says(sentence)):
         simulate(arm.system(), 0.1, solver)

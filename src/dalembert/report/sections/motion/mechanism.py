@@ -18,7 +18,6 @@ def mechanisms(
     moving: Mapping[str, Trajectory], points: tuple[str, ...], data: Mapping[str, Measurements] | None = None
 ) -> list[Section]:
     """The section on the mechanism in motion, with the measurements of each experiment; none without a motion."""
-    moving = {name: one for name, one in moving.items() if len(one.system.AXES) == 2}  # the film is planar
     if not moving:
         return []
     data = data or {}

@@ -50,7 +50,7 @@ def chosen(lowered: Lowered, problem, state: MotionState, directions: int = 0):
     partition = partitioning.room(problem, directions)
     lowered.complex_model.evaluate(call, 0.0, 0.0)
     partitioning.linearise(problem, lowered.complex_model.address, state, call.address, partition)
-    partitioning.choose(problem, partition)
+    partitioning.choose(problem, partition, partitioning.DEPENDENT)
     assert partitioning.invert(problem, partition)
     return partition
 

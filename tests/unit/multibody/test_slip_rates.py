@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from dalembert.multibody.components.planar.friction import Smoothing
 
 from dalembert.multibody import (
     DistanceJoint,
@@ -16,6 +15,7 @@ from dalembert.multibody import (
     TimeResponse,
     simulate,
 )
+from dalembert.multibody.components.joint import Smoothing
 from dalembert.multibody.slip_rates import slip_findings
 
 TIMES = np.linspace(0, 6, 61)

@@ -199,7 +199,7 @@ def test_files_of_no_known_kind_and_damaged_ones_are_told(tmp_path: Path) -> Non
     with pytest.raises(DataError, match=says(sentence)):
         read_structure(tmp_path / "a.xls")
     (tmp_path / "b.mtx").write_text("1,1,1,1,2.0\n1,9,1,1,1.0\n")
-    with pytest.raises(DataError, match=says("node 1 has the direction 9; expected 1 to 6")):
+    with pytest.raises(DataError, match=says(f"{tmp_path / 'b.mtx'}: node 1 has the direction 9; expected 1 to 6")):
         read_structure({"mass": tmp_path / "b.mtx"})
     (tmp_path / "c.npz").write_bytes(b"nonsense")
     with pytest.raises(DataError, match=r"c\.npz: cannot be read as matrices \(\.npz\) \("):

@@ -258,10 +258,14 @@ def test_each_mistake_has_its_place(write, change, message):
 
 def test_a_component_in_space_is_refused_in_the_plane(write):
     lines = wrong(write(("space = true", ""), ("RevoluteJoint", "UniversalJoint"), ("Force", "Motor")))
-    assert (
-        "[[model.joint]] 'pin': 'UniversalJoint' is a component in space, and the model is planar without space = true; "
-        "expected one of DistanceJoint, FixedJoint, GearJoint, PrescribedMotion, PrismaticJoint, RevoluteJoint"
-    ) in lines
+    # Other tests may have registered joints of their own, which the end of the sentence lists.
+    assert any(
+        line.startswith(
+            "[[model.joint]] 'pin': 'UniversalJoint' is a component in space, and the model is planar without "
+            "space = true; expected one of DistanceJoint, FixedJoint, GearJoint, PrescribedMotion, PrismaticJoint, "
+        )
+        for line in lines
+    )
     assert (
         "[model], gravity: [0, 0, '-10 m/s^2'] was given; expected two numbers, along x and y; a mechanism in space has "
         "space = true in [model]"

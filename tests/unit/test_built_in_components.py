@@ -42,7 +42,7 @@ from dataclasses import dataclass
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
-from dalembert.multibody.components.spatial.kinds import pair_kinds
+from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.orientation import Orientation
 from dalembert.multibody.components.spatial.pairs import push_pair, separation
@@ -55,7 +55,7 @@ def residual(x, v, a, p, m, inputs, r):
     push_pair(p, m, times(p.stiffness, separation(x, p, m)), r)
 
 
-PULLS = pair_kinds("own_pull_in_space", __name__, ("stiffness",), residual=residual)
+PULL = pair_kind("own_pull_in_space", __name__, ("stiffness",), residual=residual)
 
 
 @dataclass(frozen=True)
@@ -67,11 +67,11 @@ class OwnPull(Load):
     stiffness: Number = number("N/m")
     turned: Orientation = Orientation()
 
-    kind = PULLS[1]
+    kind = PULL
 
     def lower(self, lowering):
         pair = lowering.pair(self.a, self.b, self.name)
-        lowering.add(PULLS[pair.between], pair.slots, [*pair.data, self.stiffness], pair.integers, self.name)
+        lowering.add(PULL, pair.slots, [*pair.data, self.stiffness], pair.integers, self.name)
 '''
 IN_SPACE_STUDY = """
 [model]

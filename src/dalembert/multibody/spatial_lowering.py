@@ -50,7 +50,7 @@ class SpatialLowering(MechanismLowering):
         return Pair(
             slots=slots,
             data=[*own[0].numbers, *own[1].numbers],
-            integers=[own[0].kind, own[1].kind, markers.SLOTS],
+            integers=[own[0].kind, own[1].kind],
             separation=stands[1][0] - stands[0][0],
             axes=(axes[0], axes[1]),
         )

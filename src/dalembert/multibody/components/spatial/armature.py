@@ -12,7 +12,7 @@ from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.points import require_direction
 from dalembert.multibody.components.spatial.joint import joint_rate
-from dalembert.multibody.components.spatial.kinds import pair_kinds
+from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.markers import axis_rate
@@ -64,11 +64,11 @@ def _sliding_energy(x, v, p, m, inputs):
     return 0.5 * p.inertia * rate * rate, 0.0 * rate, 0.0 * rate
 
 
-TURNING = TURNING_TO_GROUND, TURNING_BETWEEN = pair_kinds(
+TURNING = pair_kind(
     "turning_armature", __name__, ("inertia",), residual=_turning_residual, energy=_turning_energy,
     varying_mass=True,
 )  # fmt: skip
-SLIDING = SLIDING_TO_GROUND, SLIDING_BETWEEN = pair_kinds(
+SLIDING = pair_kind(
     "sliding_armature", __name__, ("inertia",), residual=_sliding_residual, energy=_sliding_energy,
     varying_mass=True,
 )  # fmt: skip
@@ -111,11 +111,11 @@ class Armature(Load):
     axis: Vector = (0.0, 0.0, 1.0)
     slides: bool = False
 
-    kind = TURNING_BETWEEN
+    kind = TURNING
 
     def lower(self, lowering: SpatialLowering) -> None:
         require_direction(f"armature {self.name!r}", "a rigid body", self.a, self.b)
         own = Orientation.by_axes(self.axis).matrix
         pair = lowering.pair(self.a, self.b, self.name, (own, own))
-        kinds = SLIDING if self.slides else TURNING
-        lowering.add(kinds[pair.between], pair.slots, [*pair.data, self.inertia], pair.integers, self.name)
+        kind = SLIDING if self.slides else TURNING
+        lowering.add(kind, pair.slots, [*pair.data, self.inertia], pair.integers, self.name)

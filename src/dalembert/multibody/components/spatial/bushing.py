@@ -14,10 +14,10 @@ from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import stack
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.points import require_direction
-from dalembert.multibody.components.spatial.kinds import pair_kinds
+from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
-from dalembert.multibody.components.spatial.markers import axis_rate
+from dalembert.multibody.components.spatial.markers import SLOTS, axis_rate
 from dalembert.multibody.components.spatial.pairs import (
     A_AXES,
     B_AXES,
@@ -73,9 +73,9 @@ def _rotation(i: int) -> tuple[Any, Any, Any]:
     @inlined
     def rate(x, v, p, m):
         first = dot(axis_rate(m.a_kind, 0, v, ak(p)), fj(x, p, m))
-        first += dot(ek(x, p, m), axis_rate(m.b_kind, m.b_at, v, bj(p)))
+        first += dot(ek(x, p, m), axis_rate(m.b_kind, SLOTS, v, bj(p)))
         second = dot(axis_rate(m.a_kind, 0, v, aj(p)), fk(x, p, m))
-        second += dot(ej(x, p, m), axis_rate(m.b_kind, m.b_at, v, bk(p)))
+        second += dot(ej(x, p, m), axis_rate(m.b_kind, SLOTS, v, bk(p)))
         return 0.5 * (first - second)
 
     @inlined
@@ -182,7 +182,7 @@ def _observe(x, v, a, p, m, inputs, out):
         out[i], out[6 + i] = u[i], f[i]
 
 
-BUSHING = BUSHING_TO_GROUND, BUSHING_BETWEEN = pair_kinds(
+BUSHING = pair_kind(
     "bushing_in_space",
     __name__,
     ("rest_x", "rest_y", "rest_z", *_NUMBERS),
@@ -222,7 +222,7 @@ class Bushing(Load):
     stiffness: Any = field(default=(0.0,) * 6, metadata={"unit": "N/m", "table": "BushingStiffness"})
     damping: Any = field(default=(0.0,) * 6, metadata={"unit": "N*s/m", "table": "BushingDamping"})
 
-    kind = BUSHING_BETWEEN
+    kind = BUSHING
 
     def __post_init__(self) -> None:
         for what in ("stiffness", "damping"):
@@ -237,7 +237,7 @@ class Bushing(Load):
             _matrix(owner, what, getattr(self, what))[i][j] for what in ("stiffness", "damping") for i, j in _ENTRIES
         ]
         numbers = [*pair.data, *(pair.axes[0].T @ pair.separation).tolist(), *laws]
-        lowering.add(BUSHING[pair.between], pair.slots, numbers, pair.integers, self.name)
+        lowering.add(BUSHING, pair.slots, numbers, pair.integers, self.name)
 
 
 def _matrix(owner: str, what: str, given: Any) -> Sequence[Sequence[Number]]:

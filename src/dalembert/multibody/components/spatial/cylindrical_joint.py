@@ -5,11 +5,11 @@ __all__ = ["CylindricalJoint"]
 from dataclasses import dataclass
 
 from dalembert.multibody.components.spatial.conditions import level, perpendicular
-from dalembert.multibody.components.spatial.joint import Joint, joint_kinds
+from dalembert.multibody.components.spatial.joint import Joint, joint_kind
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Vector
 
-KINDS = TO_GROUND, BETWEEN = joint_kinds(
+KIND = joint_kind(
     "cylindrical", __name__, level(1), level(2), perpendicular(1, 3), perpendicular(2, 3), angle=True, displacement=True
 )
 
@@ -30,7 +30,7 @@ class CylindricalJoint(Joint):
 
     axis: Vector = (0.0, 0.0, 1.0)
 
-    kinds = KINDS
+    kind = KIND
 
     def lower(self, lowering: SpatialLowering) -> None:
         self._oriented()

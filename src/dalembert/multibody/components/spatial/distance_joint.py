@@ -10,9 +10,9 @@ from dalembert.errors import ModelError
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.spatial.conditions import Condition
-from dalembert.multibody.components.spatial.joint import Joint, joint_kinds
+from dalembert.multibody.components.spatial.joint import Joint, joint_kind
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
-from dalembert.multibody.components.spatial.pairs import NUMBERS, push_pair, separation
+from dalembert.multibody.components.spatial.pairs import push_pair, separation
 from dalembert.multibody.components.spatial.vectors import dot, times
 
 
@@ -28,8 +28,8 @@ def _forces(x, p, m, k, r):
     push_pair(p, m, times(x[k] / p.length, separation(x, p, m)), r)
 
 
-KINDS = TO_GROUND, BETWEEN = joint_kinds(
-    "distance_in_space", __name__, Condition(1, _residual, _forces), numbers=(*NUMBERS, "length"), holds_frame=False
+KIND = joint_kind(
+    "distance_in_space", __name__, Condition(1, _residual, _forces), numbers=("length",), holds_frame=False
 )
 
 
@@ -47,7 +47,7 @@ class DistanceJoint(Joint):
 
     length: Number | None = number("m", None, above=0)
 
-    kinds = KINDS
+    kind = KIND
 
     def lower(self, lowering: SpatialLowering) -> None:
         pair = self._pair(lowering)

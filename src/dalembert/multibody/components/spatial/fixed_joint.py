@@ -5,12 +5,10 @@ __all__ = ["FixedJoint"]
 from dataclasses import dataclass
 
 from dalembert.multibody.components.spatial.conditions import MEETS, perpendicular
-from dalembert.multibody.components.spatial.joint import Joint, joint_kinds
+from dalembert.multibody.components.spatial.joint import Joint, joint_kind
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
 
-KINDS = TO_GROUND, BETWEEN = joint_kinds(
-    "fixed_in_space", __name__, MEETS, perpendicular(1, 2), perpendicular(2, 3), perpendicular(3, 1)
-)
+KIND = joint_kind("fixed_in_space", __name__, MEETS, perpendicular(1, 2), perpendicular(2, 3), perpendicular(3, 1))
 
 
 @dataclass(frozen=True)
@@ -25,7 +23,7 @@ class FixedJoint(Joint):
     As a force sensor: the channels ``force_1`` to ``torque_3`` are force and torque on b along the axes of a.
     """
 
-    kinds = KINDS
+    kind = KIND
 
     def lower(self, lowering: SpatialLowering) -> None:
         self._oriented()

@@ -8,7 +8,7 @@ from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import number
 from dalembert.multibody.components.points import require_direction
 from dalembert.multibody.components.signals import Course
-from dalembert.multibody.components.spatial.kinds import pair_kinds
+from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.pairs import (
@@ -22,6 +22,7 @@ from dalembert.multibody.components.spatial.pairs import (
 )
 from dalembert.multibody.components.spatial.points import Side
 from dalembert.multibody.components.spatial.vectors import combined, dot
+from dalembert.multibody.kernels.kind import Kind
 
 
 @inlined
@@ -57,10 +58,10 @@ def _torque_energy(x, v, p, m, inputs):
 
 
 _INTEGERS = ("follower", "along_x", "along_y", "along_z")
-FORCE = FORCE_TO_GROUND, FORCE_BETWEEN = pair_kinds(
+FORCE = pair_kind(
     "force_in_space", __name__, integers=_INTEGERS, residual=_force_residual, energy=_force_energy, loads=True
 )
-TORQUE = TORQUE_TO_GROUND, TORQUE_BETWEEN = pair_kinds(
+TORQUE = pair_kind(
     "torque_in_space", __name__, integers=_INTEGERS, residual=_torque_residual, energy=_torque_energy, loads=True
 )
 
@@ -87,7 +88,7 @@ class Force(Load):
     follower: bool = False
     against: Side | None = None
 
-    kind = FORCE_BETWEEN
+    kind = FORCE
 
     def lower(self, lowering: SpatialLowering) -> None:
         if self.follower:
@@ -117,14 +118,14 @@ class Torque(Load):
     follower: bool = False
     against: Side | None = None
 
-    kind = TORQUE_BETWEEN
+    kind = TORQUE
 
     def lower(self, lowering: SpatialLowering) -> None:
         require_direction(f"torque {self.name!r}", "a force, or a rigid body", self.at, self.against)
         _lower(self, lowering, TORQUE)
 
 
-def _lower(load: Force | Torque, lowering: SpatialLowering, kinds: tuple) -> None:
+def _lower(load: Force | Torque, lowering: SpatialLowering, kind: Kind) -> None:
     pair = lowering.pair(load.at, load.against, load.name)
     signals = [lowering.signal(course) for course in (load.x, load.y, load.z)]
-    lowering.add(kinds[pair.between], pair.slots, pair.data, [*pair.integers, int(load.follower), *signals])
+    lowering.add(kind, pair.slots, pair.data, [*pair.integers, int(load.follower), *signals])

@@ -12,9 +12,8 @@ from dalembert.multibody.components import friction
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.joint import Smoothing
 from dalembert.multibody.components.spatial.joint import joint_rate, joint_speed
-from dalembert.multibody.components.spatial.kinds import Kinds, pair_kind
-from dalembert.multibody.components.spatial.markers import SLOTS
-from dalembert.multibody.components.spatial.pairs import e3, push_pair, twist_pair
+from dalembert.multibody.components.spatial.kinds import pair_kind
+from dalembert.multibody.components.spatial.pairs import COORDINATES, e3, push_pair, twist_pair
 from dalembert.multibody.components.spatial.vectors import times
 from dalembert.multibody.kernels.elementary import root
 from dalembert.multibody.kernels.kind import Kind
@@ -91,14 +90,9 @@ class Friction(Checked):
         return Smoothing(channel, "slip", self.slip, unit) if friction.rubs(self) else None
 
 
-def friction_kinds(name: str, home: str, multipliers: int, load: tuple[int, ...], turns: bool) -> Kinds:
-    """Kinds of the friction of a joint, whose multipliers ``load`` are those of its reaction force."""
-    kind = _kind(name, home, 2 * SLOTS, multipliers, load, turns)
-    return kind, kind
-
-
-def _kind(name: str, home: str, coordinates: int, multipliers: int, load: tuple[int, ...], turns: bool) -> Kind:
-    first, second, third = (coordinates + (*load, *load)[k] for k in range(3))
+def friction_kind(name: str, home: str, multipliers: int, load: tuple[int, ...], turns: bool) -> Kind:
+    """The kind of the friction of a joint, whose multipliers ``load`` are those of its reaction force."""
+    first, second, third = (COORDINATES + (*load, *load)[k] for k in range(3))
     weight = 1.0 if len(load) == 3 else 0.0
     rate: Any = joint_rate if turns else joint_speed
 
@@ -122,6 +116,6 @@ def _kind(name: str, home: str, coordinates: int, multipliers: int, load: tuple[
         return 0.0 * power, 0.0 * power, power
 
     return pair_kind(
-        name, home, coordinates, friction.NUMBERS, reactions=multipliers, residual=residual, energy=energy,
+        name, home, friction.NUMBERS, reactions=multipliers, residual=residual, energy=energy,
         dissipates=True,
     )  # fmt: skip

@@ -15,7 +15,7 @@ from dalembert.multibody.components.points import Point, require_direction
 from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
-from dalembert.multibody.components.spatial.markers import SLOTS, position_rate, spin
+from dalembert.multibody.components.spatial.markers import position_rate, spin
 from dalembert.multibody.components.spatial.orientation import Vector
 from dalembert.multibody.components.spatial.pairs import a_point, e1, e2, e3
 from dalembert.multibody.components.spatial.vectors import combined, dot, minus, plus
@@ -65,7 +65,6 @@ def _observe(x, v, a, p, m, inputs, out):
 INERTIAL_SENSOR = pair_kind(
     "inertial_sensor",
     __name__,
-    SLOTS,
     (*_GRAVITY, *_columns("acceleration"), *_columns("rate")),
     residual=_residual,
     energy=_energy,
@@ -145,7 +144,7 @@ class InertialSensor(Load):
             *self.acceleration_bias, *_gain(owner, "acceleration_gain", self.acceleration_gain),
             *self.rate_bias, *_gain(owner, "rate_gain", self.rate_gain),
         ]  # fmt: skip
-        lowering.add(INERTIAL_SENSOR, pair.slots[:SLOTS], numbers, pair.integers, self.name)
+        lowering.add(INERTIAL_SENSOR, pair.slots, numbers, pair.integers, self.name)
 
 
 def _gain(owner: str, what: str, given: Any) -> list[Number]:

@@ -1,4 +1,4 @@
-"""What joints in space share: the base class, and kinds made of conditions, with their channels.
+"""What joints in space share: the base class, and the kind made of conditions, with their channels.
 
 The joint frames: axes e1, e2, e3 at a and f1, f2, f3 at b. The third axes are the joint's axis, if it has one.
 """
@@ -17,6 +17,7 @@ from dalembert.multibody.components.joint import BaseJoint
 from dalembert.multibody.components.points import require_direction
 from dalembert.multibody.components.spatial import markers, pairs
 from dalembert.multibody.components.spatial.conditions import Condition, constraint_of, forces_of
+from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.lowering import Pair, SpatialLowering
 from dalembert.multibody.components.spatial.markers import BODY, GROUND, SLOTS, position
 from dalembert.multibody.components.spatial.orientation import Orientation, Vector, direction
@@ -85,9 +86,9 @@ def observe_reactions(x, p, m, r, out):
 
     In the fixed axes, then along the axes of the joint at a.
     """
-    place = position(m.b_kind, m.b_at, x, b_point(p))
+    place = position(m.b_kind, SLOTS, x, b_point(p))
     if m.b_kind != GROUND:
-        k, sign = m.b_at, -1.0
+        k, sign = SLOTS, -1.0
     else:
         k, sign = 0, 1.0
     force, torque = at(r, k), times(0.0, at(r, k))
@@ -122,45 +123,32 @@ def observed(forces: Any, width: int, angle: bool, displacement: bool) -> Callab
     return observe
 
 
-def joint_kinds(
+def joint_kind(
     name: str, home: str, *conditions: Condition, angle: bool = False, displacement: bool = False, **properties: Any
-) -> tuple[Kind, Kind]:
-    """The kinds of a joint between a body and the ground, and between two bodies.
+) -> Kind:
+    """The kind of a joint.
 
     Parameters
     ----------
     name : str
     home : str
-        Module that holds them.
+        Module that holds it.
     conditions : Condition
     angle, displacement : bool
         Whether the joint has an angle about its axis, and a displacement along it.
-    properties : of the kinds
+    properties : of the kind
     """
-    kind = _joint_kind(name, home, 2 * SLOTS, conditions, angle, displacement, properties)
-    return kind, kind
-
-
-def _joint_kind(
-    name: str, home: str, coordinates: int, conditions: tuple[Condition, ...], angle: bool, displacement: bool,
-    properties: dict[str, Any],
-) -> Kind:  # fmt: skip
-    count, forces = sum(entry.count for entry in conditions), forces_of(conditions, coordinates)
+    count, forces = sum(entry.count for entry in conditions), forces_of(conditions, pairs.COORDINATES)
     settings = {
-        "numbers": pairs.NUMBERS,
-        "integers": pairs.INTEGERS,
         "constraint": constraint_of(conditions),
         "forces": forces,
         "outputs": (*REACTIONS, *ANGLE * angle, *DISPLACEMENT * displacement),
         "angles": ("angle",) * angle,
-        "observe": observed(forces, coordinates + count, angle, displacement),
+        "observe": observed(forces, pairs.COORDINATES + count, angle, displacement),
         "lengths": pairs.LENGTHS,
         "holds": True,
     }
-    return Kind(
-        name, coordinates=coordinates, multipliers=count, charts=pairs.charts(coordinates), home=home,
-        **{**settings, **properties},
-    )  # fmt: skip
+    return pair_kind(name, home, multipliers=count, **{**settings, **properties})
 
 
 def turned_to(axis: Vector, owner: str) -> tuple[np.ndarray, np.ndarray]:
@@ -176,13 +164,7 @@ class Joint(BaseJoint):
     a: Side
     b: Side
 
-    kinds: ClassVar[tuple[Kind, Kind]]
-    """To the ground, and between two bodies."""
-
-    def __init_subclass__(cls, **options: Any) -> None:
-        super().__init_subclass__(**options)
-        if "kinds" in cls.__dict__:
-            cls.kind = cls.kinds[1]
+    kind: ClassVar[Kind]
 
     @property
     def turned(self) -> tuple[np.ndarray, np.ndarray]:
@@ -200,9 +182,8 @@ class Joint(BaseJoint):
         self, lowering: SpatialLowering, pair: Pair, numbers: Sequence[Any] = (), integers: Sequence[int] = ()
     ) -> list[int | None]:
         """Add the joint with the numbers and integers that follow those of its markers; its unknowns."""
-        kind = self.kinds[pair.between]
-        index = pair.slots + lowering.multipliers(self.name, kind.multipliers)
-        lowering.add(kind, index, [*pair.data, *numbers], [*pair.integers, *integers], self.name)
+        index = pair.slots + lowering.multipliers(self.name, self.kind.multipliers)
+        lowering.add(self.kind, index, [*pair.data, *numbers], [*pair.integers, *integers], self.name)
         return index
 
     def _oriented(self, advice: str = "a spherical or distance joint, or a rigid body") -> None:
@@ -211,9 +192,9 @@ class Joint(BaseJoint):
 
     def position(self, kind: Kind, numbers: np.ndarray, integers: np.ndarray, x: np.ndarray) -> np.ndarray | None:
         """Position of the second side, or of the first one if the second is the ground, (frames, 3)."""
-        if kind.integers[:3] != pairs.INTEGERS:
+        if kind.integers[:2] != pairs.INTEGERS:
             return None
         side = 0 if integers[1] == GROUND else 1
-        k, place = (0 if side == 0 else int(integers[2])), numbers[12 * side : 12 * side + 3]
+        k, place = SLOTS * side, numbers[12 * side : 12 * side + 3]
         own = x[:, k : k + SLOTS].reshape(len(x), 4, 3)
         return own[:, 0] + (np.einsum("i,fic->fc", place, own[:, 1:]) if integers[side] == BODY else 0.0)

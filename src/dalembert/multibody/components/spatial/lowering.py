@@ -15,7 +15,7 @@ class Pair(NamedTuple):
     Parameters
     ----------
     slots : list of int or None
-        Coordinates of a and of b; those of the only body where the other side is the ground.
+        Coordinates of a and of b, 24; None on the side of the ground.
     data : list of numbers
     integers : list of int
     separation : array (3,)
@@ -29,11 +29,6 @@ class Pair(NamedTuple):
     integers: list[int]
     separation: np.ndarray
     axes: tuple[np.ndarray, np.ndarray]
-
-    @property
-    def between(self) -> bool:
-        """Whether both sides are bodies."""
-        return len(self.slots) > 12
 
 
 class SpatialLowering(Rows, Protocol):

@@ -8,7 +8,7 @@ from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.motor_law import INTEGERS, NUMBERS, MotorNumbers, Turning, drive_properties
 from dalembert.multibody.components.points import require_direction
 from dalembert.multibody.components.spatial.joint import joint_angle, joint_rate, turned_to
-from dalembert.multibody.components.spatial.kinds import pair_kinds
+from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Vector
@@ -34,9 +34,7 @@ def _twist(x, p, m, torque, r):
 
 
 _PROPERTIES = drive_properties(_command, Turning(joint_angle, joint_rate, _acceleration, _twist))
-MOTOR = MOTOR_TO_GROUND, MOTOR_BETWEEN = pair_kinds(
-    "motor_in_space", __name__, NUMBERS, (*INTEGERS, "command"), angles=("angle",), **_PROPERTIES
-)
+MOTOR = pair_kind("motor_in_space", __name__, NUMBERS, (*INTEGERS, "command"), angles=("angle",), **_PROPERTIES)
 
 
 @dataclass(frozen=True)
@@ -115,7 +113,7 @@ class Motor(MotorNumbers, Load):
     b: Side
     axis: Vector = (0.0, 0.0, 1.0)
 
-    kind = MOTOR_BETWEEN
+    kind = MOTOR
 
     def lower(self, lowering: SpatialLowering) -> None:
         owner = f"motor {self.name!r}"
@@ -124,4 +122,4 @@ class Motor(MotorNumbers, Load):
         number = self._command(lowering)
         own, marks = self._law(lowering, by_current=self.voltage is None)
         row = [*pair.data, *own], [*pair.integers, *marks, number]
-        lowering.add(MOTOR[pair.between], pair.slots, *row, self.name)
+        lowering.add(MOTOR, pair.slots, *row, self.name)

@@ -1,23 +1,29 @@
 """Two markers: their relative position and axes, and the forces between them.
 
 The axes of marker a are e1, e2, e3, those of b are f1, f2, f3. Local coordinates: those of a from slot 0, those of b
-from slot ``b_at``: 12, or 0 where one of both is the ground.
+from slot 12. A side on the ground has no coordinates, and its slots are empty.
 """
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.spatial.directors import POSE
-from dalembert.multibody.components.spatial.markers import axis, position, position_rate, push, push_axis, spin, twist
+from dalembert.multibody.components.spatial.markers import (
+    SLOTS,
+    axis,
+    position,
+    position_rate,
+    push,
+    push_axis,
+    spin,
+    twist,
+)
 from dalembert.multibody.components.spatial.vectors import minus, times
 
 _OF_SIDE = ("x", "y", "z", "11", "12", "13", "21", "22", "23", "31", "32", "33")
 NUMBERS = tuple(f"{side}_{name}" for side in "ab" for name in _OF_SIDE)
-INTEGERS = ("a_kind", "b_kind", "b_at")
+INTEGERS = ("a_kind", "b_kind")
+COORDINATES = 2 * SLOTS
+CHARTS = 2 * POSE
 LENGTHS = ("a_x", "a_y", "a_z", "b_x", "b_y", "b_z")
-
-
-def charts(coordinates):
-    """Charts of the coordinates of one body, or of two."""
-    return POSE * (coordinates // 12)
 
 
 @inlined
@@ -77,7 +83,7 @@ def _a_axis(own):
 def _b_axis(own):
     @inlined
     def f(x, p, m):
-        return axis(m.b_kind, m.b_at, x, own(p))
+        return axis(m.b_kind, SLOTS, x, own(p))
 
     return f
 
@@ -90,32 +96,32 @@ F = f1, f2, f3 = tuple(map(_b_axis, B_AXES))
 @inlined
 def separation(x, p, m):
     """Position of b relative to a."""
-    return minus(position(m.b_kind, m.b_at, x, b_point(p)), position(m.a_kind, 0, x, a_point(p)))
+    return minus(position(m.b_kind, SLOTS, x, b_point(p)), position(m.a_kind, 0, x, a_point(p)))
 
 
 @inlined
 def separation_rate(v, p, m):
     """Velocity of b relative to a; with accelerations in place of velocities the acceleration."""
-    return minus(position_rate(m.b_kind, m.b_at, v, b_point(p)), position_rate(m.a_kind, 0, v, a_point(p)))
+    return minus(position_rate(m.b_kind, SLOTS, v, b_point(p)), position_rate(m.a_kind, 0, v, a_point(p)))
 
 
 @inlined
 def relative_spin(x, v, m):
     """Angular velocity of b relative to a; with accelerations in place of velocities the angular acceleration."""
-    return minus(spin(m.b_kind, m.b_at, x, v), spin(m.a_kind, 0, x, v))
+    return minus(spin(m.b_kind, SLOTS, x, v), spin(m.a_kind, 0, x, v))
 
 
 @inlined
 def push_pair(p, m, force, r):
     """A force on b and its opposite on a."""
-    push(m.b_kind, m.b_at, b_point(p), force, r)
+    push(m.b_kind, SLOTS, b_point(p), force, r)
     push(m.a_kind, 0, a_point(p), times(-1.0, force), r)
 
 
 @inlined
 def twist_pair(x, m, torque, r):
     """A torque on b and its opposite on a."""
-    twist(m.b_kind, m.b_at, x, torque, r)
+    twist(m.b_kind, SLOTS, x, torque, r)
     twist(m.a_kind, 0, x, times(-1.0, torque), r)
 
 
@@ -136,6 +142,6 @@ def push_b_axis(number):
 
     @inlined
     def push_f(p, m, force, r):
-        push_axis(m.b_kind, m.b_at, own(p), force, r)
+        push_axis(m.b_kind, SLOTS, own(p), force, r)
 
     return push_f

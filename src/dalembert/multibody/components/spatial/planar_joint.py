@@ -5,13 +5,11 @@ __all__ = ["PlanarJoint"]
 from dataclasses import dataclass
 
 from dalembert.multibody.components.spatial.conditions import level, perpendicular
-from dalembert.multibody.components.spatial.joint import Joint, joint_kinds
+from dalembert.multibody.components.spatial.joint import Joint, joint_kind
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Vector
 
-KINDS = TO_GROUND, BETWEEN = joint_kinds(
-    "planar_joint", __name__, level(3), perpendicular(3, 1), perpendicular(3, 2), angle=True
-)
+KIND = joint_kind("planar_joint", __name__, level(3), perpendicular(3, 1), perpendicular(3, 2), angle=True)
 
 
 @dataclass(frozen=True)
@@ -28,7 +26,7 @@ class PlanarJoint(Joint):
 
     axis: Vector = (0.0, 0.0, 1.0)
 
-    kinds = KINDS
+    kind = KIND
 
     def lower(self, lowering: SpatialLowering) -> None:
         self._oriented()

@@ -5,12 +5,10 @@ __all__ = ["PointOnLineJoint"]
 from dataclasses import dataclass
 
 from dalembert.multibody.components.spatial.conditions import level
-from dalembert.multibody.components.spatial.joint import Joint, joint_kinds
+from dalembert.multibody.components.spatial.joint import Joint, joint_kind
 from dalembert.multibody.components.spatial.orientation import Vector
 
-KINDS = TO_GROUND, BETWEEN = joint_kinds(
-    "point_on_line", __name__, level(1), level(2), displacement=True, holds_frame=True
-)
+KIND = joint_kind("point_on_line", __name__, level(1), level(2), displacement=True, holds_frame=True)
 
 
 @dataclass(frozen=True)
@@ -27,4 +25,4 @@ class PointOnLineJoint(Joint):
 
     axis: Vector = (0.0, 0.0, 1.0)
 
-    kinds = KINDS
+    kind = KIND

@@ -21,13 +21,11 @@ from dalembert.multibody.components.spatial.joint import (
 )  # fmt: skip
 from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
-from dalembert.multibody.components.spatial.markers import SLOTS
 from dalembert.multibody.components.spatial.orientation import Vector
-from dalembert.multibody.components.spatial.pairs import LENGTHS, e1, e2, f2
+from dalembert.multibody.components.spatial.pairs import COORDINATES, LENGTHS, e1, e2, f2
 from dalembert.multibody.components.spatial.vectors import dot
 from dalembert.multibody.kernels.constraints import forces_of
 from dalembert.multibody.kernels.elementary import sin_cos
-from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.time_inputs import signal
 
 _ANGLE, _DISPLACEMENT = range(2)
@@ -46,50 +44,48 @@ def _constraint(x, p, m, inputs, g):
         g[0] = joint_displacement(x, p, m) - target
 
 
-def _kind(name: str, coordinates: int) -> Kind:
-    width, forces = coordinates + 1, forces_of(_constraint, coordinates, 1)
-
-    @inlined
-    def energy(x, v, p, m, inputs):
-        """No energy; the power that the motion feeds in, -lambda dg/dt at a fixed position."""
-        rate = inputs.signals[m.motion, 1]
-        if m.coordinate == _ANGLE:
-            s, c = sin_cos(inputs.signals[m.motion, 0])
-            axis = f2(x, p, m)
-            rate *= s * dot(e1(x, p, m), axis) - c * dot(e2(x, p, m), axis)
-        nothing = 0.0 * x[0]
-        return nothing, nothing, -x[coordinates] * rate
-
-    @inlined
-    def observe(x, v, a, p, m, inputs, out):
-        r = stack(x, width)
-        for i in range(width):
-            r[i] = 0.0
-        forces(x, p, m, inputs, r)
-        observe_reactions(x, p, m, r, out)
-        out[12], out[13] = joint_angle(x, p, m), joint_rate(x, v, p, m)
-        out[14], out[15] = joint_displacement(x, p, m), joint_speed(x, v, p, m)
-
-    return pair_kind(
-        name,
-        __name__,
-        coordinates,
-        integers=("coordinate", "motion"),
-        multipliers=1,
-        constraint=_constraint,
-        energy=energy,
-        outputs=(*REACTIONS, *ANGLE, *DISPLACEMENT),
-        angles=("angle",),
-        observe=observe,
-        observes_inputs=True,
-        lengths=LENGTHS,
-        driven=True,
-        holds=True,
-    )
+_WIDTH = COORDINATES + 1
+_forces = forces_of(_constraint, COORDINATES, 1)
 
 
-MOTION = _kind("prescribed_motion_in_space", 2 * SLOTS)
-KINDS = MOTION, MOTION
+@inlined
+def _energy(x, v, p, m, inputs):
+    """No energy; the power that the motion feeds in, -lambda dg/dt at a fixed position."""
+    rate = inputs.signals[m.motion, 1]
+    if m.coordinate == _ANGLE:
+        s, c = sin_cos(inputs.signals[m.motion, 0])
+        axis = f2(x, p, m)
+        rate *= s * dot(e1(x, p, m), axis) - c * dot(e2(x, p, m), axis)
+    nothing = 0.0 * x[0]
+    return nothing, nothing, -x[COORDINATES] * rate
+
+
+@inlined
+def _observe(x, v, a, p, m, inputs, out):
+    r = stack(x, _WIDTH)
+    for i in range(_WIDTH):
+        r[i] = 0.0
+    _forces(x, p, m, inputs, r)
+    observe_reactions(x, p, m, r, out)
+    out[12], out[13] = joint_angle(x, p, m), joint_rate(x, v, p, m)
+    out[14], out[15] = joint_displacement(x, p, m), joint_speed(x, v, p, m)
+
+
+MOTION = pair_kind(
+    "prescribed_motion_in_space",
+    __name__,
+    integers=("coordinate", "motion"),
+    multipliers=1,
+    constraint=_constraint,
+    energy=_energy,
+    outputs=(*REACTIONS, *ANGLE, *DISPLACEMENT),
+    angles=("angle",),
+    observe=_observe,
+    observes_inputs=True,
+    lengths=LENGTHS,
+    driven=True,
+    holds=True,
+)
 
 
 @dataclass(frozen=True)
@@ -113,7 +109,7 @@ class PrescribedMotion(Joint):
     motion: Course = 0.0
     axis: Vector = (0.0, 0.0, 1.0)
 
-    kinds = KINDS
+    kind = MOTION
 
     def __post_init__(self) -> None:
         owner = f"prescribed motion {self.name!r}"

@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 
 from dalembert.multibody.components.joint import Smoothing
 from dalembert.multibody.components.spatial.conditions import level, perpendicular
-from dalembert.multibody.components.spatial.friction import Friction, friction_kinds
-from dalembert.multibody.components.spatial.joint import Joint, joint_kinds
+from dalembert.multibody.components.spatial.friction import Friction, friction_kind
+from dalembert.multibody.components.spatial.joint import Joint, joint_kind
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Vector
 
-KINDS = TO_GROUND, BETWEEN = joint_kinds(
+KIND = joint_kind(
     "prismatic_in_space",
     __name__,
     level(1),
@@ -22,9 +22,7 @@ KINDS = TO_GROUND, BETWEEN = joint_kinds(
     displacement=True,
 )
 
-FRICTION = FRICTION_TO_GROUND, FRICTION_BETWEEN = friction_kinds(
-    "prismatic_friction_in_space", __name__, 5, (0, 1), False
-)
+FRICTION = friction_kind("prismatic_friction_in_space", __name__, 5, (0, 1), False)
 
 
 @dataclass(frozen=True)
@@ -43,7 +41,7 @@ class PrismaticJoint(Joint):
     axis: Vector = (0.0, 0.0, 1.0)
     friction: Friction | None = field(default=None, metadata={"table": "FrictionAlong"})
 
-    kinds = KINDS
+    kind = KIND
 
     @property
     def smoothing(self) -> Smoothing | None:
@@ -55,4 +53,4 @@ class PrismaticJoint(Joint):
         index = self._add(lowering, pair)
         if self.friction:
             law = self.friction.law(f"prismatic joint {self.name!r}", turns=False)
-            lowering.add(FRICTION[pair.between], index, [*pair.data, *law], pair.integers)
+            lowering.add(FRICTION, index, [*pair.data, *law], pair.integers)

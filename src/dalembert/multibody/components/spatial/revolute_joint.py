@@ -6,18 +6,14 @@ from dataclasses import dataclass
 
 from dalembert.multibody.components.joint import Smoothing
 from dalembert.multibody.components.spatial.conditions import MEETS, perpendicular
-from dalembert.multibody.components.spatial.friction import Friction, friction_kinds
-from dalembert.multibody.components.spatial.joint import Joint, joint_kinds
+from dalembert.multibody.components.spatial.friction import Friction, friction_kind
+from dalembert.multibody.components.spatial.joint import Joint, joint_kind
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Vector
 
-KINDS = TO_GROUND, BETWEEN = joint_kinds(
-    "revolute_in_space", __name__, MEETS, perpendicular(1, 3), perpendicular(2, 3), angle=True
-)
+KIND = joint_kind("revolute_in_space", __name__, MEETS, perpendicular(1, 3), perpendicular(2, 3), angle=True)
 
-FRICTION = FRICTION_TO_GROUND, FRICTION_BETWEEN = friction_kinds(
-    "revolute_friction_in_space", __name__, 5, (0, 1, 2), True
-)
+FRICTION = friction_kind("revolute_friction_in_space", __name__, 5, (0, 1, 2), True)
 
 
 @dataclass(frozen=True)
@@ -48,7 +44,7 @@ class RevoluteJoint(Joint):
     axis: Vector = (0.0, 0.0, 1.0)
     friction: Friction | None = None
 
-    kinds = KINDS
+    kind = KIND
 
     @property
     def smoothing(self) -> Smoothing | None:
@@ -60,4 +56,4 @@ class RevoluteJoint(Joint):
         index = self._add(lowering, pair)
         if self.friction:
             law = self.friction.law(f"revolute joint {self.name!r}", turns=True)
-            lowering.add(FRICTION[pair.between], index, [*pair.data, *law], pair.integers)
+            lowering.add(FRICTION, index, [*pair.data, *law], pair.integers)

@@ -5,9 +5,9 @@ __all__ = ["SphericalJoint"]
 from dataclasses import dataclass
 
 from dalembert.multibody.components.spatial.conditions import MEETS
-from dalembert.multibody.components.spatial.joint import Joint, joint_kinds
+from dalembert.multibody.components.spatial.joint import Joint, joint_kind
 
-KINDS = TO_GROUND, BETWEEN = joint_kinds("spherical", __name__, MEETS, holds_frame=False)
+KIND = joint_kind("spherical", __name__, MEETS, holds_frame=False)
 
 
 @dataclass(frozen=True)
@@ -20,4 +20,4 @@ class SphericalJoint(Joint):
     a, b : Point or ground
     """
 
-    kinds = KINDS
+    kind = KIND

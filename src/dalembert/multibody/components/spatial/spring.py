@@ -12,7 +12,7 @@ from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.points import require_direction
 from dalembert.multibody.components.spatial.joint import joint_angle, joint_rate, turned_to
-from dalembert.multibody.components.spatial.kinds import Kinds, pair_kinds
+from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.lowering import Pair, SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Vector
@@ -21,6 +21,7 @@ from dalembert.multibody.components.spatial.points import Side
 from dalembert.multibody.components.spatial.vectors import dot, times
 from dalembert.multibody.components.spring_law import NUMBERS, law_functions, tension
 from dalembert.multibody.kernels.elementary import reciprocal, root, wrapped
+from dalembert.multibody.kernels.kind import Kind
 
 _TINY = 1e-30  # keeps the direction of a spring of no length defined, m^2
 
@@ -54,20 +55,16 @@ def _twist_residual(x, v, a, p, m, inputs, r):
     twist_pair(x, m, times(tension(twisted, rate, p), e3(x, p, m)), r)
 
 
-def _kinds(name: str, stretch: Callable[..., Any], residual: Callable[..., Any], outputs: Any, frame: bool) -> Kinds:
+def _kind(name: str, stretch: Callable[..., Any], residual: Callable[..., Any], outputs: Any, frame: bool) -> Kind:
     energy, observe = law_functions(stretch)
-    return pair_kinds(
+    return pair_kind(
         name, __name__, NUMBERS, residual=residual, energy=energy, outputs=outputs, observe=observe,
         dissipates="damping", holds=True, holds_frame=frame,
     )  # fmt: skip
 
 
-SPRING = SPRING_TO_GROUND, SPRING_BETWEEN = _kinds(
-    "spring_in_space", _elongation, _residual, (("elongation", "m"), ("force", "N")), False
-)
-TORSION_SPRING = TORSION_SPRING_TO_GROUND, TORSION_SPRING_BETWEEN = _kinds(
-    "torsion_spring_in_space", _twist, _twist_residual, (("twist", "rad"), ("torque", "N*m")), True
-)
+SPRING = _kind("spring_in_space", _elongation, _residual, (("elongation", "m"), ("force", "N")), False)
+TORSION_SPRING = _kind("torsion_spring_in_space", _twist, _twist_residual, (("twist", "rad"), ("torque", "N*m")), True)
 
 
 @dataclass(frozen=True)
@@ -97,7 +94,7 @@ class Spring(Load):
     free_length: Number | None = number("m", None, least=0)
     cubic: Number = number("N/m**3", 0.0)
 
-    kind = SPRING_BETWEEN
+    kind = SPRING
 
     def lower(self, lowering: SpatialLowering) -> None:
         pair = lowering.pair(self.a, self.b, self.name)
@@ -137,7 +134,7 @@ class TorsionSpring(Load):
     cubic: Number = number("N*m/rad**3", 0.0)
     axis: Vector = (0.0, 0.0, 1.0)
 
-    kind = TORSION_SPRING_BETWEEN
+    kind = TORSION_SPRING
 
     def lower(self, lowering: SpatialLowering) -> None:
         owner = f"torsion spring {self.name!r}"
@@ -156,6 +153,6 @@ def initial_angle(pair: Pair) -> Any:
     return angle + 1j * slope if np.iscomplexobj(e) or np.iscomplexobj(f) else angle
 
 
-def _add(load: Spring | TorsionSpring, lowering: SpatialLowering, kinds: Kinds, pair: Pair, rest: Any) -> None:
+def _add(load: Spring | TorsionSpring, lowering: SpatialLowering, kind: Kind, pair: Pair, rest: Any) -> None:
     numbers = [*pair.data, rest, load.stiffness, load.damping, load.cubic]
-    lowering.add(kinds[pair.between], pair.slots, numbers, pair.integers, load.name)
+    lowering.add(kind, pair.slots, numbers, pair.integers, load.name)

@@ -8,13 +8,13 @@ import numpy as np
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.spatial.conditions import MEETS, Condition, perpendicular
-from dalembert.multibody.components.spatial.joint import Joint, joint_kinds
+from dalembert.multibody.components.spatial.joint import Joint, joint_kind
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Orientation, Vector
 from dalembert.multibody.components.spatial.pairs import e1, e2, f1, f2, push_a_axis, push_b_axis
 from dalembert.multibody.components.spatial.vectors import dot, times
 
-UNIVERSAL = UNIVERSAL_TO_GROUND, UNIVERSAL_BETWEEN = joint_kinds("universal", __name__, MEETS, perpendicular(1, 2))
+UNIVERSAL = joint_kind("universal", __name__, MEETS, perpendicular(1, 2))
 
 _push_e1, _push_e2, _push_f1, _push_f2 = push_a_axis(1), push_a_axis(2), push_b_axis(1), push_b_axis(2)
 
@@ -33,9 +33,7 @@ def _forces(x, p, m, k, r):
     _push_f1(p, m, times(-x[k], e2(x, p, m)), r)
 
 
-CONSTANT_VELOCITY = CONSTANT_VELOCITY_TO_GROUND, CONSTANT_VELOCITY_BETWEEN = joint_kinds(
-    "constant_velocity", __name__, MEETS, Condition(1, _residual, _forces)
-)
+CONSTANT_VELOCITY = joint_kind("constant_velocity", __name__, MEETS, Condition(1, _residual, _forces))
 
 
 @dataclass(frozen=True)
@@ -55,7 +53,7 @@ class UniversalJoint(Joint):
     axis_a: Vector = (1.0, 0.0, 0.0)
     axis_b: Vector = (0.0, 1.0, 0.0)
 
-    kinds = UNIVERSAL
+    kind = UNIVERSAL
 
     @property
     def turned(self) -> tuple[np.ndarray, np.ndarray]:
@@ -81,7 +79,7 @@ class ConstantVelocityJoint(Joint):
 
     axis: Vector = (0.0, 0.0, 1.0)
 
-    kinds = CONSTANT_VELOCITY
+    kind = CONSTANT_VELOCITY
 
     def lower(self, lowering: SpatialLowering) -> None:
         self._oriented()

@@ -13,10 +13,10 @@ from typing import Any
 from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import call_with, stack
 from dalembert.multibody.callbacks import Sizes
-from dalembert.multibody.components.spatial.kinds import pair_kinds
+from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
-from dalembert.multibody.components.spatial.markers import position, position_rate, spin
+from dalembert.multibody.components.spatial.markers import SLOTS, position, position_rate, spin
 from dalembert.multibody.components.spatial.pairs import (
     a_point,
     b_point,
@@ -53,8 +53,8 @@ def _ask(x, v, p, m, inputs, given, answer):
     given[0] = inputs.signals[_TIME, 0]
     s, u = position(m.a_kind, 0, x, a_point(p)), position_rate(m.a_kind, 0, v, a_point(p))
     _fill(1, s, u, e1(x, p, m), e2(x, p, m), e3(x, p, m), spin(m.a_kind, 0, x, v), given)
-    s, u = position(m.b_kind, m.b_at, x, b_point(p)), position_rate(m.b_kind, m.b_at, v, b_point(p))
-    _fill(19, s, u, f1(x, p, m), f2(x, p, m), f3(x, p, m), spin(m.b_kind, m.b_at, x, v), given)
+    s, u = position(m.b_kind, SLOTS, x, b_point(p)), position_rate(m.b_kind, SLOTS, v, b_point(p))
+    _fill(19, s, u, f1(x, p, m), f2(x, p, m), f3(x, p, m), spin(m.b_kind, SLOTS, x, v), given)
     call_with(inputs.callbacks[m.function], given, answer)
 
 
@@ -76,7 +76,7 @@ def _energy(x, v, p, m, inputs):
     return 0.0 * power, 0.0 * power, -power
 
 
-USER_FORCE = USER_FORCE_TO_GROUND, USER_FORCE_BETWEEN = pair_kinds(
+USER_FORCE = pair_kind(
     "user_force_in_space", __name__, integers=("function",), residual=_residual, energy=_energy, dissipates=True
 )
 
@@ -116,9 +116,9 @@ class UserForce(Load):
     function: Callable[..., Any] = field()
     against: Side | None = None
 
-    kind = USER_FORCE_BETWEEN
+    kind = USER_FORCE
 
     def lower(self, lowering: SpatialLowering) -> None:
         pair = lowering.pair(self.at, self.against, self.name)
         integers = [*pair.integers, lowering.callback(self.function, self.name, _SIZES)]
-        lowering.add(USER_FORCE[pair.between], pair.slots, pair.data, integers)
+        lowering.add(USER_FORCE, pair.slots, pair.data, integers)

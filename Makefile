@@ -59,11 +59,11 @@ test: checks kernels
 wording: .venv/test.stamp
 	$(BIN)/pytest -n 0 --inline-snapshot=create,fix $(TESTS)
 
-verify: checks kernels
+verify: .venv/verify.stamp checks kernels
 	$(BIN)/pytest -n auto --dist loadfile -m "$(ALL)" --evidence=$(EVIDENCE)
 	$(BIN)/python docs/validation.py $(EVIDENCE) --check
 
-validation: kernels
+validation: .venv/verify.stamp kernels
 	$(BIN)/pytest -n auto --dist loadfile tests -m "$(ALL)" --evidence=$(EVIDENCE)
 	$(BIN)/python docs/validation.py $(EVIDENCE)
 

@@ -13,6 +13,7 @@ from dalembert.multibody.spatial import Inertia, Orientation, Pose
 from dalembert.multibody.trees.dynamics import bias_forces, inverse_dynamics, mass_matrix, poses, regressor
 from dalembert.multibody.trees.parameters import parameters_of
 from dalembert.multibody.trees.tree import Link, Tree, TreeJoint
+from dalembert.multibody.trees.urdf_reader import read_urdf
 from robots import random_motion, random_robot, six_joints, system_of
 
 TOPIC = "Mechanisms in space"
@@ -139,6 +140,27 @@ def accelerations_of(tree, motion, q, v):
     return np.array(found)
 
 
+@pytest.fixture
+def record(record_evidence):
+    """Records the largest differences from Pinocchio of some robots, by quantity."""
+
+    def record(robots: str, worst: dict[str, float]) -> None:
+        version = pytest.importorskip("pinocchio").__version__
+        for name, difference in worst.items():
+            record_evidence(
+                f"{robots}, {name} (largest relative difference)",
+                0.0,
+                difference,
+                tolerance=1e-10,
+                topic=TOPIC,
+                kind="other code",
+                source=f"Pinocchio {version}",
+                noisy=True,
+            )
+
+    return record
+
+
 def tree_from(model) -> Tree | None:
     """The tree of a model of Pinocchio; None if it has other joints, or an inertia that no body can have."""
     links = []
@@ -227,21 +249,11 @@ def test_robots_against_pinocchio(record_evidence):
         assert difference <= 1e-12 * max(np.abs(ours["torques"]).max(), 1.0)
         compared += 1
     assert compared >= 20
-    for name, difference in worst.items():
-        record_evidence(
-            f"{compared} robots of example-robot-data, {name} (largest relative difference)",
-            0.0,
-            difference,
-            tolerance=1e-10,
-            topic=TOPIC,
-            kind="other code",
-            source=f"Pinocchio {pinocchio.__version__}",
-            noisy=True,
-        )
+    record(f"{compared} robots of example-robot-data", worst)
 
 
 @pytest.mark.slow
-def test_following_joints_against_pinocchio(record_evidence):
+def test_following_joints_against_pinocchio(record):
     """Mass matrix and torques of robots with joints that follow others, such as grippers."""
     pinocchio = pytest.importorskip("pinocchio")
     compared, worst = 0, {"mass matrices": 0.0, "torques": 0.0}
@@ -274,28 +286,17 @@ def test_following_joints_against_pinocchio(record_evidence):
                 worst[name] = max(worst[name], float(np.abs(ours - reference).max() / np.abs(reference).max()))
         compared += 1
     assert compared > 0
-    for name, difference in worst.items():
-        record_evidence(
-            f"{compared} robots with joints that follow others, {name} (largest relative difference)",
-            0.0,
-            difference,
-            tolerance=1e-10,
-            topic=TOPIC,
-            kind="other code",
-            source=f"Pinocchio {pinocchio.__version__}",
-            noisy=True,
-        )
+    record(f"{compared} robots with joints that follow others", worst)
 
 
 @pytest.mark.slow
-def test_robots_of_urdf_files_against_pinocchio(record_evidence):
+def test_robots_of_urdf_files_against_pinocchio(record):
     """Mass matrix, bias forces and torques of robots that both read from the same files, links on fixed joints included."""
     pinocchio = pytest.importorskip("pinocchio")
-    reader = pytest.importorskip("dalembert.multibody.trees.urdf_reader")
     compared, worst = 0, {"mass matrices": 0.0, "bias forces": 0.0, "torques": 0.0}
     for path, model in models(pinocchio).items():
         try:
-            tree = reader.read_urdf(path)
+            tree = read_urdf(path)
         except (InputError, ModelError):  # inertias that no body can have
             continue
         tree = replace(tree, links=tuple(replace(link, joint=replace(link.joint, mimic=None)) for link in tree.links))

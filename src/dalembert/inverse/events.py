@@ -41,7 +41,7 @@ class Sampled:
 
 @dataclass(frozen=True, eq=False)
 class Checked:
-    """True runs where a surrogate has its bounds: their fitness, and the surrogate's largest error there."""
+    """True runs where a surrogate has its minima and maxima: their fitness, and the surrogate's largest error there."""
 
     kind: ClassVar[str] = "checked"
     runs: int

@@ -56,8 +56,8 @@ class BandFit(EndedResult):
     error : array, shape (samples, channels)
         Estimate of the surrogate's largest error.
     checked_lower, checked_upper : array, shape (samples, channels)
-        Least and largest response of true runs at the points where the surrogate has its bounds; None if no run was
-        made there, or every one failed.
+        Least and largest response of true runs at the points where the surrogate has its minima and maxima; None if
+        no run was made there, or every one failed.
     checked_fitness : float
         The fitness of these; None without them.
     history : tuple of Step

@@ -1,4 +1,4 @@
-"""True runs where a surrogate has its bounds, and the best candidate that they check."""
+"""True runs where a surrogate has its minima and maxima, and the best candidate that they check."""
 
 from dataclasses import dataclass
 

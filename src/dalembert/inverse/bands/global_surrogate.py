@@ -56,9 +56,8 @@ class GlobalSurrogate(CheckedArguments):
         Fewest descents, from the best of many scattered boxes. Up to 32 are made until two reach the best end, unless
         ``starts`` is 1; they make no runs of the model.
     checks : int
-        Most times that true runs are made where the surrogate has its bounds on the answer. After each but the last the
-        surrogate is corrected by them, or where it is far off made anew around the answer, and the descent goes on.
-        0 for none.
+        Most times that true runs are made where the surrogate has the minima and maxima of the answer. After each but
+        the last they correct the surrogate; where it is far off, it is made again around the answer. 0 for none.
     tolerance : float
         An answer is refused when the surrogate is wrong by more than this part of a channel's range: at the true runs
         of the last check, or without one anywhere in the search box.

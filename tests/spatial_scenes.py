@@ -201,6 +201,17 @@ def sensed(place, angles, **fields) -> sp.SpatialSystem:
     return system
 
 
+def seen(place, angles) -> sp.SpatialSystem:
+    """A relative sensor whose first marker, on the first of two rods, has the numbers."""
+    system, first, second = two_rods()
+    first = replace(first, points={**first.points, "eye": sp.Pose(place, by_angles(angles))})
+    system.bodies[0] = first
+    system.add(sp.SphericalJoint("hold", system.ground, first.point("origin")))
+    system.add(sp.SphericalJoint("middle", first.point("end"), second.point("origin")))
+    system.add(sp.RelativeSensor("part", first.point("eye"), second.point("centre"), angles="zxz"))
+    return system
+
+
 def mass(**fields) -> sp.SpatialSystem:
     """A point mass on a spring."""
     system = sp.SpatialSystem()
@@ -272,6 +283,7 @@ SCENES: dict[str, Scene] = {
         driven("displacement", jointed(sp.CylindricalJoint)),
         {"axis": AXIS, "motion": 0.05},
     ),
+    "relative sensor": (seen, {"place": (0.2, -0.1, 0.4), "angles": (0.4, -0.8, 0.3)}),
     "inertial sensor": (
         sensed,
         {

@@ -23,6 +23,7 @@ from dalembert.multibody.components.spatial.points import Ground as Ground
 from dalembert.multibody.components.spatial.points import GroundPoint as GroundPoint
 from dalembert.multibody.components.spatial.prescribed_motion import PrescribedMotion as PrescribedMotion
 from dalembert.multibody.components.spatial.prismatic_joint import PrismaticJoint as PrismaticJoint
+from dalembert.multibody.components.spatial.relative_sensor import RelativeSensor as RelativeSensor
 from dalembert.multibody.components.spatial.revolute_joint import RevoluteJoint as RevoluteJoint
 from dalembert.multibody.components.spatial.rigid_body import RigidBody as RigidBody
 from dalembert.multibody.components.spatial.shapes import Shape as Shape

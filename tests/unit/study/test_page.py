@@ -87,6 +87,7 @@ LOADS = {
     "Servo",
     "Armature",
     "InertialSensor",
+    "RelativeSensor",
 }
 EVERYWHERE = {kind: {"name"} for kind in BODIES | LOADS} | {kind: {"name", "a", "b"} for kind in JOINTS}
 """Keys that the page gives once for all kinds."""

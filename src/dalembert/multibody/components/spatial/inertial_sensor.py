@@ -12,13 +12,13 @@ from dalembert.errors import InputError, shown
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.points import Point, require_direction
-from dalembert.multibody.components.spatial.kinds import pair_kind
+from dalembert.multibody.components.spatial.kinds import sensor_kind
 from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.markers import position_rate, spin
 from dalembert.multibody.components.spatial.orientation import Vector
-from dalembert.multibody.components.spatial.pairs import a_point, e1, e2, e3
-from dalembert.multibody.components.spatial.vectors import combined, dot, minus, plus
+from dalembert.multibody.components.spatial.pairs import a_point, along_axes
+from dalembert.multibody.components.spatial.vectors import combined, minus, plus
 
 _GRAVITY = ("gravity_x", "gravity_y", "gravity_z")
 
@@ -29,32 +29,16 @@ def _columns(name: str) -> tuple[str, ...]:
 
 
 @inlined
-def _residual(x, v, a, p, m, inputs, r):
-    """No force."""
-
-
-@inlined
-def _energy(x, v, p, m, inputs):
-    return 0.0 * x[0], 0.0 * x[0], 0.0 * x[0]
-
-
-@inlined
-def _along(vector, x, p, m):
-    """A vector in the axes of the marker."""
-    return dot(e1(x, p, m), vector), dot(e2(x, p, m), vector), dot(e3(x, p, m), vector)
-
-
-@inlined
 def _observe(x, v, a, p, m, inputs, out):
     """Bias + gain R^T (a - g), and bias + gain R^T omega."""
     gravity = (p.gravity_x, p.gravity_y, p.gravity_z)
-    force = _along(minus(position_rate(m.a_kind, 0, a, a_point(p)), gravity), x, p, m)
+    force = along_axes(minus(position_rate(m.a_kind, 0, a, a_point(p)), gravity), x, p, m)
     first = (p.acceleration_gain_11, p.acceleration_gain_21, p.acceleration_gain_31)
     second = (p.acceleration_gain_12, p.acceleration_gain_22, p.acceleration_gain_32)
     third = (p.acceleration_gain_13, p.acceleration_gain_23, p.acceleration_gain_33)
     bias = (p.acceleration_bias_1, p.acceleration_bias_2, p.acceleration_bias_3)
     out[0], out[1], out[2] = plus(bias, combined(force, first, second, third))
-    rate = _along(spin(m.a_kind, 0, x, v), x, p, m)
+    rate = along_axes(spin(m.a_kind, 0, x, v), x, p, m)
     first = (p.rate_gain_11, p.rate_gain_21, p.rate_gain_31)
     second = (p.rate_gain_12, p.rate_gain_22, p.rate_gain_32)
     third = (p.rate_gain_13, p.rate_gain_23, p.rate_gain_33)
@@ -62,12 +46,10 @@ def _observe(x, v, a, p, m, inputs, out):
     out[3], out[4], out[5] = plus(bias, combined(rate, first, second, third))
 
 
-INERTIAL_SENSOR = pair_kind(
+INERTIAL_SENSOR = sensor_kind(
     "inertial_sensor",
     __name__,
-    (*_GRAVITY, *_columns("acceleration"), *_columns("rate")),
-    residual=_residual,
-    energy=_energy,
+    numbers=(*_GRAVITY, *_columns("acceleration"), *_columns("rate")),
     outputs=(
         *((f"accelerometer_{axis}", "m/s**2") for axis in "xyz"),
         *((f"gyroscope_{axis}", "rad/s") for axis in "xyz"),

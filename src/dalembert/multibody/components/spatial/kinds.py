@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.spatial import pairs
 from dalembert.multibody.kernels.kind import Kind
 
@@ -28,3 +29,26 @@ def pair_kind(
         home=home,
         **properties,
     )
+
+
+def sensor_kind(name: str, home: str, **properties: Any) -> Kind:
+    """A kind with the columns of two markers, then its own ones, that exerts no force.
+
+    Parameters
+    ----------
+    name : str
+    home : str
+        Module that holds it.
+    properties : of the kind
+    """
+    return pair_kind(name, home, residual=_no_residual, energy=_no_energy, **properties)
+
+
+@inlined
+def _no_residual(x, v, a, p, m, inputs, r):
+    """No force."""
+
+
+@inlined
+def _no_energy(x, v, p, m, inputs):
+    return 0.0 * x[0], 0.0 * x[0], 0.0 * x[0]

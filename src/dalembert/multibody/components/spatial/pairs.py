@@ -16,7 +16,7 @@ from dalembert.multibody.components.spatial.markers import (
     spin,
     twist,
 )
-from dalembert.multibody.components.spatial.vectors import minus, times
+from dalembert.multibody.components.spatial.vectors import dot, minus, times
 
 _OF_SIDE = ("x", "y", "z", "11", "12", "13", "21", "22", "23", "31", "32", "33")
 NUMBERS = tuple(f"{side}_{name}" for side in "ab" for name in _OF_SIDE)
@@ -91,6 +91,12 @@ def _b_axis(own):
 #: Axes of the markers in space, as functions of coordinates, numbers and integers.
 E = e1, e2, e3 = tuple(map(_a_axis, A_AXES))
 F = f1, f2, f3 = tuple(map(_b_axis, B_AXES))
+
+
+@inlined
+def along_axes(vector, x, p, m):
+    """A vector in the axes of a."""
+    return dot(e1(x, p, m), vector), dot(e2(x, p, m), vector), dot(e3(x, p, m), vector)
 
 
 @inlined

@@ -42,7 +42,40 @@ def rotation_vector(e1, e2, e3):
 
 
 @inlined
-def roll_pitch_yaw(e1, e2, e3):
-    """Angles about the fixed axes x, y, z in turn (z, y, x of the body); singular at a pitch of 90 degrees."""
-    across = root(e1[0] * e1[0] + e1[1] * e1[1] + 1e-30)
-    return angle_of(e3[2], e2[2]), angle_of(across, -e1[2]), angle_of(e1[0], e1[1])
+def _entry(e1, e2, e3, row, column):
+    """Entry of the matrix with these columns."""
+    axis = e1
+    if column == 1:
+        axis = e2
+    elif column == 2:
+        axis = e3
+    value = axis[0]
+    if row == 1:
+        value = axis[1]
+    elif row == 2:
+        value = axis[2]
+    return value
+
+
+@inlined
+def euler_angles(e1, e2, e3, i, j, k):
+    """Angles of successive rotations about the axes i, j and k, each turned by those before: R = R_i R_j R_k.
+
+    With three different axes and e = 1 where they are in the order of (x, y, z), else -1: R_ik = e sin b,
+    R_jk = -e sin a cos b, R_kk = cos a cos b, R_ij = -e cos b sin c, R_ii = cos b cos c. With k = i and the other
+    axis l: R_ii = cos b, R_ji = sin a sin b, R_li = -e cos a sin b, R_ij = sin b sin c, R_il = e sin b cos c.
+    """
+    sign = 1.0 if (j - i) % 3 == 1 else -1.0
+    own = _entry(e1, e2, e3, i, i)
+    if i != k:
+        across = _entry(e1, e2, e3, i, j)
+        first = angle_of(_entry(e1, e2, e3, k, k), -sign * _entry(e1, e2, e3, j, k))
+        second = angle_of(root(own * own + across * across + 1e-30), sign * _entry(e1, e2, e3, i, k))
+        third = angle_of(own, -sign * across)
+    else:
+        last = 3 - i - j
+        across, along = _entry(e1, e2, e3, i, j), _entry(e1, e2, e3, i, last)
+        first = angle_of(-sign * _entry(e1, e2, e3, last, i), _entry(e1, e2, e3, j, i))
+        second = angle_of(own, root(across * across + along * along + 1e-30))
+        third = angle_of(sign * along, across)
+    return first, second, third

@@ -3,7 +3,7 @@
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.spatial.markers import SLOTS, axis, position, position_rate, spin
 from dalembert.multibody.components.spatial.pairs import A_AXES
-from dalembert.multibody.components.spatial.rotations import quaternion, roll_pitch_yaw, rotation_vector
+from dalembert.multibody.components.spatial.rotations import euler_angles, quaternion, rotation_vector
 from dalembert.multibody.kernels.kind import Kind
 
 _SIDE = ("a_x", "a_y", "a_z", "a_11", "a_12", "a_13", "a_21", "a_22", "a_23", "a_31", "a_32", "a_33")
@@ -21,7 +21,7 @@ def _observe(x, v, a, p, m, inputs, out):
     e1, e2, e3 = axis(m.kind, 0, x, _a1(p)), axis(m.kind, 0, x, _a2(p)), axis(m.kind, 0, x, _a3(p))
     out[15], out[16], out[17], out[18] = quaternion(e1, e2, e3)
     out[19], out[20], out[21] = rotation_vector(e1, e2, e3)
-    out[22], out[23], out[24] = roll_pitch_yaw(e1, e2, e3)
+    out[24], out[23], out[22] = euler_angles(e1, e2, e3, 2, 1, 0)
 
 
 SENSOR = Kind(

@@ -202,13 +202,12 @@ def sensed(place, angles, **fields) -> sp.SpatialSystem:
 
 
 def seen(place, angles) -> sp.SpatialSystem:
-    """A relative sensor whose first marker, on the first of two rods, has the numbers."""
+    """A relative sensor whose first marker, on the second of two rods, has the numbers."""
     system, first, second = two_rods()
-    first = replace(first, points={**first.points, "eye": sp.Pose(place, by_angles(angles))})
-    system.bodies[0] = first
+    system.bodies[1] = second = replace(second, points={"tip": sp.Pose(place, by_angles(angles))})
     system.add(sp.SphericalJoint("hold", system.ground, first.point("origin")))
     system.add(sp.SphericalJoint("middle", first.point("end"), second.point("origin")))
-    system.add(sp.RelativeSensor("part", first.point("eye"), second.point("centre"), angles="zxz"))
+    system.add(sp.RelativeSensor("part", second.point("tip"), first.point("centre"), angles="zxz"))
     return system
 
 

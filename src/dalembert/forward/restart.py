@@ -20,11 +20,18 @@ class StateChart:
     names, units : tuple of str, length numbers
         Such as ``"upper.angle"`` and ``"upper.angle rate"``.
     places : array of int, shape (numbers,)
-        Their places among the numbers of the whole state.
+        Their places among all numbers that can be chosen.
     near : array, shape (state,)
         The whole state near which the others are completed.
+    values : array, shape (numbers,)
+        The numbers at the known state.
     scales : array, shape (numbers,)
         Typical sizes.
+    offsets : array, shape (numbers,)
+        What to add to numbers before those of several charts are compared: rotation increments begin at zero at each
+        known state.
+    reach : array, shape (numbers,)
+        Largest magnitudes.
     whole : bool
         Whether all numbers of the state are named, so that a motion can be read but not begun.
     """
@@ -33,13 +40,11 @@ class StateChart:
     units: tuple[str, ...]
     places: np.ndarray
     near: np.ndarray
+    values: np.ndarray
     scales: np.ndarray
+    offsets: np.ndarray
+    reach: np.ndarray
     whole: bool = False
-
-    @property
-    def values(self) -> np.ndarray:
-        """The numbers at the known state, shape (numbers,)."""
-        return self.near[self.places]
 
 
 @runtime_checkable

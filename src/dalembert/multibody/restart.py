@@ -15,6 +15,7 @@ from dalembert.multibody.evaluate import constraint_jacobian, constraint_rates, 
 from dalembert.multibody.fingerprint import fingerprint
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.model import Model
+from dalembert.multibody.local_coordinates import LocalCoordinates, coordinate_names
 from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.motion_model import BuiltModel, MotionModel
 from dalembert.multibody.scales import scales
@@ -32,16 +33,27 @@ _REACH = 1e6  # bounds of a state in typical sizes: methods give their own
 def chart(lowered: Lowered, state: np.ndarray, whole: bool = False, like: StateChart | None = None) -> StateChart:
     """Return independent coordinates and rates of a mechanism near a state (2n,); all of them if ``whole``.
 
-    The constraints leave the motions N = null(J) free, in scaled coordinates. Independent are the coordinates whose
-    rows of N a pivoted QR decomposition chooses; or those of a chart ``like`` it, where their rows are not much worse.
+    The constraints leave the motions N = null(J) free, in scaled local coordinates. Independent are the coordinates
+    whose rows of N a pivoted QR decomposition chooses; or those of a chart ``like`` it, where their rows are not much
+    worse.
     """
-    structure = lowered.structure
-    n, scale = structure.n, scales(lowered)[: structure.n]
-    places = np.arange(n)
-    if structure.size > n and not whole:
-        x = np.concatenate([state[:n], np.zeros(structure.size + 1 - n)])
-        free = null_space(constraint_jacobian(lowered, x).toarray() * scale)
-        preferred = np.where(np.array(structure.kinds) == ANGLE, _ANGLES_FIRST, 1.0)
+    structure, scale = lowered.structure, scales(lowered)
+    n, size = structure.n, structure.size
+    if whole:
+        names, units = coordinate_names(lowered), [_unit(kind) for kind in structure.kinds]
+        every, sizes = np.arange(2 * n), np.tile(scale[:n], 2)
+        labels = (*names, *(f"{name} rate" for name in names)), (*units, *(f"{unit}/s" for unit in units))
+        return StateChart(*labels, every, state, state, sizes, np.zeros(2 * n), np.full(2 * n, np.inf), whole)
+    local = LocalCoordinates.of(lowered)
+    state = np.concatenate([local.restored(state[:n]), state[n:]])
+    count = len(local.names)
+    own, places = np.ones(count), np.arange(count)
+    own[local.flat[1]] = scale[local.flat[0]]
+    if size > n:
+        x = np.concatenate([state[:n], np.zeros(size + 1 - n)])
+        rows = np.delete(constraint_jacobian(lowered, x).toarray(), local.inner, axis=0) @ local.basis(state[:n])
+        free = null_space(rows * own) if len(rows) else np.eye(count)
+        preferred = np.where(np.array(local.kinds) == ANGLE, _ANGLES_FIRST, 1.0)
         decomposed = qr((free * preferred[:, None]).T, mode="economic", pivoting=True)
         order = cast(tuple[np.ndarray, np.ndarray, np.ndarray], decomposed)[2]
         places = np.sort(order[: free.shape[1]])
@@ -49,34 +61,23 @@ def chart(lowered: Lowered, state: np.ndarray, whole: bool = False, like: StateC
             known = like.places[: len(like.places) // 2]
             if len(known) == len(places) and _least(free[known]) > _WELL * _least(free[places]):
                 places = known
-    names = [_coordinate_names(lowered)[place] for place in places]
-    units = [_unit(structure.kinds[place]) for place in places]
+    units = [_unit(local.kinds[place]) for place in places]
+    chosen = np.concatenate([places, count + places])
+    offsets, reach = np.zeros(2 * count), np.full(2 * count, np.inf)
+    turning = local.rotations.ravel()
+    offsets[turning] = local.positions(local.restored(np.real(lowered.x[:n])), state[:n])[turning]
+    reach[turning] = np.pi
+    values = np.concatenate([local.positions(state[:n], state[:n]), local.rates(state[:n], state[n:])])
     return StateChart(
-        (*names, *(f"{name} rate" for name in names)),
+        (*(local.names[place] for place in places), *(local.rate_names[place] for place in places)),
         (*units, *(f"{unit}/s" for unit in units)),
-        np.concatenate([places, n + places]),
-        state,
-        np.tile(scale[places], 2),
-        whole,
-    )
+        chosen, state, values[chosen], np.tile(own[places], 2), offsets[chosen], reach[chosen],
+    )  # fmt: skip
 
 
 def _least(rows: np.ndarray) -> float:
     """Smallest singular value: how well the coordinates of these rows determine the others."""
     return float(np.linalg.svd(rows, compute_uv=False).min(initial=np.inf))
-
-
-def _coordinate_names(lowered: Lowered) -> list[str]:
-    """Names of all coordinates: ``"bar.x"``, ``"bar.y"`` and ``"bar.angle"``, numbered in bodies of several nodes."""
-    names: list[str] = []
-    for body in lowered.bodies.values():
-        counts: dict[str, int] = {}
-        for kind in body.coordinate_kinds:
-            number = counts[kind] = counts.get(kind, -1) + 1
-            node, axis = (number, 0) if kind == ANGLE else divmod(number, body.dimension)
-            what = kind if kind == ANGLE else "xyz"[axis] if kind == POSITION else f"{kind} {'xyz'[axis]}"
-            names.append(f"{body.name}.{what}" + ("" if body.rigid and kind in (ANGLE, POSITION) else f" {node + 1}"))
-    return names
 
 
 def _unit(kind: str) -> str:
@@ -90,21 +91,26 @@ class Completion:
     Parameters
     ----------
     chart : StateChart
+    coordinates : LocalCoordinates
     dependent : array of int
-        Coordinates that follow.
-    x, inverse : array
-        Unknowns (N + 1,) where the joints are closed, and the inverse of the constraints' derivative by the dependent
-        coordinates there.
+        Local coordinates that follow.
+    local : array, shape (local,)
+        Local coordinates where the joints are closed.
+    inverse, of_rates : array
+        Inverses there of the derivatives of the joints' constraints by the dependent local coordinates, and of their
+        rates by the dependent rates.
     """
 
     chart: StateChart
+    coordinates: LocalCoordinates
     dependent: np.ndarray
-    x: np.ndarray
+    local: np.ndarray
     inverse: np.ndarray
+    of_rates: np.ndarray
 
     @classmethod
     def at(cls, lowered: Lowered, chart: StateChart, numbers: np.ndarray) -> "Completion":
-        """Solve Φ(q, y) = 0 for the dependent coordinates y near the chart's state, by Newton's method.
+        """Solve the joints' constraints for the dependent coordinates near the chart's state, by Newton's method.
 
         Raises
         ------
@@ -112,41 +118,54 @@ class Completion:
             Where the joints do not close there.
         """
         n, size = lowered.structure.n, lowered.structure.size
-        half = len(chart.places) // 2
-        x = np.concatenate([chart.near[:n], np.zeros(size + 1 - n)])
-        x[chart.places[:half]] = numbers[:half]
-        dependent = np.setdiff1d(np.arange(n), chart.places[:half])
-        still, extent = np.zeros_like(x), scales(lowered).max()
-        for _ in range(_MOST_ITERATIONS if size > n else 0):
-            inverse = np.linalg.pinv(constraint_jacobian(lowered, x)[:, dependent].toarray(), rcond=1e-10)
-            step = -inverse @ residual(lowered, lowered.real, x, still, still)[n:]
+        own, half = LocalCoordinates.of(lowered), len(chart.places) // 2
+        near = chart.near[:n]
+        local = own.positions(near, near)
+        local[chart.places[:half]] = numbers[:half]
+        dependent = np.setdiff1d(np.arange(len(local)), chart.places[:half])
+        if size - n == len(own.inner):
+            return cls(chart, own, dependent, local, np.zeros((0, 0)), np.zeros((0, 0)))
+        still, extent = np.zeros(size + 1), scales(lowered).max()
+        for _ in range(_MOST_ITERATIONS):
+            x = np.concatenate([own.moved(near, local), np.zeros(size + 1 - n)])
+            rows = np.delete(constraint_jacobian(lowered, x).toarray(), own.inner, axis=0)
+            inverse = _inverse(rows @ own.slopes(near, local)[:, dependent])
+            step = -inverse @ np.delete(residual(lowered, lowered.real, x, still, still)[n:], own.inner)
             longest = np.abs(step).max(initial=0.0)
             if not np.isfinite(longest):
                 break
-            x[dependent] += step * min(1.0, 0.5 * extent / (longest + 1e-300))
+            local[dependent] += step * min(1.0, 0.5 * extent / (longest + 1e-300))
             if longest <= _CLOSED * extent:
-                return cls(chart, dependent, x, inverse)
-        if size == n:
-            return cls(chart, dependent, x, np.zeros((0, 0)))
+                return cls(chart, own, dependent, local, inverse, _inverse(rows @ own.basis(x[:n])[:, dependent]))
         raise SolveError("a segment cannot begin: its joints do not close at the state; give more segments")
 
     def applied(self, lowered: Lowered, numbers: np.ndarray) -> Lowered:
         """Return arrays that begin at these numbers, whose real part the completion is for; with their derivatives."""
-        n, half = lowered.structure.n, len(self.chart.places) // 2
+        n, size, half = lowered.structure.n, lowered.structure.size, len(self.chart.places) // 2
         complex_state = lowered.is_complex or bool(lowered.callbacks) or np.iscomplexobj(numbers)
-        x = self.x.astype(complex if complex_state else float)
-        v, still = np.zeros_like(x), np.zeros_like(x)
-        v[:n] = self.chart.near[n:]
-        x[self.chart.places[:half]] = numbers[:half]
-        v[self.chart.places[:half]] = numbers[half:]
-        if len(self.inverse) == 0:
-            return replace(lowered, x=x, v=v)
+        own, near = self.coordinates, self.chart.near[:n]
+        local = self.local.astype(complex if complex_state else float)
+        rates = own.rates(near, self.chart.near[n:]).astype(local.dtype)
+        local[self.chart.places[:half]] = numbers[:half]
+        rates[self.chart.places[:half]] = numbers[half:]
+        tail, still = np.zeros(size + 1 - n), np.zeros(size + 1, dtype=local.dtype)
         model = lowered.complex_model if complex_state else lowered.real
-        if complex_state:  # linear: once for the derivative
-            x[self.dependent] -= self.inverse @ residual(lowered, model, x, still, still)[n:]
-        for _ in range(2):  # once for the value, once for its derivative
-            v[self.dependent] -= self.inverse @ constraint_rates(lowered, model, x, v, still)[0]
+        x = np.concatenate([own.moved(near, local), tail])
+        if complex_state and len(self.inverse):  # linear: once for the derivative
+            wrong = residual(lowered, model, x, still, still)[n:]
+            local[self.dependent] -= self.inverse @ np.delete(wrong, own.inner)
+            x = np.concatenate([own.moved(near, local), tail])
+        basis = own.basis(x[:n])
+        v = np.concatenate([basis @ rates, tail])
+        for _ in range(2 * (len(self.inverse) > 0)):  # once for the value, once for its derivative
+            wrong = constraint_rates(lowered, model, x, v, still)[0]
+            rates[self.dependent] -= self.of_rates @ np.delete(wrong, own.inner)
+            v = np.concatenate([basis @ rates, tail])
         return replace(lowered, x=x, v=v)
+
+
+def _inverse(matrix: np.ndarray) -> np.ndarray:
+    return np.linalg.pinv(matrix, rcond=1e-10)
 
 
 @dataclass(frozen=True)
@@ -183,7 +202,7 @@ class MotionSegment(MotionModel):
         """Those of the model, then the numbers of the state."""
         if self.chart is None:
             return self.model.parameters
-        wide = _REACH * self.chart.scales
+        wide = np.minimum(_REACH * self.chart.scales, self.chart.reach)
         states = [
             Parameter(f"state {name}", value - reach, value + reach, unit, scale)
             for name, value, reach, unit, scale in zip(
@@ -247,5 +266,10 @@ class MotionSegment(MotionModel):
         values = super()._read(lowered, model, states)
         if self.ends is None:
             return values
-        n, (x, v) = lowered.structure.n, states[:2]
-        return np.concatenate([values, np.concatenate([x[:, :n], v[:, :n]], axis=1)[:, self.ends.places]], axis=1)
+        n = lowered.structure.n
+        x, v = (part[:, :n] for part in states[:2])
+        numbers = np.concatenate([x, v], axis=1)
+        if not self.ends.whole:
+            own = LocalCoordinates.of(lowered)
+            numbers = np.concatenate([own.positions(self.ends.near[:n], x), own.rates(x, v)], axis=1)
+        return np.concatenate([values, numbers[:, self.ends.places]], axis=1)

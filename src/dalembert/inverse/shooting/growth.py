@@ -10,7 +10,7 @@ from dalembert.findings import Finding
 from dalembert.forward import restartable
 from dalembert.inverse.experiments.tracks import Track, tracks
 from dalembert.inverse.problem.problem import Problem
-from dalembert.inverse.shooting.natural_cuts import MOST_STATES
+from dalembert.inverse.shooting.natural_cuts import MOST_STATES, state_ranges
 
 CHAOTIC = 100.0
 """Growth of a small change of the initial state from which on a misfit has many false minima."""
@@ -60,13 +60,12 @@ def _growth(track: Track, own: np.ndarray) -> float:
         return 1.0
     places = np.rint(np.linspace(0, len(times) - 1, PIECES + 1)).astype(int)
     charts = [model.state_chart(own, states[place], like=start) for place in places]
-    ranges = np.ptp(states, axis=0)
-    half = len(ranges) // 2
-    ranges = np.maximum(ranges, np.repeat([0.01 * ranges[:half].max(), 0.01 * ranges[half:].max()], half) + 1e-300)
+    ranges = state_ranges(charts, [chart.values for chart in charts])
     passed = np.eye(len(start.names))
     for (begin, chart), (end, after) in pairwise(zip(places, charts, strict=True)):
         piece = model.restarted(float(times[begin]), [float(times[end] - times[begin])], chart, after)
         _, jacobian = piece.linearise(np.concatenate([own, chart.values]))
         slopes = jacobian[-1, number:, len(own) :]
-        passed = slopes * ranges[chart.places] / ranges[after.places, None] @ passed
+        was, now = (np.array([ranges[name] for name in one.names]) for one in (chart, after))
+        passed = slopes * was / now[:, None] @ passed
     return float(np.linalg.norm(passed, 2))

@@ -241,13 +241,14 @@ class _Estimates:
         return float(np.min(np.diff(self.track.times)))
 
 
-def _bounded(found: Sequence[tuple[int, StateChart, np.ndarray]]) -> list[Node]:
-    """Nodes whose bounds and ranges are those of all of them."""
+def state_ranges(charts: Sequence[StateChart], states: Sequence[np.ndarray]) -> dict[str, float]:
+    """Ranges of states (numbers,) by the names of their numbers; no coordinate, and no rate, has a tiny one."""
     over: dict[str, list[float]] = {}
     scales: dict[str, float] = {}
-    for _, chart, state in found:
+    for chart, state in zip(charts, states, strict=True):
         half = len(chart.names) // 2
-        for number, (name, value, scale) in enumerate(zip(chart.names, state, chart.scales, strict=True)):
+        compared = state + chart.offsets
+        for number, (name, value, scale) in enumerate(zip(chart.names, compared, chart.scales, strict=True)):
             over.setdefault(name, []).append(float(value))
             scales[name] = float(scale) * (1 if number < half else -1)
     ranges = {name: float(np.ptp(values)) for name, values in over.items()}
@@ -256,14 +257,20 @@ def _bounded(found: Sequence[tuple[int, StateChart, np.ndarray]]) -> list[Node]:
         largest = max(ranges[name] / abs(scales[name]) for name in own) or 1.0
         for name in own:
             ranges[name] = max(ranges[name], SMALL * largest * abs(scales[name]))
+    return ranges
+
+
+def _bounded(found: Sequence[tuple[int, StateChart, np.ndarray]]) -> list[Node]:
+    """Nodes whose bounds and ranges are those of all of them."""
+    ranges = state_ranges([chart for _, chart, _ in found], [state for _, _, state in found])
+    over: dict[str, list[float]] = {}
+    for _, chart, state in found:
+        for name, value in zip(chart.names, state + chart.offsets, strict=True):
+            over.setdefault(name, []).append(float(value))
     nodes = []
     for sample, chart, state in found:
         size = np.array([ranges[name] for name in chart.names])
-        middle = np.array([(max(over[name]) + min(over[name])) / 2 for name in chart.names])
-        nodes.append(
-            Node(
-                sample, chart.names, chart.units, state, middle - REACH * size, middle + REACH * size, size,
-                replace(chart, near=chart.near),
-            )
-        )  # fmt: skip
+        middle = np.array([(max(over[name]) + min(over[name])) / 2 for name in chart.names]) - chart.offsets
+        lower, upper = np.maximum(middle - REACH * size, -chart.reach), np.minimum(middle + REACH * size, chart.reach)
+        nodes.append(Node(sample, chart.names, chart.units, state, lower, upper, size, replace(chart)))
     return nodes

@@ -12,7 +12,7 @@ from dalembert.multibody.components.body import BaseBody
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.spatial import markers
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
-from dalembert.multibody.components.spatial.orientation import Orientation, about
+from dalembert.multibody.components.spatial.orientation import Orientation, turned
 from dalembert.multibody.components.spatial.sensor import AXIAL, SENSOR
 
 DIRECTOR = "director"
@@ -64,14 +64,7 @@ class Body(BaseBody):
 
     def moved(self, frame: np.ndarray, step: np.ndarray) -> np.ndarray:
         """The frame after a displacement and a rotation vector (6,) in the fixed axes."""
-        shift, turn = step[:3], step[3:]
-        angle = np.sqrt(turn @ turn)
-        directors = frame[3:].reshape(3, 3)
-        if np.real(angle) > 0.0:
-            directors = directors @ about(turn / angle, angle).T
-        else:  # first order, which keeps a derivative
-            directors = directors + np.cross(turn, directors)
-        return np.concatenate([frame[:3] + shift, directors.ravel()])
+        return np.concatenate([frame[:3] + step[:3], turned(frame[3:].reshape(3, 3), step[3:]).ravel()])
 
     def point_rates(self, marker: Marker, coordinates: np.ndarray, modes: np.ndarray) -> np.ndarray:
         """Derivative of the position of a marker by the frame, (3, 6)."""

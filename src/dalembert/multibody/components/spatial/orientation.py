@@ -163,6 +163,15 @@ def about(unit: np.ndarray, angle: Any) -> np.ndarray:
     return np.cos(angle) * np.eye(3) + np.sin(angle) * skew(unit) + (1.0 - np.cos(angle)) * np.outer(unit, unit)
 
 
+def turned(directors: np.ndarray, turn: np.ndarray) -> np.ndarray:
+    """Directors (3, 3), one in each row, after a rotation by a rotation vector (3,) in the fixed axes."""
+    square = turn @ turn
+    if np.real(square) > 0.0:
+        angle = np.sqrt(square)
+        return directors @ about(turn / angle, angle).T
+    return directors + np.cross(turn, directors)  # first order, which keeps a derivative
+
+
 def direction(vector: Any, owner: str) -> np.ndarray:
     """A direction, made one of length one, (3,).
 

@@ -5,7 +5,7 @@ import pytest
 
 from dalembert.data import Measurements
 from dalembert.errors import InputError
-from dalembert.forward import ForwardModel, PythonModel, Sensor, Sensors
+from dalembert.forward import Channel, ForwardModel, PythonModel, Sensor, Sensors
 from dalembert.inverse import identify
 from dalembert.parameters import Parameter
 from support import says
@@ -175,3 +175,42 @@ def test_a_lag_is_not_confused_with_a_delay():
 def test_what_sensors_cannot_read_is_told(sensors, times, sentence):
     with pytest.raises(InputError, match=says(sentence)):
         Sensors(SWING, sensors, times)
+
+
+def pair(rate):
+    return np.stack([np.cos(rate * FINE), np.sin(rate * FINE)], axis=1)
+
+
+BOTH = PythonModel(pair, {"rate": (1.0, 9.0)}, [Channel("imu.x", "m"), Channel("imu.y", "rad")], FINE)
+
+
+def test_channels_of_a_component_share_a_delay():
+    seen = Sensors(BOTH, {"imu": Sensor(delay=(0.0, 0.2)), "imu.y": Sensor(gain=(0.5, 2.0))}, STAMPS)
+    assert seen.parameters.names == ("rate", "imu delay", "imu.y gain")
+    point = np.array([3.0, 0.07, 1.5])
+    phase = 3.0 * (STAMPS - 0.07)
+    values, jacobian = seen.linearise(point)
+    np.testing.assert_allclose(values, np.stack([np.cos(phase), 1.5 * np.sin(phase)], axis=1), atol=1e-9)
+    by_delay = np.stack([3.0 * np.sin(phase), -4.5 * np.cos(phase)], axis=1)
+    np.testing.assert_allclose(jacobian[:, :, 1], by_delay, atol=2e-7)
+    np.testing.assert_allclose(jacobian[:, :, 2], np.stack([0 * phase, np.sin(phase)], axis=1), atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("sensors", "sentence"),
+    [
+        (
+            {"imu": Sensor(delay=(0.0, 0.1)), "imu.x": Sensor(delay=(0.0, 0.1))},
+            "Sensors: the delay of 'imu.x' is given by 'imu' and by 'imu.x'; expected one",
+        ),
+        (
+            {"imu": Sensor(offset=(0.0, 0.1))},
+            "Sensors: the channels of 'imu' have the units 'm', 'rad', and no offset in common; give the offsets by "
+            "channel",
+        ),
+        ({"im": Sensor(delay=(0.0, 0.1))}, "Sensors: unknown channel 'im'; known: imu.x, imu.y"),
+    ],
+)
+def test_what_a_component_cannot_share_is_told(sensors, sentence):
+    with pytest.raises(InputError, match=says(sentence)):
+        Sensors(BOTH, sensors, STAMPS)

@@ -1,7 +1,7 @@
 """What sensors read of a response: late by a delay or a lag, scaled by a gain, shifted by an offset, all unknown."""
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -66,7 +66,8 @@ class Sensors:
     model : ForwardModel
         Its samples lie close enough to be interpolated, and reach as far as the delays ask.
     sensors : mapping of str to Sensor
-        By channel; the others are read as they are.
+        By channel; the others are read as they are. Or by component, such as ``"imu"`` or ``"AB.end"``: its channels
+        share the unknowns, as those of one instrument share a delay.
     times : array, shape (samples,), optional
         Time stamps of the readings; the model's own samples if not given.
     start : (lower, upper) or Parameter, optional
@@ -76,12 +77,13 @@ class Sensors:
     Raises
     ------
     InputError
-        For a channel that the model lacks, a sensor without unknowns, times outside the model's.
+        For a channel that the model lacks, a sensor without unknowns, a quantity of a channel that is given twice, an
+        offset that channels of different units share, times outside the model's.
 
     Notes
     -----
-    The parameters are named ``"AB.end.x delay"``, ``"AB.end.x lag"``, ``"AB.end.x gain"`` and ``"AB.end.x offset"``; a
-    first guess is that of a perfect sensor where the bounds allow it.
+    The parameters are named ``"AB.end.x delay"``, ``"AB.end.x lag"``, ``"AB.end.x gain"`` and ``"AB.end.x offset"``, or
+    ``"imu delay"``; a first guess is that of a perfect sensor where the bounds allow it.
 
     Between samples the response is a spline of degree 5 through them, and its derivatives are those of that spline,
     exact for the response that is computed. The spline of a vibration errs by 7e-8 of its amplitude at 20 samples a
@@ -122,6 +124,7 @@ class Sensors:
         along = model.coordinate
         stamps = along.values if times is None else samples_of(times, "Sensors", "times")
         own = [entry for name, sensor in sensors.items() for entry in _unknowns(model, name, sensor)]
+        _refuse_twice(model, sensors)
         own += [] if start is None else [_parameter(START, start, along.unit, 0.0)]
         parameters = Parameters((*model.parameters.declared, *own))
         given = model, dict(sensors), parameters, Coordinate(along.name, along.unit, stamps), start
@@ -192,11 +195,13 @@ class Sensors:
         jacobian = np.zeros((*read.shape, len(vector)))
         for column, channel in enumerate(self.channels):
             there, rate, by_lag = self._seen(vector, channel.name, table[:, column])
-            gain = self._value(vector, f"{channel.name} gain", 1.0)
-            read[:, column] = gain * there[:, 0] + self._value(vector, f"{channel.name} offset")
+            gain = self._value(vector, self._named(channel.name, "gain"), 1.0)
+            read[:, column] = gain * there[:, 0] + self._value(vector, self._named(channel.name, "offset"))
             jacobian[:, column, : there.shape[1] - 1] = gain * there[:, 1:]
             slopes = {"delay": -gain * rate, "lag": gain * by_lag, "gain": there[:, 0], "offset": 1.0}
-            by_name = {START: slopes["delay"]} | {f"{channel.name} {what}": slope for what, slope in slopes.items()}
+            by_name = {START: slopes["delay"]} | {
+                self._named(channel.name, what): slope for what, slope in slopes.items()
+            }
             for name in by_name.keys() & set(names):
                 jacobian[:, column, names.index(name)] = by_name[name]
         return read, jacobian
@@ -210,9 +215,14 @@ class Sensors:
         asked = stamps - self._delay(vector, channel)
         before = asked < own[0]
         at = np.clip(asked, own[0], own[-1])  # what lies beyond by rounding
-        there, rate, by_lag = lagged(spline, own, at, self._value(vector, f"{channel} lag"))
+        there, rate, by_lag = lagged(spline, own, at, self._value(vector, self._named(channel, "lag")))
         rate, by_lag = (np.where(before, 0.0, column[:, 0]) for column in (rate, by_lag))
         return np.where(before[:, None], table[0], there), rate, by_lag
+
+    def _named(self, channel: str, what: str) -> str:
+        """Name of the parameter of a quantity of a channel: its own, or that of the component."""
+        own = (name for name in owners(self.sensors, channel) if getattr(self.sensors[name], what) is not None)
+        return f"{next(own, channel)} {what}"
 
     def _value(self, values: np.ndarray, name: str, perfect: float = 0.0) -> float:
         """A quantity by its name, of parameters (parameters,); that of a perfect sensor where it is no parameter."""
@@ -222,10 +232,10 @@ class Sensors:
 
     def _delay(self, values: np.ndarray, channel: str) -> float:
         """Delay of a channel, with the time stamp at which the motion begins."""
-        return self._value(values, f"{channel} delay") + self._value(values, START)
+        return self._value(values, self._named(channel, "delay")) + self._value(values, START)
 
     def _is_late(self, channel: str) -> bool:
-        lag = f"{channel} lag"
+        lag = self._named(channel, "lag")
         lags = lag in self.parameters.names or self._value(self.parameters.lower, lag) != 0
         return lags or self._bounds(channel) != (0.0, 0.0)
 
@@ -240,7 +250,8 @@ class Sensors:
         for name in (channel.name for channel in self.channels):
             least, most = self._bounds(name)
             begins, ends = stamps[0] - most, stamps[-1] - least
-            at_rest = self.sensors[name].at_rest if name in self.sensors else self.start is not None
+            own_sensors = owners(self.sensors, name)
+            at_rest = all(self.sensors[one].at_rest for one in own_sensors) if own_sensors else self.start is not None
             if begins < own[0] - slack and not at_rest:
                 raise InputError(
                     f"Sensors: the first reading of {name!r}, at {along.name} {stamps[0]:.6g} {along.unit}, may show "
@@ -258,20 +269,42 @@ class Sensors:
 
 def _unknowns(model: ForwardModel, name: str, sensor: Sensor) -> list[Parameter]:
     """Parameters of one sensor."""
-    units = {channel.name: channel.unit for channel in model.channels}
-    require_known("channel", name, units, "Sensors")
+    units = {channel.name: channel.unit for channel in model.channels if name in owners([name], channel.name)}
+    if not units:
+        require_known("channel", name, [channel.name for channel in model.channels], "Sensors")
     given = {what: getattr(sensor, what) for what in QUANTITIES if getattr(sensor, what) is not None}
     if not given:
         raise InputError(
             f"Sensors: the sensor of {name!r} has no delay, lag, gain or offset; give bounds of at least one of them, "
             "or remove the sensor"
         )
-    unit = {"delay": model.coordinate.unit, "lag": model.coordinate.unit, "gain": "", "offset": units[name]}
+    own = list(dict.fromkeys(units.values()))
+    if sensor.offset is not None and len(own) > 1:
+        raise InputError(
+            f"Sensors: the channels of {name!r} have the units {', '.join(map(repr, own))}, and no offset in "
+            "common; give the offsets by channel"
+        )
+    unit = {"delay": model.coordinate.unit, "lag": model.coordinate.unit, "gain": "", "offset": own[0]}
     found = [_parameter(f"{name} {what}", bounds, unit[what], QUANTITIES[what]) for what, bounds in given.items()]
     for item in found:
         if item.name == f"{name} lag" and item.lower < 0:
             raise InputError(f"Sensors: the lag of {name!r} may be {item.lower:g}; expected bounds of zero or more")
     return found
+
+
+def owners(sensors: Iterable[str], channel: str) -> list[str]:
+    """Names of the sensors of a channel: its own, and those of its component."""
+    return [name for name in sensors if channel == name or channel.startswith(f"{name}.")]
+
+
+def _refuse_twice(model: ForwardModel, sensors: Mapping[str, Sensor]) -> None:
+    """Refuse a quantity that two sensors give of one channel."""
+    for channel in model.channels:
+        for what in QUANTITIES:
+            own = [name for name in owners(sensors, channel.name) if getattr(sensors[name], what) is not None]
+            if len(own) > 1:
+                givers = " and by ".join(map(repr, own))
+                raise InputError(f"Sensors: the {what} of {channel.name!r} is given by {givers}; expected one")
 
 
 def _parameter(name: str, bounds: Bounds, unit: str, perfect: float) -> Parameter:

@@ -1,13 +1,13 @@
 """The tables of several experiments and of sensors, and that they fit to the rest of the file."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Annotated, Any
 
 from pydantic import Field, ValidationError
 
 from dalembert.errors import DataError, repeated, unknown
 from dalembert.forward import Sensor
-from dalembert.forward.sensors import QUANTITIES, START
+from dalembert.forward.sensors import QUANTITIES, START, owners
 from dalembert.study.data_table import DataTable
 from dalembert.study.inputs import InputTable
 from dalembert.study.numbers import Number, Seconds, pair
@@ -106,7 +106,7 @@ def wrong_experiments(file: Any) -> list[str]:
         if given and task != "identify"
     ]
     measured = measured_channels(file)
-    wrong += [unknown("channel", name, measured, "[sensors]") for name in file.sensors if name not in measured]
+    wrong += [unknown("channel", name, measured, "[sensors]") for name in file.sensors if not reads(name, measured)]
     for table in file.experiments:
         where = f"[[experiments]] {table.name!r}, constants"
         wrong += [
@@ -120,6 +120,11 @@ def wrong_experiments(file: Any) -> list[str]:
         if table.arguments and not (file.model.function or file.model.forward):
             wrong.append(f"[[experiments]] {table.name!r}: arguments are for a function, and there is none")
     return wrong
+
+
+def reads(sensor: str, channels: Iterable[str]) -> bool:
+    """Whether a sensor is that of a channel, or of the component of some."""
+    return any(owners([sensor], channel) for channel in channels)
 
 
 def _wrong_own(table: ExperimentTable, shared: Mapping[str, ParameterTable], where: str) -> list[str]:

@@ -10,6 +10,7 @@ from dalembert.forward import ForwardModel, Sensor, Sensors
 from dalembert.forward.sensors import QUANTITIES, START
 from dalembert.parameters import Parameter
 from dalembert.study.data_table import DataTable
+from dalembert.study.experiments import reads
 from dalembert.study.study import Study
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ def _of_readings(file: Any, table: DataTable) -> list[str]:
         *(
             f"{channel} {what}"
             for channel, sensor in file.sensors.items()
-            if channel in table.channels
+            if reads(channel, table.channels)
             for what in QUANTITIES
             if (bounds := getattr(sensor, what)) is not None and bounds[0] < bounds[1]
         ),
@@ -68,7 +69,7 @@ def posed(study: Study) -> "tuple[ForwardModel | list[Experiment], Measurements 
 
 def _model(study: Study, data: "Measurements", table: DataTable, later: Sequence[str] = ()) -> ForwardModel:
     """The model at the samples of data, seen by the sensors that there are; with channels that are states later."""
-    sensors = {name: table.sensor for name, table in study.file.sensors.items() if name in data.channels}
+    sensors = {name: table.sensor for name, table in study.file.sensors.items() if reads(name, data.channels)}
     stamps, start = data.coordinate.values, table.unknown_start
     if study.has_system and start is None:
         _refuse_late(table, data)

@@ -125,9 +125,10 @@ def test_a_share_is_kept_for_validation(write, tmp_path):
     assert "Not fitted: the last 5 of 21 samples." in outcome.summary
 
 
-def test_sensors_read_a_mechanism_between_the_steps_of_the_solver(write, tmp_path):
+@pytest.mark.parametrize("sensor", ["rod.end.x", "rod"], ids=["channel", "component"])
+def test_sensors_read_a_mechanism_between_the_steps_of_the_solver(sensor, write, tmp_path):
     data = '[data]\nfile = "x.csv"\ncolumns = { "rod.end.x" = "x" }\n'
-    sensors = '[sensors."rod.end.x"]\ndelay = [0, "30 ms"]\ngain = [0.5, 2.0]\nat_rest = true\n'
+    sensors = f'[sensors."{sensor}"]\ndelay = [0, "30 ms"]\ngain = [0.5, 2.0]\nat_rest = true\n'
     text = PENDULUM + data + sensors + "[identify]\n"
     stamps = np.arange(0, 60) * 0.025
     study = load(write(PENDULUM + "[simulate]\nend = 1.5\n"))
@@ -135,10 +136,10 @@ def test_sensors_read_a_mechanism_between_the_steps_of_the_solver(write, tmp_pat
     late = np.interp(stamps - 0.012, np.arange(0, 1501) * 1e-3, exact)
     table(tmp_path / "x.csv", stamps, 1.1 * late)
     study = load(write(text))
-    assert unknowns(study) == ("drag", "rod.end.x delay", "rod.end.x gain")
-    assert plan(study).startswith("identifies drag, rod.end.x delay, rod.end.x gain from 60 samples of rod.end.x by ")
+    assert unknowns(study) == ("drag", f"{sensor} delay", f"{sensor} gain")
+    assert plan(study).startswith(f"identifies drag, {sensor} delay, {sensor} gain from 60 samples of rod.end.x by ")
     folder, outcome = run_study(study, tmp_path / "run")
-    values = {"drag": 0.2, "rod.end.x delay": 0.012, "rod.end.x gain": 1.1}
+    values = {"drag": 0.2, f"{sensor} delay": 0.012, f"{sensor} gain": 1.1}
     assert outcome.best["values"] == pytest.approx(values, rel=1e-3)
     assert folder.report.is_file()
 

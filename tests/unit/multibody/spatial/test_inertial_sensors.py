@@ -5,7 +5,10 @@ import pytest
 from inline_snapshot import snapshot
 
 import dalembert.multibody as mb
+from dalembert.data import Measurements
 from dalembert.errors import InputError, ModelError
+from dalembert.forward import Sensor, Sensors
+from dalembert.inverse import identify
 from dalembert.multibody.spatial import (
     FixedJoint,
     Inertia,
@@ -176,3 +179,43 @@ def test_wrong_inputs() -> None:
         snapshot("InertialSensor 'imu': rate_gain is (1.0, 2.0); expected three numbers, or a matrix (3, 3)"),
     ):
         InertialSensor("imu", mass.point("centre"), rate_gain=(1.0, 2.0))
+
+
+FINE = np.linspace(0.0, 1.0, 401)
+STAMPS = np.linspace(0.1, 0.95, 60)
+
+
+def swinging(length: float) -> SpatialSystem:
+    """A body on a ball joint, with a sensor off its axes."""
+    system = SpatialSystem(gravity=tuple(GRAVITY))
+    inertia = Inertia.box(1.0, (0.1, 0.06, 0.3)).moved((0.0, 0.0, -length))
+    points = {"imu": Pose((0.1, 0.05, -length), AXES)}
+    body = system.add(RigidBody("bob", inertia, points=points, angular_velocity=(3.0, 1.0, 2.0)))
+    system.add(SphericalJoint("ball", system.ground, body.point("origin")))
+    system.add(InertialSensor("imu", body.point("imu")))
+    return system
+
+
+def test_a_delay_of_all_outputs_is_a_parameter() -> None:
+    """Readings and their derivatives by the delay against motions that are sampled at t - delay."""
+    model = mb.TimeResponse(swinging, {"length": (0.2, 0.5)}, SIX, FINE, EXACT)
+    seen = Sensors(model, {"imu": Sensor(delay=(0.0, 0.05))}, STAMPS)
+    assert seen.parameters.names == ("length", "imu delay")
+
+    def exact(delay: float) -> np.ndarray:
+        own = mb.TimeResponse(swinging, {"length": (0.2, 0.5)}, SIX, STAMPS - delay, EXACT)
+        return own.evaluate([[0.3]]).only()[0]
+
+    values, jacobian = seen.linearise(np.array([0.3, 0.02]))
+    size = np.abs(values).max()
+    assert np.abs(values - exact(0.02)).max() < 1e-7 * size
+    step = 1e-3
+    runs = [exact(0.02 + k * step) for k in (-2, -1, 1, 2)]
+    differences = (runs[0] - 8 * runs[1] + 8 * runs[2] - runs[3]) / (12 * step)
+    assert np.abs(jacobian[:, :, 1] - differences).max() < 1e-6 * np.abs(differences).max()
+
+    noisy = exact(0.02) + 1e-2 * np.random.default_rng(0).standard_normal(values.shape)
+    data = Measurements.of(STAMPS, dict(zip(SIX, noisy.T, strict=True)), deviations=1e-2)
+    fit = identify(seen, data, start=[0.35, 0.0])
+    assert np.all(np.abs(fit.values - [0.3, 0.02]) < 4 * fit.deviations)
+    assert fit.deviations[1] < 2e-4

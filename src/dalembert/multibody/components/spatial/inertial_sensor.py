@@ -85,8 +85,9 @@ class InertialSensor(Load):
 
     Notes
     -----
-    Outputs: ``accelerometer_x`` to ``accelerometer_z`` in m/s^2, ``gyroscope_x`` to ``gyroscope_z`` in rad/s. For the
-    model of the errors see Titterton and Weston, Strapdown Inertial Navigation Technology (2004), chapter 4.
+    Outputs: ``accelerometer_x`` to ``accelerometer_z`` in m/s^2, ``gyroscope_x`` to ``gyroscope_z`` in rad/s. A delay
+    of all of them is a parameter of :class:`~dalembert.forward.Sensors`, ``{"imu": Sensor(delay=(0.0, 0.05))}``. For
+    the model of the errors see Titterton and Weston, Strapdown Inertial Navigation Technology (2004), chapter 4.
 
     Examples
     --------

@@ -13,22 +13,32 @@ STEP = 1e-30
 
 
 def motion(trajectory: Trajectory, frames: int | None, points: int) -> Iterator[tuple[float, Mesh]]:
-    """Times and meshes of a motion: bodies as lines, or vertices where they are points, and joints as vertices."""
+    """Times and meshes of a motion: bodies as lines, or vertices where they are points, and joints as vertices.
+
+    Bodies in space with shapes are triangles, too.
+    """
     rows = chosen(len(trajectory.times), frames)
     times, states = trajectory.times[rows], trajectory.states
     # A place is a function of the coordinates, so a step along the velocities carries its own velocity.
     drawn = draw(trajectory.system, trajectory.lowered, times, states.x[rows] + STEP * 1j * states.v[rows], points)
     bodies = list(drawn.lines.values())
     joints = [place[:, None] for place in drawn.joints.values()]
-    places = _in_space(np.concatenate([*bodies, *joints], axis=1))
+    corners = [drawn.corners(name) for name in drawn.surfaces]
+    places = _in_space(np.concatenate([*bodies, *joints, *corners], axis=1))
     sizes = [line.shape[1] for line in bodies] + [1] * len(joints)
     cells, marks = _cells(sizes, len(bodies))
-    sections = {
-        name: np.repeat(
-            [float(np.real(getattr(body, name, 0.0))) for body in trajectory.system.bodies] + [0.0] * len(joints), sizes
-        )
-        for name in ("height", "width")
-    }
+    if corners:
+        numbers = [list(drawn.lines).index(name) for name in drawn.surfaces]
+        first = sum(sizes) + np.cumsum([0, *(own.shape[1] for own in corners)])
+        triangles = [surface.triangles for surface in drawn.surfaces.values()]
+        cells.append(("triangle", np.concatenate([own + start for own, start in zip(triangles, first, strict=False)])))
+        marks["body"].append(np.repeat(numbers, list(map(len, triangles))))
+        marks["joint"].append(np.full(len(marks["body"][-1]), -1))
+    sections = {name: np.zeros(places.shape[1]) for name in ("height", "width")}
+    of_bodies = sizes[: len(bodies)]
+    for name, values in sections.items():
+        own = [float(np.real(getattr(body, name, 0.0))) for body in trajectory.system.bodies]
+        values[: sum(of_bodies)] = np.repeat(own, of_bodies)
     for time, place in zip(times, places, strict=True):
         fields = {"displacement": (place - places[0]).real, "velocity": place.imag / STEP}
         yield float(time), Mesh(place.real, cells, fields | sections, marks)

@@ -30,7 +30,8 @@ def export_vtk(
     ===========  ========  =======================================================================================
     result       suffix    content
     ===========  ========  =======================================================================================
-    Trajectory   ``.pvd``  bodies and joints where they are, ``displacement`` since the first instant, ``velocity``,
+    Trajectory   ``.pvd``  bodies and joints where they are, the triangles of the bodies' shapes in space,
+                           ``displacement`` since the first instant, ``velocity``,
                            and the section's ``height`` and ``width``, 0 without one; of each cell the numbers of its
                            ``body`` and ``joint`` in the system, from 0, or -1
     Deformation  ``.pvd``  the structure at rest over a period: ``displacement``, ``velocity``, and at the contacts

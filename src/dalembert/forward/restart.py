@@ -1,5 +1,6 @@
 """Models of motions that can begin anew at a later state: what multiple shooting needs of a model."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Protocol, runtime_checkable
 
@@ -32,6 +33,8 @@ class StateChart:
         known state.
     reach : array, shape (numbers,)
         Largest magnitudes.
+    read : function
+        The numbers (..., numbers) of whole states (..., state), real or complex.
     whole : bool
         Whether all numbers of the state are named, so that a motion can be read but not begun.
     """
@@ -44,6 +47,7 @@ class StateChart:
     scales: np.ndarray
     offsets: np.ndarray
     reach: np.ndarray
+    read: Callable[[np.ndarray], np.ndarray]
     whole: bool = False
 
 

@@ -1,7 +1,7 @@
 """Motions that begin at a state: some coordinates and rates, completed by the joints."""
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, cast
 
 import numpy as np
@@ -43,7 +43,7 @@ def chart(lowered: Lowered, state: np.ndarray, whole: bool = False, like: StateC
         names, units = coordinate_names(lowered), [_unit(kind) for kind in structure.kinds]
         every, sizes = np.arange(2 * n), np.tile(scale[:n], 2)
         labels = (*names, *(f"{name} rate" for name in names)), (*units, *(f"{unit}/s" for unit in units))
-        return StateChart(*labels, every, state, state, sizes, np.zeros(2 * n), np.full(2 * n, np.inf), whole)
+        return StateChart(*labels, every, state, state, sizes, np.zeros(2 * n), np.full(2 * n, np.inf), _all, whole)
     local = LocalCoordinates.of(lowered)
     state = np.concatenate([local.restored(state[:n]), state[n:]])
     count = len(local.names)
@@ -67,12 +67,22 @@ def chart(lowered: Lowered, state: np.ndarray, whole: bool = False, like: StateC
     turning = local.rotations.ravel()
     offsets[turning] = local.positions(local.restored(np.real(lowered.x[:n])), state[:n])[turning]
     reach[turning] = np.pi
-    values = np.concatenate([local.positions(state[:n], state[:n]), local.rates(state[:n], state[n:])])
+    read = partial(_numbers, local, state[:n], chosen)
     return StateChart(
         (*(local.names[place] for place in places), *(local.rate_names[place] for place in places)),
         (*units, *(f"{unit}/s" for unit in units)),
-        chosen, state, values[chosen], np.tile(own[places], 2), offsets[chosen], reach[chosen],
+        chosen, state, read(state), np.tile(own[places], 2), offsets[chosen], reach[chosen], read,
     )  # fmt: skip
+
+
+def _all(states: np.ndarray) -> np.ndarray:
+    return states
+
+
+def _numbers(local: LocalCoordinates, near: np.ndarray, places: np.ndarray, states: np.ndarray) -> np.ndarray:
+    """Local coordinates relative to coordinates ``near`` (n,), and rates, of whole states (..., 2n)."""
+    x, v = states[..., : len(near)], states[..., len(near) :]
+    return np.concatenate([local.positions(near, x), local.rates(x, v)], axis=-1)[..., places]
 
 
 def _least(rows: np.ndarray) -> float:
@@ -266,10 +276,5 @@ class MotionSegment(MotionModel):
         values = super()._read(lowered, model, states)
         if self.ends is None:
             return values
-        n = lowered.structure.n
-        x, v = (part[:, :n] for part in states[:2])
-        numbers = np.concatenate([x, v], axis=1)
-        if not self.ends.whole:
-            own = LocalCoordinates.of(lowered)
-            numbers = np.concatenate([own.positions(self.ends.near[:n], x), own.rates(x, v)], axis=1)
-        return np.concatenate([values, numbers[:, self.ends.places]], axis=1)
+        numbers = self.ends.read(np.concatenate([part[:, : lowered.structure.n] for part in states[:2]], axis=1))
+        return np.concatenate([values, numbers], axis=1)

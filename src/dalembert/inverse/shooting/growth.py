@@ -7,10 +7,10 @@ import numpy as np
 
 from dalembert.errors import DalembertError
 from dalembert.findings import Finding
-from dalembert.forward import restartable
+from dalembert.forward import StateChart, restartable
 from dalembert.inverse.experiments.tracks import Track, tracks
 from dalembert.inverse.problem.problem import Problem
-from dalembert.inverse.shooting.natural_cuts import MOST_STATES, state_ranges
+from dalembert.inverse.shooting.natural_cuts import MOST_STATES
 
 CHAOTIC = 100.0
 """Growth of a small change of the initial state from which on a misfit has many false minima."""
@@ -60,12 +60,18 @@ def _growth(track: Track, own: np.ndarray) -> float:
         return 1.0
     places = np.rint(np.linspace(0, len(times) - 1, PIECES + 1)).astype(int)
     charts = [model.state_chart(own, states[place], like=start) for place in places]
-    ranges = state_ranges(charts, [chart.values for chart in charts])
+    ranges = [_ranges(chart, states) for chart in charts]
     passed = np.eye(len(start.names))
-    for (begin, chart), (end, after) in pairwise(zip(places, charts, strict=True)):
+    for (begin, chart, was), (end, after, now) in pairwise(zip(places, charts, ranges, strict=True)):
         piece = model.restarted(float(times[begin]), [float(times[end] - times[begin])], chart, after)
         _, jacobian = piece.linearise(np.concatenate([own, chart.values]))
         slopes = jacobian[-1, number:, len(own) :]
-        was, now = (np.array([ranges[name] for name in one.names]) for one in (chart, after))
         passed = slopes * was / now[:, None] @ passed
     return float(np.linalg.norm(passed, 2))
+
+
+def _ranges(chart: StateChart, states: np.ndarray) -> np.ndarray:
+    """Ranges of a chart's numbers (numbers,) over states (samples, state): no coordinate, no rate has a tiny one."""
+    ranges = np.ptp(chart.read(states), axis=0)
+    half = len(ranges) // 2
+    return np.maximum(ranges, np.repeat([0.01 * ranges[:half].max(), 0.01 * ranges[half:].max()], half) + 1e-300)

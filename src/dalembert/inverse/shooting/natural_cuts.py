@@ -241,11 +241,11 @@ class _Estimates:
         return float(np.min(np.diff(self.track.times)))
 
 
-def state_ranges(charts: Sequence[StateChart], states: Sequence[np.ndarray]) -> dict[str, float]:
-    """Ranges of states (numbers,) by the names of their numbers; no coordinate, and no rate, has a tiny one."""
+def _bounded(found: Sequence[tuple[int, StateChart, np.ndarray]]) -> list[Node]:
+    """Nodes whose bounds and ranges are those of all of them."""
     over: dict[str, list[float]] = {}
     scales: dict[str, float] = {}
-    for chart, state in zip(charts, states, strict=True):
+    for _, chart, state in found:
         half = len(chart.names) // 2
         compared = state + chart.offsets
         for number, (name, value, scale) in enumerate(zip(chart.names, compared, chart.scales, strict=True)):
@@ -257,16 +257,6 @@ def state_ranges(charts: Sequence[StateChart], states: Sequence[np.ndarray]) -> 
         largest = max(ranges[name] / abs(scales[name]) for name in own) or 1.0
         for name in own:
             ranges[name] = max(ranges[name], SMALL * largest * abs(scales[name]))
-    return ranges
-
-
-def _bounded(found: Sequence[tuple[int, StateChart, np.ndarray]]) -> list[Node]:
-    """Nodes whose bounds and ranges are those of all of them."""
-    ranges = state_ranges([chart for _, chart, _ in found], [state for _, _, state in found])
-    over: dict[str, list[float]] = {}
-    for _, chart, state in found:
-        for name, value in zip(chart.names, state + chart.offsets, strict=True):
-            over.setdefault(name, []).append(float(value))
     nodes = []
     for sample, chart, state in found:
         size = np.array([ranges[name] for name in chart.names])

@@ -21,11 +21,12 @@ NAMES = (
     "vibration",
     "events",
     "plate",
+    "spatial",
     "robots",
     "startup",
 )
 
-PAGES = (*NAMES[:-3], "vibration-cost", *NAMES[-3:])
+PAGES = (*NAMES[:-4], "vibration-cost", *NAMES[-4:-2], "spatial-sensitivities", *NAMES[-2:])
 """Results that the page shows, in its order."""
 
 

@@ -6,6 +6,15 @@ import numpy as np
 
 import dalembert as da
 from benchmarks.cases import ARM, GRAVITY, PENDULUM, Bar, Integration, TwoLinkArm
+from benchmarks.spatial_cases import Mechanism
+from dalembert.multibody.spatial import (
+    CylindricalJoint,
+    Inertia,
+    RevoluteJoint,
+    RigidBody,
+    SpatialSystem,
+    SphericalJoint,
+)
 
 JOINT_AND_TIP = ("OA.end.x", "OA.end.y", "AB.end.x", "AB.end.y")
 
@@ -110,3 +119,35 @@ def _cable(name: str, bar: Bar, youngs_modulus, angle, start=(0.0, 0.0)) -> da.A
         angle=angle,
         start=start,
     )
+
+
+def mechanism(case: Mechanism) -> SpatialSystem:
+    """The bodies ``0``, ``1`` and so on, with their joints; the last one has the point ``tip``."""
+    system = SpatialSystem(gravity=case.gravity)
+    bodies = []
+    for number, own in enumerate(case.bodies):
+        points = {
+            f"p{k}": tuple(pin.point - own.position) for k, pin in enumerate(case.joints) if number in (pin.a, pin.b)
+        }
+        body = RigidBody(
+            f"{number}",
+            Inertia.of(own.mass, own.tensor, own.centre),
+            position=tuple(own.position),
+            points=points | {"tip": tuple(case.tip)},
+            velocity=own.velocity,
+            angular_velocity=own.spin,
+        )
+        bodies.append(system.add(body))
+    for k, pin in enumerate(case.joints):
+        a, b = (
+            system.ground.point(tuple(pin.point)) if side < 0 else bodies[side].point(f"p{k}")
+            for side in (pin.a, pin.b)
+        )
+        turning = CylindricalJoint if pin.slides else RevoluteJoint
+        system.add(SphericalJoint(f"j{k}", a, b) if pin.axis is None else turning(f"j{k}", a, b, axis=pin.axis))
+    return system
+
+
+def tip(case: Mechanism) -> tuple[str, ...]:
+    """Channels of the position that is observed."""
+    return tuple(f"{len(case.bodies) - 1}.tip.{axis}" for axis in "xyz")

@@ -41,7 +41,7 @@ def _row(name: str, builder, values: dict[str, float], count: int) -> dict[str, 
     times = timing.interleaved(
         {"run": lambda: model.evaluate(vector[None]).only(), "both": lambda: model.linearise(vector)}, repeats=7
     )
-    exact, differences = model.jacobian(vector), _differences(model, vector)
+    exact, inexact = model.jacobian(vector), differences(model, vector)
     return {
         "model": name,
         "parameters": count,
@@ -50,11 +50,11 @@ def _row(name: str, builder, values: dict[str, float], count: int) -> dict[str, 
         "forward runs": times["both"] / times["run"],
         "runs a parameter": times["both"] / times["run"] / count,
         "without the run itself": (times["both"] / times["run"] - 1) / count,
-        "differs from differences by": float(np.max(np.abs(exact - differences)) / np.max(np.abs(exact))),
+        "differs from differences by": float(np.max(np.abs(exact - inexact)) / np.max(np.abs(exact))),
     }
 
 
-def _differences(model: da.TimeResponse, vector: np.ndarray) -> np.ndarray:
+def differences(model: da.TimeResponse, vector: np.ndarray) -> np.ndarray:
     """Central differences, shape (samples, channels, parameters), scaled as the exact ones."""
     steps = np.diag(vector * 1e-5)
     ahead, behind = model.evaluate(vector + steps).only(), model.evaluate(vector - steps).only()

@@ -31,6 +31,14 @@ def arm(angle=0.5):
 """
 )
 _SIMULATE = _RIGID + "da.simulate(arm(), 0.2, da.{solver}, times).channels(['bar.end.x'])"
+_SPATIAL = (
+    _HEAD
+    + """
+from benchmarks import ours, spatial_cases
+system = ours.mechanism(spatial_cases.double_pendulum())
+da.simulate(system, 0.2, da.{solver}, times).channels(['1.tip.x'])
+"""
+)
 _FIT = (
     _HEAD
     + """
@@ -63,6 +71,8 @@ def main() -> list[dict[str, object]]:
             _row(f"then the same by {solver.partition('(')[0]}", _SIMULATE.format(solver=solver), folder)
             for solver in _SOLVERS[1:]
         ]
+        spatial = _SPATIAL.format(solver=_SOLVERS[0])
+        rows.append(_row("mechanism in space, first simulation, nothing compiled", spatial, f"{folder}/spatial"))
         rows.append(_of_a_wheel(Path(folder)))
         rows.append(_row("friction in frequency, nothing compiled", _FRICTION, f"{folder}/friction"))
         rows.append(_row("flexible pendulum with sensitivities, nothing compiled", _FIT, f"{folder}/fit"))

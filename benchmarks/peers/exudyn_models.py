@@ -11,8 +11,10 @@ from itertools import pairwise
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
+from exudyn.rigidBodyUtilities import ComputeOrthonormalBasis, RigidBodyInertia
 
 from benchmarks.cases import ARM, GRAVITY, PENDULUM, Bar, FlexiblePendulum, Integration, Rod, TwoLinkArm
+from benchmarks.spatial_cases import Mechanism
 
 DENSE, SPARSE = "EXUdense", "EigenSparse"
 AS_IT_COMES, TUNED = 0.5, 0.1
@@ -107,6 +109,45 @@ def strip(bar: Bar, integration: Integration, kind: str, contractivity=TUNED) ->
     settings = _settings(integration, DENSE if bar.elements < 16 else SPARSE, contractivity)
     settings.timeIntegration.newton.relativeTolerance = 1e-6  # rounding in a thin strip is above the default of 1e-8
     return _peer(container, system, [_sensor(system, nodes[-1])], settings, [(bar, elements)])
+
+
+def mechanism(case: Mechanism, solver: str = DENSE, contractivity=TUNED, node: str = "RotationEulerParameters") -> Peer:
+    """A mechanism in space. Channels: x, y and z of its tip. ``node``: how rotations are described."""
+    container, system = _system()
+    ground = system.CreateGround()
+    bodies = []
+    for own in case.bodies:
+        inertia = RigidBodyInertia(own.mass, own.tensor, own.centre, inertiaTensorAtCOM=True)
+        bodies.append(
+            system.CreateRigidBody(
+                referencePosition=own.position,
+                initialVelocity=list(own.velocity),
+                initialAngularVelocity=list(own.spin),
+                inertia=inertia,
+                gravity=list(case.gravity),
+                nodeType=getattr(exu.NodeType, node),
+            )
+        )
+    for pin in case.joints:
+        sides = [ground if side < 0 else bodies[side] for side in (pin.a, pin.b)]
+        if pin.axis is None:
+            system.CreateSphericalJoint(itemNumbers=sides, position=pin.point, show=False)
+        elif pin.slides:
+            axes, free_along_x = ComputeOrthonormalBasis(pin.axis), [0, 1, 1, 0, 1, 1]
+            system.CreateGenericJoint(
+                itemNumbers=sides, position=pin.point, rotationMatrixAxes=axes, constrainedAxes=free_along_x, show=False
+            )
+        else:
+            system.CreateRevoluteJoint(itemNumbers=sides, position=pin.point, axis=list(pin.axis), show=False)
+    sensor = eii.SensorBody(
+        bodyNumber=bodies[-1],
+        localPosition=case.tip,
+        outputVariableType=exu.OutputVariableType.Position,
+        storeInternal=True,
+        writeToFile=False,
+    )
+    settings = _settings(case.integration, solver, contractivity)
+    return _peer(container, system, [system.AddSensor(sensor)], settings, dimension=3)
 
 
 def _system():
@@ -221,13 +262,13 @@ def _settings(integration: Integration, solver: str, contractivity: float) -> ex
     return settings
 
 
-def _peer(container, system, sensors: list[int], settings: exu.SimulationSettings, bars=()) -> Peer:
+def _peer(container, system, sensors: list[int], settings: exu.SimulationSettings, bars=(), dimension=2) -> Peer:
     system.Assemble()
 
     def run() -> np.ndarray:
         if not system.SolveDynamic(settings, exu.DynamicSolverType.GeneralizedAlpha):
             raise RuntimeError("Exudyn could not integrate the model")
-        return np.hstack([system.GetSensorStoredData(sensor)[:, 1:3] for sensor in sensors])
+        return np.hstack([system.GetSensorStoredData(sensor)[:, 1 : 1 + dimension] for sensor in sensors])
 
     def stiffness(index: int, youngs_modulus: float) -> None:
         bar, elements = bars[index]

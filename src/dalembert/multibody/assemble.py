@@ -11,6 +11,8 @@ from typing import NamedTuple, cast
 
 import numpy as np
 from scipy.linalg import qr
+from scipy.sparse import csr_matrix, diags_array
+from scipy.sparse.linalg import norm, splu
 
 from dalembert.errors import ModelError, require_known
 from dalembert.multibody.components.body import BaseBody
@@ -36,6 +38,7 @@ from dalembert.multibody.scales import scales
 from dalembert.multibody.system import EQUILIBRIUM, Mechanism
 
 _MOST_ITERATIONS = 60
+_APART = 1e-6  # squared distance of a constraint's row, of length one, from the others at which it is independent
 
 
 def assembled(system: Mechanism, perturbed: bool = False, placed: Lowered | None = None, begin: float = 0.0) -> Lowered:
@@ -117,6 +120,8 @@ def redundancy(lowered: Lowered) -> Redundancy:
     if structure.size == structure.n:
         return Redundancy(0, 0, ())
     jacobian = constraint_jacobian(lowered, np.real(lowered.x))
+    if _is_regular(jacobian):
+        return Redundancy(structure.size - structure.n, structure.size - structure.n, ())
     dense = jacobian[:, np.unique(jacobian.indices)].toarray()
     dense /= np.linalg.norm(dense, axis=1, keepdims=True) + 1e-300
     decomposed = qr(dense.T, mode="economic", pivoting=True)
@@ -124,6 +129,20 @@ def redundancy(lowered: Lowered) -> Redundancy:
     rank = int(np.sum(np.abs(np.diag(triangle)) > 1e-9))
     names = sorted({structure.owners[structure.n + row] for row in order[rank:]})
     return Redundancy(len(order), rank, tuple(names))
+
+
+def _is_regular(jacobian: csr_matrix) -> bool:
+    """Whether the rows are independent beyond doubt: by the squared distances of each from those before it.
+
+    They are the pivots of an elimination of J J^T for rows of length one, in proportion to the length of a chain.
+    """
+    rows = diags_array(1.0 / (norm(jacobian, axis=1) + 1e-300)) @ jacobian
+    try:
+        symmetric = {"SymmetricMode": True}
+        factors = splu((rows @ rows.T).tocsc(), "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=symmetric)
+    except RuntimeError:  # exactly singular
+        return False
+    return bool(np.all(factors.U.diagonal() > _APART))
 
 
 def refuse_redundancy(lowered: Lowered) -> None:

@@ -50,16 +50,18 @@ class _RigidMotion:
     def __init__(self, bodies: Sequence[BaseBody], lowered: Lowered, model: Model) -> None:
         self.bodies, self.lowered, self.model = bodies, lowered, model
         first = [lowered.structure.first[body.name] for body in bodies]
-        self._coordinates = [lowered.x[k : k + body.size] for k, body in zip(first, bodies, strict=True)]
+        self._slots = [slice(k, k + body.size) for k, body in zip(first, bodies, strict=True)]
+        self._coordinates = [lowered.x[slots] for slots in self._slots]
         self._each = modes_of(bodies, self._coordinates, lowered.frames)
         self._place = max(size_of(lowered.x)[1], 1.0)
-        self._modes = spread(lowered, bodies, self._each)
-        self._tail = np.zeros(lowered.structure.size + 1 - lowered.structure.n)
 
     def velocities(self, chosen: np.ndarray) -> np.ndarray:
         """All velocities, (N + 1,)."""
         rates = carried_rates(self.bodies, self._coordinates, self._each, chosen[:, :, None])[:, :, 0]
-        return np.concatenate([np.tensordot(self._modes, rates, 2), self._tail])
+        v = np.zeros(len(self.lowered.x), np.result_type(rates, *self._each))
+        for slots, modes, own in zip(self._slots, self._each, rates, strict=True):
+            v[slots] = modes @ own
+        return v
 
     def owner(self, row: int) -> str:
         """The joint of a constraint."""
@@ -91,7 +93,7 @@ class _RigidMotion:
         unit = np.zeros((*free.shape, count))
         unit[free] = np.eye(count)
         rates = carried_rates(self.bodies, self._coordinates, self._each, unit)
-        return np.tensordot(self._modes, rates, 2)
+        return np.tensordot(spread(self.lowered, self.bodies, self._each), rates, 2)
 
 
 def _contradiction(motion: _RigidMotion, rates: np.ndarray, left: np.ndarray) -> ModelError:

@@ -11,7 +11,7 @@ from typing import NamedTuple, cast
 
 import numpy as np
 from scipy.linalg import qr
-from scipy.sparse import csr_matrix, diags_array
+from scipy.sparse import csc_matrix, csr_matrix, diags_array
 from scipy.sparse.linalg import norm, splu
 
 from dalembert.errors import ModelError, require_known
@@ -139,7 +139,7 @@ def _is_regular(jacobian: csr_matrix) -> bool:
     rows = diags_array(1.0 / (norm(jacobian, axis=1) + 1e-300)) @ jacobian
     try:
         symmetric = {"SymmetricMode": True}
-        factors = splu((rows @ rows.T).tocsc(), "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=symmetric)
+        factors = splu(csc_matrix(rows @ rows.T), "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=symmetric)
     except RuntimeError:  # exactly singular
         return False
     return bool(np.all(factors.U.diagonal() > _APART))

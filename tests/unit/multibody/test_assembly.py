@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+from scipy.linalg import qr
 
 import dalembert.multibody as mb
 from dalembert.errors import InputError, ModelError
+from dalembert.multibody import assemble
 from dalembert.multibody.assemble import assembled
 from support import says
 
@@ -135,3 +137,19 @@ def test_a_joint_that_no_derivative_closes_is_told() -> None:
     sentence = r"^joint '(left|right)' is closed, but not for other values of a parameter, so there is no derivative"
     with pytest.raises(ModelError, match=sentence):
         assembled(system, perturbed=True)
+
+
+@pytest.mark.parametrize("held", [False, True])
+def test_independent_constraints_need_no_dense_decomposition(held: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A chain whose last link is pinned twice keeps the answer of the dense one."""
+    system, last = mb.System(), None
+    for k in range(30):
+        bar = system.add(mb.RigidBar(f"bar {k}", 1.0, 1.0, start=(float(k), 0.0)))
+        system.add(mb.RevoluteJoint(f"pin {k}", last or system.ground.point(0.0, 0.0), bar.start))
+        last = bar.end
+    if held:
+        system.add(mb.RevoluteJoint("again", system.ground.point(0.0, 0.0), system.bodies[0].start))
+    calls = []
+    monkeypatch.setattr(assemble, "qr", lambda *given, **options: calls.append(1) or qr(*given, **options))
+    found = assemble.redundancy(assembled(system))
+    assert (found.count, found.rank, len(calls)) == ((62, 60, 1) if held else (60, 60, 0))

@@ -26,8 +26,12 @@ from dalembert.study.places import place
 from dalembert.study.table import checked, told_apart
 
 _USUAL = "moments"  # the kind of an inertia where none is given
-_BLOCKS = {"BushingStiffness": ("N/m", "N", "N*m/rad"), "BushingDamping": ("N*s/m", "N*s", "N*m*s/rad")}
-"""Units of the matrices of bushings: forces by displacements, the coupling, torques by rotations."""
+_BLOCKS = {
+    "BushingStiffness": ("N/m", "N", "N*m/rad"),
+    "BushingDamping": ("N*s/m", "N*s", "N*m*s/rad"),
+    "SensorGain": ("",),
+}
+"""Units of matrices. Of bushings: forces by displacements, the coupling, torques by rotations."""
 
 
 @dataclass(frozen=True)
@@ -181,7 +185,7 @@ def spatial_part(name: str) -> Any:
                 table_of(kind, kind.__name__.lower(), part=spatial_part) for kind in (Box, Cylinder, Tube, Sphere)
             ]
             return one_of([table_of(Inertia, _USUAL, default=True), *shapes], _USUAL)
-        case "BushingStiffness" | "BushingDamping":
+        case "BushingStiffness" | "BushingDamping" | "SensorGain":
             return _matrix(_BLOCKS[name])
     return None
 
@@ -193,8 +197,9 @@ def spatial_place(bare: bool) -> Any:
     return told_apart(lambda value: isinstance(value, dict | KindTable), marker, place(bare, space=True))
 
 
-def _matrix(units: tuple[str, str, str]) -> Any:
-    """Type of a key that takes six numbers, or a matrix of six rows, with the units of its blocks."""
+def _matrix(units: tuple[str, ...]) -> Any:
+    """Type of a key that takes the diagonal of a matrix, or its rows: (6, 6) with units of blocks, or (3, 3)."""
+    size, word = (6, "six") if len(units) == 3 else (3, "three")
 
     def read(value: Any, info: ValidationInfo) -> list:
         names = info.context.names if isinstance(info.context, Context) else None
@@ -203,16 +208,17 @@ def _matrix(units: tuple[str, str, str]) -> Any:
             return read_number(given, units[(i > 2) + (j > 2)], names)
 
         def whole() -> list:
-            if not isinstance(value, list) or len(value) != 6:
-                raise InputError(f"{value!r} was given; expected six numbers, or six rows of six numbers")
+            if not isinstance(value, list) or len(value) != size:
+                raise InputError(f"{value!r} was given; expected {word} numbers, or {word} rows of {word} numbers")
             if not all(isinstance(row, list) for row in value):
                 return [entry(one, i, i) for i, one in enumerate(value)]
-            if any(len(row) != 6 for row in value):
-                raise InputError(f"{value!r} was given; expected six numbers in each of the six rows")
+            if any(len(row) != size for row in value):
+                raise InputError(f"{value!r} was given; expected {word} numbers in each of the {word} rows")
             return [[entry(one, i, j) for j, one in enumerate(row)] for i, row in enumerate(value)]
 
         return checked(whole)
 
-    words = f"six numbers in {units[0]} and {units[2]}, along and about x, y and z, or six rows of six numbers"
-    schema = {"type": "array", "minItems": 6, "maxItems": 6, "description": words}
+    unit = f" in {units[0]} and {units[2]}, along and about x, y and z" if size == 6 else ""
+    words = f"{word} numbers{unit}, or {word} rows of {word} numbers"
+    schema = {"type": "array", "minItems": size, "maxItems": size, "description": words}
     return Annotated[Any, PlainValidator(read), WithJsonSchema(schema)]

@@ -170,6 +170,21 @@ damping = {rows}
     np.testing.assert_array_equal(rubber.damping, 10 * np.eye(6))
 
 
+SENSOR = """[[model.load]]
+kind = "InertialSensor"
+name = "imu"
+at = "plate.a"
+acceleration_gain = GAIN
+rate_gain = [["J", 0, 0.1], [0, 1, 0], [0, 0, "2*J"]]
+[solver]"""
+
+
+def test_gains_of_sensors(write):
+    (_, imu) = load(write(("[solver]", SENSOR.replace("GAIN", '[1, "J", 0.9]')))).builder(J=0.07 + 1e-30j).loads
+    np.testing.assert_array_equal(imu.acceleration_gain, [1, 0.07 + 1e-30j, 0.9])
+    np.testing.assert_array_equal(imu.rate_gain, [[0.07 + 1e-30j, 0, 0.1], [0, 1, 0], [0, 0, 0.14 + 2e-30j]])
+
+
 def wrong(path: Path) -> list[str]:
     with pytest.raises(InputError) as caught:
         plan(load(path))
@@ -254,6 +269,21 @@ def test_each_mistake_has_its_place(write, change, message):
             "[[model.load]] 'push', stiffness: [1, 2] was given; expected six numbers, or six rows of six numbers"
             in lines
         )
+
+
+@pytest.mark.parametrize(
+    ("gain", "message"),
+    [
+        ("[1, 2]", "[1, 2] was given; expected three numbers, or three rows of three numbers"),
+        (
+            "[[1, 2], [3, 4], [5, 6]]",
+            "[[1, 2], [3, 4], [5, 6]] was given; expected three numbers in each of the three rows",
+        ),
+    ],
+)
+def test_gains_of_the_wrong_shape(write, gain, message):
+    lines = wrong(write(("[solver]", SENSOR.replace("GAIN", gain))))
+    assert lines == [f"[[model.load]] 'imu', acceleration_gain: {message}"]
 
 
 def test_a_component_in_space_is_refused_in_the_plane(write):

@@ -108,9 +108,9 @@ class InertialSensor(Load):
 
     at: Point
     acceleration_bias: Vector = number("m/s**2", (0.0, 0.0, 0.0))
-    acceleration_gain: Any = field(default=(1.0, 1.0, 1.0), metadata={"unit": ""})
+    acceleration_gain: Any = field(default=(1.0, 1.0, 1.0), metadata={"unit": "", "table": "SensorGain"})
     rate_bias: Vector = number("rad/s", (0.0, 0.0, 0.0))
-    rate_gain: Any = field(default=(1.0, 1.0, 1.0), metadata={"unit": ""})
+    rate_gain: Any = field(default=(1.0, 1.0, 1.0), metadata={"unit": "", "table": "SensorGain"})
 
     kind = INERTIAL_SENSOR
 

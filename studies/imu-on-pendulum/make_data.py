@@ -1,7 +1,7 @@
 """Write first.csv and second.csv: noisy readings of an inertial sensor on a swinging box.
 
 Euler's equations of a body with a fixed point, J w' = J w x w + m c x R^T g, and R' = R [w], are integrated by SciPy,
-apart from the package. Readings: gain (w' x s + w x (w x s) - R^T g) + bias and gain w + bias, in the axes of the sensor.
+apart from the package. Readings: gain (w' x s + w x (w x s) - R^T g) + bias and gain w + bias, in the sensor's axes.
 """
 
 from pathlib import Path

@@ -1,20 +1,16 @@
 """The regressor of trees of links has the columns, names and order that the identification expects."""
 
 import numpy as np
-import pytest
 
 from dalembert.inverse.inertial import base_parameters, pseudo_inertia
+from dalembert.multibody.components.spatial.orientation import Pose
+from dalembert.multibody.spatial import Inertia, Orientation
+from dalembert.multibody.trees import dynamics, parameters
+from dalembert.multibody.trees.tree import Link, Tree, TreeJoint
 from serial_arm import SIX, swinging, truth
-
-dynamics = pytest.importorskip("dalembert.multibody.trees.dynamics", reason="needs the dynamics of trees")
 
 
 def test_the_regressor_of_a_tree_is_that_of_an_independent_algorithm():
-    from dalembert.multibody.components.spatial.orientation import Pose
-    from dalembert.multibody.spatial import Inertia, Orientation
-    from dalembert.multibody.trees import parameters
-    from dalembert.multibody.trees.tree import Link, Tree, TreeJoint
-
     true = truth(SIX)
     links, parent = [], "base"
     for name, (roll, *place), pseudo in zip(

@@ -5,6 +5,7 @@ from functools import cache, lru_cache
 from typing import Any, ClassVar
 
 from pydantic import create_model
+from pydantic.json_schema import GenerateJsonSchema
 
 from dalembert.study.catalogue import Words, kind_names, solver
 from dalembert.study.components import buildable_table
@@ -66,7 +67,15 @@ def _texts(value: Any) -> Iterator[str]:
             yield from _texts(entry)
 
 
+class _Schema(GenerateJsonSchema):
+    """A choice by a function may have branches that a value fits at once, such as a word and a number with a unit."""
+
+    def tagged_union_schema(self, schema: Any) -> dict[str, Any]:
+        made = super().tagged_union_schema(schema)
+        return made if "discriminator" in made else {("anyOf" if key == "oneOf" else key): made[key] for key in made}
+
+
 def json_schema() -> dict[str, Any]:
     """JSON schema of a study file, for editors."""
-    schema = study_file().model_json_schema()
+    schema = study_file().model_json_schema(schema_generator=_Schema)
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "dalembert study", **schema}

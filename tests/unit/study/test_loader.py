@@ -9,6 +9,7 @@ from dalembert.errors import InputError
 from dalembert.study import json_schema, load, plan
 from dalembert.study.builder import named_values
 from dalembert.study.tasks import TASKS
+from json_schemas import fits
 from support import says
 
 DECAY = """
@@ -439,6 +440,14 @@ def test_a_model_alone_is_told_how_a_study_names_it(write):
         f"pendulum.toml: no task is given; a study needs a [model] and one task, one of {tasks}; a study in another "
         "file names a model by file = 'pendulum.toml' in [model]"
     )
+
+
+def test_the_json_schema_accepts_each_form_of_a_start():
+    schema = json_schema()
+    start = schema["$defs"]["DataTable"]["properties"]["start"]
+    for value in ("first", 1.5, "1 ms", {"lower": 0.0, "upper": 1.0}):
+        assert fits(value, start, schema), value
+    assert not fits([1.0], start, schema)
 
 
 def test_the_json_schema_knows_all_kinds():

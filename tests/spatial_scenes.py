@@ -17,8 +17,8 @@ def by_angles(angles) -> sp.Orientation:
     return sp.Orientation.by_angles("zyx", angles)
 
 
-def two_rods(on_ball: bool = True) -> tuple[sp.SpatialSystem, sp.RigidBody, sp.RigidBody]:
-    """Two rods, the second placed at the end of the first; one turns, which must be on a ball joint."""
+def two_rods(on_ball: bool | None = True) -> tuple[sp.SpatialSystem, sp.RigidBody, sp.RigidBody]:
+    """Two rods, the second placed at the end of the first; one turns, which must be on a ball joint; none if None."""
     spin = (0.3, 0.4, 0.2)
     system = sp.SpatialSystem()
     rod = sp.Inertia.box(1.3, (0.1, 0.2, 0.5)).moved((0.02, 0.01, -0.25))
@@ -38,7 +38,7 @@ def two_rods(on_ball: bool = True) -> tuple[sp.SpatialSystem, sp.RigidBody, sp.R
             position=first.point("end"),
             points={"tip": sp.Pose((0.0, 0.1, -0.4), by_angles([-0.2, 0.3, 0.1]))},
             orientation=sp.Orientation.by_angles("x", [0.3]),
-            angular_velocity=None if on_ball else spin,
+            angular_velocity=spin if on_ball is False else None,
         )
     )
     return system, first, second
@@ -129,6 +129,33 @@ def wound(joint: Callable[..., sp.SpatialSystem]) -> Callable[..., sp.SpatialSys
         system = joint(axis=axis)
         hinge = next(own for own in system.joints if own.name == "part")
         system.add(sp.TorsionSpring("spring", hinge.a, hinge.b, axis=axis, **fields))
+        return system
+
+    return build
+
+
+def stopped(kind: type, joint: Callable[..., sp.SpatialSystem]) -> Callable[..., sp.SpatialSystem]:
+    """Two limits of a joint, beyond which it is at the start: it is wedged between them."""
+
+    def build(axis, lower_limit, upper_limit, **fields) -> sp.SpatialSystem:
+        system = joint(axis=axis)
+        guide = next(own for own in system.joints if own.name == "part")
+        system.add(kind("lower", guide, lower_limit=lower_limit, upper_limit=2.0, **fields))
+        system.add(kind("upper", guide, lower_limit=-2.0, upper_limit=upper_limit, **fields))
+        return system
+
+    return build
+
+
+def coupled(kind: type, first_joint: type, second_joint: type) -> Callable[..., sp.SpatialSystem]:
+    """Two rods on joints with an axis, of which the second follows the first."""
+
+    def build(axis, **fields) -> sp.SpatialSystem:
+        system, first, second = two_rods(None)
+        place = system.ground.point((0.0, 0.0, 0.0), by_angles([0.2, 0.1, 0.1]))
+        a = system.add(first_joint("a", place, first.point("origin"), axis=axis))
+        b = system.add(second_joint("b", first.point("end"), second.point("origin"), axis=(1.0, 0.2, 0.1)))
+        system.add(kind("part", a, b, **fields))
         return system
 
     return build
@@ -237,6 +264,7 @@ FRICTION = {
     "stribeck_rate": 0.4, "stribeck_exponent": 1.4,
 }  # fmt: skip
 SLIDING = {name: value for name, value in FRICTION.items() if name != "radius"}
+STOP = {"axis": AXIS, "lower_limit": 0.8, "upper_limit": -0.7, "stiffness": 40.0, "damping": 0.4}
 VECTOR = {"x": 2.0, "y": -1.0, "z": 0.7}
 SPRING = {"stiffness": 90.0, "damping": 3.0, "free_length": 0.6, "cubic": 40.0}
 TORSION = {"stiffness": 9.0, "damping": 0.5, "free_angle": 0.4, "cubic": 4.0, "axis": AXIS}
@@ -309,6 +337,25 @@ SCENES: dict[str, Scene] = {
     "torsion spring to ground": (wound(grounded(sp.RevoluteJoint)), TORSION),
     "motor": (powered(jointed(sp.RevoluteJoint)), DRIVE),
     "motor to ground": (powered(grounded(sp.RevoluteJoint)), DRIVE),
+    "gear": (
+        coupled(sp.GearJoint, sp.RevoluteJoint, sp.RevoluteJoint),
+        {"axis": (0.3, 1.0, 0.2), "ratio": -0.7, "offset": 0.3},
+    ),
+    "rack": (coupled(sp.RackJoint, sp.RevoluteJoint, sp.PrismaticJoint), {"axis": AXIS, "radius": 0.2, "offset": 0.1}),
+    "coupling of a slide and a hinge": (
+        coupled(sp.CouplingJoint, sp.PrismaticJoint, sp.RevoluteJoint),
+        {"axis": AXIS, "ratio": 2.5, "offset": 0.2},
+    ),
+    "coupling of two slides": (
+        coupled(sp.CouplingJoint, sp.PrismaticJoint, sp.PrismaticJoint),
+        {"axis": AXIS, "ratio": -0.6, "offset": 0.1},
+    ),
+    "screw": (jointed(sp.ScrewJoint), {"axis": AXIS, "lead": 0.8, "offset": 0.05}),
+    "screw to ground": (grounded(sp.ScrewJoint), {"axis": AXIS, "lead": 0.8, "offset": 0.05}),
+    "angle limit": (stopped(sp.AngleLimit, grounded(sp.RevoluteJoint)), STOP | {"stiffness": 4.0}),
+    "angle limit between": (stopped(sp.AngleLimit, jointed(sp.RevoluteJoint)), STOP | {"stiffness": 0.6}),
+    "displacement limit": (stopped(sp.DisplacementLimit, grounded(sp.PrismaticJoint)), STOP),
+    "displacement limit between": (stopped(sp.DisplacementLimit, jointed(sp.CylindricalJoint)), STOP),
     "bushing": (bushed(between(sp.Bushing)), BUSHING),
     "bushing to ground": (bushed(from_ground(sp.Bushing)), BUSHING),
 }

@@ -67,10 +67,10 @@ def assembled(system: Mechanism, perturbed: bool = False, placed: Lowered | None
             lowered, **{name: getattr(lowered, name).astype(complex) for name in ("frames", "rates", "x", "v")}
         )
     free = _free(system)
-    frames, x = _close(system.bodies, lowered, model, free)
+    frames, x = _close(system.carriers, lowered, model, free)
     lowered = replace(lowered, frames=frames, x=x)
     lowered = begin_at_rest(lowered) if rests else lowered
-    return replace(lowered, v=initial_velocities(system.bodies, lowered, model))
+    return replace(lowered, v=initial_velocities(system.carriers, lowered, model))
 
 
 def refuse_kinks(lowered: Lowered, end: float) -> None:
@@ -165,11 +165,11 @@ def refuse_redundancy(lowered: Lowered) -> None:
 
 def _free(system: Mechanism) -> np.ndarray:
     """Mask of the frame coordinates that assembly may change, (bodies, rates)."""
-    names = [body.name for body in system.bodies]
-    free = turning(system.bodies)
+    names = [body.name for body in system.carriers]
+    free = turning(system.carriers)
     for entry in system.driving:
         name, _, coordinate = entry.rpartition(".")
-        known = system.bodies[0].FRAME
+        known = system.carriers[0].FRAME
         require_known("coordinate", coordinate, known, f"driving {entry!r}")
         require_known("body", name, names, f"driving {entry!r}")
         free[names.index(name), known.index(coordinate)] = False

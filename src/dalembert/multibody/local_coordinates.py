@@ -5,8 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from dalembert.multibody.components.body import POSITION
-from dalembert.multibody.components.planar.body import ANGLE
+from dalembert.multibody.components.body import ANGLE, DISPLACEMENT, POSITION
 from dalembert.multibody.lowered import Lowered
 
 _AXES = "xyz"
@@ -149,9 +148,12 @@ def coordinate_names(lowered: Lowered) -> list[str]:
         counts: dict[str, int] = {}
         for kind in body.coordinate_kinds:
             number = counts[kind] = counts.get(kind, -1) + 1
-            node, axis = (number, 0) if kind == ANGLE else divmod(number, body.dimension)
-            what = kind if kind == ANGLE else _AXES[axis] if kind == POSITION else f"{kind} {_AXES[axis]}"
-            names.append(f"{body.name}.{what}" + ("" if body.rigid and kind in (ANGLE, POSITION) else f" {node + 1}"))
+            single = kind in (ANGLE, DISPLACEMENT)
+            node, axis = (number, 0) if single else divmod(number, body.dimension)
+            what = kind if single else _AXES[axis] if kind == POSITION else f"{kind} {_AXES[axis]}"
+            names.append(
+                f"{body.name}.{what}" + ("" if body.rigid and (single or kind == POSITION) else f" {node + 1}")
+            )
     return names
 
 

@@ -139,8 +139,9 @@ class MechanismLowering(ABC):
     def run(self) -> Lowered:
         """Place the bodies, let every component write its rows, and pack them."""
         system = self._system
+        bodies = system.carriers
         frames, kinds = [], []
-        for body in system.bodies:
+        for body in bodies:
             frame = self.frame(body)
             self._bodies[body.name] = body
             self._first[body.name] = len(self._owners)
@@ -151,7 +152,7 @@ class MechanismLowering(ABC):
         n = len(self._owners)
         if n == 0:
             raise ModelError("the system has no body; add one")
-        for body in system.bodies:
+        for body in bodies:
             self._component = body.name
             body.lower(self, self._first[body.name])
         for component in (*system.joints, *system.loads):
@@ -161,9 +162,9 @@ class MechanismLowering(ABC):
         tail = np.zeros(size + 1 - n)
         places = list(self._coordinates.values())
         x = np.concatenate([*places, tail])
-        modes = [body.rigid_modes(*place) for body, *place in zip(system.bodies, places, frames, strict=True)]
-        chosen = np.array([[0.0 if value is None else value for value in body.motion] for body in system.bodies])
-        rates = carried_rates(system.bodies, places, modes, chosen[:, :, None])[:, :, 0]
+        modes = [body.rigid_modes(*place) for body, *place in zip(bodies, places, frames, strict=True)]
+        chosen = np.array([[0.0 if value is None else value for value in body.motion] for body in bodies])
+        rates = carried_rates(bodies, places, modes, chosen[:, :, None])[:, :, 0]
         velocities = [own @ rate for own, rate in zip(modes, rates, strict=True)]
         columns = {kind: [*zip(*rows, strict=True)] for kind, rows in self._written.items()}
         structure = Structure(
@@ -186,7 +187,7 @@ class MechanismLowering(ABC):
             callbacks=tuple(self._callbacks),
             frames=np.array(frames),
             rates=chosen,
-            stated=np.array([[value is not None for value in body.motion] for body in system.bodies]),
+            stated=np.array([[value is not None for value in body.motion] for body in bodies]),
             x=x,
             v=np.concatenate([*velocities, tail]),
             jumps=tuple(sorted(self._since(time) for time in self._jumps | self._changes if np.isfinite(time))),

@@ -9,8 +9,7 @@ from scipy.linalg import null_space, qr
 
 from dalembert.errors import SolveError
 from dalembert.forward import Channel, StateChart
-from dalembert.multibody.components.body import POSITION
-from dalembert.multibody.components.planar.body import ANGLE
+from dalembert.multibody.components.body import ANGLE, DISPLACEMENT, POSITION
 from dalembert.multibody.evaluate import constraint_jacobian, constraint_rates, residual
 from dalembert.multibody.fingerprint import fingerprint
 from dalembert.multibody.kernels.elementary import STEP
@@ -91,7 +90,7 @@ def _least(rows: np.ndarray) -> float:
 
 
 def _unit(kind: str) -> str:
-    return {POSITION: "m", ANGLE: "rad"}.get(kind, "")
+    return {POSITION: "m", ANGLE: "rad", DISPLACEMENT: "m"}.get(kind, "")
 
 
 @dataclass(frozen=True, eq=False)

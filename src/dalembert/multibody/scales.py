@@ -12,5 +12,5 @@ def scales(lowered: Lowered) -> np.ndarray:
     lengths = (np.real(data[:, kind.columns(kind.lengths)]) for kind, data in lowered.data.items())
     extent = max(np.ptp(places, axis=0).max(initial=0.0), *(np.abs(entry).max(initial=0.0) for entry in lengths))
     scale = np.ones(lowered.structure.size + 1)
-    scale[:n][kinds == "position"] = extent if extent > 0 else 1.0
+    scale[:n][np.isin(kinds, ("position", "displacement"))] = extent if extent > 0 else 1.0
     return scale

@@ -3,6 +3,9 @@ from dalembert.multibody.components.points import Point as Point
 from dalembert.multibody.components.spatial.armature import Armature as Armature
 from dalembert.multibody.components.spatial.body import Body as Body
 from dalembert.multibody.components.spatial.bushing import Bushing as Bushing
+from dalembert.multibody.components.spatial.coupling_joint import CouplingJoint as CouplingJoint
+from dalembert.multibody.components.spatial.coupling_joint import GearJoint as GearJoint
+from dalembert.multibody.components.spatial.coupling_joint import RackJoint as RackJoint
 from dalembert.multibody.components.spatial.cylindrical_joint import CylindricalJoint as CylindricalJoint
 from dalembert.multibody.components.spatial.distance_joint import DistanceJoint as DistanceJoint
 from dalembert.multibody.components.spatial.fixed_joint import FixedJoint as FixedJoint
@@ -12,6 +15,8 @@ from dalembert.multibody.components.spatial.friction import Friction as Friction
 from dalembert.multibody.components.spatial.inertia import Inertia as Inertia
 from dalembert.multibody.components.spatial.inertial_sensor import InertialSensor as InertialSensor
 from dalembert.multibody.components.spatial.joint import Joint as Joint
+from dalembert.multibody.components.spatial.joint_limit import AngleLimit as AngleLimit
+from dalembert.multibody.components.spatial.joint_limit import DisplacementLimit as DisplacementLimit
 from dalembert.multibody.components.spatial.load import Load as Load
 from dalembert.multibody.components.spatial.motor import Motor as Motor
 from dalembert.multibody.components.spatial.orientation import Orientation as Orientation
@@ -26,6 +31,7 @@ from dalembert.multibody.components.spatial.prismatic_joint import PrismaticJoin
 from dalembert.multibody.components.spatial.relative_sensor import RelativeSensor as RelativeSensor
 from dalembert.multibody.components.spatial.revolute_joint import RevoluteJoint as RevoluteJoint
 from dalembert.multibody.components.spatial.rigid_body import RigidBody as RigidBody
+from dalembert.multibody.components.spatial.screw_joint import ScrewJoint as ScrewJoint
 from dalembert.multibody.components.spatial.shapes import Shape as Shape
 from dalembert.multibody.components.spatial.shapes import Surface as Surface
 from dalembert.multibody.components.spatial.spherical_joint import SphericalJoint as SphericalJoint

@@ -6,6 +6,7 @@ import numpy as np
 
 from dalembert.errors import ModelError
 from dalembert.multibody.components.body import BaseBody
+from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.points import Point
 from dalembert.multibody.components.spatial import markers
 from dalembert.multibody.components.spatial.body import Marker
@@ -22,6 +23,8 @@ class SpatialLowering(MechanismLowering):
 
     def frame(self, body: BaseBody) -> np.ndarray:
         place: Any = body.place
+        if callable(place):
+            return body.frame(place(self))
         if isinstance(place, Point | GroundPoint):
             return body.frame(*self._stand(place, body.name))
         return body.frame(place)
@@ -54,6 +57,10 @@ class SpatialLowering(MechanismLowering):
             separation=stands[1][0] - stands[0][0],
             axes=(axes[0], axes[1]),
         )
+
+    def coordinate(self, body: BaseBody) -> tuple[int, Number]:
+        """Number of the coordinate of a joint, and its value as the bodies are placed."""
+        return self._first[body.name], self._coordinates[body.name][0]
 
     def _stand(self, side: Any, owner: str) -> Stand:
         """Position and axes of a side at the start."""

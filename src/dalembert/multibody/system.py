@@ -79,6 +79,11 @@ class Mechanism:
         """What there is to say about the choice of bodies, such as elements that lock."""
         return tuple(finding for body in self.bodies for finding in body.findings)
 
+    @property
+    def carriers(self) -> list[Any]:
+        """All that has coordinates: the bodies, then the coordinates of joints that components need."""
+        return [*self.bodies, *(own for part in (*self.joints, *self.loads) for own in part.coordinates)]
+
     def body(self, name: str) -> Any:
         """The body of this name."""
         bodies = {body.name: body for body in self.bodies}

@@ -10,7 +10,7 @@ from dalembert.study.expressions import Expression
 from dalembert.study.functions import FunctionReference
 from dalembert.study.inputs import InputReference, MeasuredInput, input_named
 from dalembert.study.model_table import ModelTable
-from dalembert.study.places import Place
+from dalembert.study.places import JointName, Place
 from dalembert.study.table import placed
 
 if TYPE_CHECKING:
@@ -166,6 +166,8 @@ def _resolved(given: Any, values: Values, bodies: Values, system: Any, where: st
             return resolved(given, values, where)
         case Place():
             return _place(given, values, bodies, system, where)
+        case JointName():
+            return bodies[given.name]
         case KindTable():
             try:
                 return built(given, values, where, bodies, system)

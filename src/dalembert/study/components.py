@@ -19,6 +19,7 @@ from pydantic import AfterValidator, Discriminator, Field, Tag, create_model
 
 from dalembert.study.functions import FunctionName
 from dalembert.study.numbers import fixed, number
+from dalembert.study.places import JOINT_KEY
 from dalembert.study.places import place as planar_place
 from dalembert.study.table import Name, StudyTable, checked, told_apart
 
@@ -170,6 +171,8 @@ def _key(
     if names & _PLACES:
         point = place("Ground" in names)
         return point | None if _NONE in leaves else point
+    if "Joint" in names:
+        return JOINT_KEY
     if not any(map(_is_mapping, leaves)):
         for own in filter(None, map(part, sorted(names))):
             return own

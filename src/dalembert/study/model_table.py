@@ -10,7 +10,7 @@ from dalembert.study.catalogue import Words, kinds_of
 from dalembert.study.components import one_of, table_of
 from dalembert.study.functions import FunctionName
 from dalembert.study.inputs import signal_or_input
-from dalembert.study.places import Place
+from dalembert.study.places import JointName, Place
 from dalembert.study.spaces import IN_SPACE, gravity_key, is_in_space
 from dalembert.study.structure_table import PARTS, StructureTable, part_tables, structure_table, wrong_structure
 from dalembert.study.table import Read, StudyTable, completed, problem, told_apart
@@ -108,14 +108,19 @@ class ModelTable(StudyTable):
 
 def _wrong_names(components: list[tuple[str, Any]]) -> list[str]:
     """Sentences for names that repeat, and for places at bodies that are not there, or not yet."""
-    bodies = [component.name for table, component in components if table == "body"]
+    bodies, joints = ([component.name for table, component in components if table == own] for own in ("body", "joint"))
     wrong = [
         f"{count} components are called {name!r}; expected different names"
         for name, count in repeated(component.name for _, component in components).items()
     ]
     for table, component in components:
         known = bodies[: bodies.index(component.name)] if table == "body" else bodies
+        before = joints[: joints.index(component.name)] if table == "joint" else joints
         for key, value in component.given().items():
+            if isinstance(value, JointName) and value.name not in before:
+                late = "; a joint must stand before those that refer to it" if value.name in joints else ""
+                text = unknown("joint", value.name, before)
+                wrong.append(f"[[model.{table}]] {component.name!r}, {key}: {str(value)!r} was given; {text}{late}")
             if isinstance(value, Place) and value.body and value.body not in known:
                 late = "; a body must stand before those placed at it" if value.body in bodies else ""
                 text = unknown("body", value.body, known)

@@ -15,7 +15,7 @@ from dalembert.errors import InputError
 from dalembert.study.context import Context
 from dalembert.study.expressions import Expression
 from dalembert.study.numbers import read_number
-from dalembert.study.table import checked
+from dalembert.study.table import checked, problem
 
 _POINT = re.compile(r"([^\W\d][\w-]*)\.([^\W\d][\w-]*)")
 _GROUND = re.compile(r"ground\s*\((.*)\)")
@@ -96,3 +96,27 @@ def place(bare: bool = True, space: bool = False) -> Any:
     schema = {"type": ["string", "array", "object"], "description": f"a point such as {_ways(bare, space)}"}
     schema |= {"type": ["string", "array"]} if space else {}
     return Annotated[Any, PlainValidator(read), WithJsonSchema(schema)]
+
+
+@dataclass(frozen=True)
+class JointName:
+    """A joint that another component refers to, by its name."""
+
+    name: str
+
+    def __str__(self) -> str:
+        return self.name
+
+
+def _read_joint(value: Any) -> JointName:
+    if not isinstance(value, str):
+        raise problem(f"{value!r} was given; expected the name of a joint, such as 'pin'")
+    return JointName(value)
+
+
+#: Type of a key that takes the name of a joint.
+JOINT_KEY = Annotated[
+    Any,
+    PlainValidator(_read_joint),
+    WithJsonSchema({"type": "string", "description": "name of a joint, such as 'pin'"}),
+]

@@ -14,7 +14,8 @@ from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.points import Point
 from dalembert.multibody.kernels.kind import Kind
 
-POSITION = "position"
+POSITION, ANGLE, DISPLACEMENT = "position", "angle", "displacement"
+"""Kinds of coordinates: of positions, angles, and displacements of joints."""
 
 
 @dataclass(frozen=True)

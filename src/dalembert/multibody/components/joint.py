@@ -43,6 +43,11 @@ class BaseJoint(Checked):
     kind: ClassVar[Kind]
 
     @property
+    def coordinates(self) -> tuple[Any, ...]:
+        """Bodies without mass, one for each coordinate of a joint that the component needs."""
+        return ()
+
+    @property
     def smoothing(self) -> Smoothing | None:
         """How the joint smooths Coulomb friction; None without it. The finding ``slip-rate`` judges it."""
         return None

@@ -16,6 +16,11 @@ class BaseLoad(Checked):
 
     kind: ClassVar[Kind]
 
+    @property
+    def coordinates(self) -> tuple[Any, ...]:
+        """Bodies without mass, one for each coordinate of a joint that the component needs."""
+        return ()
+
     @abstractmethod
     def lower(self, lowering: Any) -> None:
         """Write the rows of the kernels."""

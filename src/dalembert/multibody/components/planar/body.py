@@ -8,7 +8,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from dalembert.multibody.components.body import POSITION, BaseBody
+from dalembert.multibody.components.body import ANGLE, POSITION, BaseBody
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import markers
@@ -16,7 +16,7 @@ from dalembert.multibody.components.planar.sensor import DIRECTIONAL, SENSOR
 from dalembert.multibody.components.points import Place
 from dalembert.multibody.kernels.kind import Kind
 
-GRADIENT, ANGLE = "gradient", "angle"
+GRADIENT = "gradient"
 
 
 class Marker(NamedTuple):

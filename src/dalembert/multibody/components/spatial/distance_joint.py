@@ -50,7 +50,7 @@ class DistanceJoint(Joint):
     kind = KIND
 
     def lower(self, lowering: SpatialLowering) -> None:
-        pair = self._pair(lowering)
+        pair = self.pair(lowering)
         length = np.sqrt(pair.separation @ pair.separation) if self.length is None else self.length
         if not np.real(length) > 0.0:
             raise ModelError(

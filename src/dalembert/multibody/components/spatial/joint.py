@@ -173,9 +173,10 @@ class Joint(BaseJoint):
         return turned_to((0.0, 0.0, 1.0) if axis is None else axis, f"{type(self).__name__} {self.name!r}")
 
     def lower(self, lowering: SpatialLowering) -> None:
-        self._add(lowering, self._pair(lowering))
+        self._add(lowering, self.pair(lowering))
 
-    def _pair(self, lowering: SpatialLowering) -> Pair:
+    def pair(self, lowering: SpatialLowering) -> Pair:
+        """The markers of both sides, with the axes of the joint."""
         return lowering.pair(self.a, self.b, self.name, self.turned)
 
     def _add(

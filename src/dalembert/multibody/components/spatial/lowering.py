@@ -1,6 +1,6 @@
 """What spatial components call while a system is lowered."""
 
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -30,6 +30,20 @@ class Pair(NamedTuple):
     separation: np.ndarray
     axes: tuple[np.ndarray, np.ndarray]
 
+    @property
+    def angle(self) -> Any:
+        """Angle of b relative to a about the third axes; complex-safe."""
+        e, f = self.axes
+        c, s = e[:, 0] @ f[:, 0], e[:, 1] @ f[:, 0]
+        angle = np.arctan2(np.real(s), np.real(c))
+        slope = (np.real(c) * np.imag(s) - np.real(s) * np.imag(c)) / (np.real(c) ** 2 + np.real(s) ** 2)
+        return angle + 1j * slope if np.iscomplexobj(e) or np.iscomplexobj(f) else angle
+
+    @property
+    def displacement(self) -> Any:
+        """Displacement of b relative to a along the third axis of a."""
+        return self.axes[0][:, 2] @ self.separation
+
 
 class SpatialLowering(Rows, Protocol):
     """Collects the rows of the kernels of a mechanism in space."""
@@ -41,4 +55,8 @@ class SpatialLowering(Rows, Protocol):
 
         ``turned``: rotation matrices that turn the axes of both markers into those of the joint.
         """
+        ...
+
+    def coordinate(self, body: Any) -> tuple[int, Number]:
+        """Number of the coordinate of a joint, and its value as the bodies are placed."""
         ...

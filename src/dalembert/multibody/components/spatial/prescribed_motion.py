@@ -120,4 +120,4 @@ class PrescribedMotion(Joint):
         self._oriented()
         lowering.kinks += [(time, self.name) for time in as_signal(self.motion).kinks]
         integers = [_COORDINATES[self.coordinate], lowering.signal(self.motion)]
-        self._add(lowering, self._pair(lowering), integers=integers)
+        self._add(lowering, self.pair(lowering), integers=integers)

@@ -49,7 +49,7 @@ class PrismaticJoint(Joint):
 
     def lower(self, lowering: SpatialLowering) -> None:
         self._oriented()
-        pair = self._pair(lowering)
+        pair = self.pair(lowering)
         index = self._add(lowering, pair)
         if self.friction:
             law = self.friction.law(f"prismatic joint {self.name!r}", turns=False)

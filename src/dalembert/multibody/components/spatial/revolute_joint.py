@@ -52,7 +52,7 @@ class RevoluteJoint(Joint):
 
     def lower(self, lowering: SpatialLowering) -> None:
         self._oriented()
-        pair = self._pair(lowering)
+        pair = self.pair(lowering)
         index = self._add(lowering, pair)
         if self.friction:
             law = self.friction.law(f"revolute joint {self.name!r}", turns=True)

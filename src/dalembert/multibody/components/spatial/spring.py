@@ -140,17 +140,8 @@ class TorsionSpring(Load):
         owner = f"torsion spring {self.name!r}"
         require_direction(owner, "a spring, or a rigid body", self.a, self.b)
         pair = lowering.pair(self.a, self.b, self.name, turned_to(self.axis, owner))
-        free = initial_angle(pair) if self.free_angle is None else self.free_angle
+        free = pair.angle if self.free_angle is None else self.free_angle
         _add(self, lowering, TORSION_SPRING, pair, free)
-
-
-def initial_angle(pair: Pair) -> Any:
-    """Angle of b relative to a about the third axes at the start; complex-safe."""
-    e, f = pair.axes
-    c, s = e[:, 0] @ f[:, 0], e[:, 1] @ f[:, 0]
-    angle = np.arctan2(np.real(s), np.real(c))
-    slope = (np.real(c) * np.imag(s) - np.real(s) * np.imag(c)) / (np.real(c) ** 2 + np.real(s) ** 2)
-    return angle + 1j * slope if np.iscomplexobj(e) or np.iscomplexobj(f) else angle
 
 
 def _add(load: Spring | TorsionSpring, lowering: SpatialLowering, kind: Kind, pair: Pair, rest: Any) -> None:

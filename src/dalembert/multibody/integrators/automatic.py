@@ -9,7 +9,7 @@ from dalembert.errors import SolveError
 from dalembert.multibody.assemble import redundancy
 from dalembert.multibody.integrators.batch import Batch
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
-from dalembert.multibody.integrators.integrator import Integrator, varying_masses
+from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.ode_solver import OdeSolver
 from dalembert.multibody.integrators.radau_iia import RadauIIA
 from dalembert.multibody.integrators.run import Run
@@ -26,8 +26,7 @@ class Automatic(Integrator):
     """Chooses the integrator by the mechanism.
 
     Where all bodies are rigid nothing oscillates faster than the motion, and a high order takes long steps:
-    :class:`RadauIIA`; with redundant constraints :class:`OdeSolver`, which finds multipliers for them, as with
-    armature inertias in space. Beams and cables
+    :class:`RadauIIA`; with redundant constraints :class:`OdeSolver`, which finds multipliers for them. Beams and cables
     bring frequencies that nobody wants to follow: :class:`GeneralizedAlpha` damps them, and its step, adaptive here,
     costs little. Where a singular position (a flat four-bar) stops :class:`RadauIIA`, :class:`OdeSolver` runs the
     motion again, if it can pass. The page "Which integrator" has the measurements behind this rule.
@@ -55,7 +54,7 @@ class Automatic(Integrator):
         if not all(body.rigid for body in lowered.bodies.values()):
             return GeneralizedAlpha(step=_FIRST * end, adaptive=True, tolerance=self.tolerance)
         known = redundancy(lowered)
-        if known.rank < known.count or varying_masses(lowered):
+        if known.rank < known.count:
             return self._redundant()
         return RadauIIA(tolerance=self.tolerance)
 

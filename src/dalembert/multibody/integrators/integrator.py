@@ -14,7 +14,8 @@ from dalembert.errors import ModelError, SolveError
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.batch import Batch, make_batch, smooth_stretches
 from dalembert.multibody.integrators.problem import Problem
-from dalembert.multibody.integrators.run import Run
+from dalembert.multibody.integrators.rotors import with_rotors, without_rotors
+from dalembert.multibody.integrators.run import Run, make_problem
 from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.structure import Structure
 
@@ -62,12 +63,17 @@ class Integrator(Checked, ABC):
         ModelError
             For masses that change with the coordinates, if the method needs constant ones.
         """
-        if self.constant_masses and (varying := varying_masses(samples[0])):
+        if not (self.constant_masses and any(map(varying_masses, (*samples, *perturbed)))):
+            return self.run(make_batch(samples, perturbed, problem, end, logged))
+        if alone := next((kind.name for kind in samples[0].data if kind.varying_mass and kind.rotor is None), ""):
             raise ModelError(
-                f"{type(self).__name__} needs masses that do not change with the coordinates, as those of "
-                f"{varying!r} (armature inertia) do. Use GeneralizedAlpha, RungeKutta4 or OdeSolver"
+                f"{type(self).__name__} needs masses that do not change with the coordinates, as those of {alone!r} "
+                "do. Use RadauIIA, GeneralizedAlpha, RungeKutta4 or OdeSolver"
             )
-        return self.run(make_batch(samples, perturbed, problem, end, logged))
+        moved, kept = with_rotors([*samples, *perturbed])
+        own = make_problem(moved[0], problem.times)
+        runs = self.run(make_batch(moved[: len(samples)], moved[len(samples) :], own, end, logged))
+        return [without_rotors(run, kept) for run in runs]
 
     def __str__(self) -> str:
         """The settings that are not the usual ones: ``GeneralizedAlpha(step=0.001)``."""
@@ -113,6 +119,6 @@ class Integrator(Checked, ABC):
         return np.append(0.0, np.repeat(edges[:-1], counts) + np.repeat(lasting / counts, counts) * places)
 
 
-def varying_masses(lowered: Lowered) -> str:
-    """Name of a kind whose masses change with the coordinates; empty if there is none."""
-    return next((kind.name for kind in lowered.data if kind.varying_mass), "")
+def varying_masses(lowered: Lowered) -> bool:
+    """Whether masses change with the coordinates."""
+    return any(kind.varies(data) for kind, data in lowered.data.items())

@@ -27,6 +27,7 @@ class Pattern(NamedTuple):
     """Where the entries of the matrix of motion stand: in a list, in a real system and in a complex one.
 
     The complex system A + iB stands as the real one [A, -B; B, A], whose blocks' places are ``double`` (4, entries).
+    ``varies`` says whether masses may change with the coordinates.
     """
 
     slots: Integers
@@ -36,6 +37,7 @@ class Pattern(NamedTuple):
     layout: Layout
     double: Integers2
     double_layout: Layout
+    varies: bool
 
 
 class Doubles(NamedTuple):
@@ -70,20 +72,20 @@ def pattern_of(structure: Structure) -> Pattern:
     """Pattern of a structure; bands where matrices that are factorised often are kept as bands."""
     slots, rows, columns = structure.full.entries
     _, layout = structure.full.fresh
-    size = structure.size
+    size, varies = structure.size, any(kind.varying_mass for kind in structure.index)
     if layout.kind == DENSE:
         wide = dense_layout(2 * size)
         single = columns * layout.lead + rows
         corners = ((0, 0), (0, size), (size, 0), (size, size))
         double = np.array([(columns + j) * wide.lead + rows + i for i, j in corners])
-        return Pattern(slots, rows, columns, single, layout, double, wide)
+        return Pattern(slots, rows, columns, single, layout, double, wide, varies)
     i, j = layout.order[rows], layout.order[columns]
     single = j * layout.lead + 2 * layout.reach + i - j
     reach = padded(2 * int(np.max(np.abs(i - j))) + 1)
     wide = band_layout(np.concatenate([2 * layout.order, 2 * layout.order + 1]), reach)
     parts = ((a, b) for a in (0, 1) for b in (0, 1))
     double = np.array([(2 * j + b) * wide.lead + 2 * reach + 2 * i + a - 2 * j - b for a, b in parts])
-    return Pattern(slots, rows, columns, single, layout, double, wide)
+    return Pattern(slots, rows, columns, single, layout, double, wide, varies)
 
 
 def room(pattern: Pattern, pairs: int) -> Matrices:
@@ -101,7 +103,7 @@ def room(pattern: Pattern, pairs: int) -> Matrices:
 
 @kernel
 def weigh_masses(matrices: Matrices, complex_model: Address, n: int, state: MotionState, complex_work: Address) -> None:
-    """Evaluate the masses, which do not change in a motion; the signals in ``complex_work`` hold the time."""
+    """Evaluate the masses; the signals in ``complex_work`` hold the time."""
     tangent(
         complex_model, matrices.pattern.slots, n, state.x, state.v, state.a, (0.0, 0.0, 1.0), (1.0, 0.0), complex_work,
         matrices.mass,
@@ -119,9 +121,14 @@ def renew(
     problem: Problem, matrices: Matrices, complex_model: Address, damped: bool, t: float, within: float,
     state: MotionState, complex_work: Address,
 ) -> bool:  # fmt: skip
-    """Evaluate stiffness (and damping, if ``damped``), and factorise [M, J^T; J, 0]; whether it is regular."""
+    """Evaluate stiffness (and damping, if ``damped``), and factorise [M, J^T; J, 0]; whether it is regular.
+
+    Masses are evaluated where they may change.
+    """
     n = problem.n
     set_signals(complex_model, t, within, complex_work)
+    if matrices.pattern.varies:
+        weigh_masses(matrices, complex_model, n, state, complex_work)
     x, v, a, slots = state.x, state.v, state.a, matrices.pattern.slots
     tangent(complex_model, slots, n, x, v, a, (1.0, 0.0, 0.0), (1.0, 1.0), complex_work, matrices.stiffness)
     if damped:

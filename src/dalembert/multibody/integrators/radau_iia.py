@@ -63,17 +63,17 @@ class RadauIIA(Integrator):
     M q' = M v - J^T mu, M v' = Q - J^T lambda, Phi = 0, J v + Phi_t = 0; C. W. Gear, B. Leimkuhler and G. K. Gupta,
     "Automatic integration of Euler-Lagrange equations with constraints" (1985); stages, error estimate and the split of
     Newton's matrix by E. Hairer and G. Wanner, "Solving Ordinary Differential Equations II" (1996), IV.8, and "Stiff
-    differential equations solved by Radau methods" (1999). The estimate is that of q and v alone. Where the constraints
-    lose rank (a flat four-bar), their rates cannot be met and as a rule the run ends with the time and the joints;
-    :class:`GeneralizedAlpha` passes such positions.
+    differential equations solved by Radau methods" (1999). The estimate is that of q and v alone. M in the first
+    equation only weighs mu, which vanishes in the exact motion: where masses change with the coordinates, it is that of
+    the place where Newton's matrix was evaluated last. Where the constraints lose rank (a flat four-bar), their rates
+    cannot be met and as a rule the run ends with the time and the joints; :class:`GeneralizedAlpha` passes such
+    positions.
 
     Examples
     --------
     >>> RadauIIA(tolerance=1e-8).order
     9
     """
-
-    constant_masses = True
 
     tolerance: float = limited(1e-7, unit="", above=0)
     step: float | None = limited(None, unit="s", above=0)

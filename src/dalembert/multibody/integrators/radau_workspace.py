@@ -78,7 +78,8 @@ def workspace(
     works, complex_works = (np.array([call.address for call in own]) for own in (calls, complex_calls))
     work, complex_work = int(works[0]), int(complex_works[0])
     matrices, apart = room(pattern, len(method.pairs)), room(pattern, 0)
-    apart = apart._replace(heavy=matrices.heavy, mass=matrices.mass)  # which do not change in a motion
+    if not pattern.varies:
+        apart = apart._replace(heavy=matrices.heavy, mass=matrices.mass)  # which do not change in a motion
     out = outputs(_ENDS, dstates, work, complex_work)
     step = Step(
         stages(count, width), stages(count, width), buffers(count, width), np.zeros((count + 1, 2 * count)),

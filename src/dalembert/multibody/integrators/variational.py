@@ -46,8 +46,9 @@ class Variational(Integrator):
     M (v_m - v_0) + h/2 F(q_m, v_m) + J(q_0)^T n = 0, Phi(q_0 + h v_m) = 0, then
     M (v_1 - v_m) + h/2 F(q_m, v_m) + J(q_1)^T m = 0, J v_1 + Phi_t = 0, with F the forces on the left. J. E. Marsden
     and M. West, "Discrete mechanics and variational integrators" (2001), 3.2 and 3.5; friction takes the joints' forces
-    by the mean of both ends. Where the constraints lose rank (a flat four-bar), their rates cannot be met and the run
-    ends with the time; :class:`GeneralizedAlpha` passes such positions.
+    by the mean of both ends. Armature inertias in space, whose masses change with the coordinates, are constant masses
+    of additional coordinates that constraints tie to the joints. Where the constraints lose rank (a flat four-bar),
+    their rates cannot be met and the run ends with the time; :class:`GeneralizedAlpha` passes such positions.
 
     Examples
     --------

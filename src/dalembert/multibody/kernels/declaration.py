@@ -66,8 +66,12 @@ class Declaration:
     dissipates : bool, str or tuple of str
         Whether a force depends on velocities; or the columns of which any entry that is not zero says so. Without it
         RadauIIA and the variational methods leave damping out of Newton's matrix, and converge more slowly or not.
-    varying_mass : bool
-        Whether the masses that it adds change with the coordinates; some integrators need masses that do not.
+    varying_mass : bool, str or tuple of str
+        Whether the masses that it adds change with the coordinates; or the columns of which any entry that is not zero
+        says so. Some integrators need masses that do not.
+    rotor : (Kind, Kind), optional
+        These masses as constant ones of one more coordinate: a constraint that ties it to those of the kind, and its
+        inertia. Their numbers and integers are columns of the kind.
     driven, loads : bool
         Whether a prescribed motion, or a load, may do work.
     holds : bool
@@ -99,7 +103,8 @@ class Declaration:
     chart: Chart | None = None
     charts: tuple[Chart, ...] = ()
     dissipates: bool | str | tuple[str, ...] = False
-    varying_mass: bool = False
+    varying_mass: bool | str | tuple[str, ...] = False
+    rotor: Any = None
     driven: bool = False
     loads: bool = False
     holds: bool = False
@@ -156,10 +161,22 @@ class Declaration:
 
     def dissipative(self, numbers: np.ndarray) -> bool:
         """Whether a force of components with these numbers (count, -) depends on velocities."""
-        if isinstance(self.dissipates, bool):
-            return self.dissipates
-        names = (self.dissipates,) if isinstance(self.dissipates, str) else self.dissipates
-        return bool(np.any(numbers[:, self.columns(names)]))
+        return self._shown(self.dissipates, numbers)
+
+    def varies(self, numbers: np.ndarray) -> bool:
+        """Whether masses of components with these numbers (count, -) change with the coordinates."""
+        return self._shown(self.varying_mass, numbers)
+
+    @property
+    def varying(self) -> tuple[str, ...]:
+        """The columns of masses that change with the coordinates."""
+        given = self.varying_mass
+        return (given,) if isinstance(given, str) else given if isinstance(given, tuple) else ()
+
+    def _shown(self, given: bool | str | tuple[str, ...], numbers: np.ndarray) -> bool:
+        if isinstance(given, bool):
+            return given
+        return bool(np.any(numbers[:, self.columns((given,) if isinstance(given, str) else given)]))
 
     def has(self, role: str) -> bool:
         """Whether the kind has kernels of this role."""

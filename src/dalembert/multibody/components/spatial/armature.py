@@ -28,6 +28,7 @@ from dalembert.multibody.components.spatial.pairs import (
     twist_pair,
 )  # fmt: skip
 from dalembert.multibody.components.spatial.points import Side
+from dalembert.multibody.components.spatial.rotor import SLIDING_ROTOR, TURNING_ROTOR
 from dalembert.multibody.components.spatial.vectors import dot, times
 
 _a3, _push_e3 = A_AXES[2], push_a_axis(3)
@@ -66,11 +67,11 @@ def _sliding_energy(x, v, p, m, inputs):
 
 TURNING = pair_kind(
     "turning_armature", __name__, ("inertia",), residual=_turning_residual, energy=_turning_energy,
-    varying_mass=True,
+    varying_mass="inertia", rotor=TURNING_ROTOR,
 )  # fmt: skip
 SLIDING = pair_kind(
     "sliding_armature", __name__, ("inertia",), residual=_sliding_residual, energy=_sliding_energy,
-    varying_mass=True,
+    varying_mass="inertia", rotor=SLIDING_ROTOR,
 )  # fmt: skip
 
 
@@ -79,7 +80,7 @@ class Armature(Load):
     """Inertia of a motor behind its gear, for a revolute or a prismatic joint between the same markers.
 
     Kinetic energy = inertia x rate^2 / 2, with the rate of the joint. There is no weight. The masses change with the
-    coordinates, which RadauIIA, Variational and EnergyMomentum refuse.
+    coordinates; Variational and EnergyMomentum integrate a coordinate of the rotor with a constant mass instead.
 
     Parameters
     ----------

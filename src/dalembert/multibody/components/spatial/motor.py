@@ -14,6 +14,7 @@ from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Vector
 from dalembert.multibody.components.spatial.pairs import e3, relative_spin, twist_pair
 from dalembert.multibody.components.spatial.points import Side
+from dalembert.multibody.components.spatial.rotor import TURNING_ROTOR
 from dalembert.multibody.components.spatial.vectors import dot, times
 
 
@@ -34,7 +35,10 @@ def _twist(x, p, m, torque, r):
 
 
 _PROPERTIES = drive_properties(_command, Turning(joint_angle, joint_rate, _acceleration, _twist))
-MOTOR = pair_kind("motor_in_space", __name__, NUMBERS, (*INTEGERS, "command"), angles=("angle",), **_PROPERTIES)
+MOTOR = pair_kind(
+    "motor_in_space", __name__, NUMBERS, (*INTEGERS, "command"), angles=("angle",), varying_mass="inertia",
+    rotor=TURNING_ROTOR, **_PROPERTIES,
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -90,9 +94,6 @@ class Motor(MotorNumbers, Load):
     Outputs: ``angle`` and ``rate`` of b against a, ``torque`` on b (without that of the armature's inertia),
     ``current``, and ``voltage`` at the terminals, resistance i + back_emf N w. The inductance is neglected: the current
     follows the voltage at once, which holds where the motion is slow compared to inductance/resistance.
-
-    Where N^2 times the inertia of the armature is not small against the inertia of the bodies about the axis, the mass
-    matrix depends on the angle, and `RadauIIA` may not converge; use `GeneralizedAlpha` or `RungeKutta4` there.
 
     Examples
     --------

@@ -68,13 +68,11 @@ class Structure:
         """The system in increments, without internal constraints; the full one of a model that has none."""
         return Couplings(self.reduction.index, self.reduction.size) if self.reduction.nodes else self.full
 
-    @property
-    def reduced_kernels(self) -> list[Compiled]:
+    def reduced_kernels(self, derivatives: bool) -> list[Compiled]:
         """Kernels of the reduced system that the full one does not have."""
         if not self.reduction.nodes:
             return []
         linear = [kernel for kernel in self.reduced.linear_kernels if kernel not in self.full.linear_kernels]
-        components = [kind.kernel("reduced", dtype) for dtype in (float, complex) for kind in self.reduction.index]
-        roles = (("spread", float), ("change", float), ("restore", float), ("restore", complex))
+        roles = [("change", float), ("restore", float), *[("spread", float), ("restore", complex)] * derivatives]
         nodes = [kind.kernel(*role) for role in roles for kind in self.reduction.nodes]
-        return [*linear, *components, *nodes, SPREAD, CHANGE, *RESTORE.values()]
+        return [*linear, *nodes, CHANGE, RESTORE[float], *[SPREAD, RESTORE[complex]] * derivatives]

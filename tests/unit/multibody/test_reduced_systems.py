@@ -79,7 +79,7 @@ def test_a_planar_model_has_one_system() -> None:
     assert reduced is full
     assert head["reduced"] == head["blocks"]
     np.testing.assert_array_equal(full["index"], full["rows"])
-    assert lowered.structure.reduced_kernels == []
+    assert lowered.structure.reduced_kernels(True) == []
 
 
 def test_internal_constraints_hold_to_rounding() -> None:
@@ -112,7 +112,7 @@ def test_the_reduced_tangent_is_the_slope_of_the_projected_residual() -> None:
     call.set(by_x=by[0], by_v=by[1], by_a=by[2], increments=own.increments, last_row=own.size)
     for k, kind in enumerate(own.index):
         call.set(slots=slots[k])
-        kind.kernel("reduced", complex)(call.address, model._words[2][k : k + 1].ctypes.data)
+        kind.kernel("residual", complex)(call.address, model._words[2][k : k + 1].ctypes.data)
     dense = np.zeros((own.size + 1, own.size + 1))
     np.add.at(dense, (rows, columns), matrix)
 

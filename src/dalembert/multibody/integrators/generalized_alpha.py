@@ -104,7 +104,7 @@ class GeneralizedAlpha(Integrator):
     def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
         """The loop with its linear systems, and what differentiates a step."""
         along = [differentiate, accelerate_along] * derivatives
-        return [integrate, *structure.full.linear_kernels, *structure.reduced_kernels, *along]
+        return [integrate, *structure.full.linear_kernels, *structure.reduced_kernels(derivatives), *along]
 
     def run(self, batch: Batch) -> list[Run]:
         """Runs of samples in one compiled loop that leaves the interpreter's lock free."""
@@ -117,7 +117,7 @@ class GeneralizedAlpha(Integrator):
         settings = Settings(*steps, self.tolerance, self.newton_tolerance, self.most_steps)
         ends = np.zeros((len(samples), 3))
         real = [entry.real.need("rates").reduced() for entry in samples]
-        complex_models = [entry.complex_model.reduced() for entry in samples]
+        complex_models = [entry.complex_model.reduced(nodes=len(perturbed) > 0) for entry in samples]
         directions = addresses(entry.complex_model.need("rates").reduced() for entry in perturbed)
         calls = real[0].call(), complex_models[0].call()
         integrate(

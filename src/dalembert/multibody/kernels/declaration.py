@@ -185,7 +185,6 @@ class Declaration:
             "rates": self.constraint is not None,
             "energy": self.energy is not None or self.residual is not None,
             "outputs": self.observe is not None,
-            "reduced": self.chart is None and not self.is_flat,
             **dict.fromkeys(("spread", "change", "restore"), self.chart is not None),
         }[role]
 

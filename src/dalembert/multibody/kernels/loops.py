@@ -5,7 +5,6 @@ constraints: forces N^T r.
 """
 
 from collections.abc import Callable
-from functools import cache
 from typing import Any, NamedTuple
 
 from dalembert.kernels.kernel import BlockKernel, inlined
@@ -52,19 +51,16 @@ def _each(kind: Declaration, role: str, dtype: type, step: Callable[..., None]) 
 
 
 class _System(NamedTuple):
-    """Equations that a kind adds to: those of the full system, or of the reduced one.
+    """The equations that a kind adds to: by the block those of the full system, or of the reduced one.
 
-    ``rows``: local ones. ``project(x, r, s)`` returns the local residual in these rows, for which it may fill ``s``.
-    ``perturb(j, call, x, v, a)`` adds the imaginary step along local row j; it returns the range of the unknowns that
-    it changes. ``known`` and ``tangent``: the formula, and where it holds.
+    ``count(block)`` returns the number of local rows. ``project(count, x, r, s)`` returns the local residual in these
+    rows, for which it may fill ``s``. ``perturb(count, j, call, x, v, a)`` adds the imaginary step along local row j,
+    and returns the range of the unknowns that it changes.
     """
 
-    role: str
-    rows: int
+    count: Any
     project: Any
     perturb: Any
-    known: Any
-    tangent: Any
 
 
 @inlined
@@ -77,15 +73,24 @@ def _no_tangent(x, p, m, by_x, by_a, matrix):
     pass
 
 
-@inlined
-def _unprojected(x, r, s):
-    return r
+def _system(kind: Declaration) -> _System:
+    full = _full(kind)
+    return full if kind.is_flat or kind.chart is not None else _either(kind, full)
 
 
-@cache
-def _perturbing_one(coordinates: int) -> Any:
+def _full(kind: Declaration) -> _System:
+    width, coordinates = kind.width, kind.coordinates
+
     @inlined
-    def perturb(j, call, x, v, a):
+    def count(block):
+        return width
+
+    @inlined
+    def unprojected(count, x, r, s):
+        return r
+
+    @inlined
+    def perturb(count, j, call, x, v, a):
         if j < coordinates:
             x[j] += 1j * STEP * call.by_x
             v[j] += 1j * STEP * call.by_v
@@ -94,29 +99,33 @@ def _perturbing_one(coordinates: int) -> Any:
             x[j] += 1j * STEP
         return j, j + 1
 
-    return perturb
+    return _System(count, unprojected, perturb)
 
 
-def _full(kind: Declaration) -> _System:
-    perturb = _perturbing_one(kind.coordinates)
-    return _System("residual", kind.width, _unprojected, perturb, kind.known or _never, kind.tangent or _no_tangent)
-
-
-def _reduced(kind: Declaration) -> _System:
+def _either(kind: Declaration, full: _System) -> _System:
+    """The full system, or the reduced one, which has fewer rows."""
     width, coordinates, increments = kind.width, kind.coordinates, kind.increments
-    others = width - coordinates
+    others, perturb_one = width - coordinates, full.perturb
     project, spread = projecting(kind.parts), spreading(kind.parts)
     local_d, local_dx = local(complex, increments), local(complex, coordinates)
 
     @inlined
-    def projected(x, r, s):
+    def count(block):
+        return block.row_count
+
+    @inlined
+    def projected(count, x, r, s):
+        if count == width:
+            return r
         project(x, r, s)
         for i in range(others):
             s[increments + i] = r[coordinates + i]
         return s
 
     @inlined
-    def perturb(j, call, x, v, a):
+    def perturb(count, j, call, x, v, a):
+        if count == width:
+            return perturb_one(count, j, call, x, v, a)
         if j < increments:
             d, dx = local_d(), local_dx()
             for i in range(increments):
@@ -131,47 +140,44 @@ def _reduced(kind: Declaration) -> _System:
             x[coordinates + j - increments] += 1j * STEP
         return 0, width
 
-    return _System("reduced", kind.reduced_width, projected, perturb, _never, _no_tangent)
+    return _System(count, projected, perturb)
 
 
 def residual(kind: Declaration, dtype: type) -> BlockKernel:
-    """Add the residuals; in complex numbers, by the call's mode, the tangent instead."""
-    return (_complex if dtype is complex else _real)(kind, _full(kind))
-
-
-def reduced(kind: Declaration, dtype: type) -> BlockKernel:
-    """Add the residuals N^T r, without internal constraints; in complex numbers, by the call's mode, the tangent."""
-    return (_complex if dtype is complex else _real)(kind, _reduced(kind))
+    """Add the residuals, in the reduced system N^T r; in complex numbers, by the call's mode, the tangent instead."""
+    return (_complex if dtype is complex else _real)(kind, _system(kind))
 
 
 def _real(kind: Declaration, system: _System) -> BlockKernel:
-    function, width, narrow, project = kind.residual_function, kind.width, system.rows, system.project
-    local_r, local_s = local(float, width), local(float, narrow)
+    function, width, row_count, project = kind.residual_function, kind.width, system.count, system.project
+    local_r, local_s = local(float, width), local(float, width)
 
     @inlined
     def step(x, v, a, p, m, inputs, call, block, e):
+        narrow = row_count(block)
         rows, r = integers2(block.rows, block.count, narrow), reals(call.r, call.last + 1)
         own_r = local_r()
         for i in range(width):
             own_r[i] = 0.0
         function(x, v, a, p, m, inputs, own_r)
-        forces = project(x, own_r, local_s())
+        forces = project(narrow, x, own_r, local_s())
         for i in range(narrow):
             r[rows[e, i]] += forces[i]
 
-    return _each(kind, system.role, float, step)
+    return _each(kind, "residual", float, step)
 
 
 def _complex(kind: Declaration, system: _System) -> BlockKernel:
-    function, width, narrow = kind.residual_function, kind.width, system.rows
-    project, perturb, known, formula = system.project, system.perturb, system.known, system.tangent
+    function, width, row_count = kind.residual_function, kind.width, system.count
+    project, perturb = system.project, system.perturb
+    known, formula = kind.known or _never, kind.tangent or _no_tangent
     numbers, whole = records(kind.number_record(complex)), records(kind.integer_record)
     local_x, local_v, local_a, local_r, local_s = (local(complex, width) for _ in range(5))
     real_x, real_matrix = local(float, width), local(float, width, width)
 
     def loop(call_address, block_address):
         call, block = call_at(call_address), block_at(block_address)
-        count, size = block.count, call.last + 1
+        count, size, narrow = block.count, call.last + 1, row_count(block)
         index, rows = integers2(block.index, count, width), integers2(block.rows, count, narrow)
         p, m = numbers(block.numbers, count), whole(block.integers, count)
         inputs = Inputs(complexes2(call.signals, call.signal_count, 3), integers(call.callbacks, call.callback_count))
@@ -183,7 +189,7 @@ def _complex(kind: Declaration, system: _System) -> BlockKernel:
         matrix, slots = reals(call.matrix, call.entries), integers2(call.slots, count, narrow * narrow)
         tangent = call.mode == TANGENT
         for e in range(count):
-            if tangent and known(p[e], m[e]):
+            if tangent and narrow == width and known(p[e], m[e]):
                 for i in range(width):
                     own_real[i] = real_position[index[e, i]]
                 formula(own_real, p[e], m[e], call.by_x, call.by_a, own_matrix)
@@ -204,11 +210,11 @@ def _complex(kind: Declaration, system: _System) -> BlockKernel:
                 if tangent:
                     if rows[e, j] == call.last_row:
                         continue
-                    first, last = perturb(j, call, own_x, own_v, own_a)
+                    first, last = perturb(narrow, j, call, own_x, own_v, own_a)
                 for i in range(width):
                     own_r[i] = 0.0
                 function(own_x, own_v, own_a, p[e], m[e], inputs, own_r)
-                forces = project(own_x, own_r, own_s)
+                forces = project(narrow, own_x, own_r, own_s)
                 for i in range(first, last):
                     g = index[e, i]
                     own_x[i], own_v[i], own_a[i] = real_position[g], real_velocity[g], real_acceleration[g]
@@ -220,7 +226,7 @@ def _complex(kind: Declaration, system: _System) -> BlockKernel:
                         factor = call.motion if row < call.increments else call.constraint
                         matrix[slots[e, i * narrow + j]] += forces[i].imag / STEP * factor
 
-    return made(loop, kind, system.role, complex)
+    return made(loop, kind, "residual", complex)
 
 
 # -- other roles -----------------------------------------------------------------------------------------------------
@@ -272,5 +278,5 @@ def outputs(kind: Declaration, dtype: type) -> BlockKernel:
 
 
 MAKERS: dict[str, Callable[[Declaration, type], BlockKernel]] = {
-    "residual": residual, "reduced": reduced, "rates": rates, "energy": energy, "outputs": outputs,
+    "residual": residual, "rates": rates, "energy": energy, "outputs": outputs,
 }  # fmt: skip

@@ -84,6 +84,7 @@ class Model:
         for block, kind in zip(table, kinds, strict=False):
             block["count"], block["joins"] = len(self.blocks.index[kind]), kind.multipliers > 0
             block["index"], block["rows"] = self.blocks.index[kind].ctypes.data, rows[kind].ctypes.data
+            block["row_count"] = rows[kind].shape[1]
             block["integers"] = self.blocks.integers[kind].ctypes.data
             block["numbers"] = self.blocks.numbers[kind].ctypes.data
         return table
@@ -96,17 +97,18 @@ class Model:
                     block[role] = self._load(kind, role, self.dtype)
         return self
 
-    def reduced(self) -> "Model":
-        """Load the kernels of the reduced system, and hand the model back."""
+    def reduced(self, nodes: bool = True) -> "Model":
+        """Load the kernels of the reduced system, those of its ``nodes`` unless only tangents are wanted."""
         if self.reduction.nodes:
             head = self._words[0]
-            head["spread"], head["change"] = SPREAD.address, CHANGE.address
-            head["restore"] = RESTORE[self.dtype].address
             for block, kind in zip(self._words[2], self.reduction.index, strict=False):
-                block["residual"] = self._load(kind, "reduced", self.dtype)
-            for node, kind in zip(self._words[3], self.reduction.nodes, strict=False):
-                for role, dtype in (("spread", float), ("change", float), ("restore", self.dtype)):
-                    node[role] = self._load(kind, role, dtype)
+                block["residual"] = self._load(kind, "residual", self.dtype)
+            if nodes:
+                role, whole = ("change", CHANGE) if self.dtype is float else ("spread", SPREAD)
+                head[role], head["restore"] = whole.address, RESTORE[self.dtype].address
+                for node, kind in zip(self._words[3], self.reduction.nodes, strict=False):
+                    node[role] = self._load(kind, role, float)
+                    node["restore"] = self._load(kind, "restore", self.dtype)
         return self
 
     def _load(self, kind: Kind, role: str, dtype: type) -> int:

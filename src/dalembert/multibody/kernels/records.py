@@ -32,10 +32,10 @@ CALL = _record(
     "signals signal_count callbacks callback_count mode slots",
     "t within by_x by_v by_a motion constraint",
 )
-#: Components of one kind: how many, their unknowns (count, width), the rows of their residual (count, -), which in the
-#: full system are the unknowns, integers and numbers, and the kind's kernels in the model's arithmetic (``spread`` and
-#: ``change`` in real numbers); 0 where there is none. ``joins``: whether the kind has constraints.
-BLOCK = _record("count index rows integers numbers residual rates energy outputs joins spread change restore")
+#: Components of one kind: how many, their unknowns (count, width), the rows of their residual (count, row_count), which
+#: in the full system are the unknowns, integers and numbers, and the kind's kernels in the model's arithmetic
+#: (``spread`` and ``change`` in real numbers); 0 where there is none. ``joins``: whether the kind has constraints.
+BLOCK = _record("count index rows row_count integers numbers residual rates energy outputs joins spread change restore")
 #: A model: its blocks; those of the reduced system; the nodes as blocks, the row of each unknown, and kernels of all
 #: nodes; its signals, see :mod:`signals`. A model without nodes has one system: ``reduced`` are its blocks.
 MODEL = _record(

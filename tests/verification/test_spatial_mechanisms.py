@@ -8,8 +8,8 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import ellipj
 
+from conclusions import only
 from dalembert.multibody import EnergyMomentum, GeneralizedAlpha, RadauIIA, RungeKutta4, Variational, simulate
-from dalembert.multibody.assemble import redundancy
 from dalembert.multibody.spatial import (
     DistanceJoint,
     Inertia,
@@ -347,11 +347,11 @@ def test_bricard_mechanism(record_evidence):
         kind="conservation law",
         source="energy; mechanism of the IFToMM library, A04",
     )
-    found = redundancy(motion.lowered)
+    found = only(motion, "redundant-constraints")
     record_evidence(
         "Bricard mechanism, independent constraints of its six revolute joints",
         29,
-        found.rank - 6 * 5,  # without those of the directors
+        found.values["independent"],
         tolerance=0,
         topic=TOPIC,
         kind="published",

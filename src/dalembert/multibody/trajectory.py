@@ -14,7 +14,6 @@ from dalembert.contents import Contents
 from dalembert.files import write_contents
 from dalembert.findings import Finding
 from dalembert.kernels.preparation import prepare
-from dalembert.multibody.assemble import redundancy
 from dalembert.multibody.drawing import Drawing, draw
 from dalembert.multibody.evaluate import energies, energy_kernels, violations
 from dalembert.multibody.integrators.integrator import Integrator
@@ -22,6 +21,7 @@ from dalembert.multibody.integrators.run import Run
 from dalembert.multibody.kernels.motion import MotionState
 from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.observe import beside, channel_names, observer
+from dalembert.multibody.redundant_constraints import redundant_constraints
 from dalembert.multibody.skipped_samples import skipped_samples
 from dalembert.multibody.slip_rates import rubbing, slip_findings
 from dalembert.multibody.system import Mechanism
@@ -66,12 +66,13 @@ class Trajectory:
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
-        """Those of the system, of inputs that steps skip, and of smoothed friction that does not suit the motion."""
+        """Those of the system, skipped samples, redundant constraints, and friction that does not suit the motion."""
         joints = rubbing(self.system)
         begin = float(np.real(self.lowered.signal_data[0]))
         skipped = skipped_samples(self.system, self.solver.fixed_step, begin, float(self.run.times[-1]))
+        redundant = redundant_constraints(self.lowered) if self.solver.takes_redundancy else ()
         if not joints:
-            return (*self.system.findings, *skipped)
+            return (*self.system.findings, *skipped, *redundant)
         readers = observer(self.system, self.lowered, [f"{name}.{own.channel}" for name, own in joints.items()])
         prepare(readers.kernels(self.lowered, False))
         rates = readers.read(self.lowered, self.lowered.real, self.run.states, self.run.times)
@@ -79,7 +80,7 @@ class Trajectory:
             slip_findings(name, own, self.run.times, column, self.solver.fixed_step)
             for (name, own), column in zip(joints.items(), rates.T, strict=True)
         )
-        return (*self.system.findings, *skipped, *chain.from_iterable(unsuited))
+        return (*self.system.findings, *skipped, *redundant, *chain.from_iterable(unsuited))
 
     @property
     def channel_names(self) -> tuple[str, ...]:
@@ -175,11 +176,6 @@ class Trajectory:
         steps, iterations, factorisations, rejected = self.run.counts
         worst = {name: np.max(np.abs(value)) for name, value in self.violations.items()}
         kinetic = np.ptp(self.energies["kinetic"])
-        constraints = redundancy(self.lowered)
-        redundant = (
-            f"redundancy: {constraints.count} constraints, {constraints.rank} of them independent at the start; joint "
-            f"forces of least norm (those of {', '.join(map(repr, constraints.joints))} follow from the others)"
-        )
         return "\n".join(
             [
                 f"{self.times[-1]:g} s in {steps} steps ({rejected} rejected), {iterations / max(steps, 1):.2f} Newton "
@@ -187,7 +183,6 @@ class Trajectory:
                 f"energy: largest imbalance {np.max(np.abs(self.energies['balance'])):.3g} J, "
                 f"range of the kinetic energy {kinetic:.3g} J",
                 "constraints: largest violation " + ", ".join(f"{name} {value:.2g}" for name, value in worst.items()),
-                *([redundant] if constraints.joints else []),
                 *map(str, self.findings),
             ]
         )

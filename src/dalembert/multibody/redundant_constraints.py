@@ -1,0 +1,28 @@
+"""Findings on joints whose constraints follow from those of others."""
+
+from dalembert.findings import Finding
+from dalembert.multibody.assemble import redundancy
+from dalembert.multibody.lowered import Lowered
+
+
+def redundant_constraints(lowered: Lowered) -> tuple[Finding, ...]:
+    """Return a finding on joints whose constraints follow from those of others at the start; none if all are needed.
+
+    Constraints inside of bodies, such as those between the axes of a rigid body in space, do not count.
+    """
+    count, rank, joints = redundancy(lowered)
+    if not joints:
+        return ()
+    structure = lowered.structure
+    inside = sum(owner in lowered.bodies for owner in structure.owners[structure.n : structure.size])
+    names = ", ".join(map(repr, joints))
+    return (
+        Finding(
+            "redundant-constraints",
+            "note",
+            {"constraints": count - inside, "independent": rank - inside, "joints": names},
+            f"The joints have {count - inside} constraints, {rank - inside} of them independent at the start. Those of "
+            f"{names} follow from the others. Of all possible joint forces, the result has the smallest ones.",
+            "If you need the joint forces, replace a joint by one that holds less, or a bushing.",
+        ),
+    )

@@ -185,6 +185,52 @@ def test_gains_of_sensors(write):
     np.testing.assert_array_equal(imu.rate_gain, [[0.07 + 1e-30j, 0, 0.1], [0, 1, 0], [0, 0, 0.14 + 2e-30j]])
 
 
+COUPLED = """[[model.joint]]
+kind = "ScrewJoint"
+name = "thread"
+a = "ground"
+b = "plate.centre"
+lead = "4 mm"
+[[model.joint]]
+kind = "GearJoint"
+name = "gear"
+a = "pin"
+b = "thread"
+ratio = "-J"
+[[model.load]]
+kind = "AngleLimit"
+name = "stop"
+joint = "pin"
+upper_limit = "720 deg"
+stiffness = "3 N*m/deg^1.5"
+[[model.load]]"""
+
+
+def test_couplings_and_limits_refer_to_joints(write):
+    system = load(write(("[[model.load]]", COUPLED))).builder(J=0.07)
+    pin, thread, gear = system.joints
+    assert thread.lead == 0.004
+    assert (gear.a, gear.b, gear.ratio) == (pin, thread, -0.07)
+    assert (system.loads[0].joint, system.loads[0].upper_limit) == (pin, 4 * np.pi)
+    assert system.loads[0].stiffness == pytest.approx(3 * (180 / np.pi) ** 1.5)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (
+            ('b = "thread"', 'b = "tread"'),
+            "[[model.joint]] 'gear', b: 'tread' was given; unknown joint 'tread'; did you",
+        ),
+        (('a = "pin"', 'a = "gear"'), "'gear' was given; unknown joint 'gear'; known: pin, thread; a joint must stand"),
+        (('joint = "pin"', "joint = 3"), "'stop', joint: 3 was given; expected the name of a joint, such as 'pin'"),
+    ],
+)
+def test_wrong_names_of_joints(write, change, message):
+    (line,) = wrong(write(("[[model.load]]", COUPLED.replace(*change))))
+    assert message in line
+
+
 def wrong(path: Path) -> list[str]:
     with pytest.raises(InputError) as caught:
         plan(load(path))

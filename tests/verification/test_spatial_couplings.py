@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from dalembert.multibody import RadauIIA, simulate
+from dalembert.multibody import OdeSolver, RadauIIA, simulate
 from dalembert.multibody.spatial import (
     AngleLimit,
     DisplacementLimit,
@@ -19,6 +19,8 @@ from dalembert.multibody.spatial import (
     SpatialSystem,
     Torque,
 )
+from dalembert.multibody.trees import inverse_dynamics, mass_matrix, read_urdf
+from robot_files import ARM
 
 TOPIC = "Mechanisms in space"
 EXACT = RadauIIA(tolerance=1e-11)
@@ -168,4 +170,37 @@ def test_pendulum_on_a_limit(record_evidence):
         topic=TOPIC,
         kind="other method",
         source="minimal coordinate, DOP853 at 1e-13",
+    )
+
+
+def test_arm_with_a_joint_that_follows_another_one(tmp_path, record_evidence):
+    """Robot arm whose wrist follows its column: DOP853 in the remaining coordinates, with mass matrix and torques."""
+    file = tmp_path / "arm.urdf"
+    file.write_text(
+        ARM.replace(
+            '<parent link="slider"/>', '<mimic joint="turn" multiplier="-0.8" offset="0.3"/><parent link="slider"/>'
+        )
+    )
+    tree = read_urdf(file)
+    tree = tree.with_numbers({"turn.friction": 0.0})
+    assert [joint.name for joint in tree.moving] == ["turn", "slide"]
+    times, start, rates = np.linspace(0.0, 0.6, 7), [0.4, 0.1], [2.5, 0.8]
+    motion = simulate(tree.system(start, rates), 0.6, OdeSolver("DOP853", 1e-12, 1e-12), times=times)
+
+    def derivatives(t, state):
+        q, v = state[None, :2], state[None, 2:]
+        loads = inverse_dynamics(tree, q, v, np.zeros((1, 2)))[0]
+        return np.concatenate([state[2:], -np.linalg.solve(mass_matrix(tree, q)[0], loads)])
+
+    exact = solve_ivp(derivatives, (0.0, 0.6), [*start, *rates], "DOP853", times, rtol=1e-12, atol=1e-12).y
+    found = motion.channels(["turn.angle", "slide.displacement", "bend.angle"]).T
+    record_evidence(
+        "Robot arm with a mimic joint: positions of its joints during 0.6 s (largest difference)",
+        0.0,
+        float(np.abs(found - [exact[0], exact[1], 0.3 - 0.8 * exact[0]]).max()),
+        tolerance=1e-8,
+        noisy=True,
+        topic=TOPIC,
+        kind="other method",
+        source="minimal coordinates, DOP853 at 1e-12",
     )

@@ -83,13 +83,23 @@ class Observer:
                 out[:, columns] = energies(model, x, v, still, still)[:, :2] @ weights.T
             else:
                 values = _outputs(kind, [self.rows[column] for column in columns], lowered, model, x, v, a, times)
+                names = [name for name, _ in kind.outputs]
                 for place, column in enumerate(columns):
-                    out[:, column] = values[:, place, self.rows[column].output]
-        for column, row in enumerate(self.rows):
-            if row.turns:
-                angles = np.real(out[:, column])
-                out[:, column] += np.unwrap(angles) - angles
+                    row = self.rows[column]
+                    out[:, column] = values[:, place, row.output]
+                    if row.turns:
+                        rates = np.real(values[:, place, names.index("rate")]) if "rate" in names else None
+                        out[:, column] += _turned(np.real(out[:, column]), rates, times)
         return out
+
+
+def _turned(angles: np.ndarray, rates: np.ndarray | None, times: np.ndarray) -> np.ndarray:
+    """Turns to add to angles in rad, so that each is nearest to what the mean rate expects from the one before."""
+    if rates is None:
+        return np.unwrap(angles) - angles
+    expected = 0.5 * (rates[1:] + rates[:-1]) * np.diff(times)
+    turns = np.round((expected - np.diff(angles)) / (2.0 * np.pi))
+    return 2.0 * np.pi * np.concatenate([[0.0], np.cumsum(turns)])
 
 
 def _outputs(

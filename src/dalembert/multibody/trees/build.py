@@ -7,19 +7,27 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from dalembert.errors import ModelError, listed
+from dalembert.arguments import is_number
+from dalembert.errors import InputError, ModelError, require_known, shown
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.spatial.armature import Armature
+from dalembert.multibody.components.spatial.coupling_joint import CouplingJoint
 from dalembert.multibody.components.spatial.friction import Friction
 from dalembert.multibody.components.spatial.inertia import Inertia
+from dalembert.multibody.components.spatial.joint import Joint
+from dalembert.multibody.components.spatial.joint_limit import AngleLimit, DisplacementLimit
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose, Vector
 from dalembert.multibody.components.spatial.points import Side
 from dalembert.multibody.components.spatial.prismatic_joint import PrismaticJoint
 from dalembert.multibody.components.spatial.revolute_joint import RevoluteJoint
 from dalembert.multibody.components.spatial.rigid_body import RigidBody
 from dalembert.multibody.spatial_system import SpatialSystem
-from dalembert.multibody.trees.kinematics import Motion, joint_pose, motions, values
+from dalembert.multibody.trees.kinematics import Motion, coordinate, joint_pose, motions, values
 from dalembert.multibody.trees.tree import JOINT_NUMBERS, PRISMATIC, REVOLUTE, Tree, TreeJoint
+
+Law = tuple[Number, Number]
+Limits = Law | Mapping[str, Law] | None
+"""Stiffness and damping of the stops of all joints, or of some."""
 
 Frame = tuple[np.ndarray, np.ndarray]
 """Position (3,) and axes (3, 3)."""
@@ -106,14 +114,16 @@ def built(
     base: Pose,
     slip: Number,
     start: str,
+    limits: Limits,
 ) -> SpatialSystem:
     """The mechanism of a tree, see :meth:`Tree.system`."""
-    _refuse_mimic(tree)
     q, q_rates = values(tree, positions, "positions"), values(tree, rates, "rates")
     motion, of = motions(tree, q, q_rates, base), groups(tree)
     root = motion[tree.root]
     system = SpatialSystem(gravity, start=start)
     moving = [link for link in tree.links if link.joint.moves]
+    described = {link.joint.name: link.joint for link in moving}
+    joints: dict[str, Joint] = {}
     bodies = {link.name: system.add(_body(of[link.name], motion[link.name])) for link in moving}
     for link in moving:
         parent, name = of[link.parent], link.joint.name
@@ -122,7 +132,13 @@ def built(
             side: Side = system.ground.point(_row(at), Orientation.of(axes))
         else:
             side = bodies[parent.name].point(parent.seat(name))
-        _connect(system, tree, link.joint, side, bodies[link.name], slip)
+        joints[name] = _connect(system, tree, link.joint, side, bodies[link.name], slip)
+    at = {name: coordinate(tree, own, q, q_rates)[0] for name, own in described.items()}
+    for own in described.values():
+        if own.mimic:
+            system.add(_follower(own, joints, at))
+    for name, law in _stops(described, limits).items():
+        system.add(_limit(described[name], joints[name], law, at[name]))
     return system
 
 
@@ -130,13 +146,42 @@ def _row(vector: np.ndarray) -> Vector:
     return tuple(vector.tolist())  # type: ignore[return-value]
 
 
-def _refuse_mimic(tree: Tree) -> None:
-    following = [joint.name for joint in tree.joints if joint.moves and joint.mimic]
-    if following:
+def _follower(joint: TreeJoint, joints: Mapping[str, Joint], at: Mapping[str, Number]) -> CouplingJoint:
+    """What makes a joint follow another one; ``at`` are their positions at the start."""
+    assert joint.mimic is not None
+    leader, factor, offset = joint.mimic
+    if leader not in joints:
         raise ModelError(
-            f"robot {tree.name!r}: the joints {listed([repr(name) for name in following])} follow other joints "
-            f"(mimic), which a system does not support. Fix them: tree.with_fixed_joints({{{following[0]!r}: 0.0}})"
+            f"joint {joint.name!r} follows {leader!r}, which is fixed. Fix it too: "
+            f"tree.with_fixed_joints({{{joint.name!r}: {offset}}})"
         )
+    near = [float(np.real(at[name])) for name in (leader, joint.name)]
+    follower = joints[joint.name]
+    return CouplingJoint(
+        f"{follower.name} mimic", joints[leader], follower, factor, offset, near_a=near[0], near_b=near[1]
+    )
+
+
+def _stops(joints: Mapping[str, TreeJoint], limits: Limits) -> dict[str, Law]:
+    """Stiffness and damping of the stops of each joint that gets some."""
+    limited = [name for name, own in joints.items() if np.isfinite(own.lower) or np.isfinite(own.upper)]
+    given = {} if limits is None else limits if isinstance(limits, Mapping) else dict.fromkeys(limited, limits)
+    for name, law in given.items():
+        require_known("joint with limits", name, limited, "Tree.system: limits")
+        if not (isinstance(law, Sequence) and len(law) == 2 and all(map(is_number, law))):
+            raise InputError(
+                f"Tree.system: limits of joint {name!r} is {shown(law)}; expected two numbers, stiffness and damping"
+            )
+    return dict(given)
+
+
+def _limit(own: TreeJoint, joint: Joint, law: Law, at: Number) -> AngleLimit | DisplacementLimit:
+    """The stops of a joint; ``at`` is its position at the start."""
+    lower, upper = (end if np.isfinite(end) else None for end in (own.lower, own.upper))
+    name, (stiffness, damping) = f"{joint.name} limits", law
+    if own.kind == PRISMATIC:
+        return DisplacementLimit(name, joint, stiffness, lower, upper, damping)
+    return AngleLimit(name, joint, stiffness, lower, upper, damping, float(np.real(at)))
 
 
 def _body(group: Group, motion: Motion) -> RigidBody:
@@ -157,8 +202,10 @@ def _body(group: Group, motion: Motion) -> RigidBody:
     )
 
 
-def _connect(system: SpatialSystem, tree: Tree, joint: TreeJoint, a: Side, body: RigidBody, slip: Number) -> None:
-    """Add a joint, its friction and its armature inertia. Zero numbers that are parameters stay in the model."""
+def _connect(system: SpatialSystem, tree: Tree, joint: TreeJoint, a: Side, body: RigidBody, slip: Number) -> Joint:
+    """Add a joint, which is returned, its friction and its armature inertia.
+
+    Zero numbers that are parameters stay in the model."""
     has = {name: getattr(joint, name) != 0.0 or f"{joint.name}.{name}" in tree.changed for name in JOINT_NUMBERS}
     friction = None
     if has["damping"] or has["friction"]:
@@ -166,7 +213,8 @@ def _connect(system: SpatialSystem, tree: Tree, joint: TreeJoint, a: Side, body:
     bodies = {own.name for own in system.bodies}
     name = f"{joint.name} joint" if joint.name in bodies else joint.name
     kind = RevoluteJoint if joint.kind == REVOLUTE else PrismaticJoint
-    system.add(kind(name, a, body.point("origin"), joint.axis, friction))
+    made = system.add(kind(name, a, body.point("origin"), joint.axis, friction))
     if has["armature"]:
         slides = joint.kind == PRISMATIC
         system.add(Armature(f"{name} armature", a, body.point("origin"), joint.armature, joint.axis, slides))
+    return made

@@ -1,6 +1,6 @@
 """Poses and velocities of the links of a tree from the positions and rates of its joints."""
 
-__all__ = ["Motion", "motions", "values"]
+__all__ = ["Motion", "coordinate", "motions", "values"]
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -60,21 +60,21 @@ def motions(
     found = {tree.root: Motion(where, axes, np.zeros(3), np.zeros(3))}
     for link in tree.links:
         joint = link.joint
-        found[link.name] = moved(found[link.parent], joint, *_coordinate(tree, joint, positions, rates))
+        found[link.name] = moved(found[link.parent], joint, *coordinate(tree, joint, positions, rates))
     return found
 
 
-def _coordinate(
+def coordinate(
     tree: Tree, joint: TreeJoint, positions: Mapping[str, Number], rates: Mapping[str, Number]
 ) -> tuple[Number, Number]:
-    """Position and rate of a joint."""
+    """Position and rate of a joint, which may follow another one."""
     if not joint.moves:
         return 0.0, 0.0
     if joint.mimic is None:
         return positions.get(joint.name, 0.0), rates.get(joint.name, 0.0)
     other, factor, offset = joint.mimic
     followed = next(own for own in tree.joints if own.name == other)
-    position, rate = _coordinate(tree, followed, positions, rates)
+    position, rate = coordinate(tree, followed, positions, rates)
     return factor * position + offset, factor * rate
 
 

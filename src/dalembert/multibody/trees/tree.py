@@ -18,6 +18,7 @@ from dalembert.multibody.components.spatial.shapes import Shape
 
 if TYPE_CHECKING:
     from dalembert.multibody.spatial_system import SpatialSystem
+    from dalembert.multibody.trees.build import Limits
 
 REVOLUTE, PRISMATIC, FIXED = KINDS = "revolute", "prismatic", "fixed"
 ORIGIN = Pose()
@@ -232,6 +233,7 @@ class Tree(Checked):
         base: Pose = ORIGIN,
         slip: Number = 1e-3,
         start: str = "placed",
+        limits: "Limits" = None,
     ) -> "SpatialSystem":
         """The mechanism of the tree, with its base on the ground.
 
@@ -239,7 +241,9 @@ class Tree(Checked):
         ``origin`` is the frame of this link; markers with the names of the others are theirs. Joints keep their names,
         except where a body has the same name: then ``" joint"`` is appended. Damping and friction become
         :class:`~dalembert.multibody.spatial.Friction`, armature inertias
-        :class:`~dalembert.multibody.spatial.Armature`. Limits of positions, rates and torques have no effect.
+        :class:`~dalembert.multibody.spatial.Armature`. A joint that follows another one is coupled to it by a
+        :class:`~dalembert.multibody.spatial.CouplingJoint`, ``"<joint> mimic"``. Limits of rates and torques have no
+        effect, and those of positions only if ``limits`` are given.
 
         Parameters
         ----------
@@ -254,13 +258,17 @@ class Tree(Checked):
             Rate over which Coulomb friction turns its sign, rad/s or m/s.
         start : {"placed", "equilibrium"}
             See :class:`~dalembert.multibody.spatial.SpatialSystem`.
+        limits : (float, float), or mapping of str to (float, float), optional
+            Stiffness and damping of stops at the limits of the positions of all joints, or of joints by name, as in
+            :class:`~dalembert.multibody.spatial.AngleLimit` and
+            :class:`~dalembert.multibody.spatial.DisplacementLimit`. The stops are ``"<joint> limits"``.
 
         Raises
         ------
         InputError
-            For unknown joints.
+            For unknown joints, and for joints without limits that are to have stops.
         ModelError
-            For a link that moves without mass, and for joints that follow others.
+            For a link that moves without mass, and for a joint that follows a fixed one.
 
         Examples
         --------
@@ -273,7 +281,7 @@ class Tree(Checked):
         """
         from dalembert.multibody.trees.build import built
 
-        return built(self, positions, rates, gravity, base, slip, start)
+        return built(self, positions, rates, gravity, base, slip, start, limits)
 
 
 def _changed(link: Link, values: Mapping[str, Any]) -> Link:

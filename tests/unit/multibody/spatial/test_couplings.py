@@ -54,6 +54,13 @@ def test_integrators_count_the_turns_of_gears(solver: mb.Integrator, tolerance: 
     np.testing.assert_allclose(found, expected, atol=tolerance)
 
 
+def test_angles_of_joints_are_counted_between_samples_that_are_turns_apart() -> None:
+    motion = mb.simulate(geared(), 6.0, mb.RadauIIA(tolerance=1e-9), times=np.array([0.0, 2.5, 6.0]))
+    found = motion.channels(["gear.angle_a", "first bearing.angle", "gear.angle_b", "second bearing.angle"])
+    assert np.abs(np.diff(found[:, 0])).min() > 4 * np.pi
+    np.testing.assert_allclose(found[:, [1, 3]], found[:, [0, 2]], atol=1e-9)
+
+
 def test_the_offset_is_that_of_the_placement_or_a_number() -> None:
     at = mb.simulate(geared(torque=0.0), 0.1, "auto").channels(["gear.angle_a", "gear.angle_b"])
     np.testing.assert_allclose(at[0], 0.0, atol=1e-12)

@@ -7,7 +7,15 @@ import pytest
 from scipy.linalg import expm
 
 from dalembert.errors import InputError, ModelError
-from dalembert.multibody import EnergyMomentum, GeneralizedAlpha, RadauIIA, TimeResponse, Variational, simulate
+from dalembert.multibody import (
+    EnergyMomentum,
+    GeneralizedAlpha,
+    OdeSolver,
+    RadauIIA,
+    TimeResponse,
+    Variational,
+    simulate,
+)
 from dalembert.multibody.components.spatial.inertia import Inertia
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose
 from dalembert.multibody.trees import Link, Tree, TreeJoint, read_urdf
@@ -167,16 +175,67 @@ def test_armatures_move_with_all_methods(arm, solver):
     np.testing.assert_allclose(own, exact, atol=1e-5)
 
 
-def test_mimic_joints_are_refused_or_fixed(arm):
-    links = list(arm.links)
-    links[2] = replace(links[2], joint=replace(links[2].joint, mimic=("turn", 2.0, 0.1)))
-    follows = replace(arm, links=tuple(links))
-    sentence = (
-        "robot 'arm': the joints 'bend' follow other joints (mimic), which a system does not support. Fix them: "
-        "tree.with_fixed_joints({'bend': 0.0})"
+def following(arm: Tree, **joints: tuple[str, float, float]) -> Tree:
+    """The arm with joints that follow others."""
+    return replace(
+        arm,
+        links=tuple(
+            replace(link, joint=replace(link.joint, mimic=joints[link.joint.name]))
+            if link.joint.name in joints
+            else link
+            for link in arm.links
+        ),
     )
+
+
+def test_joints_follow_others(arm):
+    """A chain: the wrist follows the slide, which follows the column; more than half a turn from zero."""
+    follows = following(arm, slide=("turn", 0.1, -0.2), bend=("slide", 30.0, 0.5))
+    system = follows.system({"turn": 4.0}, {"turn": 0.7})
+    motion = simulate(system, 0.3, OdeSolver("DOP853", 1e-10, 1e-10))
+    names = ["slide mimic.angle_a", "slide mimic.displacement_b", "bend mimic.displacement_a", "bend mimic.angle_b"]
+    turn, slide, same, bend = motion.channels(names).T
+    np.testing.assert_allclose([turn[0], slide[0], bend[0]], [4.0, 0.2, 6.5], atol=1e-12)
+    assert np.ptp(turn) > 0.1
+    np.testing.assert_allclose(slide, 0.1 * turn - 0.2, atol=1e-9)
+    np.testing.assert_allclose(same, slide, atol=1e-9)
+    np.testing.assert_allclose(bend, 30.0 * slide + 0.5, atol=1e-8)
+    np.testing.assert_allclose(motion.channels(["slide.displacement"])[:, 0], slide, atol=1e-9)
+
+
+def test_stops_at_the_limits_of_joints(arm):
+    positions = {"turn": 0.2, "slide": 0.35, "bend": 7.0}
+    system = arm.system(positions, limits=(1e4, 0.2))
+    assert [
+        (load.name, load.lower_limit, load.upper_limit) for load in system.loads if load.name.endswith("limits")
+    ] == [
+        ("slide limits", -0.2, 0.4),
+        ("bend limits", -2.0, 2.5),
+    ]
+    start = simulate(system, 1e-3, GeneralizedAlpha(step=1e-3)).channels(["bend limits.angle", "bend limits.torque"])[0]
+    np.testing.assert_allclose(start, [7.0, -1e4 * 4.5**1.5], rtol=1e-9)
+    system = arm.system({"slide": 0.3}, {"slide": 2.0}, limits={"slide": (1e6, 0.2)})
+    motion = simulate(system, 0.2, GeneralizedAlpha(step=2e-4))
+    displacement, speed = motion.channels(["slide.displacement", "slide.speed"]).T
+    assert 0.4 < displacement.max() < 0.42
+    assert speed.min() < -0.5
+    with pytest.raises(
+        InputError, match=says("Tree.system: limits: unknown joint with limits 'turn'; known: bend, slide")
+    ):
+        arm.system(limits={"turn": (1.0, 0.0)})
+    with pytest.raises(
+        InputError,
+        match=says("Tree.system: limits of joint 'slide' is 3.0; expected two numbers, stiffness and damping"),
+    ):
+        arm.system(limits={"slide": 3.0})
+
+
+def test_joints_that_follow_fixed_ones(arm):
+    follows = following(arm, bend=("turn", 2.0, 0.1))
+    astray = following(arm, bend=("flange", 2.0, 0.1))
+    sentence = "joint 'bend' follows 'flange', which is fixed. Fix it too: tree.with_fixed_joints({'bend': 0.1})"
     with pytest.raises(ModelError, match=says(sentence)):
-        follows.system()
+        astray.system()
     fixed = follows.with_fixed_joints({"bend": -0.8})
     assert [body.name for body in fixed.system().bodies] == ["column", "slider"]
     assert fixed.marker("tip") == "slider.tip"

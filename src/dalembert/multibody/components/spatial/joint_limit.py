@@ -112,8 +112,10 @@ class _Limit(Load):
     @property
     def _within(self) -> tuple[float, float]:
         """Where the angle is counted from at the start."""
-        if self.lower_limit is None or self.upper_limit is None:
-            return -np.pi, np.pi
+        near = getattr(self, "near", None)
+        if near is not None or self.lower_limit is None or self.upper_limit is None:
+            middle = near or 0.0
+            return middle - np.pi, middle + np.pi
         return float(np.real(self.lower_limit)), float(np.real(self.upper_limit))
 
     def lower(self, lowering: SpatialLowering) -> None:
@@ -141,6 +143,9 @@ class AngleLimit(_Limit):
         rad; at least one of them.
     damping : float
         s/rad. The rate after a slow impact is about 1 - 2/3 damping rate of the rate before.
+    near : float, optional
+        The angle at the start is the one nearest to this, rad. If not given, it is the one between both limits, where
+        there is one, or within half a turn of zero.
 
     Raises
     ------
@@ -149,8 +154,7 @@ class AngleLimit(_Limit):
 
     Notes
     -----
-    Channels: ``angle`` and ``rate`` of the joint, and the ``torque`` of the stop on side b. With both limits the angle
-    at the start is the one between them, where there is one; with one limit it is within half a turn of zero.
+    Channels: ``angle`` and ``rate`` of the joint, and the ``torque`` of the stop on side b.
 
     Examples
     --------
@@ -171,6 +175,7 @@ class AngleLimit(_Limit):
     lower_limit: Number | None = number("rad", None)
     upper_limit: Number | None = number("rad", None)
     damping: Number = number("s/rad", 0.0, least=0)
+    near: float | None = number("rad", None)
 
     kind = ANGLE_LIMIT
 

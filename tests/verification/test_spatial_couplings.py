@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from dalembert.multibody import OdeSolver, RadauIIA, simulate
+from dalembert.multibody import OdeSolver, RadauIIA, equilibrium, modes, simulate
 from dalembert.multibody.spatial import (
     AngleLimit,
     DisplacementLimit,
@@ -17,7 +17,9 @@ from dalembert.multibody.spatial import (
     RigidBody,
     ScrewJoint,
     SpatialSystem,
+    Spring,
     Torque,
+    TorsionSpring,
 )
 from dalembert.multibody.trees import inverse_dynamics, mass_matrix, read_urdf
 from robot_files import ARM
@@ -171,6 +173,40 @@ def test_pendulum_on_a_limit(record_evidence):
         kind="other method",
         source="minimal coordinate, DOP853 at 1e-13",
     )
+
+
+def test_modes(record_evidence):
+    """Frequencies of a nut on a spring, k/(m + J (2 pi/lead)^2), and of geared discs, one of them on a spring."""
+    mass, moment, lead, stiffness = 2.0, 1e-3, 0.1, 500.0
+    system = SpatialSystem()
+    nut = system.add(RigidBody("nut", Inertia(mass, (2e-3, 2e-3, moment))))
+    system.add(ScrewJoint("thread", system.ground.point((0.0, 0.0, 0.0)), nut.point("origin"), lead))
+    system.add(Spring("spring", system.ground.point((0.0, 0.0, 1.0)), nut.point("origin"), stiffness, free_length=1.0))
+    rest = equilibrium(system)
+    system = SpatialSystem(gravity=(0.0, 0.0, 0.0))
+    one = system.add(RigidBody("one", Inertia(1.0, (0.02, 0.02, 0.01))))
+    two = system.add(RigidBody("two", Inertia(1.0, (0.08, 0.05, 0.05)), (0.3, 0.0, 0.0)))
+    joints = [
+        system.add(RevoluteJoint(f"{body.name} bearing", system.ground, body.point("origin"), axis))
+        for body, axis in ((one, (0.0, 0.0, 1.0)), (two, (1.0, 0.0, 0.0)))
+    ]
+    system.add(GearJoint("gear", *joints, ratio=-0.37))
+    system.add(TorsionSpring("spring", system.ground, two.point("origin"), 3.0, axis=(1.0, 0.0, 0.0)))
+    for quantity, state, expected in (
+        ("a nut on its screw and a spring", rest, stiffness / (mass + moment * (2 * np.pi / lead) ** 2)),
+        ("bevel gears on a torsion spring", system, 3.0 / (0.08 + 0.01 / 0.37**2)),
+    ):
+        record_evidence(
+            f"Frequency of {quantity}",
+            np.array([np.sqrt(expected) / (2 * np.pi)]),
+            modes(state).frequencies,
+            unit="Hz",
+            relative=True,
+            tolerance=1e-10,
+            topic=TOPIC,
+            kind="closed form",
+            source="stiffness/reduced mass",
+        )
 
 
 def test_arm_with_a_joint_that_follows_another_one(tmp_path, record_evidence):

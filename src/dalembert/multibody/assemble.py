@@ -5,9 +5,10 @@ the placed point and angle; corrections are the smallest ones. In complex number
 the complex step, so the derivatives are those of the positions that are found, also where the joints leave a choice.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
-from typing import NamedTuple, cast
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from scipy.linalg import qr
@@ -35,9 +36,11 @@ from dalembert.multibody.rigid_motions import (
     unknowns,
 )
 from dalembert.multibody.scales import scales
+from dalembert.multibody.stated_state import closing, kept_coordinates, like, moving
 from dalembert.multibody.system import EQUILIBRIUM, Mechanism
 
 _MOST_ITERATIONS = 60
+_SWING = 0.5  # rad or m of a joint's coordinate that one step towards a stated value takes at most
 _APART = 1e-6  # squared distance of a constraint's row, of length one, from the others at which it is independent
 
 
@@ -67,10 +70,66 @@ def assembled(system: Mechanism, perturbed: bool = False, placed: Lowered | None
             lowered, **{name: getattr(lowered, name).astype(complex) for name in ("frames", "rates", "x", "v")}
         )
     free = _free(system)
+    if system.stated.coordinates:
+        lowered = _posed(system, lowered, model, free, begin)
     frames, x = _close(system.carriers, lowered, model, free)
     lowered = replace(lowered, frames=frames, x=x)
     lowered = begin_at_rest(lowered) if rests else lowered
+    if system.stated.rates:
+        return replace(lowered, v=_moving(system, lowered, begin))
     return replace(lowered, v=initial_velocities(system.carriers, lowered, model))
+
+
+def _posed(system: Mechanism, lowered: Lowered, model: Model, free: np.ndarray, begin: float) -> Lowered:
+    """Arrays with frames where the joints have the stated coordinates, which are approached in small steps."""
+    kept = kept_coordinates(system)
+    _, gaps = _held(system, lowered, dict.fromkeys(kept, 0.0), begin)
+    with suppress(ModelError):  # joints that cannot be closed as placed may be closed where the coordinates are stated
+        frames, x = _close(system.carriers, lowered, model, free)
+        lowered = replace(lowered, frames=frames, x=x)
+    held, begins = _held(system, lowered, {key: gaps[".".join(key)] for key in kept}, begin)
+    own, owners = _model(held), held.structure.owners[held.structure.n :]
+    ways = np.array([begins.get(owner, 0.0) for owner in owners])
+    steps = max(1, int(np.ceil(np.abs(np.real(ways)).max() / _SWING)))
+    try:
+        for step in range(1, steps + 1):
+            frames, x = _close(system.carriers, held, own, free, (1 - step / steps) * ways)
+            held = replace(held, frames=frames, x=x)
+    except ModelError as error:
+        raise ModelError(
+            f"the joints cannot have the stated coordinates {system.stated.described('coordinates')}: {error}"
+        ) from None
+    return replace(lowered, frames=held.frames, x=like(lowered, held).x)
+
+
+def _held(
+    system: Mechanism, lowered: Lowered, kept: Mapping[tuple[str, str], Any], begin: float
+) -> tuple[Lowered, dict[str, Any]]:
+    """Arrays with constraints of stated coordinates and kept ones, and by how much these are open."""
+    closed, names = closing(system, kept)
+    held = like(lower(closed, begin), lowered)
+    still, n = np.zeros_like(held.x), held.structure.n
+    gaps = residual(held, _model(held), held.x, still, still)[n:]
+    rows = held.structure.owners[n:]
+    return held, {name: gaps[rows.index(name)] for name in names}
+
+
+def _moving(system: Mechanism, lowered: Lowered, begin: float) -> np.ndarray:
+    """Initial velocities (N + 1,) with which the joints have the stated rates."""
+    held = like(lower(moving(system), begin), lowered)
+    try:
+        found = initial_velocities(system.carriers, held, _model(held))
+    except ModelError as error:
+        raise ModelError(
+            f"the joints cannot have the stated rates {system.stated.described('rates')}: {error}"
+        ) from None
+    velocities = np.zeros_like(lowered.x)
+    velocities[: lowered.structure.n] = found[: lowered.structure.n]
+    return velocities
+
+
+def _model(lowered: Lowered) -> Model:
+    return lowered.complex_model if np.iscomplexobj(lowered.x) else lowered.real
 
 
 def refuse_kinks(lowered: Lowered, end: float) -> None:
@@ -177,16 +236,20 @@ def _free(system: Mechanism) -> np.ndarray:
 
 
 def _close(
-    bodies: Sequence[BaseBody], lowered: Lowered, model: Model, free: np.ndarray
+    bodies: Sequence[BaseBody],
+    lowered: Lowered,
+    model: Model,
+    free: np.ndarray,
+    open_by: np.ndarray | float = 0.0,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Frames at which all joints are closed, and the unknowns there."""
+    """Frames at which all joints are closed, and the unknowns there; constraints are open by the given values (m,)."""
     frames = lowered.frames
     still = np.zeros_like(lowered.x)
     extent = scales(lowered).max()
     for _ in range(_MOST_ITERATIONS):
         coordinates = coordinates_of(bodies, frames)
         x = unknowns(lowered, coordinates)
-        gaps = residual(lowered, model, x, still, still)[lowered.structure.n :]
+        gaps = residual(lowered, model, x, still, still)[lowered.structure.n :] - open_by
         (gap, slope), moved = size_of(gaps), max(1.0, size_of(x)[1])
         closed = max(gap, slope / moved) / extent  # derivatives are rounded in proportion to their size
         if closed <= CLOSED:
@@ -209,7 +272,7 @@ def _close(
     for error in lowered.failures.errors:
         raise ModelError(f"the joints cannot be placed at the start: {type(error).__name__}: {error}") from error
     x = unknowns(lowered, coordinates_of(bodies, frames))
-    gaps = residual(lowered, model, x, still, still)[structure.n :]
+    gaps = residual(lowered, model, x, still, still)[structure.n :] - open_by
     wide, slope = np.abs(np.real(gaps)), np.abs(np.imag(gaps)) / STEP
     if wide.max() <= CLOSED * extent:
         raise ModelError(

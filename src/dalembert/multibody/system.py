@@ -1,6 +1,6 @@
 """A mechanism: bodies, joints, loads and gravity."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar, TypeVar
 
 from dalembert.arguments import is_number, names_of
@@ -14,6 +14,7 @@ from dalembert.multibody.components.planar.body import Body
 from dalembert.multibody.components.planar.joint import Joint
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.points import Ground
+from dalembert.multibody.stated_state import NONE, JointStates, joint_values
 
 PLACED, EQUILIBRIUM = STARTS = "placed", "equilibrium"
 """Where a motion begins: as the bodies are placed, or at rest under gravity and the loads."""
@@ -54,6 +55,7 @@ class Mechanism:
         self.start = start
         self.bodies, self.joints, self.loads = [], [], []
         self._names: set[str] = set()
+        self.stated = NONE
 
     def add(self, component: Component) -> Component:
         """Add a body, a joint or a load, and hand it back."""
@@ -73,6 +75,51 @@ class Mechanism:
                 "spatial to a SpatialSystem"
             )
         raise InputError(f"{component!r} was added to a system; expected a body, a joint or a load")
+
+    def pose(self, coordinates: Mapping[str, Number] | None = None, rates: Mapping[str, Number] | None = None) -> None:
+        """State where and how fast joints begin: assembly moves the bodies until the joints have these coordinates.
+
+        Joints that close no loop and are not stated keep the coordinates that they have as bodies are placed, and are
+        at rest if rates are stated, unless bodies state velocities. In closed chains state as many coordinates as the
+        mechanism has freedoms; the bodies move as little as possible. Numbers may depend on parameters.
+
+        Parameters
+        ----------
+        coordinates, rates : mapping of str to float, optional
+            By joint: angles in rad and displacements in m, as the joints' channels are, and their rates. Write
+            ``"bearing.angle"`` for a joint that has both. Planar joints: angles of revolute joints.
+
+        Raises
+        ------
+        InputError
+            For another joint, and for what is no finite number. When the mechanism is assembled, `ModelError` is raised
+            where the joints cannot have these coordinates or rates.
+
+        Examples
+        --------
+        >>> from dalembert.multibody import simulate
+        >>> from dalembert.multibody.spatial import Inertia, RevoluteJoint, RigidBody, SpatialSystem
+        >>> system, side = SpatialSystem(), None
+        >>> for name in ("upper", "lower"):
+        ...     rod = Inertia.cylinder(mass=1.0, radius=0.01, length=0.5).moved((0.0, 0.0, -0.25))
+        ...     body = RigidBody(name, rod, side or (0.0, 0.0, 0.0), points={"end": (0.0, 0.0, -0.5)})
+        ...     sides = side or system.ground, system.add(body).point("origin")
+        ...     _ = system.add(RevoluteJoint(f"{name} pin", *sides, axis=(0.0, 1.0, 0.0)))
+        ...     side = body.point("end")
+        >>> system.pose({"upper pin": 0.3, "lower pin": -1.0}, rates={"lower pin": 2.0})
+        >>> channels = ["upper pin.angle", "lower pin.angle", "lower pin.rate"]
+        >>> simulate(system, end=0.1).channels(channels)[0].round(9).tolist()
+        [0.3, -1.0, 2.0]
+        """
+        owner = f"{type(self).__name__}.pose"
+        if self.start == EQUILIBRIUM:
+            raise InputError(
+                f"{owner}: the system starts at its equilibrium; leave out start or the stated coordinates"
+            )
+        self.stated = JointStates(
+            joint_values(f"{owner}, coordinates", self.joints, coordinates),
+            joint_values(f"{owner}, rates", self.joints, rates),
+        )
 
     @property
     def findings(self) -> tuple[Finding, ...]:

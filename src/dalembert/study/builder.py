@@ -52,6 +52,13 @@ class SystemBuilder:
         for table, component in self.model.components:
             where = f"[[model.{table}]] {component.name!r}"
             bodies[component.name] = system.add(built(component, values, where, bodies, system, signals))
+        if self.model.stated:
+            given = (("pose", self.model.pose), ("rates", self.model.rates))
+            own = [{joint: resolved(one, values, f"[model], {key}") for joint, one in at.items()} for key, at in given]
+            try:
+                system.pose(*own)
+            except InputError as error:
+                raise InputError(f"[model]: {error}") from None
         return system
 
     def _system(self, options: dict[str, Any]) -> "Mechanism":

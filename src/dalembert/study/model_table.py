@@ -3,7 +3,7 @@
 from functools import cache, lru_cache
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import BeforeValidator, ConfigDict, Field
 
 from dalembert.errors import repeated, unknown
 from dalembert.study.catalogue import Words, kinds_of
@@ -11,7 +11,7 @@ from dalembert.study.components import one_of, table_of
 from dalembert.study.functions import FunctionName
 from dalembert.study.inputs import signal_or_input
 from dalembert.study.places import JointName, Place
-from dalembert.study.spaces import IN_SPACE, gravity_key, is_in_space
+from dalembert.study.spaces import IN_SPACE, by_joint, gravity_key, is_in_space
 from dalembert.study.structure_table import PARTS, StructureTable, part_tables, structure_table, wrong_structure
 from dalembert.study.table import Read, StudyTable, completed, problem, told_apart
 from dalembert.units import is_quantity, si
@@ -38,6 +38,12 @@ class ModelTable(StudyTable):
     start: Literal["placed", "equilibrium"] | None = Field(
         None, description="where a mechanism begins: as it is placed, or at rest in its equilibrium under the loads"
     )
+    pose: Annotated[dict[str, Any], BeforeValidator(by_joint(0))] = Field(
+        {}, description="angles and displacements of joints at the start: { pin = '30 deg' }"
+    )
+    rates: Annotated[dict[str, Any], BeforeValidator(by_joint(1))] = Field(
+        {}, description="rates of joints at the start: { pin = '2 rad/s' }"
+    )
     body: list[Any] = []
     joint: list[Any] = []
     load: list[Any] = []
@@ -58,6 +64,11 @@ class ModelTable(StudyTable):
     def is_structure(self) -> bool:
         """Whether the tables describe a structure."""
         return bool(self.mass) or (self.structure is not None and self.structure.source)
+
+    @property
+    def stated(self) -> bool:
+        """Whether coordinates or rates of joints are given."""
+        return bool(self.pose or self.rates)
 
     @property
     def components(self) -> list[tuple[str, Any]]:
@@ -96,10 +107,12 @@ class ModelTable(StudyTable):
                 "structure, spring, force and contact belong to a structure of [[model.mass]] tables or of matrices in "
                 f"[model.structure]; {given}"
             )
-        if "body" not in ways and (self.joint or self.load or self.gravity or self.driving or self.start):
+        states = self.driving or self.start or self.stated
+        if "body" not in ways and (self.joint or self.load or self.gravity or states):
             given = "this is a structure" if self.is_structure else "here a function gives it"
             raise problem(
-                f"joint, load, gravity, driving and start belong to a model of [[model.body]] tables; {given}"
+                f"joint, load, gravity, driving, start, pose and rates belong to a model of [[model.body]] "
+                f"tables; {given}"
             )
         if ("body" in ways or self.is_structure) and self.arguments:
             raise problem("arguments are for a function, and there is none")

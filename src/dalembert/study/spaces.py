@@ -3,10 +3,11 @@
 from collections.abc import Mapping
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator
+from pydantic import BeforeValidator, ValidationInfo
 
-from dalembert.study.numbers import number, row
-from dalembert.study.table import problem
+from dalembert.study.context import Context
+from dalembert.study.numbers import number, read_number, row
+from dalembert.study.table import checked, problem
 
 IN_SPACE = "space"  # the key of [model] that says so
 _EXPECTED = {
@@ -29,6 +30,20 @@ def gravity_key(axes: int) -> Any:
         return value
 
     return Annotated[row(number("m/s^2"), axes), BeforeValidator(counted)]
+
+
+def by_joint(derivative: int) -> Any:
+    """Read coordinates of joints (0) or their rates (1): lengths for names that end with ``.displacement``."""
+    units = {False: ("rad", "rad/s"), True: ("m", "m/s")}
+
+    def read(value: Any, info: ValidationInfo) -> Any:
+        if not isinstance(value, Mapping):
+            raise problem(f"{value!r} was given; expected a table of joints, such as {{ pin = '30 deg' }}")
+        names = info.context.names if isinstance(info.context, Context) else None
+        own = {name: units[str(name).endswith(".displacement")][derivative] for name in value}
+        return {name: checked(read_number, one, own[name], names) for name, one in value.items()}
+
+    return read
 
 
 def elsewhere(document: Mapping[str, Any]) -> dict[str, Any]:

@@ -84,6 +84,28 @@ def test_a_mechanism_in_space_is_a_function_of_its_parameters(write):
     assert push.x.amplitude == 0.08
 
 
+def test_joints_begin_at_stated_coordinates(write):
+    stated = 'space = true\npose = { pin = "10*J" }\nrates = { "pin.angle" = "60 rpm" }'
+    study = load(write(("space = true", stated)))
+    assert study.builder(J=0.08).stated.coordinates == {("pin", "angle"): pytest.approx(0.8)}
+    start = study.forward(["pin.angle", "pin.rate"], [0.0, 0.01]).evaluate([[0.08]]).only()[0, 0]
+    np.testing.assert_allclose(start, [0.8, 2 * np.pi], atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("stated", "sentence"),
+    [
+        ("3", "[model], pose: 3 was given; expected a table of joints, such as { pin = '30 deg' }"),
+        (
+            '{ pin = "fast" }',
+            "[model.pose]: 'fast' was given, but unknown name 'fast'; known: J, R; expected an angle such as",
+        ),
+    ],
+)
+def test_what_a_pose_cannot_be(write, stated, sentence):
+    assert any(sentence in line for line in wrong(write(("space = true", f"space = true\npose = {stated}"))))
+
+
 def test_numbers_of_parts_carry_the_complex_step(write):
     turned = (TURNED, '{ rotation_vector = [0, 0, "J"] }')
     shape = (INERTIA, '{ kind = "tube", radius = "J", inner = 0.01, length = 1, density = "7.8 g/cm^3" }')
@@ -380,7 +402,8 @@ def test_the_schema_fits_the_template_and_knows_what_is_wrong():
     study["model"]["body"][0]["angle"] = 1.0
     assert not fits(study, schema, schema)
     properties = schema["$defs"]["SpatialModelTable"]["properties"]
-    assert properties.keys() == {"file", "space", "gravity", "driving", "start", "body", "joint", "load"}
+    known = {"file", "space", "gravity", "driving", "start", "pose", "rates", "body", "joint", "load"}
+    assert properties.keys() == known
 
 
 def test_the_template_holds_what_the_script_writes(tmp_path):

@@ -481,8 +481,8 @@ def refused(write, text) -> str:
         ),
         (
             ("[model]\n", '[model]\ngravity = [0, -9.81]\n'),
-            "study.toml: [model]: joint, load, gravity, driving and start belong to a model of [[model.body]] tables; "
-            "this is a structure",
+            "study.toml: [model]: joint, load, gravity, driving, start, pose and rates belong to a model of "
+            "[[model.body]] tables; this is a structure",
         ),
         (
             ("[model]\n", "[model]\n[model.structure]\nfixed = ['m1']\n"),

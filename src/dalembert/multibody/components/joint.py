@@ -56,6 +56,15 @@ class BaseJoint(Checked):
         """Where to draw the joint, (frames, 2 or 3), from its unknowns (frames, width); None for none."""
         return None
 
+    @property
+    def stated_coordinates(self) -> tuple[str, ...]:
+        """Coordinates of the joint that an initial state may state: ``"angle"``, ``"displacement"``."""
+        return ()
+
+    def stating(self, coordinate: str, course: Any) -> "BaseJoint":
+        """The joint that makes one of these coordinates follow a signal, named ``"pin.angle"``."""
+        raise NotImplementedError
+
     @abstractmethod
     def lower(self, lowering: Any) -> None:
         """Write the rows of the kernels."""

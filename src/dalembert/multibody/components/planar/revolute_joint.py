@@ -3,6 +3,7 @@
 __all__ = ["RevoluteJoint"]
 
 from dataclasses import dataclass
+from typing import Any
 
 from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined, inner
@@ -143,6 +144,15 @@ class RevoluteJoint(Joint):
     @property
     def smoothing(self) -> Smoothing | None:
         return Smoothing("rate", "slip_rate", self.slip_rate, "rad/s") if friction.rubs(self) else None
+
+    @property
+    def stated_coordinates(self) -> tuple[str, ...]:
+        return ("angle",)
+
+    def stating(self, coordinate: str, course: Any) -> Joint:
+        from dalembert.multibody.components.planar.prescribed_motion import PrescribedMotion
+
+        return PrescribedMotion(f"{self.name}.{coordinate}", self.a, self.b, coordinate, course)
 
     def lower(self, lowering: Lowering) -> None:
         pair = lowering.pair(self.a, self.b, self.name)

@@ -172,6 +172,16 @@ class Joint(BaseJoint):
         axis = getattr(self, "axis", None)
         return turned_to((0.0, 0.0, 1.0) if axis is None else axis, f"{type(self).__name__} {self.name!r}")
 
+    @property
+    def stated_coordinates(self) -> tuple[str, ...]:
+        outputs = dict(self.kind.outputs)
+        return tuple(name for (name, _), _ in (ANGLE, DISPLACEMENT) if name in outputs and not self.kind.driven)
+
+    def stating(self, coordinate: str, course: Any) -> BaseJoint:
+        from dalembert.multibody.components.spatial.joint_state import JointState
+
+        return JointState(f"{self.name}.{coordinate}", self.a, self.b, self.turned, coordinate, course)
+
     def lower(self, lowering: SpatialLowering) -> None:
         self._add(lowering, self.pair(lowering))
 

@@ -129,6 +129,11 @@ class ScrewJoint(Joint):
         if not (np.isfinite(np.real(self.lead)) and np.real(self.lead) != 0):
             raise InputError(f"screw joint {self.name!r}: lead is {self.lead}; expected a number other than zero")
 
+    @property
+    def stated_coordinates(self) -> tuple[str, ...]:
+        """The displacement, which gives the angle with its turns."""
+        return ("displacement",)
+
     def lower(self, lowering: SpatialLowering) -> None:
         self._oriented()
         pair, offset = self.pair(lowering), self.offset

@@ -7,6 +7,7 @@ import dalembert as da
 from dalembert.errors import InputError, ModelError
 from dalembert.multibody.spatial import (
     CylindricalJoint,
+    GearJoint,
     Inertia,
     PrismaticJoint,
     RigidBody,
@@ -178,3 +179,15 @@ def test_what_cannot_be_stated_is_told():
     sentence = "SpatialSystem.pose: the system starts at its equilibrium; leave out start or the stated coordinates"
     with pytest.raises(InputError, match=says(sentence)):
         resting.pose()
+
+
+def test_coupled_joints_follow_the_stated_one():
+    system, joints = SpatialSystem(), []
+    for name, x in (("pinion", 0.0), ("wheel", 0.4)):
+        disc = Inertia.cylinder(mass=1.0, radius=0.1, length=0.02)
+        body = system.add(RigidBody(name, disc, (x, 0.0, 0.0)))
+        joints.append(system.add(Hinge(f"{name} bearing", system.ground, body.point("origin"))))
+    system.add(GearJoint("gear", *joints, ratio=-0.5, offset=0.0))
+    system.pose({"pinion bearing": 1.0}, rates={"wheel bearing": 2.0})
+    channels = [f"{name} bearing.{what}" for name in ("pinion", "wheel") for what in ("angle", "rate")]
+    np.testing.assert_allclose(start(system, *channels), [1.0, -4.0, -0.5, 2.0], atol=1e-12)

@@ -40,7 +40,7 @@ def tangent(
     t: float = 0.0,
 ) -> csr_matrix:
     """Derivative of the residual along ``by[0] dq + by[1] dv + by[2] da`` and the multipliers, sparse (N, N)."""
-    structure, model = lowered.structure, lowered.unperturbed
+    structure, model = lowered.structure, lowered.tangents
     slots, i, j = structure.full.separate
     x, v = map(np.ascontiguousarray, (x, v))
     values, a = np.zeros(len(i)), np.zeros_like(x)
@@ -50,7 +50,7 @@ def tangent(
     call.set(by_x=by[0], by_v=by[1], by_a=by[2])
     model.evaluate(call, t, t)
     call.signals.imag = 0.0  # a function of the user's may answer with a direction of its own
-    model.each("residual", call, slots)
+    model.each("tangent", call, slots)
     inside = (i < structure.size) & (j < structure.size)
     return csr_matrix((values[inside], (i[inside], j[inside])), shape=(structure.size, structure.size))
 

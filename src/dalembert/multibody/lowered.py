@@ -78,12 +78,12 @@ class Lowered:
 
     def kernels(self, derivatives: bool) -> list[Compiled]:
         """Kernels of the components that every simulation needs, and those for derivatives along directions."""
-        roles = [("residual", float), ("residual", complex), ("rates", float)]
-        roles += [("rates", complex)] * derivatives
+        roles = [("residual", float), ("tangent", complex), ("rates", float)]
+        roles += [("residual", complex), ("rates", complex)] * derivatives
         return [kind.kernel(*role) for role in roles for kind in self.data if kind.has(role[0])] + [*EVALUATE.values()]
 
-    def model(self, dtype: type) -> Model:
-        """The arrays in real or in complex numbers."""
+    def model(self, dtype: type, *roles: str) -> Model:
+        """The arrays in real or in complex numbers, with the kernels of these roles."""
         numbers = {kind: np.ascontiguousarray(_cast(data, dtype)) for kind, data in self.data.items()}
         address = "complex" if dtype is complex else "real"
         callbacks = np.array([getattr(entry, address) for entry in self.callbacks], dtype=np.int64)
@@ -96,6 +96,7 @@ class Lowered:
             self.structure.n,
             dtype,
             self.structure.reduction,
+            roles or ("residual",),
         )
 
     @cached_property
@@ -106,15 +107,22 @@ class Lowered:
     @cached_property
     def complex_model(self) -> Model:
         """The model in complex numbers."""
-        return self.model(complex)
+        return self.model(complex, "residual", "tangent")
 
     @cached_property
     def unperturbed(self) -> Model:
-        """The model in complex numbers without imaginary parts, for tangents."""
-        if not self.is_complex:
-            return self.complex_model
+        """The model in complex numbers without imaginary parts."""
+        return self._unperturbed.complex_model if self.is_complex else self.complex_model
+
+    @cached_property
+    def tangents(self) -> Model:
+        """The model in complex numbers without imaginary parts, for tangents alone."""
+        return self._unperturbed.model(complex, "tangent")
+
+    @property
+    def _unperturbed(self) -> "Lowered":
         data = {kind: np.real(array) for kind, array in self.data.items()}
-        return replace(self, data=data, signal_data=np.real(self.signal_data)).complex_model
+        return replace(self, data=data, signal_data=np.real(self.signal_data))
 
 
 def _cast(array: np.ndarray, dtype: type) -> np.ndarray:

@@ -63,7 +63,7 @@ class Batch:
         directions = addresses(entry.complex_model.need("rates") for entry in self.perturbed)
         for number, lowered in enumerate(self.samples):
             edges = self.problem.edges[number, : self.problem.stretches[number] + 1]
-            models = Models(lowered.real.need("rates").address, lowered.complex_model.address, directions)
+            models = Models(lowered.real.need("rates").address, lowered.tangents.address, directions)
             yield Sample(lowered, edges, row(self.states, number), models)
 
     @property

@@ -109,7 +109,8 @@ class Collocation(Integrator):
     def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
         """The loop, or the parts that a search calls, with what differentiates a state by the unknown accelerations."""
         own = [march] if isinstance(self.minimiser, GaussNewton) else [begin, measure, squares, finish]
-        rates = [kind.kernel("rates", complex) for kind in structure.index if kind.has("rates")]
+        roles = "residual", "rates"
+        rates = [kind.kernel(role, complex) for role in roles for kind in structure.index if kind.has(role)]
         linear = [*structure.full.linear_kernels, *DENSE_KERNELS]
         return [*own, settle_along, *rates, *linear, *[respond, accelerate_along] * derivatives]
 
@@ -149,7 +150,9 @@ class Collocation(Integrator):
         walk = prepare(problem, rule, *calls, len(batch.perturbed), linear)
         for own, given in zip((*walk.old, *walk.dold), (*sample.start, *batch.dstates), strict=True):
             own[:] = given
-        moving = models._replace(directions=np.append(np.full(len(walk.c), models.complex), models.directions))
+        moving = models._replace(
+            directions=np.append(np.full(len(walk.c), lowered.complex_model.address), models.directions)
+        )
         out, dout, log = resting(*batch.shape), batch.derivatives(), batch.log(schedule.begins)
         work = descent(problem, walk)
         if isinstance(self.minimiser, GaussNewton):

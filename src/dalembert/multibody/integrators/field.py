@@ -46,7 +46,7 @@ class Field:
         self.within = 0.0
         self.evaluations = 0
         self.state, self._dstates = sample.start, dstates
-        self._calls = self.lowered.real.call(), self.lowered.complex_model.call()
+        self._calls = self.lowered.real.call(), self.lowered.tangents.call()
         works = self._calls[0].address, self._calls[1].address
         self._tools = make_tools(problem, terms, *works, self.count + implicit)
         self._perturbed = self._along(sample.models, dstates)
@@ -90,7 +90,7 @@ class Field:
         """Choose independent coordinates if they are parted and that is needed; whether it was done."""
         if self.terms.way != PARTITIONED:
             return False
-        complex_model, tools = self.lowered.complex_model.address, self._tools
+        complex_model, tools = self.lowered.tangents.address, self._tools
         return partition(
             self.problem, self.terms, complex_model, float(t), self.within, self.state, tools.complex_work,
             tools.partition,

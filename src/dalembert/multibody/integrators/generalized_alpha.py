@@ -117,7 +117,7 @@ class GeneralizedAlpha(Integrator):
         settings = Settings(*steps, self.tolerance, self.newton_tolerance, self.most_steps)
         ends = np.zeros((len(samples), 3))
         real = [entry.real.need("rates").reduced() for entry in samples]
-        complex_models = [entry.complex_model.reduced(nodes=len(perturbed) > 0) for entry in samples]
+        complex_models = [entry.tangents.reduced(nodes=len(perturbed) > 0) for entry in samples]
         directions = addresses(entry.complex_model.need("rates").reduced() for entry in perturbed)
         calls = real[0].call(), complex_models[0].call()
         integrate(

@@ -105,7 +105,7 @@ class RadauIIA(Integrator):
         first = batch.samples[0]
         pattern, method = pattern_of(first.structure), coefficients(self.stages)
         fixed = self.step_ends(batch.end, first.jumps)
-        calls = [[model.call() for _ in range(1 + self.stages)] for model in (first.real, first.complex_model)]
+        calls = [[model.call() for _ in range(1 + self.stages)] for model in (first.real, first.tangents)]
         spare = workspace(problem, method, pattern, batch.dstates, *calls)
         run = integrate.given(problem, method, batch.dstates, dout, *spare)
         runs = []

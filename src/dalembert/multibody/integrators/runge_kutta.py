@@ -72,7 +72,7 @@ class RungeKutta4(Integrator):
         """Runs of samples in one compiled loop that leaves the interpreter's lock free."""
         samples, directions = batch.samples, len(batch.perturbed)
         problem, terms = posed(self.stabilisation, samples, batch.problem, self.step)
-        works = samples[0].real.call(), samples[0].complex_model.call()
+        works = samples[0].real.call(), samples[0].tangents.call()
         tools = make_tools(problem, terms, works[0].address, works[1].address, directions)
         room = _workspace(batch.shape[1], directions, tools)
         _fill(room.stage.dstates, batch.dstates)

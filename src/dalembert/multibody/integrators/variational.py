@@ -75,7 +75,7 @@ class Variational(Integrator):
             states, middle = resting(*batch.shape), 0.5 * (edges[0] + edges[1])
             energy, denergies, balance = self._balance(lowered, batch.perturbed, start, batch.dstates, middle)
             settings = Settings(float(self.step), float(self.newton_tolerance), lowered.dissipates, energy)
-            calls, complex_calls = ([own.call(), own.call()] for own in (lowered.real, lowered.complex_model))
+            calls, complex_calls = ([own.call(), own.call()] for own in (lowered.real, lowered.tangents))
             room = workspace(batch.problem, pattern, calls, complex_calls, balance, denergies, batch.dstates)
             status, time, unknown = integrate(
                 batch.problem, edges, settings, models, start, batch.dstates, states, dout, log, *room

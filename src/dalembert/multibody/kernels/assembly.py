@@ -65,7 +65,7 @@ def _add_tangents(blocks, count, increments, last_row, slots, by, rows, work, ma
     for k in range(count):
         block = blocks + k * BLOCK_SIZE
         own.slots = slots[k]
-        call(block_at(block).residual, work, block)
+        call(block_at(block).tangent, work, block)
 
 
 @inner

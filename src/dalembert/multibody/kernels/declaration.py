@@ -45,6 +45,10 @@ class Declaration:
         Fills the local matrix by_x dr/dx + by_a dr/da, where ``known`` says that it holds; multipliers by 1.
     known : function (p, m) -> bool, optional
         Where the formula of ``tangent`` holds.
+    quadratic : bool
+        Whether the constraints are polynomials of degree two at most in the coordinates, or without constraints the
+        residual is linear in the accelerations and depends on no other unknowns; and signals do not matter. The tangent
+        is then computed in real numbers.
     outputs : tuple of (name, unit)
     observe : function (x, v, a, p, m, inputs, out), optional
         Fills the outputs.
@@ -93,6 +97,7 @@ class Declaration:
     energy: Callable[..., Any] | None = None
     tangent: Callable[..., Any] | None = None
     known: Callable[..., Any] | None = None
+    quadratic: bool = False
     outputs: tuple[tuple[str, str], ...] = ()
     observe: Callable[..., Any] | None = None
     angles: tuple[str, ...] = ()
@@ -181,7 +186,7 @@ class Declaration:
     def has(self, role: str) -> bool:
         """Whether the kind has kernels of this role."""
         return {
-            "residual": self.residual is not None or self.constraint is not None,
+            **dict.fromkeys(("residual", "tangent"), self.residual is not None or self.constraint is not None),
             "rates": self.constraint is not None,
             "energy": self.energy is not None or self.residual is not None,
             "outputs": self.observe is not None,

@@ -3,12 +3,12 @@
 from dataclasses import dataclass, field
 
 from dalembert.kernels.kernel import Compiled
-from dalembert.multibody.kernels import loops, nodes
+from dalembert.multibody.kernels import loops, nodes, real_tangents
 from dalembert.multibody.kernels.debugging import plain
 from dalembert.multibody.kernels.declaration import Declaration
 from dalembert.multibody.kernels.loops import BlockKernel
 
-_MAKERS = {**loops.MAKERS, **nodes.MAKERS}
+_MAKERS = {**loops.MAKERS, **nodes.MAKERS, "tangent": real_tangents.tangent}
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,6 +19,8 @@ class Kind(Declaration):
 
     def kernel(self, role: str, dtype: type) -> Compiled:
         """The kernel of a role, such as residual, in real or in complex numbers."""
+        if role == "tangent" and not self.quadratic:
+            role = "residual"
         if (role, dtype) not in self._kernels:
             self._kernels[role, dtype] = _MAKERS[role](self, dtype)
         own = self._kernels[role, dtype]
@@ -26,5 +28,7 @@ class Kind(Declaration):
 
     def all_kernels(self) -> list[Compiled]:
         """The kernels of all roles that the kind has."""
-        roles = [role for role in _MAKERS if self.has(role)]
-        return [self.kernel(role, dtype) for role in roles for dtype in (float, complex)]
+        roles = [
+            (role, dtype) for role in _MAKERS if self.has(role) and role != "tangent" for dtype in (float, complex)
+        ]
+        return [self.kernel(*role) for role in (*roles, *[("tangent", complex)] * self.quadratic)]

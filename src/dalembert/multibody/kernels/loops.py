@@ -73,7 +73,8 @@ def _no_tangent(x, p, m, by_x, by_a, matrix):
     pass
 
 
-def _system(kind: Declaration) -> _System:
+def system_of(kind: Declaration) -> _System:
+    """The equations that a kind adds to."""
     full = _full(kind)
     return full if kind.is_flat or kind.chart is not None else _either(kind, full)
 
@@ -144,18 +145,23 @@ def _either(kind: Declaration, full: _System) -> _System:
 
 
 def residual(kind: Declaration, dtype: type) -> BlockKernel:
-    """Add the residuals, in the reduced system N^T r; in complex numbers, by the call's mode, the tangent instead."""
-    return (_complex if dtype is complex else _real)(kind, _system(kind))
+    """Add the residuals, in the reduced system N^T r; in complex numbers, by the call's mode, the tangent instead.
+
+    That of a quadratic kind has a kernel for itself.
+    """
+    plain = dtype is float or kind.quadratic
+    return _plain(kind, dtype, system_of(kind)) if plain else _complex(kind, system_of(kind))
 
 
-def _real(kind: Declaration, system: _System) -> BlockKernel:
+def _plain(kind: Declaration, dtype: type, system: _System) -> BlockKernel:
+    """Residuals alone."""
     function, width, row_count, project = kind.residual_function, kind.width, system.count, system.project
-    local_r, local_s = local(float, width), local(float, width)
+    local_r, local_s, (view, _) = local(dtype, width), local(dtype, width), arithmetic(dtype)
 
     @inlined
     def step(x, v, a, p, m, inputs, call, block, e):
         narrow = row_count(block)
-        rows, r = integers2(block.rows, block.count, narrow), reals(call.r, call.last + 1)
+        rows, r = integers2(block.rows, block.count, narrow), view(call.r, call.last + 1)
         own_r = local_r()
         for i in range(width):
             own_r[i] = 0.0
@@ -164,7 +170,7 @@ def _real(kind: Declaration, system: _System) -> BlockKernel:
         for i in range(narrow):
             r[rows[e, i]] += forces[i]
 
-    return _each(kind, "residual", float, step)
+    return _each(kind, "residual", dtype, step)
 
 
 def _complex(kind: Declaration, system: _System) -> BlockKernel:

@@ -47,6 +47,8 @@ class Model:
     dtype : float or complex
     reduction : Reduction
         Rows of the reduced system.
+    roles : tuple of str
+        Kernels that it needs at once: in real numbers the residuals, in complex ones the tangents, too, or alone.
     """
 
     blocks: Blocks
@@ -56,11 +58,15 @@ class Model:
     coordinates: int
     dtype: type
     reduction: Reduction
+    roles: tuple[str, ...] = ("residual",)
     _words: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray] = field(init=False, repr=False)
     _kernels: list[Any] = field(default_factory=list, init=False, repr=False)  # kept alive
+    _real_numbers: dict[Kind, np.ndarray] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
         head, own = np.zeros(1, MODEL), self.reduction
+        for kind, numbers in self.blocks.numbers.items():
+            self._real_numbers[kind] = np.ascontiguousarray(np.real(numbers))
         full = self._table(self.blocks.index, self.blocks.index)
         reduced = self._table(own.index, own.index) if own.nodes else full
         nodes = self._table(own.nodes, own.nodes)
@@ -75,7 +81,7 @@ class Model:
         table["callbacks"], table["callback_count"] = self.callbacks.ctypes.data, len(self.callbacks)
         table["evaluate"] = EVALUATE[self.dtype].address
         object.__setattr__(self, "_words", (head, full, reduced, nodes))
-        self.need("residual")
+        self.need(*self.roles)
 
     def _table(self, kinds: Iterable[Kind], rows: Mapping[Kind, np.ndarray]) -> np.ndarray:
         """Blocks of kinds with the rows of their residuals, without kernels."""
@@ -87,6 +93,7 @@ class Model:
             block["row_count"] = rows[kind].shape[1]
             block["integers"] = self.blocks.integers[kind].ctypes.data
             block["numbers"] = self.blocks.numbers[kind].ctypes.data
+            block["real_numbers"] = self._real_numbers[kind].ctypes.data
         return table
 
     def need(self, *roles: str) -> "Model":
@@ -102,7 +109,8 @@ class Model:
         if self.reduction.nodes:
             head = self._words[0]
             for block, kind in zip(self._words[2], self.reduction.index, strict=False):
-                block["residual"] = self._load(kind, "residual", self.dtype)
+                for role in self.roles:
+                    block[role] = self._load(kind, role, self.dtype)
             if nodes:
                 role, whole = ("change", CHANGE) if self.dtype is float else ("spread", SPREAD)
                 head[role], head["restore"] = whole.address, RESTORE[self.dtype].address

@@ -24,18 +24,22 @@ def _record(integers: str, reals: str = "") -> np.dtype:
 #: multipliers, ``last_row`` in all: as many as the unknowns in the full system, fewer in the reduced one. ``r rate
 #: second totals matrix``: what kernels add to; ``entries`` of the matrix. ``delta``: increments, and the ``change``
 #: that they make of the coordinates. ``signals`` (signals, 3) at the time ``t``, ``within`` its smooth stretch.
-#: ``mode``: residual or tangent of a complex kernel. ``slots``: where the entries of the block's local matrices stand
-#: in ``matrix``. The tangent is the derivative along ``by_x dq + by_v dv + by_a da``, its rows multiplied by ``motion``
-#: and ``constraint``.
+#: ``mode``: residual or tangent, of a complex kernel that has both. ``slots``: where the entries of the block's local
+#: matrices stand in ``matrix``. The tangent is the derivative along ``by_x dq + by_v dv + by_a da``; its rows are
+#: multiplied by ``motion`` and ``constraint``.
 CALL = _record(
     "coordinates last increments last_row x v a r rate second totals matrix entries delta change "
     "signals signal_count callbacks callback_count mode slots",
     "t within by_x by_v by_a motion constraint",
 )
 #: Components of one kind: how many, their unknowns (count, width), the rows of their residual (count, row_count), which
-#: in the full system are the unknowns, integers and numbers, and the kind's kernels in the model's arithmetic
-#: (``spread`` and ``change`` in real numbers); 0 where there is none. ``joins``: whether the kind has constraints.
-BLOCK = _record("count index rows row_count integers numbers residual rates energy outputs joins spread change restore")
+#: in the full system are the unknowns, integers, numbers, the real parts of these, and the kind's kernels in the
+#: arithmetic of the model (``spread`` and ``change`` in real numbers, ``tangent`` in complex ones); 0 if there is none.
+#: ``joins``: whether the kind has constraints.
+BLOCK = _record(
+    "count index rows row_count integers numbers real_numbers residual tangent rates energy outputs joins "
+    "spread change restore"
+)
 #: A model: its blocks; those of the reduced system; the nodes as blocks, the row of each unknown, and kernels of all
 #: nodes; its signals, see :mod:`signals`. A model without nodes has one system: ``reduced`` are its blocks.
 MODEL = _record(

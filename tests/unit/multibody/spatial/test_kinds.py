@@ -5,11 +5,13 @@ from functools import cache
 import numpy as np
 import pytest
 
+from dalembert.multibody import in_python
 from dalembert.multibody.evaluate import constraint_rates, energies, residual
+from dalembert.multibody.kernels import loops, real_tangents
 from dalembert.multibody.kernels.constraints import forces_of, rates_of
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.kind import Kind
-from dalembert.multibody.kernels.records import Inputs
+from dalembert.multibody.kernels.records import TANGENT, Inputs
 from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.lowering import lower
 from spatial_scenes import SCENES
@@ -103,3 +105,29 @@ def test_forces_do_what_energies_lose(scene: str) -> None:
         terms = residual(own, own.real, x, v, a, TIME)[:n] * v[:n]
         given = (complex_state[0] + complex_state[1]).imag / STEP - power + x[n:-1] @ rate
         assert np.sum(terms) == pytest.approx(given, abs=1e-12 * np.sum(np.abs(terms)))
+
+
+@pytest.mark.parametrize("reduces", [False, True])
+@pytest.mark.parametrize("kind", [kind for kind in FOUND if kind.quadratic], ids=lambda kind: kind.name)
+def test_tangents_in_real_numbers_are_those_by_complex_steps(kind: Kind, reduces: bool) -> None:
+    """In plain Python, so that nothing is compiled."""
+    if reduces and kind.chart is not None:
+        return
+    own = lowered(FOUND[kind])
+    with in_python(*own.data):
+        model = own.model(complex, "tangent")
+    couplings, sizes = own.structure.full, (own.structure.n, own.structure.size)
+    if reduces:
+        couplings, sizes = own.structure.reduced, (own.structure.reduction.increments, own.structure.reduction.size)
+    slots, rows, _ = couplings.separate
+    x, v, a = states(float, len(own.x))
+    x[-1] = v[-1] = a[-1] = 0.0
+    number, answers = list(couplings.index).index(kind), np.zeros((2, len(rows)))
+    block = model._words[2 if reduces else 1][number : number + 1].ctypes.data
+    kernels = real_tangents.tangent(kind, complex), loops._complex(kind, loops.system_of(kind))
+    for kernel, matrix in zip(kernels, answers, strict=True):
+        call = model.call().set(x=x, v=v, a=a, matrix=matrix, entries=len(matrix), mode=TANGENT, slots=slots[number])
+        call.set(by_x=0.7, by_v=1.3, by_a=0.4, motion=1.0, constraint=2.0, increments=sizes[0], last_row=sizes[1])
+        kernel.function(call.address, block)
+    np.testing.assert_allclose(answers[0], answers[1], rtol=0, atol=1e-14 * np.abs(answers[1]).max())
+    assert np.abs(answers[1]).max() > 0.01

@@ -25,11 +25,14 @@ class Condition(NamedTuple):
         Fills ``g[row:row + count]``, which are zero where the condition holds.
     forces : function (x, p, m, k, r)
         Adds the forces of the multipliers ``x[k:k + count]``.
+    quadratic : bool
+        Whether they are polynomials of degree two at most in the coordinates.
     """
 
     count: int
     residual: Function
     forces: Function
+    quadratic: bool = False
 
 
 @inlined
@@ -43,7 +46,7 @@ def _meets_forces(x, p, m, k, r):
 
 
 #: Both points coincide: Delta = 0.
-MEETS = Condition(3, _meets, _meets_forces)
+MEETS = Condition(3, _meets, _meets_forces, quadratic=True)
 
 
 def perpendicular(i: int, j: int) -> Condition:
@@ -59,7 +62,7 @@ def perpendicular(i: int, j: int) -> Condition:
         push_e(p, m, times(x[k], f(x, p, m)), r)
         push_f(p, m, times(x[k], e(x, p, m)), r)
 
-    return Condition(1, residual, forces)
+    return Condition(1, residual, forces, quadratic=True)
 
 
 def level(i: int) -> Condition:
@@ -75,7 +78,7 @@ def level(i: int) -> Condition:
         push_e(p, m, times(x[k], separation(x, p, m)), r)
         push_pair(p, m, times(x[k], e(x, p, m)), r)
 
-    return Condition(1, residual, forces)
+    return Condition(1, residual, forces, quadratic=True)
 
 
 def constraint_of(conditions: tuple[Condition, ...]) -> Function:

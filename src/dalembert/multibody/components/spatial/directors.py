@@ -78,7 +78,14 @@ def _forces(x, p, m, r):
 
 CHART = Chart(9, 3, _rotated, _cayley, _orthonormal, _projected)
 DIRECTORS = Kind(
-    "directors", coordinates=9, multipliers=6, numbers=(), constraint=_constraint, forces=_forces, chart=CHART
+    "directors",
+    coordinates=9,
+    multipliers=6,
+    numbers=(),
+    constraint=_constraint,
+    forces=_forces,
+    quadratic=True,
+    chart=CHART,
 )
 #: Charts of the coordinates of a body: origin and directors.
 POSE = (flat(3), CHART)

@@ -29,7 +29,11 @@ def _forces(x, p, m, k, r):
 
 
 KIND = joint_kind(
-    "distance_in_space", __name__, Condition(1, _residual, _forces), numbers=("length",), holds_frame=False
+    "distance_in_space",
+    __name__,
+    Condition(1, _residual, _forces, quadratic=True),
+    numbers=("length",),
+    holds_frame=False,
 )
 
 

@@ -142,6 +142,7 @@ def joint_kind(
     settings = {
         "constraint": constraint_of(conditions),
         "forces": forces,
+        "quadratic": all(entry.quadratic for entry in conditions),
         "outputs": (*REACTIONS, *ANGLE * angle, *DISPLACEMENT * displacement),
         "angles": ("angle",) * angle,
         "observe": observed(forces, pairs.COORDINATES + count, angle, displacement),

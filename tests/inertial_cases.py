@@ -17,7 +17,27 @@ def _torques() -> np.ndarray:
     return _table() @ TRUE + 0.1 * np.random.default_rng(0).standard_normal((60, 2))
 
 
+def _predicted(factor: float) -> inertial.TorquePrediction:
+    """The first 40 samples are fitted; torques of the others are multiplied by a factor."""
+    table, torques = _table(), _torques()
+    found = inertial.identify_inertias(
+        table[:40], torques[:40], PLANAR.names, wrong(TRUE, 2, 0.3, 1), links=PLANAR.links, deviations=0.1
+    )
+    times, told = np.arange(60.0), found.torques(table)
+    return inertial.TorquePrediction(
+        found, times[:40], torques[:40], told[:40], times[40:], factor * torques[40:], told[40:]
+    )
+
+
 INERTIAL_CASES = {
+    "predicted torques": Case(
+        lambda: _predicted(1.0),
+        ("are predicted as exactly as the noise allows", "Torques of the unseen motion", "noise alone exceeds"),
+        ("torques-fitted-1", "torques-unseen-2"),
+    ),
+    "torques that are not predicted": Case(
+        lambda: _predicted(1.5), ("The torques of the unseen motion are not predicted",)
+    ),
     "consistent inertias": Case(
         lambda: inertial.identify_inertias(
             _table(), _torques(), PLANAR.names, wrong(TRUE, 2, 0.3, 1), links=PLANAR.links

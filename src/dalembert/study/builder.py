@@ -11,10 +11,13 @@ from dalembert.study.functions import FunctionReference
 from dalembert.study.inputs import InputReference, MeasuredInput, input_named
 from dalembert.study.model_table import ModelTable
 from dalembert.study.places import JointName, Place
+from dalembert.study.robot_table import RobotTable
 from dalembert.study.table import placed
 
 if TYPE_CHECKING:
+    from dalembert.multibody.spatial import SpatialSystem
     from dalembert.multibody.system import Mechanism
+    from dalembert.multibody.trees import Tree
 
 Values = Mapping[str, Any]
 EMPTY: Values = {}
@@ -46,9 +49,10 @@ class SystemBuilder:
         }
         if gravity is not None:
             options["gravity"] = tuple(resolved(one, values, "[model], gravity") for one in gravity)
-        system = self._system(options)
         signals = signals_of(self.inputs, values)
-        bodies: dict[str, Any] = {}
+        robot = self.model.robot_table
+        system = self._system(options) if robot is None else robot_of(robot, values, signals, options)
+        bodies: dict[str, Any] = {one.name: one for one in (*system.bodies, *system.joints)}
         for table, component in self.model.components:
             where = f"[[model.{table}]] {component.name!r}"
             bodies[component.name] = system.add(built(component, values, where, bodies, system, signals))
@@ -70,6 +74,30 @@ class SystemBuilder:
         from dalembert.multibody import System
 
         return System(**options)
+
+
+def robot_of(robot: RobotTable, values: Values, signals: Values, options: Mapping[str, Any]) -> "SpatialSystem":
+    """The mechanism of a robot once the parameters are known."""
+
+    def numbers(key: str) -> dict[str, Any]:
+        known = {name: given for name, given in getattr(robot, key).items() if not isinstance(given, InputReference)}
+        return {name: resolved(given, values, f"[model.robot.{key}], {name}") for name, given in known.items()}
+
+    with placed("[model.robot]"):
+        return tree_of(robot, values).system(
+            numbers("positions"),
+            numbers("rates"),
+            slip=resolved(robot.slip, values, "[model.robot], slip"),
+            torques=numbers("torques") | {name: signals[given] for name, given in robot.inputs.items()},
+            **{key: given for key, given in options.items() if key != "driving"},
+        )
+
+
+def tree_of(robot: RobotTable, values: Values) -> "Tree":
+    """The robot of a study once the parameters are known."""
+    changed = {name: resolved(given, values, "[model.robot.numbers]") for name, given in robot.numbers.items()}
+    with placed("[model.robot.numbers]"):
+        return robot.tree.with_numbers(changed)
 
 
 @dataclass(frozen=True)

@@ -212,6 +212,9 @@ def _used(model: Any) -> Iterator[tuple[str, str]]:
         for key, value in component.given().items():
             if isinstance(value, InputReference):
                 yield value.input, f"[[model.{table}]] {component.name!r}, {key}"
+    robot = model.robot_table
+    for joint, name in (robot.inputs if robot else {}).items():
+        yield name, f"[model.robot.torques], {joint}"
     for key, value in model.arguments.items():
         if (name := input_named(value)) is not None:
             yield name, f"[model.arguments], {key}"

@@ -11,6 +11,7 @@ from dalembert.study.components import one_of, table_of
 from dalembert.study.functions import FunctionName
 from dalembert.study.inputs import signal_or_input
 from dalembert.study.places import JointName, Place
+from dalembert.study.robot_table import RobotTable
 from dalembert.study.spaces import IN_SPACE, by_joint, gravity_key, is_in_space
 from dalembert.study.structure_table import PARTS, StructureTable, part_tables, structure_table, wrong_structure
 from dalembert.study.table import Read, StudyTable, completed, problem, told_apart
@@ -71,6 +72,11 @@ class ModelTable(StudyTable):
         return bool(self.pose or self.rates)
 
     @property
+    def robot_table(self) -> RobotTable | None:
+        """The robot, if the model has one."""
+        return getattr(self, "robot", None)
+
+    @property
     def components(self) -> list[tuple[str, Any]]:
         """All components in the order in which they are added, with the names of their tables."""
         return [(table, component) for table in _TABLES for component in getattr(self, table)]
@@ -86,9 +92,13 @@ class ModelTable(StudyTable):
         }
 
     def _wrong(self) -> list[str]:
-        if self.space and not self.body:
-            raise problem("space belongs to a model of [[model.body]] tables, and there are none")
-        ways = [name for name in ("function", "forward", "body") if getattr(self, name)]
+        robot = self.robot_table
+        if self.space and not self.body and robot is None:
+            raise problem("space belongs to a model of [[model.body]] tables or of a robot, and there is none")
+        if robot is not None and self.driving:
+            raise problem("driving is for components, and the positions of a robot's joints are given; leave it out")
+        ways = [name for name in ("function", "forward") if getattr(self, name)]
+        ways += ["body"] * (bool(self.body) or robot is not None)
         ways += ["mass" if self.mass else "structure"] * self.is_structure
         if len(ways) != 1:
             given = f"{' and '.join(ways)} are" if ways else "neither body, mass, structure, function nor forward is"
@@ -116,15 +126,19 @@ class ModelTable(StudyTable):
             )
         if ("body" in ways or self.is_structure) and self.arguments:
             raise problem("arguments are for a function, and there is none")
-        return [*_wrong_names(self.components), *wrong_structure(self)]
+        return [*_wrong_names(self.components, robot), *wrong_structure(self)]
 
 
-def _wrong_names(components: list[tuple[str, Any]]) -> list[str]:
+def _wrong_names(components: list[tuple[str, Any]], robot: RobotTable | None) -> list[str]:
     """Sentences for names that repeat, and for places at bodies that are not there, or not yet."""
-    bodies, joints = ([component.name for table, component in components if table == own] for own in ("body", "joint"))
+    own = {"body": robot.bodies, "joint": [joint.name for joint in robot.tree.moving]} if robot else {}
+    bodies, joints = (
+        [*own.get(kind, ()), *(component.name for table, component in components if table == kind)]
+        for kind in ("body", "joint")
+    )
     wrong = [
         f"{count} components are called {name!r}; expected different names"
-        for name, count in repeated(component.name for _, component in components).items()
+        for name, count in repeated([*own.get("body", ()), *(component.name for _, component in components)]).items()
     ]
     for table, component in components:
         known = bodies[: bodies.index(component.name)] if table == "body" else bodies
@@ -154,6 +168,7 @@ class SpatialModelTable(ModelTable):
 
     space: Literal[True]
     gravity: Annotated[list[Any], Read(gravity_key(3))] | None = None
+    robot: RobotTable | None = None
     structure: Any = None
 
     @property

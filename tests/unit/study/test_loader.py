@@ -287,7 +287,8 @@ horizon = "growin"
             ("[solver]", "[sweep]\nat=1\nchannels=['x']\nover.theta=[1.0]\n[solver]"),
             [
                 "study.toml: [simulate] and [sweep] are given; a study has one task, one of "
-                "[simulate], [identify], [sweep], [propagate], [identify_bands], [identify_set], [design], "
+                "[simulate], [identify], [sweep], [identify_inertias], [propagate], [identify_bands], "
+                "[identify_set], [design], [exciting_trajectory], "
                 "[work_precision], [frequency_response], [track_resonance], [backbone], [modes]"
             ],
         ),
@@ -295,7 +296,8 @@ horizon = "growin"
             ('[simulate]\nend = "1 s"', ""),
             [
                 "study.toml: no task is given; a study has one task, one of "
-                "[simulate], [identify], [sweep], [propagate], [identify_bands], [identify_set], [design], "
+                "[simulate], [identify], [sweep], [identify_inertias], [propagate], [identify_bands], "
+                "[identify_set], [design], [exciting_trajectory], "
                 "[work_precision], [frequency_response], [track_resonance], [backbone], [modes]"
             ],
         ),

@@ -381,7 +381,9 @@ def test_a_planar_study_imports_nothing_of_space(tmp_path):
 def test_space_needs_components(tmp_path):
     path = tmp_path / "study.toml"
     path.write_text("[model]\nspace = true\n[solver]\nstep = 0.1\n[simulate]\nend = 1.0\n")
-    assert wrong(path) == ["[model]: space belongs to a model of [[model.body]] tables, and there are none"]
+    assert wrong(path) == [
+        "[model]: space belongs to a model of [[model.body]] tables or of a robot, and there is none"
+    ]
 
 
 def test_a_function_may_return_a_mechanism_in_space(tmp_path):
@@ -402,7 +404,7 @@ def test_the_schema_fits_the_template_and_knows_what_is_wrong():
     study["model"]["body"][0]["angle"] = 1.0
     assert not fits(study, schema, schema)
     properties = schema["$defs"]["SpatialModelTable"]["properties"]
-    known = {"file", "space", "gravity", "driving", "start", "pose", "rates", "body", "joint", "load"}
+    known = {"file", "space", "gravity", "driving", "start", "pose", "rates", "body", "joint", "load", "robot"}
     assert properties.keys() == known
 
 

@@ -17,6 +17,7 @@ from dalembert.inverse.inertial.pseudo_inertia import (
     smallest_eigenvalues,
 )
 from dalembert.inverse.inertial.recovery import Recovery, simulated_recovery
+from dalembert.inverse.inertial.torque_prediction import TorquePrediction
 
 __all__ = [
     "ENTRIES",
@@ -28,6 +29,7 @@ __all__ = [
     "FourierMotion",
     "JointLimits",
     "Recovery",
+    "TorquePrediction",
     "base_parameters",
     "bregman_distances",
     "exciting_trajectory",

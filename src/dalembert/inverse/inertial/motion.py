@@ -143,18 +143,30 @@ def filtered_motion(
     rate = _rate(along)
     slow, quiet = (lowpass(one, rate, cutoff, order=order) for one in (path, effort))
     curve = make_interp_spline(along - along[0], slow, k=DEGREE)
-    step = max(1, int(rate / (2.0 * cutoff))) if decimation is None else decimation
+    kept, step = kept_samples(len(along), rate, cutoff, decimation)
+    velocities, accelerations = (curve.derivative(k)(along[kept] - along[0]) for k in (1, 2))
+    return FilteredMotion(along[kept], slow[kept], velocities, accelerations, quiet[kept], float(cutoff), step)
+
+
+def kept_samples(count: int, rate: float, cutoff: float, decimation: int | None = None) -> tuple[np.ndarray, int]:
+    """Numbers (kept,) of the samples of a filtered record that are kept, and every which: two a period of the cutoff.
+
+    Raises
+    ------
+    InputError
+        For another decimation than a positive whole number, and for a record that is too short.
+    """
+    step = max(1, int(rate / (2.0 * cutoff) * (1 + EVEN))) if decimation is None else decimation
     if not isinstance(step, int) or step < 1:
         raise InputError(f"filtered_motion: decimation is {step}; expected a whole number of at least 1")
     ends = int(np.ceil(PERIODS * rate / cutoff))
-    kept = np.arange(ends, len(along) - ends, step)
+    kept = np.arange(ends, count - ends, step)
     if len(kept) < 2:
         raise InputError(
-            f"filtered_motion: {len(along)} samples leave {len(kept)} after {ends} are dropped at each end. Give a "
+            f"filtered_motion: {count} samples leave {len(kept)} after {ends} are dropped at each end. Give a "
             "longer record or a higher cutoff"
         )
-    velocities, accelerations = (curve.derivative(k)(along[kept] - along[0]) for k in (1, 2))
-    return FilteredMotion(along[kept], slow[kept], velocities, accelerations, quiet[kept], float(cutoff), step)
+    return kept, step
 
 
 def _rate(times: np.ndarray) -> float:

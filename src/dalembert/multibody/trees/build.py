@@ -3,15 +3,17 @@
 __all__ = ["built", "groups"]
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from dalembert.arguments import is_number
 from dalembert.errors import InputError, ModelError, require_known, shown
 from dalembert.multibody.components.fields import Number
+from dalembert.multibody.components.signals import Course
 from dalembert.multibody.components.spatial.armature import Armature
 from dalembert.multibody.components.spatial.coupling_joint import CouplingJoint
+from dalembert.multibody.components.spatial.force import Force, Torque
 from dalembert.multibody.components.spatial.friction import Friction
 from dalembert.multibody.components.spatial.inertia import Inertia
 from dalembert.multibody.components.spatial.joint import Joint
@@ -21,14 +23,17 @@ from dalembert.multibody.components.spatial.points import Side
 from dalembert.multibody.components.spatial.prismatic_joint import PrismaticJoint
 from dalembert.multibody.components.spatial.revolute_joint import RevoluteJoint
 from dalembert.multibody.components.spatial.rigid_body import RigidBody
+from dalembert.multibody.components.spatial.shapes import Shape
 from dalembert.multibody.spatial_system import SpatialSystem
 from dalembert.multibody.trees.kinematics import Motion, coordinate, joint_pose, motions, values
-from dalembert.multibody.trees.tree import JOINT_NUMBERS, PRISMATIC, REVOLUTE, Tree, TreeJoint
+from dalembert.multibody.trees.tree import JOINT_NUMBERS, PRISMATIC, REVOLUTE, Tree, TreeJoint, pose_matrix
 
 Law = tuple[Number, Number]
 Limits = Law | Mapping[str, Law] | None
 """Stiffness and damping of the stops of all joints, or of some."""
 
+AXIS = "driven axis"
+"""Marker of a driven body."""
 Frame = tuple[np.ndarray, np.ndarray]
 """Position (3,) and axes (3, 3)."""
 
@@ -47,6 +52,8 @@ class Group:
     seats : dict of str to Frame
         Frame of each joint that hangs on it, at the position zero.
     inertias : list of (Frame, Inertia)
+    shapes : list of Shape
+        In the frame of the first link.
     """
 
     name: str
@@ -54,6 +61,7 @@ class Group:
     frames: dict[str, Frame]
     seats: dict[str, Frame] = field(default_factory=dict)
     inertias: list[tuple[Frame, Inertia]] = field(default_factory=list)
+    shapes: list[Shape] = field(default_factory=list)
 
     def seat(self, joint: str) -> str:
         """Name of the marker of a joint that hangs on it."""
@@ -67,7 +75,7 @@ class Group:
         """The markers: frames of all links but the first, and of the joints that hang on it."""
         frames = {name: frame for name, frame in self.frames.items() if name != self.name}
         frames |= {self.seat(joint): frame for joint, frame in self.seats.items()}
-        return {name: Pose(_row(at), Orientation.of(axes)) for name, (at, axes) in frames.items()}
+        return {name: _pose(frame) for name, frame in frames.items()}
 
 
 def groups(tree: Tree) -> dict[str, Group]:
@@ -82,8 +90,12 @@ def groups(tree: Tree) -> dict[str, Group]:
         else:
             of[link.name] = parent
             parent.frames[link.name] = frame
+        own = of[link.name].frames[link.name]
         if link.inertia is not None:
-            of[link.name].inertias.append((of[link.name].frames[link.name], link.inertia))
+            of[link.name].inertias.append((own, link.inertia))
+        of[link.name].shapes += [
+            replace(shape, pose=_pose(composed(own, pose_matrix(shape.pose)))) for shape in link.shapes
+        ]
     return of
 
 
@@ -115,8 +127,11 @@ def built(
     slip: Number,
     start: str,
     limits: Limits,
+    torques: Mapping[str, Course],
 ) -> SpatialSystem:
     """The mechanism of a tree, see :meth:`Tree.system`."""
+    for name in torques:
+        require_known("joint", name, [joint.name for joint in tree.moving], "Tree.system: torques")
     q, q_rates = values(tree, positions, "positions"), values(tree, rates, "rates")
     motion, of = motions(tree, q, q_rates, base), groups(tree)
     root = motion[tree.root]
@@ -124,7 +139,9 @@ def built(
     moving = [link for link in tree.links if link.joint.moves]
     described = {link.joint.name: link.joint for link in moving}
     joints: dict[str, Joint] = {}
-    bodies = {link.name: system.add(_body(of[link.name], motion[link.name])) for link in moving}
+    bodies = {
+        link.name: system.add(_body(of[link.name], motion[link.name], link.joint.name in torques)) for link in moving
+    }
     for link in moving:
         parent, name = of[link.parent], link.joint.name
         if parent.joint is None:
@@ -133,6 +150,8 @@ def built(
         else:
             side = bodies[parent.name].point(parent.seat(name))
         joints[name] = _connect(system, tree, link.joint, side, bodies[link.name], slip)
+        if name in torques:
+            _drive(system, link.joint, side, bodies[link.name], torques[name])
     at = {name: coordinate(tree, own, q, q_rates)[0] for name, own in described.items()}
     for own in described.values():
         if own.mimic:
@@ -144,6 +163,10 @@ def built(
 
 def _row(vector: np.ndarray) -> Vector:
     return tuple(vector.tolist())  # type: ignore[return-value]
+
+
+def _pose(frame: Frame) -> Pose:
+    return Pose(_row(frame[0]), Orientation.of(frame[1]))
 
 
 def _follower(joint: TreeJoint, joints: Mapping[str, Joint], at: Mapping[str, Number]) -> CouplingJoint:
@@ -184,7 +207,8 @@ def _limit(own: TreeJoint, joint: Joint, law: Law, at: Number) -> AngleLimit | D
     return AngleLimit(name, joint, stiffness, lower, upper, damping, float(np.real(at)))
 
 
-def _body(group: Group, motion: Motion) -> RigidBody:
+def _body(group: Group, motion: Motion, driven: bool) -> RigidBody:
+    """The body of a group; with a marker whose z axis is that of the joint, if a torque drives it."""
     assert group.joint is not None
     if not group.inertias:
         raise ModelError(
@@ -196,9 +220,10 @@ def _body(group: Group, motion: Motion) -> RigidBody:
         merged(group.inertias),
         position=_row(motion.position),
         orientation=Orientation.of(motion.axes),
-        points=group.points,
+        points=group.points | ({AXIS: Pose(orientation=Orientation.by_axes(group.joint.axis))} if driven else {}),
         velocity=_row(motion.velocity),
         angular_velocity=_row(motion.spin),
+        shapes=tuple(group.shapes),
     )
 
 
@@ -218,3 +243,9 @@ def _connect(system: SpatialSystem, tree: Tree, joint: TreeJoint, a: Side, body:
         slides = joint.kind == PRISMATIC
         system.add(Armature(f"{name} armature", a, body.point("origin"), joint.armature, joint.axis, slides))
     return made
+
+
+def _drive(system: SpatialSystem, joint: TreeJoint, a: Side, body: RigidBody, course: Course) -> None:
+    """Add the torque, or the force, of a joint about its axis, and its opposite on the parent."""
+    kind = Force if joint.kind == PRISMATIC else Torque
+    system.add(kind(f"{joint.name} drive", body.point(AXIS), z=course, follower=True, against=a))

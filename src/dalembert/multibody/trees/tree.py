@@ -5,6 +5,7 @@ __all__ = ["Link", "Shape", "Tree", "TreeJoint"]
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy as np
 from dalembert.arguments import Checked
 from dalembert.errors import InputError, ModelError, require_known, unknown
 from dalembert.multibody.components.fields import Number, number
+from dalembert.multibody.components.signals import Course
 from dalembert.multibody.components.spatial.inertia import Inertia
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose, Vector
 from dalembert.multibody.components.spatial.shapes import Shape
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
 
 REVOLUTE, PRISMATIC, FIXED = KINDS = "revolute", "prismatic", "fixed"
 ORIGIN = Pose()
+NO_TORQUES: Mapping[str, Course] = MappingProxyType({})
 ENTRIES = ("xx", "yy", "zz", "xy", "xz", "yz")
 JOINT_NUMBERS = ("damping", "friction", "armature")
 
@@ -234,6 +237,7 @@ class Tree(Checked):
         slip: Number = 1e-3,
         start: str = "placed",
         limits: "Limits" = None,
+        torques: Mapping[str, Course] = NO_TORQUES,
     ) -> "SpatialSystem":
         """The mechanism of the tree, with its base on the ground.
 
@@ -262,6 +266,9 @@ class Tree(Checked):
             Stiffness and damping of stops at the limits of the positions of all joints, or of joints by name, as in
             :class:`~dalembert.multibody.spatial.AngleLimit` and
             :class:`~dalembert.multibody.spatial.DisplacementLimit`. The stops are ``"<joint> limits"``.
+        torques : mapping of str to float or Signal
+            Of joints, N m, or forces of prismatic joints, N, from the parent on the child: loads named
+            ``"<joint> drive"``.
 
         Raises
         ------
@@ -281,7 +288,7 @@ class Tree(Checked):
         """
         from dalembert.multibody.trees.build import built
 
-        return built(self, positions, rates, gravity, base, slip, start, limits)
+        return built(self, positions, rates, gravity, base, slip, start, limits, torques)
 
 
 def _changed(link: Link, values: Mapping[str, Any]) -> Link:

@@ -29,6 +29,13 @@ def needs_structure(file: Any, task: str) -> list[str]:
     return [] if file.vibrates else [sentence]
 
 
+def needs_robot(file: Any, task: str) -> list[str]:
+    """Sentence about a model that is no robot."""
+    if file.model.robot_table is not None:
+        return []
+    return [f"[{task}] needs a robot; name its URDF or MJCF file by [model.robot], file"]
+
+
 def needs_data(file: Any, task: str) -> list[str]:
     """Sentence about a study without measured data."""
     return [] if file.data else [f"[{task}] needs a [data] table"]

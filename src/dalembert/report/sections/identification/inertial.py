@@ -1,5 +1,7 @@
 """Inertial parameters of robots: consistent estimates, base parameters, exciting trajectories, recovery."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from dalembert.inverse.inertial import (
@@ -8,6 +10,7 @@ from dalembert.inverse.inertial import (
     ConsistentInertias,
     ExcitingTrajectory,
     Recovery,
+    TorquePrediction,
 )
 from dalembert.report import charts
 from dalembert.report.asked import Asked
@@ -55,6 +58,41 @@ def consistent(found: ConsistentInertias, asked: Asked) -> list[Section]:
         _base(found.base, found.base_values, found.base_deviations),
         _noise(found.joints, found.noise, found.residual),
     ]
+
+
+@sections_of(TorquePrediction)
+def torque_prediction(found: TorquePrediction, asked: Asked) -> list[Section]:
+    """Sections of the inertias, with the torques of the fitted motion, and of the unseen one."""
+    headline, *others = consistent(found.inertias, asked)
+    assert isinstance(headline, Headline)
+    records = [("fitted", found.times, found.measured, found.predicted)]
+    if len(found.unseen_times):
+        worst = f"{shown(float(found.ratios.max()), digits=4)} times the noise"
+        headline = replace(headline, facts={**headline.facts, "prediction, worst joint": worst})
+        records.append(("unseen", found.unseen_times, found.unseen_measured, found.unseen_predicted))
+    drawn = []
+    for name, times, measured, predicted in records:
+        plots = [
+            Plot(
+                f"torques-{name}-{k + 1}",
+                charts.torques(times, measured[:, k], predicted[:, k], float(found.inertias.noise[k]), title=joint),
+                "Below, predicted minus measured; dotted: two standard deviations of the noise.",
+            )
+            for k, joint in enumerate(found.inertias.joints)
+        ]
+        drawn.append(Section(f"Torques of the {name} motion", (*plots, *_prediction(found, name))))
+    return [headline, *others, *drawn]
+
+
+def _prediction(found: TorquePrediction, name: str) -> list[Table]:
+    """Rms errors of the unseen motion relative to the noise."""
+    if name != "unseen":
+        return []
+    columns = {"joint": found.inertias.joints, "error / noise": cells(found.ratios, 4)}
+    caption = (
+        f"Rms error of the predicted torques; noise alone exceeds {shown(found.most, digits=4)} in 0.1 % of records"
+    )
+    return [Table.of("prediction", caption, columns)]
 
 
 @sections_of(BaseEstimate)

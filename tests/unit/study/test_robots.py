@@ -1,0 +1,228 @@
+"""Robots in study files: the model, the identification of inertias, exciting trajectories, and wrong input."""
+
+import numpy as np
+import pytest
+
+from dalembert.errors import InputError
+from dalembert.inverse.inertial import TorquePrediction
+from dalembert.multibody import RungeKutta4, simulate
+from dalembert.multibody.trees import inverse_dynamics, read_urdf
+from dalembert.report import figures, report
+from dalembert.study import load, plan, report_run, run_study
+from dalembert.study.template import begin
+from pages import read_page
+
+SIMULATED = """
+[parameters]
+payload = { lower = 1.0, upper = 3.0, start = 1.9 }
+[model]
+space = true
+gravity = [0, 0, -9.0]
+[model.robot]
+file = "robot.urdf"
+slip = 0.05
+numbers = { "lower.mass" = "payload", "elbow.damping" = "0.1*payload" }
+positions = { shoulder = "20 deg" }
+rates = { elbow = "1.0" }
+torques = { shoulder = 3.0, elbow = { input = "tau" } }
+[inputs.tau]
+file = "motion.csv"
+column = "tau2"
+[[model.load]]
+kind = "Force"
+name = "push"
+at = "lower.origin"
+z = 5.0
+[solver]
+step = "2 ms"
+[simulate]
+end = 0.2
+channels = ["shoulder.angle", "elbow.angle"]
+"""
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """The files of the template."""
+    return begin("robot", tmp_path / "arm").parent
+
+
+def wrong(folder, text):
+    path = folder / "wrong.toml"
+    path.write_text(text)
+    with pytest.raises(InputError) as error:
+        load(path)
+    return [line.partition("wrong.toml: ")[2] for line in str(error.value).split("\n")]
+
+
+def test_a_robot_has_the_numbers_torques_and_initial_state_of_the_study(folder):
+    path = folder / "simulated.toml"
+    path.write_text(SIMULATED)
+    study = load(path)
+    assert "1 simulation" in plan(study)
+    system = study.system()
+    assert [body.name for body in system.bodies] == ["upper", "lower"]
+    assert [load.name for load in system.loads if "drive" in load.name] == ["shoulder drive", "elbow drive"]
+    motion = study.motion(0.2)
+    tau = study.inputs["tau"].signal({})
+    tree = read_urdf(folder / "robot.urdf").with_numbers({"lower.mass": 1.9, "elbow.damping": 0.19})
+    direct = tree.system(
+        [np.deg2rad(20), 0.0], [0.0, 1.0], (0, 0, -9.0), slip=0.05, torques={"shoulder": 3.0, "elbow": tau}
+    )
+    bare = study._with(model=study.file.model.model_copy(update={"load": []}))
+    names = ["shoulder.angle", "elbow.angle"]
+    other = simulate(direct, 0.2, solver=study.solver)
+    np.testing.assert_allclose(bare.motion(0.2).channels(names), other.channels(names), atol=1e-12)
+    assert np.abs(motion.channels(names)[-1] - other.channels(names)[-1]).max() > 1e-3  # the push acts
+
+
+def test_the_reactions_of_torques_at_joints_are_those_of_inverse_dynamics(folder):
+    """Along a simulated motion, inverse dynamics of its accelerations returns the torques."""
+    tree = read_urdf(folder / "robot.urdf")
+    system = tree.system([0.3, -0.7], [0.5, 0.2], slip=0.5, torques={"shoulder": 12.0, "elbow": -2.0})
+    motion = simulate(tree.system([0.3, -0.7], [0.5, 0.2], slip=0.5, torques={"shoulder": 12.0, "elbow": -2.0}), 0.02,
+                      solver=RungeKutta4(step=1e-3))  # fmt: skip
+    assert len(system.loads) == 4  # two drives, two armatures
+    q, v = (motion.channels([f"{name}.{what}" for name in ("shoulder", "elbow")]) for what in ("angle", "rate"))
+    rates = np.array([np.polynomial.Polynomial.fit(motion.times, own, 6).deriv()(motion.times[10]) for own in v.T])
+    torques = inverse_dynamics(tree, q[10:11], v[10:11], rates[None], slip=0.5)
+    np.testing.assert_allclose(torques, [[12.0, -2.0]], atol=1e-4)
+
+
+def test_bodies_have_the_shapes_of_all_their_links(folder):
+    system = read_urdf(folder / "robot.urdf").with_fixed_joints({"elbow": np.pi / 2}).system()
+    (body,) = system.bodies
+    assert [shape.kind for shape in body.shapes] == ["box", "cylinder"]
+    # 0.4 m along x, then turned by 90 degrees about y: x of the lower link is -z
+    np.testing.assert_allclose(body.shapes[1].pose.position, [0.4, 0.06, -0.15], atol=1e-15)
+
+
+def test_the_template_is_identified_and_predicts_the_other_motion(folder, tmp_path):
+    true = {"lower.first_x": 1.9 * 0.17, "lower.first_z": 1.9 * 0.02, "elbow.damping": 0.24, "elbow.friction": 0.5}
+    run, outcome = run_study(load(folder / "arm.toml"), tmp_path / "run")
+    assert outcome.success
+    found = outcome.result
+    deviations = dict(zip(found.inertias.base.base, found.inertias.base_deviations, strict=True))
+    for name, value in true.items():
+        assert abs(outcome.best["values"][name] - value) < 3 * deviations[name]
+    assert outcome.best["values"]["prediction / noise"] == found.ratios.max() < found.most
+    page = read_page(run.report)
+    assert "The torques of the unseen motion are predicted as exactly as the noise allows" in page.text
+    assert {"torques-fitted-1", "torques-unseen-2"} <= figures(found).keys()
+    written = read_urdf(run.path / "identified.urdf")
+    assert written.numbers["lower.mass"] == pytest.approx(found.inertias.estimates["lower.mass"])
+    assert written.numbers["elbow.armature"] == pytest.approx(found.inertias.estimates["elbow.armature"])
+    stored = TorquePrediction.load(run.result)
+    np.testing.assert_array_equal(stored.ratios, found.ratios)
+    assert stored.summary() == found.summary()
+    run.report.unlink()
+    report_run(run)
+    assert run.report.is_file()
+
+
+def test_a_prediction_beyond_the_noise_is_doubted(folder, tmp_path):
+    path = folder / "arm.toml"
+    path.write_text(path.read_text().replace('"elbow.torque" = "tau2"', '"elbow.torque" = "tau2"'))
+    lines = (folder / "other.csv").read_text().splitlines()
+    heavier = [",".join([*row.split(",")[:-1], str(1.2 * float(row.split(",")[-1]))]) for row in lines[1:]]
+    (folder / "other.csv").write_text("\n".join([lines[0], *heavier]))
+    outcome = run_study(load(path), tmp_path / "run")[1]
+    (finding,) = [one for one in outcome.findings if one.code == "unseen-torques"]
+    assert finding.values["joint"] == "elbow"
+    assert "are not predicted: the rms error at joint 'elbow' is" in finding.message
+    report(outcome.result, tmp_path / "page.html")
+
+
+def test_zero_friction_is_not_identified_and_deviations_may_be_given(folder, tmp_path):
+    path = folder / "arm.toml"
+    text = path.read_text().replace("slip = 0.05", 'slip = 0.05\nnumbers = { "elbow.friction" = 0 }')
+    path.write_text(text.replace('unseen = "other.csv"', "deviations = { shoulder = 0.2, elbow = 0.05 }"))
+    outcome = run_study(load(path), tmp_path / "run")[1]
+    assert "elbow.friction" not in outcome.result.inertias.names
+    assert outcome.result.inertias.noise.tolist() == [0.2, 0.05]
+    assert not len(outcome.result.ratios)
+
+
+def test_an_exciting_motion_keeps_the_limits_and_is_written(folder, tmp_path):
+    path = folder / "excite.toml"
+    path.write_text(
+        '[model]\nspace = true\nrobot = { file = "robot.urdf", slip = 0.05 }\n[exciting_trajectory]\nperiod = 5.0\n'
+        "evaluations = 20\nrate = 50.0\nvelocity = { elbow = 2.0 }\nacceleration = 15.0\npositions = { shoulder = [-0.5, 1] }\n"
+    )
+    assert "among 20 motions: no simulation" in plan(load(path))
+    run, outcome = run_study(load(path), tmp_path / "run")
+    assert outcome.success
+    table = np.loadtxt(run.path / "motion.csv", delimiter=",", skiprows=1)
+    assert table.shape == (251, 7)
+    assert -0.5 <= table[:, 1].min() < table[:, 1].max() <= 1.0
+    assert np.abs(table[:, 4]).max() <= 2.0
+    assert np.abs(table[:, 5:]).max() <= 15.0
+    assert (run.path / "motion.csv").read_text().startswith("t,shoulder.position,elbow.position,shoulder.velocity,")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentences"),
+    [
+        ('"lower.mass" =', '"lower.mas" =',
+         ["[model.robot]: numbers: unknown number 'lower.mas'; did you mean 'lower.mass' or 'upper.mass'?"]),
+        ("shoulder = \"20 deg\"", "sholder = 1.0",
+         ["[model.robot]: positions: unknown joint 'sholder'; did you mean 'shoulder'?"]),
+        ('input = "tau" }', 'input = "tau2" }', None),
+        ('at = "lower.origin"', 'at = "lwer.origin"', None),
+        ('"robot.urdf"', '"rob.urdf"', None),
+    ],
+)  # fmt: skip
+def test_wrong_robots_get_a_sentence(folder, old, new, sentences):
+    found = wrong(folder, SIMULATED.replace(old, new))
+    if sentences is not None:
+        assert found[: len(sentences)] == sentences
+    else:
+        assert new.split('"')[1] in found[0]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ('type="revolute"', 'type="ball"', "unknown type 'ball'"),
+        ('<child link="lower"/>', '<child link="lowr"/>', "unknown child link 'lowr'"),
+        ('<parent link="base"/>', '<parent link="lower"/>', "form a loop"),
+    ],
+)
+def test_a_wrong_file_is_refused_with_its_line(folder, old, new, sentence):
+    file = folder / "robot.urdf"
+    file.write_text(file.read_text().replace(old, new, 1))
+    (found,) = wrong(folder, SIMULATED)
+    assert found.startswith("[model.robot]: file: ")
+    assert sentence in found
+
+
+def test_the_tasks_say_what_they_need(folder):
+    text = (folder / "arm.toml").read_text()
+    plane = '[model]\n[[model.body]]\nkind = "PointMass"\nname = "ball"\nmass = 1.0\n[exciting_trajectory]\nperiod = 1.0\nacceleration = 1.0\n'
+    assert wrong(folder, plane) == [
+        "[exciting_trajectory] needs a robot; name its URDF or MJCF file by [model.robot], file"
+    ]
+    assert wrong(folder, text.replace('"elbow.torque" = "tau2"', '"elbow.angl" = "tau2"')) == [
+        "[data], columns: no column is given for 'elbow.torque'",
+        "[data], columns: unknown channel 'elbow.angl'; did you mean 'elbow.angle'?",
+    ]
+    assert wrong(folder, text.replace("cutoff", "deviations = { shoulder = 1.0, elbw = 1.0 }\ncutoff")) == [
+        "[identify_inertias], deviations: unknown joint 'elbw'; did you mean 'elbow'?",
+        "[identify_inertias], deviations: none is given for joint 'elbow'",
+    ]
+    free = folder / "robot.urdf"
+    free.write_text(free.read_text().replace('lower="-2.5" upper="2.5"', 'lower="-inf" upper="inf"'))
+    text = '[model]\nspace = true\nrobot = { file = "robot.urdf" }\n[exciting_trajectory]\nperiod = 5.0\nacceleration = { elbow = 1.0 }\n'
+    assert wrong(folder, text) == [
+        "[exciting_trajectory], acceleration: none is given for joint 'shoulder'",
+        "[exciting_trajectory], positions: joint 'elbow' has no limits in the file; give its lower and its upper one",
+    ]
+
+
+def test_a_filter_that_does_not_fit_is_refused_before_a_run(folder):
+    path = folder / "arm.toml"
+    path.write_text(path.read_text().replace("12.5 Hz", "30 Hz"))
+    with pytest.raises(
+        InputError, match=r"^\[data\]: lowpass: the cutoff frequency is 30 Hz and the sampling rate 50 Hz"
+    ):
+        plan(load(path))

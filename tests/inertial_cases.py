@@ -33,7 +33,7 @@ INERTIAL_CASES = {
     "predicted torques": Case(
         lambda: _predicted(1.0),
         ("are predicted as exactly as the noise allows", "Torques of the unseen motion", "noise alone exceeds"),
-        ("torques-fitted-1", "torques-unseen-2"),
+        ("fitted-torques-1", "unseen-torques-2"),
     ),
     "torques that are not predicted": Case(
         lambda: _predicted(1.5), ("The torques of the unseen motion are not predicted",)

@@ -108,7 +108,7 @@ def test_the_template_is_identified_and_predicts_the_other_motion(folder, tmp_pa
     assert outcome.best["values"]["prediction / noise"] == found.ratios.max() < found.most
     page = read_page(run.report)
     assert "The torques of the unseen motion are predicted as exactly as the noise allows" in page.text
-    assert {"torques-fitted-1", "torques-unseen-2"} <= figures(found).keys()
+    assert {"fitted-torques-1", "unseen-torques-2"} <= figures(found).keys()
     written = read_urdf(run.path / "identified.urdf")
     assert written.numbers["lower.mass"] == pytest.approx(found.inertias.estimates["lower.mass"])
     assert written.numbers["elbow.armature"] == pytest.approx(found.inertias.estimates["elbow.armature"])

@@ -74,7 +74,7 @@ def torque_prediction(found: TorquePrediction, asked: Asked) -> list[Section]:
     for name, times, measured, predicted in records:
         plots = [
             Plot(
-                f"torques-{name}-{k + 1}",
+                f"{name}-torques-{k + 1}",
                 charts.torques(times, measured[:, k], predicted[:, k], float(found.inertias.noise[k]), title=joint),
                 "Below, predicted minus measured; dotted: two standard deviations of the noise.",
             )

@@ -20,7 +20,9 @@ LEAST = 1e-2
 """Smallest eigenvalue relative to the prior of a projected start."""
 
 DECREMENT = 1e-8
-"""Half the squared Newton decrement below which the point is stationary: the objective would fall by no more."""
+"""Half the squared Newton decrement below which the point is stationary: the objective would fall by no more.
+
+Rounding errors of the residuals may be larger where the torques are nearly exact, see :func:`_settled`."""
 
 EDGE = 1e-4
 """Smallest eigenvalue relative to the prior below which a link is nearly one that cannot exist."""
@@ -118,17 +120,18 @@ def identify_inertias(
     problem = ConsistentProblem(triangle, right, known, len(links), chosen, float(regularisation))
     started, unknowns = _start(problem, plain.base, plain.values)
     values, decrement, steps = _minimised(problem, problem.parameters(unknowns))
-    if not decrement < DECREMENT:
+    if not decrement < _settled(problem, values):
         started, values, decrement, steps = "prior", *_followed(problem)
-    covariance = _covariance(problem, values)
+    root = _covariance_root(problem, values)
     mixed = plain.base.combinations
+    spread = mixed @ root
     inertial, tail = values[: 10 * len(links)].reshape(-1, 10), slice(10 * len(links), None)
     before = known[: 10 * len(links)].reshape(-1, 10)
     logs = log_cholesky(inertial)
     by_logs = _log_gradient(problem, values, logs)
     eigenvalues = smallest_eigenvalues(inertial, before)
     residuals = measured - table @ values
-    success = decrement < DECREMENT
+    success = decrement < _settled(problem, values)
     end = converged(success, f"{steps} steps, half the squared Newton decrement {decrement:.1g}")
     findings = (*_findings(links, eigenvalues), *torque_findings(joints, residuals))
     return ConsistentInertias(
@@ -137,9 +140,9 @@ def identify_inertias(
         joints=joints,
         prior=known,
         values=values,
-        deviations=np.sqrt(np.maximum(np.diagonal(covariance), 0.0)),
+        deviations=np.linalg.norm(root, axis=1),
         base_values=mixed @ values,
-        base_covariance=mixed @ covariance @ mixed.T,
+        base_covariance=spread @ spread.T,
         plain_values=plain.values,
         plain_covariance=plain.covariance,
         noise=plain.noise,
@@ -208,7 +211,7 @@ def _compressed(table: np.ndarray, torques: np.ndarray, noise: np.ndarray) -> tu
 
 def _spread(problem: ConsistentProblem, base: BaseParameters, values: np.ndarray) -> np.ndarray:
     """Parameters with given base parameters that are nearest to the prior, relative to its sizes."""
-    size = np.sqrt(np.maximum(np.diagonal(_covariance(problem, problem.prior)), 0.0))
+    size = np.linalg.norm(_covariance_root(problem, problem.prior), axis=1)
     mixed = base.combinations * size
     return problem.prior + size * (np.linalg.pinv(mixed) @ (values - base.combinations @ problem.prior))
 
@@ -271,13 +274,17 @@ def newton_step(problem: ConsistentProblem, values: np.ndarray) -> tuple[np.ndar
     return step, 0.5 * float(np.sum((rows @ step) ** 2))
 
 
-def _covariance(problem: ConsistentProblem, values: np.ndarray) -> np.ndarray:
-    """Inverse of the Hessian by θ."""
+def _settled(problem: ConsistentProblem, values: np.ndarray) -> float:
+    """Half the squared Newton decrement of a stationary point: no less than rounding errors of the residuals make."""
+    return max(DECREMENT, problem.rounding(values))
+
+
+def _covariance_root(problem: ConsistentProblem, values: np.ndarray) -> np.ndarray:
+    """Q (parameters, rows) with Q Qᵀ the inverse of the Hessian by θ."""
     rows, _ = problem.linearised(values)
     scale = np.linalg.norm(rows, axis=0)
     scale[scale == 0] = 1.0
-    inverse = np.linalg.pinv(rows / scale) / scale[:, None]
-    return inverse @ inverse.T
+    return np.linalg.pinv(rows / scale) / scale[:, None]
 
 
 def _log_gradient(problem: ConsistentProblem, values: np.ndarray, logs: np.ndarray) -> np.ndarray:

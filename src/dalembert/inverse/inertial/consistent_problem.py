@@ -209,6 +209,14 @@ class ConsistentProblem:
         distance = np.sum(links) + np.sum(ratio - 1.0 - np.log(ratio))
         return float(0.5 * (rest @ rest + self.regularisation * distance))
 
+    def rounding(self, parameters: np.ndarray) -> float:
+        """Half the square of the rounding errors of R θ − c: the objective is not known better.
+
+        They are about √n ε |R| |θ| for n parameters (Higham, Accuracy and Stability of Numerical Algorithms, 2002).
+        """
+        size = np.abs(self.triangle) @ np.abs(parameters)
+        return 0.5 * len(parameters) * float(np.sum((np.finfo(float).eps * size) ** 2))
+
     def _split(self, unknowns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         count = 10 * self.links
         return unknowns[:count].reshape(self.links, 10), unknowns[count:]

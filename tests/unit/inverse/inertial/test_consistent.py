@@ -129,6 +129,21 @@ def test_another_minimiser_over_other_parameters_finds_the_same(arm_fit):
         assert objective(best + step) > at
 
 
+@pytest.mark.parametrize("noise", [1e-9, 1e-11, 0.0])
+def test_nearly_exact_torques_converge_from_any_prior(noise):
+    """Rounding errors of the residuals, relative to such a noise, are larger than the usual Newton decrement."""
+    table = PLANAR.regressor(*swinging(2, 1, 300)[1:])
+    true = truth(PLANAR)
+    torques = table @ true
+    size = noise * np.sqrt(np.mean(torques**2, axis=0))
+    for seed in range(5):
+        given = torques + size * np.random.default_rng(seed).standard_normal(torques.shape)
+        found = identify_inertias(table, given, PLANAR.names, wrong(true, 2, 0.3, seed), links=PLANAR.links)
+        assert found.success
+        assert np.all(np.isfinite(found.base_deviations))
+        np.testing.assert_allclose(found.base_values, found.base.values(true), atol=max(noise, 1e-12))
+
+
 def test_more_regularisation_moves_to_the_prior(arm_fit):
     table, torques, prior, _, found = arm_fit
     distances = [found.distances.sum()]

@@ -146,6 +146,19 @@ class Tree(Checked):
         for joint in self.joints:
             if joint.mimic and joint.mimic[0] not in names:
                 raise ModelError(f"joint {joint.name!r}: {unknown('joint', joint.mimic[0], names)}")
+        for joint in self.joints:
+            self._refuse_circle(joint)
+
+    def _refuse_circle(self, joint: TreeJoint) -> None:
+        """Refuse a joint that follows itself, directly or by way of others."""
+        by_name = {own.name: own for own in self.joints}
+        followed = [joint.name]
+        while joint.mimic is not None:
+            joint = by_name[joint.mimic[0]]
+            if joint.name in followed:
+                circle = " -> ".join(map(repr, [*followed, joint.name]))
+                raise ModelError(f"joints follow each other in a circle (mimic): {circle}. Let one of them move freely")
+            followed.append(joint.name)
 
     @property
     def joints(self) -> tuple[TreeJoint, ...]:

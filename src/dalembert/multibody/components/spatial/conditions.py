@@ -1,7 +1,8 @@
 """Conditions between two markers, of which joints consist, with their constraint forces J^T lambda.
 
 A joint is a row of conditions, as in the tables of textbooks: a revolute joint about e3 is ``meets``,
-``perpendicular(1, 3)`` and ``perpendicular(2, 3)``. All are polynomials of degree two in the coordinates at most.
+``perpendicular(1, 3)`` and ``perpendicular(2, 3)``. Those that say ``quadratic=True`` are polynomials of degree two at
+most in the coordinates, so that central differences of them are exact; a screw's, with its angle, is not.
 """
 
 from collections.abc import Callable

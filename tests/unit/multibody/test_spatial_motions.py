@@ -6,7 +6,15 @@ import pytest
 import dalembert as da
 from dalembert.forward import Checkpoint, Recorded
 from dalembert.multibody import RadauIIA, RungeKutta4, simulate
-from dalembert.multibody.spatial import Bushing, Inertia, Orientation, RigidBody, SpatialSystem, SphericalJoint
+from dalembert.multibody.spatial import (
+    Bushing,
+    Inertia,
+    Orientation,
+    RevoluteJoint,
+    RigidBody,
+    SpatialSystem,
+    SphericalJoint,
+)
 from spatial_pendulum import BOX, CHANNELS, SOLVER, TIMES, TRUE, build, motion, records, response
 
 BEGIN = 15
@@ -127,3 +135,14 @@ def test_an_equilibrium_is_found_from_an_inclined_start():
     system.add(SphericalJoint("ball", system.ground, rod.point("origin")))
     rest = da.equilibrium(system)
     np.testing.assert_allclose(rest.channels(["rod.centre.x", "rod.centre.y", "rod.centre.z"]), (0, 0, -0.2), atol=1e-9)
+
+
+@pytest.mark.parametrize("offset", [-0.4, -0.3])
+def test_a_door_at_rest_stays_at_rest(offset):
+    """Corrections of velocities that vanish end in the rounding of what they take away."""
+    system = SpatialSystem(gravity=(0.0, 0.0, -9.81))
+    door = system.add(RigidBody("door", Inertia.box(20.0, (0.8, 0.04, 2.0)), points={"hinge": (offset, 0.0, 0.0)}))
+    side = system.ground.point((offset, 0.0, 0.0))
+    system.add(RevoluteJoint("pin", side, door.point("hinge"), axis=(0.0, 0.0, 1.0)))
+    motion = simulate(system, 0.3, RadauIIA())
+    np.testing.assert_allclose(motion.channels(["pin.angle", "pin.rate"]), 0.0, atol=1e-15)

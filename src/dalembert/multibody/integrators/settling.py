@@ -62,11 +62,13 @@ def _move(n, level, answer, state, moved):
 
 
 @inner
-def _sizes(n, level, answer, state):
-    """Largest correction, and largest entry of what it corrects."""
+def _sizes(n, level, answer, state, moved):
+    """Largest correction, and largest entry of what it corrects, or of its move: one that vanishes ends in rounding."""
     values, size = state.x if level == POSITION else (state.v if level == VELOCITY else state.a), 1e-300
     for i in range(n):
         size = max(size, abs(values[i]))
+        if level < ACCELERATION:
+            size = max(size, abs(moved[level, i]))
     return largest(answer, 0, n), size
 
 
@@ -134,7 +136,7 @@ def settle(
                     f[i] = rate[i] if level == 1 else second[i]
             solve(matrices.pattern.layout, matrices.rigid, f, answer)
             _move(n, level, answer, state, moved)
-            norm, size = _sizes(n, level, answer, state)
+            norm, size = _sizes(n, level, answer, state, moved)
             done = _finished(iteration, norm, before, size)
             if done or not norm < 1e100:
                 break
@@ -155,7 +157,7 @@ def accelerate_roughly(problem, matrices, model, state, work, room):
         constraint_rates(model, n, state.x, state.v, state.a, work, room[1], f)
         solve(matrices.pattern.layout, matrices.rigid, f, answer)
         _move(n, ACCELERATION, answer, state, room)
-        norm, size = _sizes(n, ACCELERATION, answer, state)
+        norm, size = _sizes(n, ACCELERATION, answer, state, room)
         if norm <= _ROUGH * size or not norm < 1e100:
             break
 
@@ -192,7 +194,7 @@ def settle_along(
                 imaginary[i] = f[i].imag / STEP
             solve(matrices.pattern.layout, matrices.rigid, imaginary, answer)
             _move(n, level, answer, dstate, dmoved)
-            norm, size = _sizes(n, level, answer, dstate)
+            norm, size = _sizes(n, level, answer, dstate, dmoved)
             if _finished(iteration, norm, before, size) or not norm < 1e100:
                 break
             before = norm

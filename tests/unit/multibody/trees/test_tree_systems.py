@@ -203,6 +203,12 @@ def test_joints_follow_others(arm):
     np.testing.assert_allclose(motion.channels(["slide.displacement"])[:, 0], slide, atol=1e-9)
 
 
+def test_joints_that_follow_each_other_are_refused(arm):
+    sentence = "joints follow each other in a circle (mimic): 'turn' -> 'bend' -> 'turn'. Let one of them move freely"
+    with pytest.raises(ModelError, match=says(sentence)):
+        following(arm, turn=("bend", 1.0, 0.0), bend=("turn", 1.0, 0.0))
+
+
 def test_stops_at_the_limits_of_joints(arm):
     positions = {"turn": 0.2, "slide": 0.35, "bend": 7.0}
     system = arm.system(positions, limits=(1e4, 0.2))

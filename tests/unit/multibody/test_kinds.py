@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import mechanisms
+from dalembert.kernels.kernel import inlined
 from dalembert.multibody.kernels.constraints import forces_of, rates_of
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.kind import Kind
@@ -98,3 +99,20 @@ def test_rates_are_slopes_of_the_constraint_along_a_motion(kind: Kind) -> None:
     bend = (-values[0] + 16 * values[1] - 30 * values[2] + 16 * values[3] - values[4]) / (12 * h * h)
     np.testing.assert_allclose(rate, slope, rtol=1e-8, atol=1e-8)
     np.testing.assert_allclose(second, bend, rtol=1e-6, atol=1e-6)
+
+
+def test_kinds_of_the_same_name_outside_the_package_have_different_kernels() -> None:
+    """Such as two user's files, or a cell of a notebook that was changed: each runs its code."""
+
+    def kind(factor: float) -> Kind:
+        @inlined
+        def weigh(x, v, a, p, m, inputs, r):
+            r[0] = factor * p.mass * a[0]
+
+        return Kind("weight", coordinates=1, numbers=("mass",), residual=weigh)
+
+    symbols = {kind(factor).kernel(role, float).symbol for factor in (1.0, 2.0) for role in ("residual", "energy")}
+    assert len(symbols) == 4
+    assert kind(1.0).kernel("residual", float).symbol == kind(1.0).kernel("residual", float).symbol
+    package = next(own for own in KINDS if own.module.startswith("dalembert."))
+    assert package.kernel("residual", float).symbol == f"dal_kind_{package.name}_residual_float"

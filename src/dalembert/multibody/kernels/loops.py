@@ -7,6 +7,7 @@ constraints: forces N^T r.
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from dalembert.kernels.digest import digest
 from dalembert.kernels.kernel import BlockKernel, inlined
 from dalembert.kernels.views import complexes, complexes2, integers, integers2, local, reals, reals2, records
 from dalembert.multibody.kernels.charts import projecting, spreading
@@ -20,7 +21,10 @@ def arithmetic(dtype: type) -> tuple[Any, Any]:
 
 
 def made(loop: Callable[[Any, Any], None], kind: Declaration, role: str, dtype: type) -> BlockKernel:
-    return BlockKernel(loop, f"dal_kind_{kind.name}_{role}_{dtype.__name__}", (kind, role, dtype))
+    """The kernel of a kind in a role. Outside the package two kinds may have the same name: their sources differ."""
+    known = (kind.module or "").startswith("dalembert.")
+    name = kind.name if known else f"{kind.name}_{digest(loop)}"  # type: ignore[arg-type]
+    return BlockKernel(loop, f"dal_kind_{name}_{role}_{dtype.__name__}", (kind, role, dtype))
 
 
 def _each(kind: Declaration, role: str, dtype: type, step: Callable[..., None]) -> BlockKernel:

@@ -97,6 +97,8 @@ STUDIES |= {
     "values = { count = 17 }\n",
     "compared integrators": MECHANISM,
 }
+QUICK = ("least-squares", "improved-swarm", "bands", "set", "sweep", "curve past folds")
+"""One study of each way to keep what was computed; the others are slow tests."""
 KILLS = 2
 MANY = 25
 
@@ -117,7 +119,9 @@ def killed(folder: Path, study: str, kills: int, seed: int) -> dict:
     return json.loads(done.stdout)
 
 
-@pytest.mark.parametrize("study", STUDIES)
+@pytest.mark.parametrize(
+    "study", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in STUDIES]
+)
 def test_killed_at_random_moments_a_study_ends_the_same(tmp_path, study):
     assert killed(tmp_path, study, KILLS, seed=1)["kills"] == KILLS
 

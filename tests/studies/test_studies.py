@@ -91,7 +91,11 @@ def bounded(study: Study, result: Any, row: dict[str, Any]) -> float:
     raise AssertionError(row)
 
 
-@pytest.mark.parametrize("path", FILES, ids=name)
+@pytest.mark.parametrize(
+    "path",
+    [pytest.param(p, marks=pytest.mark.slow) if p.parent.name == "patched-plate" else p for p in FILES],  # a large mesh
+    ids=name,
+)
 def test_study_is_in_order(path):
     assert "simulation" in plan(load(path))
 

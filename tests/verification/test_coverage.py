@@ -127,6 +127,7 @@ def test_intervals_under_correlated_noise(record_evidence, name, model, known):
 
 
 @pytest.mark.parametrize("model", [DRIFT, SWING], ids=["slow", "oscillating"])
+@pytest.mark.slow
 def test_intervals_under_correlated_noise_in_fewer_repetitions(model):
     """Without the correction the coverage is 0.67 and 0.75, the ratio 0.5 and 0.6."""
     coverage, ratio = under_correlated_noise(model, 100, known=True)

@@ -29,6 +29,7 @@ def followed(numbers: list[int]) -> None:
     assert not {number: part for number, part in parts.items() if part < 1 - 1e-9}
 
 
+@pytest.mark.slow
 def test_each_point_of_random_systems_is_a_solution_and_none_is_lost(record_evidence) -> None:
     judged(record_evidence, FEW)
 
@@ -38,6 +39,7 @@ def test_each_point_of_more_random_systems_is_a_solution_and_none_is_lost(record
     judged(record_evidence, MORE)
 
 
+@pytest.mark.slow
 def test_paths_of_random_systems_reach_the_end_of_their_range() -> None:
     followed(FEW)
 

@@ -76,6 +76,7 @@ def equations(tree: Tree, q: np.ndarray, rates: np.ndarray) -> tuple[np.ndarray,
     return mass, force
 
 
+@pytest.mark.slow
 def test_motion_of_an_arm(arm, record_evidence):
     """Joint positions after 0.5 s against Lagrange's equations in joint coordinates."""
     names = list(POSITIONS)

@@ -334,6 +334,7 @@ def bricard() -> SpatialSystem:
     return system
 
 
+@pytest.mark.slow
 def test_bricard_mechanism(record_evidence):
     """A mechanism that moves although its constraints say that it cannot: energy and rank (IFToMM library, A04)."""
     motion = simulate(bricard(), 2.0, RungeKutta4(step=1e-3), times=np.linspace(0.0, 2.0, 21))

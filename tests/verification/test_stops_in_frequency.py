@@ -94,6 +94,7 @@ CHAIN = {"m1": [1.0, 0, 0], "12": [1.0, -1, 0], "m2": [0, 1.0, 0], "23": [0, 1.0
 """Rows of relative displacement in the chain of three masses."""
 
 
+@pytest.mark.slow
 def test_the_path_of_a_chain_with_sliders_and_a_stop_has_four_turning_points(record_evidence) -> None:
     way = {name: np.array(row) for name, row in CHAIN.items()}
     own = RandomSystem(chain(), np.zeros(0), laws=[

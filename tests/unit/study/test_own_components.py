@@ -62,6 +62,7 @@ def run(package: Path, *command: str) -> str:
     return done.stdout
 
 
+@pytest.mark.slow
 def test_they_serve_in_identify_in_a_study_and_in_its_report(package: Path) -> None:
     run(package, "-c", CODE)
     output = run(package, "-m", "dalembert.cli", "run", "study.toml", "--out", "run")

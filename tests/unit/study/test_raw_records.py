@@ -23,6 +23,7 @@ def test_the_template_holds_what_the_script_writes(tmp_path):
         np.testing.assert_allclose(*numbers, atol=0.0101, rtol=0)
 
 
+@pytest.mark.slow
 def test_the_study_of_the_template_finds_the_truth(tmp_path):
     study = load(begin("records", tmp_path / "rig"))
     assert "mixed: 601 samples" in plan(study)

@@ -281,6 +281,7 @@ def test_an_interval_on_its_bound_is_said():
     )
 
 
+@pytest.mark.slow
 def test_a_parameter_that_the_response_does_not_see_is_said():
     model = PythonModel(
         lambda size, rate, ghost: size * np.exp(-rate * TIMES) + 0 * ghost,

@@ -88,6 +88,7 @@ def fitted(model, values, deviations, seed):
     return identify(model, Measurements.of(TIMES, columns, deviations), seed=seed)
 
 
+@pytest.mark.slow
 def test_ninety_five_of_a_hundred_wrong_units_are_suspected_and_at_most_one_right_one():
     detected, alarms = 0, 0
     for seed in range(100):

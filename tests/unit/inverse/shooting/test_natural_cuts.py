@@ -56,10 +56,14 @@ def record(builder, channels, times, noise=2e-3, missing=()):
 
 
 @pytest.mark.parametrize("missing", [(), (20, *range(70, 90))], ids=["whole", "missing"])
-@pytest.mark.parametrize("times", [EVEN, UNEVEN], ids=["even", "uneven"])
+@pytest.mark.parametrize("times", [pytest.param(EVEN, marks=pytest.mark.slow), UNEVEN], ids=["even", "uneven"])
 @pytest.mark.parametrize(
     ("builder", "channels"),
-    [(driven, ["bar.end.angle"]), (driven, ["bar.end.x", "bar.end.y"]), (loop, ["rod.centre.x", "rod.centre.y"])],
+    [
+        (driven, ["bar.end.angle"]),
+        pytest.param(driven, ["bar.end.x", "bar.end.y"], marks=pytest.mark.slow),
+        (loop, ["rod.centre.x", "rod.centre.y"]),
+    ],
     ids=["angle", "point", "loop"],
 )
 def test_records_as_they_come_are_fitted_without_named_states(builder, channels, times, missing):
@@ -137,6 +141,7 @@ def test_growth_is_that_of_the_whole_motion():
     assert growth > 1e3
 
 
+@pytest.mark.slow
 def test_shooting_is_proposed_where_errors_grow_and_the_fit_is_doubtful():
     model, true, data = chaotic(EVEN)
     doubtful = identify(model, data, start=[0.5, 0.3, 3.0], starts=1)

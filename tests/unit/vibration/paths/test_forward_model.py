@@ -143,6 +143,7 @@ def test_what_makes_no_response_is_told(channels: list[str], frequencies: list[f
         FrequencyResponse(builder(ElasticSlider), {"a": (0.0, 1.0)}, channels, np.array(frequencies))
 
 
+@pytest.mark.slow
 def test_friction_is_identified_from_a_response_curve() -> None:
     """The waist: what identifies mechanisms identifies friction."""
 

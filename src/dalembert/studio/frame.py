@@ -16,20 +16,34 @@ STATES = {"finished": "positive", "running": "primary", "interrupted": "warning"
 LOOKS = """
 .border, .border-t { border-color: rgba(118, 129, 143, 0.45) }
 .cm-line.wrong { background: rgba(224, 49, 49, 0.28) !important }
+.cm-line.chosen { background: rgba(57, 135, 229, 0.16) !important }
+.study-parts > .q-splitter__before { padding-right: 8px; overflow: hidden }
+.study-parts > .q-splitter__after { padding-left: 8px }
+.study-parts .grip { position: absolute; inset: 0 -4px; border-radius: 4px }
+.study-parts .grip:focus-visible { outline: 3px solid currentColor }
+@media (min-width: 1024px) { .wide { height: calc(100dvh - 3.25rem) } }
+@media (max-width: 1023px) {
+    .study-parts { flex-direction: column }
+    .study-parts > .q-splitter__panel { width: 100% !important; padding: 0 }
+    .study-parts > .q-splitter__before { height: 45vh }
+    .study-parts > .q-splitter__separator { display: none }
+}
 .q-uploader__subtitle { display: none }
 .q-uploader__list { min-height: 0; padding: 0 }
 """
-"""Quiet lines; mistakes in red on any ground; no sizes and no empty list before anything was uploaded."""
+"""Quiet lines; mistakes in red on any ground; no sizes and no empty list before anything was uploaded; the parts of a
+study's page below each other on narrow screens."""
 WAYS = (("Runs", "/"), ("New study", "/new"))
 
 
 @contextmanager
-def frame(title: str) -> Iterator[None]:
-    """A page with the head on top; what is made in the block is its content."""
+def frame(title: str, *, wide: bool = False) -> Iterator[None]:
+    """A page with the head on top; what is made in the block is its content, in all of the window if ``wide``."""
     ui.page_title(f"{title} · dalembert")
     ui.colors(primary=LIGHT.series[0])
     ui.add_css(LOOKS)
-    main = ui.column().classes("w-full max-w-6xl mx-auto p-2 sm:p-4 gap-4").props("role=main id=main")
+    width = "wide flex-nowrap gap-2 p-2" if wide else "max-w-6xl mx-auto p-2 sm:p-4 gap-4"
+    main = ui.column().classes(f"w-full {width}").props("role=main id=main")
     with ui.header().classes("items-center gap-x-6 gap-y-1 py-2").props("role=banner"):
         ui.link("dalembert", "/").classes("text-white no-underline text-lg font-bold")
         with ui.row().classes("gap-4").props("role=navigation"):
@@ -39,7 +53,10 @@ def frame(title: str) -> Iterator[None]:
         ui.label(__version__).classes("text-xs opacity-80 max-sm:hidden")
     ui.skip_link("Skip to the content", target=main)  # after the header, which would move before it
     with main:
-        ui.label(title).classes("text-2xl font-bold break-words max-w-full").props("role=heading aria-level=1")
+        ui.query(".nicegui-content").classes(replace="nicegui-content p-0" if wide else "nicegui-content")
+        ui.label(title).classes(f"text-{'xl' if wide else '2xl'} font-bold break-words max-w-full").props(
+            "role=heading aria-level=1"
+        )
         yield
 
 
@@ -68,3 +85,9 @@ def report_of(folder: RunFolder, height: str) -> None:
 def button(text: str, on_click: Callable[[], object], *, icon: str, colour: str = "primary") -> ui.button:
     """A button in the studio's look."""
     return ui.button(text, on_click=on_click, icon=icon, color=colour).props("no-caps unelevated")
+
+
+def icon_button(icon: str, label: str, on_click: Callable[[], object]) -> ui.button:
+    """A button with an icon alone, and what it does as its label and tip."""
+    made = ui.button(on_click=on_click, icon=icon).props(f'flat round dense aria-label="{label}"')
+    return made.tooltip(label)

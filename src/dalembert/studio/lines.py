@@ -1,7 +1,8 @@
-"""Where in the text of a study file a place stands that a mistake is about."""
+"""Lines of the text of a study file, and the places in the file that they are about."""
 
 import re
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 _HEADER = re.compile(r"\s*(\[\[?)\s*([^\[\]]+?)\s*\]\]?\s*(#.*)?$")
 _PART = r"""(?:"[^"]*"|'[^']*'|[\w-]+)"""
@@ -27,19 +28,85 @@ def line_of(text: str, place: Sequence[str | int]) -> int:
     return 1
 
 
+def place_at(text: str, line: int) -> Place:
+    """Return the key, or the table, that a line is part of; an empty place above the first.
+
+    Examples
+    --------
+    >>> text = '[model]\\n[[model.body]]\\nname = "A"\\n'
+    >>> place_at(text, 2), place_at(text, 3)
+    (('model', 'body', 0), ('model', 'body', 0, 'name'))
+    """
+    found: Place = ()
+    for place, number in _places(text):
+        if number > line:
+            break
+        found = place
+    return found
+
+
+def is_within(place: Place | None, table: Place) -> bool:
+    """Whether a place is a table, or lies in it.
+
+    Examples
+    --------
+    >>> is_within(("model", "body", 0, "name"), ("model", "body", 0)), is_within(None, ("model",))
+    (True, False)
+    """
+    return place is not None and place[: len(table)] == table
+
+
+def table_of(text: str, place: Place) -> Place:
+    """Return the table with a header of its own that a place is, or lies in; an empty one if there is none.
+
+    Examples
+    --------
+    >>> table_of('[model]\\ngravity = 1\\n', ("model", "gravity", 1))
+    ('model',)
+    """
+    within = [table for table, _ in _tables(text) if is_within(place, table)]
+    return max(within, key=len, default=())
+
+
+def lines_of(text: str, table: Place) -> range:
+    """Return the lines of a table from its header to the last line before the next one; empty if it is not there.
+
+    Examples
+    --------
+    >>> lines_of('[model]\\n[[model.body]]\\nname = "A"\\n\\n[solver]\\n', ("model", "body", 0))
+    range(2, 4)
+    """
+    lines = text.splitlines()
+    headers = [*_tables(text), ((), len(lines) + 1)]
+    for (found, first), (_, after) in pairwise(headers):
+        if found == table:
+            while after - 1 > first and not lines[after - 2].strip():
+                after -= 1
+            return range(first, after)
+    return range(0)
+
+
 def _places(text: str) -> Iterator[tuple[Place, int]]:
     """Tables and keys with the numbers of their lines."""
-    counts: dict[str, int] = {}
+    headers = {number: table for table, number in _tables(text)}
     table: Place = ()
+    for number, line in enumerate(text.splitlines(), 1):
+        if number in headers:
+            table = headers[number]
+            yield from ((table[:length], number) for length in range(1, len(table) + 1))
+        elif key := _KEY.match(line):
+            yield (*table, *_parts(key[1])), number
+
+
+def _tables(text: str) -> Iterator[tuple[Place, int]]:
+    """Tables with the numbers of the lines of their headers."""
+    counts: dict[str, int] = {}
     for number, line in enumerate(text.splitlines(), 1):
         if header := _HEADER.match(line):
             name = header[2]
             if header[1] == "[[":
                 counts[name] = counts.get(name, -1) + 1
-            table = _resolved(_parts(name), counts)
-            yield from ((table[:length], number) for length in range(1, len(table) + 1))
-        elif key := _KEY.match(line):
-            yield (*table, *_parts(key[1])), number
+            yield _resolved(_parts(name), counts), number
 
 
 def _parts(name: str) -> list[str]:

@@ -14,9 +14,10 @@ from dalembert.errors import InputError
 from dalembert.studio.compare_page import compare_page
 from dalembert.studio.guard import Guard
 from dalembert.studio.jobs import Jobs
+from dalembert.studio.new_page import new_page
 from dalembert.studio.run_page import FILES, run_page
 from dalembert.studio.runs_page import runs_page
-from dalembert.studio.study_page import new_page, study_page
+from dalembert.studio.study_page import study_page
 from dalembert.studio.workspace import Workspace, checked
 
 PATIENCE = 30.0  # s that a browser may be out of reach, on a machine that runs are busy on

@@ -1,0 +1,21 @@
+"""What the panels of a study's page share besides the draft."""
+
+from dataclasses import dataclass
+
+from dalembert.studio.jobs import Jobs
+from dalembert.studio.workspace import Workspace
+
+
+@dataclass(frozen=True)
+class Room:
+    """Where the page of a study lives.
+
+    Parameters
+    ----------
+    workspace : Workspace
+    jobs : Jobs
+        Runs that this studio started.
+    """
+
+    workspace: Workspace
+    jobs: Jobs

@@ -4,7 +4,7 @@ SHELL := /bin/sh
 .DEFAULT_GOAL := help
 .SUFFIXES:
 .DELETE_ON_ERROR:
-.PHONY: help demo names checks kernels test wording verify validation docs bench wheel clean
+.PHONY: help demo names schema checks kernels test wording verify validation docs bench wheel clean
 
 DEMO_STUDY := studies/flexible-pendulum/identify.toml
 DEMO_RUN := runs/demo
@@ -25,6 +25,7 @@ BENCH_PIP := .venv-bench/bin/python -m pip install --quiet --disable-pip-version
 help:
 	@echo "make demo        identify a flexible double pendulum from measured motion, and write its report"
 	@echo "make names       write the index of components and the stubs of public names from the sources"
+	@echo "make schema      write the JSON schema of study files, which the package contains"
 	@echo "make test        format, lint, types, layers, tests (what a change must pass)"
 	@echo "make wording     write the messages of today into the snapshots of tests, for example TESTS=tests/unit/data"
 	@echo "make verify      make test, the slow tests too, and whether the validation pages are up to date"
@@ -41,6 +42,9 @@ demo: .venv/core.stamp
 # Only the standard library, so that it runs where the sources do not import.
 names: .venv/bin/python
 	$(BIN)/python tools/public_names.py
+
+schema: .venv/core.stamp
+	$(BIN)/dalembert schema > src/dalembert/study/study.schema.json
 
 checks: .venv/test.stamp
 	$(BIN)/ruff format --check

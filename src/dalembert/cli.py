@@ -225,11 +225,9 @@ def compile_() -> None:
 @app.command()
 def schema() -> None:
     """Print the JSON schema of study files, for editors."""
-    import json
+    from dalembert.study.schema import schema_text
 
-    from dalembert.study import json_schema
-
-    typer.echo(json.dumps(json_schema(), indent=2, ensure_ascii=False))
+    typer.echo(schema_text(), nl=False)
 
 
 def _console(stream: TextIO, **options: Any) -> "Console":

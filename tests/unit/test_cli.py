@@ -92,7 +92,11 @@ def test_a_study_from_a_template(dalembert, tmp_path):
     assert listed[-1] == "Begin with one of them by: dalembert new TEMPLATE FOLDER"
     begun = dalembert("new", "identify", "mine/rod")
     assert (begun.returncode, begun.stdout) == (0, "run it by: dalembert run mine/rod/rod.toml\n")
-    assert sorted(path.name for path in (tmp_path / "mine" / "rod").iterdir()) == ["motion.csv", "rod.toml"]
+    assert sorted(path.name for path in (tmp_path / "mine" / "rod").iterdir()) == [
+        "motion.csv",
+        "rod.toml",
+        "study.schema.json",
+    ]
     assert "in order; it identifies drag, angle" in dalembert("check", "mine/rod/rod.toml").stdout
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from dalembert.errors import InputError, no_text, require_known
 from dalembert.files import free_path, replacing, write_text
+from dalembert.study import schema_file
 from dalembert.study.folder import RunFolder, find_runs
 from dalembert.study.loader import LARGEST
 from dalembert.study.tasks import TASKS
@@ -73,7 +74,7 @@ class Workspace:
         return self.root / "studies" / f"{name}.toml"
 
     def create(self, name: str, content: str) -> str:
-        """A new study with its text; its name as :meth:`studies` gives it.
+        """A new study with its text, and the schema beside it; its name as :meth:`studies` gives it.
 
         Raises
         ------
@@ -86,6 +87,7 @@ class Workspace:
             raise InputError(f"there is a study {name!r} already; choose another name")
         folder.mkdir(parents=True)
         self.write(folder / "study.toml", content)
+        schema_file.write(folder)
         return f"{name}/study"
 
     def write(self, path: Path, content: str) -> None:

@@ -18,6 +18,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import AfterValidator, Discriminator, Field, Tag, create_model
 
 from dalembert.study.functions import FunctionName
+from dalembert.study.meanings import explained, meanings
 from dalembert.study.numbers import fixed, number
 from dalembert.study.places import JOINT_KEY
 from dalembert.study.places import place as planar_place
@@ -90,6 +91,7 @@ def table_of(
     kind = kind or target.__name__
     hints = typing.get_type_hints(target.__init__)
     fields = target.__dataclass_fields__  # dataclasses.fields leaves out the arguments that are no fields
+    told = meanings(target)
     keys: dict[str, Any] = {"kind": (Literal[kind], kind if default else ...)}  # pyright: ignore[reportInvalidTypeForm]
     for name, argument in inspect.signature(target).parameters.items():
         if not fields[name].metadata.get("key", True):  # for Python only
@@ -98,7 +100,8 @@ def table_of(
         numeric = (number if varying else fixed)(units.get(unit, unit))
         own = part(fields[name].metadata.get("table", ""))
         key = own or _key(name, _bare(hints[name]), numeric, signal, part, place)
-        keys[FORM if name == "kind" else name] = (key, _default(argument))
+        meaning = explained(told.get(name, ""))
+        keys[FORM if name == "kind" else name] = (key, Field(_default(argument), json_schema_extra=meaning))
     table = create_model(
         prefix + kind, __base__=KindTable, __doc__=(target.__doc__ or kind).strip().split("\n")[0], **keys
     )

@@ -23,6 +23,8 @@ from dalembert.study.table import Read, StudyTable, checked, completed, problem,
 from dalembert.units import expected, is_quantity, sentence, si
 
 MOST = 1_000_000  # numbers of a range
+UNIT = "x-unit"
+"""Keyword of a number's unit in the JSON schema; empty where it has none."""
 
 
 def read_number(value: object, unit: str | None, names: Iterable[str] | None = ()) -> float | Expression:
@@ -71,7 +73,8 @@ class _Described:
     unit: str | None
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        return {"anyOf": [{"type": "number"}, {"type": "string"}], "description": expected(self.unit)}
+        of_unit = {} if self.unit is None else {UNIT: self.unit.replace("**", "^")}
+        return {"anyOf": [{"type": "number"}, {"type": "string"}], "description": expected(self.unit), **of_unit}
 
 
 class Grid(StudyTable):

@@ -3,7 +3,7 @@
 import keyword
 from typing import Any
 
-from pydantic import ValidationInfo
+from pydantic import Field, ValidationInfo
 
 from dalembert.errors import InputError
 from dalembert.parameters import Parameter
@@ -22,13 +22,21 @@ class ParameterTable(StudyTable):
     Bounds are numbers in SI units, or have their unit with them: ``lower = "100 MPa"``.
     """
 
-    lower: float | str
-    upper: float | str
-    start: float | str | None = None
-    scale: float | str | None = None
-    unit: str | None = None
-    log: bool | None = None
-    deviation: float | str | None = None
+    lower: float | str = Field(description="lower bound, such as 0.1 or '100 MPa'")
+    upper: float | str = Field(description="upper bound; the parameter is fixed if both are equal")
+    start: float | str | None = Field(None, description="first guess; the middle of the bounds if not given")
+    scale: float | str | None = Field(
+        None, description="typical size, by which a search divides it; the larger bound in size if not given"
+    )
+    unit: str | None = Field(None, description="SI unit, for labels; that of the bounds if these have one")
+    log: bool | None = Field(
+        None,
+        description="whether a search uses its logarithm; by default if the bounds are positive and more than a decade "
+        "apart",
+    )
+    deviation: float | str | None = Field(
+        None, description="prior: standard deviation of the true value around start, known before the measurement"
+    )
 
     def _wrong(self) -> list[str]:
         if self.unit is not None and not is_si(self.unit):
@@ -72,10 +80,10 @@ class ParameterTable(StudyTable):
 class OwnParameterTable(StudyTable):
     """What differs of a parameter that one experiment has for itself; the rest is as in [parameters]."""
 
-    lower: float | str | None = None
-    upper: float | str | None = None
-    start: float | str | None = None
-    deviation: float | str | None = None
+    lower: float | str | None = Field(None, description="lower bound in this experiment")
+    upper: float | str | None = Field(None, description="upper bound in this experiment")
+    start: float | str | None = Field(None, description="first guess in this experiment")
+    deviation: float | str | None = Field(None, description="prior standard deviation in this experiment")
 
     def over(self, shared: ParameterTable) -> ParameterTable:
         """The parameter's table with these keys in place of its."""

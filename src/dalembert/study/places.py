@@ -17,6 +17,8 @@ from dalembert.study.expressions import Expression
 from dalembert.study.numbers import read_number
 from dalembert.study.table import checked, problem
 
+NAMES = "x-names"
+"""Keyword of the JSON schema where a text is the name of something in the study: what it is."""
 _POINT = re.compile(r"([^\W\d][\w-]*)\.([^\W\d][\w-]*)")
 _GROUND = re.compile(r"ground\s*\((.*)\)")
 _COMMA = re.compile(r",(?![^()]*(?:\([^()]*\)[^()]*)*\))")  # none inside brackets, such as those of atan2(y, x)
@@ -94,6 +96,7 @@ def place(bare: bool = True, space: bool = False) -> Any:
         return checked(lambda: read_place(value, names, bare=bare, space=space))
 
     schema = {"type": ["string", "array", "object"], "description": f"a point such as {_ways(bare, space)}"}
+    schema |= {NAMES: "point"}
     schema |= {"type": ["string", "array"]} if space else {}
     return Annotated[Any, PlainValidator(read), WithJsonSchema(schema)]
 
@@ -118,5 +121,5 @@ def _read_joint(value: Any) -> JointName:
 JOINT_KEY = Annotated[
     Any,
     PlainValidator(_read_joint),
-    WithJsonSchema({"type": "string", "description": "name of a joint, such as 'pin'"}),
+    WithJsonSchema({"type": "string", "description": "name of a joint, such as 'pin'", NAMES: "joint"}),
 ]

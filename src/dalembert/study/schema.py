@@ -1,5 +1,6 @@
 """The schema of study files, with all tasks and kinds that there are."""
 
+import json
 from collections.abc import Iterator, Mapping
 from functools import cache, lru_cache
 from typing import Any, ClassVar
@@ -68,11 +69,29 @@ def _texts(value: Any) -> Iterator[str]:
 
 
 class _Schema(GenerateJsonSchema):
-    """A choice by a function may have branches that a value fits at once, such as a word and a number with a unit."""
+    """JSON schema as TOML needs it: no null, and no titles of keys, which would repeat their names.
+
+    A choice by a function may have branches that a value fits at once, such as a word and a number with a unit.
+    """
+
+    def field_title_should_be_set(self, schema: Any) -> bool:
+        return False
+
+    def nullable_schema(self, schema: Any) -> dict[str, Any]:
+        return self.generate_inner(schema["schema"])
+
+    def default_schema(self, schema: Any) -> dict[str, Any]:
+        made = super().default_schema(schema)
+        return {key: value for key, value in made.items() if key != "default" or value not in (None, [], {})}
 
     def tagged_union_schema(self, schema: Any) -> dict[str, Any]:
         made = super().tagged_union_schema(schema)
         return made if "discriminator" in made else {("anyOf" if key == "oneOf" else key): made[key] for key in made}
+
+
+def schema_text() -> str:
+    """JSON schema of a study file, as text."""
+    return json.dumps(json_schema(), indent=1, ensure_ascii=False) + "\n"
 
 
 def json_schema() -> dict[str, Any]:

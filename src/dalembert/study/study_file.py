@@ -34,7 +34,9 @@ class StudyFile(StudyTable):
         BeforeValidator(check_names),
         WithJsonSchema({"type": "object", "additionalProperties": {"type": ["number", "string"]}}),
     ] = Field({}, description="named numbers: '400 mm', or expressions of parameters and of constants before them")
-    parameters: Annotated[dict[str, ParameterTable], BeforeValidator(check_names)] = {}
+    parameters: Annotated[dict[str, ParameterTable], BeforeValidator(check_names)] = Field(
+        {}, description="numbers that a task varies, by name"
+    )
     model: ModelTable
     solver: Any = None
     harmonic_balance: Any = None

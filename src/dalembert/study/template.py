@@ -7,6 +7,7 @@ from pathlib import Path
 
 from dalembert.errors import InputError, require_known
 from dalembert.files import write_text
+from dalembert.study import schema_file
 
 TEMPLATES = files("dalembert.study") / "templates"
 
@@ -44,7 +45,7 @@ def templates() -> dict[str, Template]:
 
 
 def begin(template: str, folder: Path) -> Path:
-    """Write a template's files into a new folder; the path of its study, which has the folder's name.
+    """Write a template's files and the schema into a new folder; the path of its study, which has the folder's name.
 
     Raises
     ------
@@ -61,6 +62,7 @@ def begin(template: str, folder: Path) -> Path:
         raise InputError(f"the folder {folder} cannot be made: {error.strerror}; name another") from None
     study = folder / f"{folder.resolve().name}.toml"
     write_text(study, known[template].text)
+    schema_file.write(folder)
     for name, text in known[template].beside.items():
         write_text(folder / name, text)
     return study

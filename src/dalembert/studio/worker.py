@@ -1,0 +1,250 @@
+"""A process that computes for one opened study, so that a model that hangs, crashes or fills the memory ends alone."""
+
+import asyncio
+import multiprocessing
+import os
+import signal
+from collections.abc import Callable, Hashable
+from concurrent.futures import Future
+from dataclasses import dataclass, field
+from functools import partial
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
+from queue import SimpleQueue
+from threading import Thread
+from typing import Any, Concatenate, ParamSpec, TypeVar, cast
+
+from dalembert.errors import DalembertError, told
+
+P = ParamSpec("P")
+T = TypeVar("T")
+ANSWER, WRONG, MEMORY = "answer", "wrong", "memory"
+CLOSED = "The study was closed."
+FREE = 0.5
+"""Share of the machine's memory that a process may fill."""
+
+
+class WorkerError(DalembertError):
+    """A computation that failed, or whose process ended."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What one process may use.
+
+    Parameters
+    ----------
+    seconds : float
+        Time of one request; kernels that are not compiled yet are compiled within it.
+    bytes : int
+        Memory. Windows and macOS do not limit it.
+    """
+
+    seconds: float = 180.0
+    bytes: int = field(default_factory=lambda: int(FREE * _memory()))
+
+
+@dataclass
+class Kept:
+    """What a process keeps from request to request: the newest thing of each kind."""
+
+    _things: dict[str, tuple[Hashable, Any]] = field(default_factory=dict)
+
+    def newest(self, kind: str, source: Hashable, make: Callable[[], T]) -> T:
+        """Return the thing made of a source, made anew if the last one of its kind was made of another source.
+
+        >>> kept = Kept()
+        >>> [kept.newest("square", n, lambda: [n * n]) for n in (2, 3)]
+        [[4], [9]]
+        """
+        if kind not in self._things or self._things[kind][0] != source:
+            self._things.pop(kind, None)  # before the new one is made: there may be no room for both
+            self._things[kind] = source, make()
+        return cast(T, self._things[kind][1])
+
+
+class Worker:
+    """A process that answers requests in their order, and of each subject the newest alone.
+
+    Parameters
+    ----------
+    limits : Limits
+
+    Notes
+    -----
+    The process starts with :meth:`start`, and again with the first request after it has ended.
+    """
+
+    def __init__(self, limits: Limits | None = None) -> None:
+        self.limits = Limits() if limits is None else limits
+        self._newest: dict[str, object] = {}
+        self._turns: SimpleQueue[Callable[[], object] | None] = SimpleQueue()
+        self._process: BaseProcess | None = None
+        self._connection: Connection | None = None
+        self._ended = ""
+        Thread(target=self._take_turns, daemon=True).start()  # the studio ends without waiting for it
+
+    def start(self) -> None:
+        """Start the process, which takes a second or two, before anything is asked for."""
+        self._turns.put(self._running)
+
+    async def ask(
+        self, subject: str, function: Callable[Concatenate[Kept, P], T], *arguments: P.args, **named: P.kwargs
+    ) -> T | None:
+        """Return ``function(kept, *arguments)``, computed in the process.
+
+        Parameters
+        ----------
+        subject : str
+            What is asked for. A request that waits is dropped when a newer one of its subject comes.
+        function : callable
+            Of a module, so that the process finds it. Its first argument keeps things between requests.
+
+        Returns
+        -------
+        any
+            None if the request was dropped.
+
+        Raises
+        ------
+        WorkerError
+            If the function failed, took too long, or ended its process.
+        """
+        mine = self._newest[subject] = object()
+        answer: Future[T | None] = Future()
+        request = (partial(function, **named) if named else function), arguments
+
+        def turn() -> None:
+            if not answer.set_running_or_notify_cancel():
+                return
+            try:
+                answer.set_result(self._exchange(request) if self._newest.get(subject) is mine else None)
+            except Exception as error:
+                answer.set_exception(error)
+
+        self._turns.put(turn)
+        return await asyncio.wrap_future(answer)
+
+    def drop(self, subject: str) -> None:
+        """Drop the request of a subject that waits."""
+        self._newest[subject] = object()
+
+    def interrupt(self) -> None:
+        """End the process, whatever it computes. The next request starts a new one."""
+        self._end("The computation was stopped. Change a value to start it again.")
+
+    def stop(self) -> None:
+        """End the process for good."""
+        self._newest.clear()
+        self._turns.put(None)
+        self._end(CLOSED)
+
+    def _take_turns(self) -> None:
+        while turn := self._turns.get():
+            turn()
+        self._end(CLOSED)  # one that started meanwhile
+
+    def _end(self, reason: str) -> None:
+        process = self._process
+        if process is not None and process.is_alive():
+            self._ended = reason
+            process.kill()
+            self._connection = None  # the next request starts another process
+
+    def _running(self) -> Connection:
+        """Return the connection to the process, which is started if there is none."""
+        if self._connection is None or self._process is None or not self._process.is_alive():
+            context = multiprocessing.get_context("spawn")
+            self._connection, theirs = context.Pipe()
+            self._ended = ""
+            self._process = context.Process(target=_serve, args=(theirs, self.limits.bytes), daemon=True)
+            self._process.start()
+            theirs.close()
+        return self._connection
+
+    def _exchange(self, request: tuple[Callable[..., Any], tuple[Any, ...]]) -> Any:
+        connection = self._running()
+        try:
+            connection.send(request)
+            if not connection.poll(self.limits.seconds):
+                self._end(
+                    f"The computation took more than {self.limits.seconds:g} s and was stopped. Simulate a shorter "
+                    "time or take larger steps; the next change starts it again."
+                )
+            outcome, content = connection.recv()
+        except (EOFError, OSError):
+            raise WorkerError(self._ending()) from None
+        if outcome == MEMORY:
+            self._end("")
+            raise WorkerError(
+                f"The computation needs more than {self.limits.bytes / 1e9:.3g} GB of memory and was stopped. Take "
+                "fewer samples or larger steps; the next change starts it again."
+            )
+        if outcome == WRONG:
+            raise WorkerError(content)
+        return content
+
+    def _ending(self) -> str:
+        """Say why the process has ended."""
+        assert self._process is not None
+        self._process.join(10.0)
+        code = self._process.exitcode
+        if self._ended:
+            return self._ended
+        how = f"by the signal {signal.Signals(-code).name}" if code is not None and code < 0 else f"with code {code}"
+        return (
+            f"The process that computes this study ended {how}. Check the Python functions and the compiled code that "
+            "the study names, and whether the machine has enough memory; the next change starts a new process."
+        )
+
+
+def _memory() -> float:
+    """Bytes of the machine's memory; 8 GB where the system does not say it."""
+    try:
+        return float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+    except (AttributeError, ValueError, OSError):
+        return 8e9
+
+
+def _serve(connection: Connection, most_bytes: int) -> None:
+    """Answer requests until the studio or the memory ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in the terminal is the studio's, which ends this process
+    Thread(target=_follow_parent, daemon=True).start()
+    _limit_memory(most_bytes)
+    kept, outcome = Kept(), ANSWER
+    while outcome != MEMORY:
+        try:
+            function, arguments = connection.recv()
+        except EOFError:
+            return
+        outcome = _send(connection, partial(function, kept, *arguments))
+
+
+def _send(connection: Connection, compute: Callable[[], object]) -> str:
+    """Send what is computed, or why there is nothing; return which of them."""
+    try:
+        connection.send((ANSWER, compute()))
+        return ANSWER
+    except MemoryError:
+        outcome, content = MEMORY, ""
+    except Exception as error:  # of the user's model too
+        outcome, content = WRONG, told(error)
+    connection.send((outcome, content))
+    return outcome
+
+
+def _limit_memory(most_bytes: int) -> None:
+    try:
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_DATA, (most_bytes, most_bytes))
+    except (ImportError, ValueError, OSError):  # another system, or a limit that is lower already
+        return
+
+
+def _follow_parent() -> None:
+    """End this process with the studio, also when that was killed while this one computes."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)

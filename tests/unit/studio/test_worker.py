@@ -1,0 +1,142 @@
+"""The process that computes for a study: its answers, and that it alone ends with what ends in it."""
+
+import asyncio
+import os
+import signal
+import sys
+import time
+from collections.abc import Awaitable, Callable, Iterator
+from typing import TypeVar
+
+import pytest
+
+from dalembert.studio.worker import Limits, Worker, WorkerError
+from worker_functions import (
+    built,
+    crashing,
+    divided,
+    double,
+    filling,
+    hanging,
+    leaving,
+    process,
+    refused,
+    unsendable,
+)
+
+T = TypeVar("T")
+GB = 1_000_000_000
+
+
+@pytest.fixture(scope="module")
+def worker() -> Iterator[Worker]:
+    worker = Worker(Limits(seconds=20.0, bytes=GB))
+    worker.start()
+    yield worker
+    worker.stop()
+
+
+def run(work: Callable[[], Awaitable[T]]) -> T:
+    async def main() -> T:
+        return await work()
+
+    return asyncio.run(main())
+
+
+def sentence(worker: Worker, function: Callable) -> str:
+    """What the worker says of a function that fails; afterwards it answers again."""
+    with pytest.raises(WorkerError) as caught:
+        run(lambda: worker.ask("model", function))
+    assert run(lambda: worker.ask("model", double, 2.0)) == 4.0
+    return str(caught.value)
+
+
+def test_another_process_answers_and_keeps_what_it_made(worker):
+    first, second = (run(lambda: worker.ask("process", process)) for _ in range(2))
+    assert first == second != os.getpid()
+    one, same, other = (run(lambda name=name: worker.ask("made", built, name)) for name in ("a", "a", "b"))
+    assert one == same
+    assert run(lambda: worker.ask("made", built, "b")) == other
+
+
+def test_the_newest_request_of_each_subject_wins(worker):
+    async def ask_all():
+        first = asyncio.create_task(worker.ask("slow", double, 0.0, wait=0.3))
+        await asyncio.sleep(0.1)
+        others = [asyncio.create_task(worker.ask("moved", double, float(n))) for n in range(5)]
+        drawn = asyncio.create_task(worker.ask("drawn", double, 7.0))
+        return await asyncio.gather(first, *others, drawn)
+
+    assert run(ask_all) == [0.0, None, None, None, None, 8.0, 14.0]
+
+
+def test_a_request_that_waits_can_be_dropped(worker):
+    async def ask_all():
+        first = asyncio.create_task(worker.ask("slow", double, 1.0, wait=0.3))
+        waiting = asyncio.create_task(worker.ask("moved", double, 2.0))
+        await asyncio.sleep(0.1)
+        worker.drop("moved")
+        return await asyncio.gather(first, waiting)
+
+    assert run(ask_all) == [2.0, None]
+
+
+def test_errors_are_sentences_and_the_process_goes_on(worker):
+    before = run(lambda: worker.ask("process", process))
+    assert sentence(worker, refused) == "mass is -1; expected a positive number"
+    assert sentence(worker, divided) == "ZeroDivisionError: division by zero (worker_functions.py, line 33)"
+    assert "pickle" in sentence(worker, unsendable)
+    assert run(lambda: worker.ask("process", process)) == before
+
+
+def test_a_model_that_hangs_is_stopped(monkeypatch, worker):
+    monkeypatch.setattr(worker, "limits", Limits(seconds=0.5, bytes=GB))
+    with pytest.raises(WorkerError, match=r"more than 0\.5 s and was stopped"):
+        run(lambda: worker.ask("model", hanging))
+    monkeypatch.undo()
+    assert run(lambda: worker.ask("model", double, 2.0)) == 4.0
+
+
+def test_a_user_stops_what_takes_long(worker):
+    async def interrupted():
+        asked = asyncio.create_task(worker.ask("model", hanging))
+        await asyncio.sleep(0.3)
+        worker.interrupt()
+        await asked
+
+    with pytest.raises(WorkerError, match=r"^The computation was stopped\."):
+        run(interrupted)
+    assert run(lambda: worker.ask("model", double, 2.0)) == 4.0
+
+
+def test_a_crash_ends_the_process_alone(worker):
+    assert "ended by the signal SIGSEGV. Check the Python functions" in sentence(worker, crashing)
+    assert "ended with code 3. Check" in sentence(worker, leaving)
+
+
+def test_a_killed_process_is_replaced(worker):
+    number = run(lambda: worker.ask("process", process))
+    os.kill(number, signal.SIGKILL)
+    time.sleep(0.2)
+    assert run(lambda: worker.ask("process", process)) != number
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="Linux alone limits the memory of a process.")
+def test_a_model_that_fills_the_memory_is_stopped(worker):
+    assert sentence(worker, filling).startswith("The computation needs more than 1 GB of memory and was stopped.")
+
+
+def test_a_closed_study_has_no_process():
+    worker = Worker()
+    number = run(lambda: worker.ask("process", process))
+    assert number is not None
+    worker.stop()
+    until = time.monotonic() + 10
+    while time.monotonic() < until:
+        try:
+            os.kill(number, 0)
+        except ProcessLookupError:
+            return
+        if worker._process is not None:
+            worker._process.join(0.1)
+    raise AssertionError(f"process {number} is still there")

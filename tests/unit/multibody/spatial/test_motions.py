@@ -54,7 +54,8 @@ def response(build, fields: dict) -> mb.TimeResponse:
 def outputs(joint: sp.Joint) -> tuple[str, ...]:
     """Channels of a joint that are compared: of a coupling all."""
     known = [name for name, _ in joint.kind.outputs]
-    return ("force_x", "torque_3") if "force_x" in known else tuple(known)
+    turns = [name for name in known if name.startswith(("angle_", "rate_"))]
+    return ("force_x", "torque_3", *turns) if "force_x" in known else tuple(known)
 
 
 @cache

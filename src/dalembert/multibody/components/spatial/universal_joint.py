@@ -7,14 +7,47 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.spatial.conditions import MEETS, Condition, perpendicular
-from dalembert.multibody.components.spatial.joint import Joint, joint_kind
+from dalembert.multibody.components.spatial.conditions import MEETS, Condition, forces_of, perpendicular
+from dalembert.multibody.components.spatial.joint import REACTIONS, Joint, joint_kind, observed
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Orientation, Vector
-from dalembert.multibody.components.spatial.pairs import e1, e2, f1, f2, push_a_axis, push_b_axis
+from dalembert.multibody.components.spatial.pairs import (
+    COORDINATES,
+    e1,
+    e2,
+    e3,
+    f1,
+    f2,
+    f3,
+    push_a_axis,
+    push_b_axis,
+    relative_spin,
+)
 from dalembert.multibody.components.spatial.vectors import dot, times
+from dalembert.multibody.kernels.elementary import angle_of
 
-UNIVERSAL = joint_kind("universal", __name__, MEETS, perpendicular(1, 2))
+_CROSS = (MEETS, perpendicular(1, 2))
+ANGLES = (("angle_a", "rad"), ("rate_a", "rad/s"), ("angle_b", "rad"), ("rate_b", "rad/s"))
+_reactions = observed(forces_of(_CROSS, COORDINATES), COORDINATES + 4, angle=False, displacement=False)
+
+
+@inlined
+def _observe(x, v, a, p, m, inputs, out):
+    """Reactions, the turns about both pins, b = R(e1, angle_a) R(f2, angle_b) a, and rates spin . e1 and spin . f2."""
+    _reactions(x, v, a, p, m, inputs, out)
+    first, other, spin = e1(x, p, m), f2(x, p, m), relative_spin(x, v, m)
+    out[12], out[13] = angle_of(dot(e2(x, p, m), other), dot(e3(x, p, m), other)), dot(spin, first)
+    out[14], out[15] = angle_of(dot(first, f1(x, p, m)), dot(first, f3(x, p, m))), dot(spin, other)
+
+
+UNIVERSAL = joint_kind(
+    "universal",
+    __name__,
+    *_CROSS,
+    outputs=(*REACTIONS, *ANGLES),
+    angles=("angle_a", "angle_b"),
+    observe=_observe,
+)
 
 _push_e1, _push_e2, _push_f1, _push_f2 = push_a_axis(1), push_a_axis(2), push_b_axis(1), push_b_axis(2)
 
@@ -48,6 +81,22 @@ class UniversalJoint(Joint):
         Direction of the pin in a, in the axes of a.
     axis_b : (float, float, float)
         Direction of the pin in b, in the axes of b.
+
+    Notes
+    -----
+    ``angle_a`` and ``angle_b`` are the turns about the pins: b is turned about ``axis_b``, then with the cross about
+    ``axis_a``. They are zero where both markers have the same orientation, if the pins are then perpendicular.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from dalembert.multibody import simulate
+    >>> from dalembert.multibody.spatial import Inertia, Orientation, RigidBody, SpatialSystem
+    >>> system, rod = SpatialSystem(), Inertia.cylinder(mass=1.0, radius=0.01, length=0.5)
+    >>> body = system.add(RigidBody("rod", rod, orientation=Orientation.by_angles("xy", [0.3, -0.2])))
+    >>> _ = system.add(UniversalJoint("cross", system.ground, body.point("origin")))
+    >>> simulate(system, end=0.01).channels(["cross.angle_a", "cross.angle_b"])[0].round(12)
+    array([ 0.3, -0.2])
     """
 
     axis_a: Vector = (1.0, 0.0, 0.0)
@@ -57,7 +106,11 @@ class UniversalJoint(Joint):
 
     @property
     def turned(self) -> tuple[np.ndarray, np.ndarray]:
-        first, second = Orientation.by_axes(self.axis_a).matrix, Orientation.by_axes(self.axis_b).matrix
+        across = np.cross(self.axis_a, self.axis_b)
+        parallel = np.real(across @ across) < 1e-12  # of pins that are given in markers that are turned
+        towards, normal = (None, None) if parallel else (self.axis_b, across)
+        first = Orientation.by_axes(self.axis_a, towards).matrix
+        second = Orientation.by_axes(self.axis_b, normal).matrix
         return first[:, [2, 0, 1]], second[:, [1, 2, 0]]  # the pin as the first axis of a, the second of b
 
     def lower(self, lowering: SpatialLowering) -> None:

@@ -72,6 +72,8 @@ class Rigid(Body):
 
     def outline(self, coordinates: np.ndarray, points: int) -> np.ndarray:
         local = np.array([self.local(point) for point in self.point_names if point != "centre"] or [(0.0, 0.0)])
+        if len(local) == 1:
+            local = np.vstack([local, (0.0, 0.0)])
         if len(local) > 2:
             local = np.vstack([local, local[:1]])
         c, s = np.cos(coordinates[:, 2:]), np.sin(coordinates[:, 2:])

@@ -1,0 +1,58 @@
+"""The picture of a model, by its type."""
+
+from functools import singledispatch
+from typing import Any
+
+from dalembert.multibody.sketch import Sketch, sketch
+from dalembert.multibody.system import Mechanism
+from dalembert.report.pictures.canvas import SIZE
+from dalembert.report.pictures.mechanism import mechanism_picture
+from dalembert.report.pictures.structure import structure_picture
+from dalembert.vibration import VibrationSystem
+
+
+@singledispatch
+def picture(model: Any, label: str = "Drawing of the model", size: tuple[int, int] = SIZE) -> str | None:
+    """Return a picture of a model as SVG; None for a model that has no shape, such as a Python function.
+
+    Its colours can be seen on light and on dark pages. Each part of the model is a group with the attribute
+    ``data-part``, its name.
+
+    Parameters
+    ----------
+    model : System, SpatialSystem, VibrationSystem or another
+    label : str
+        Description for screen readers.
+    size : (int, int)
+        Width and height in pixels.
+
+    Raises
+    ------
+    ModelError
+        Where the mechanism cannot be assembled.
+
+    Examples
+    --------
+    >>> from dalembert.multibody import RevoluteJoint, RigidBar, System
+    >>> system = System()
+    >>> rod = system.add(RigidBar("rod", length=1.0, mass=1.0))
+    >>> joint = system.add(RevoluteJoint("pin", system.ground, rod.start))
+    >>> 'data-part="rod"' in picture(system)
+    True
+    """
+    return None
+
+
+@picture.register
+def _(model: Mechanism, label: str = "Drawing of the mechanism", size: tuple[int, int] = SIZE) -> str | None:
+    return mechanism_picture(sketch(model), label, size) if model.bodies else None
+
+
+@picture.register
+def _(model: Sketch, label: str = "Drawing of the mechanism", size: tuple[int, int] = SIZE) -> str | None:
+    return mechanism_picture(model, label, size)
+
+
+@picture.register
+def _(model: VibrationSystem, label: str = "Drawing of the structure", size: tuple[int, int] = SIZE) -> str | None:
+    return structure_picture(model, label, size)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from dalembert.studio.jobs import Jobs
+from dalembert.studio.worker import Worker
 from dalembert.studio.workspace import Workspace
 
 
@@ -15,7 +16,10 @@ class Room:
     workspace : Workspace
     jobs : Jobs
         Runs that this studio started.
+    worker : Worker
+        Computes for this page, in a process that ends with it.
     """
 
     workspace: Workspace
     jobs: Jobs
+    worker: Worker

@@ -14,6 +14,7 @@ from dalembert.studio.reading import read
 from dalembert.studio.room import Room
 from dalembert.studio.splitter import splitter
 from dalembert.studio.text_editor import TextEditor
+from dalembert.studio.worker import Worker
 from dalembert.studio.workspace import Workspace
 from dalembert.study import load
 
@@ -30,7 +31,9 @@ def study_page(workspace: Workspace, jobs: Jobs, name: str) -> None:
         with frame("No such study"):
             ui.label(str(error)).props("role=alert")
         return
-    room = Room(workspace, jobs)
+    room = Room(workspace, jobs, Worker())
+    room.worker.start()
+    ui.context.client.on_delete(room.worker.stop)
     with frame(name, wide=True):
         head = ui.column().classes("w-full gap-1")
         with splitter("Width of the text") as (left, right):

@@ -4,9 +4,10 @@ import re
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
-_HEADER = re.compile(r"\s*(\[\[?)\s*([^\[\]]+?)\s*\]\]?\s*(#.*)?$")
 _PART = r"""(?:"[^"]*"|'[^']*'|[\w-]+)"""
-_KEY = re.compile(rf"\s*({_PART}(?:\s*\.\s*{_PART})*)\s*=")
+_PARTS = rf"{_PART}(?:\s*\.\s*{_PART})*"
+_HEADER = re.compile(rf"\s*(\[\[?)\s*({_PARTS})\s*\]\]?\s*(#.*)?$")
+_KEY = re.compile(rf"\s*({_PARTS})\s*=")
 Place = tuple[str | int, ...]
 
 
@@ -64,7 +65,7 @@ def table_of(text: str, place: Place) -> Place:
     >>> table_of('[model]\\ngravity = 1\\n', ("model", "gravity", 1))
     ('model',)
     """
-    within = [table for table, _ in _tables(text) if is_within(place, table)]
+    within = [table for table, _ in tables(text) if is_within(place, table)]
     return max(within, key=len, default=())
 
 
@@ -77,7 +78,7 @@ def lines_of(text: str, table: Place) -> range:
     range(2, 4)
     """
     lines = text.splitlines()
-    headers = [*_tables(text), ((), len(lines) + 1)]
+    headers = [*tables(text), ((), len(lines) + 1)]
     for (found, first), (_, after) in pairwise(headers):
         if found == table:
             while after - 1 > first and not lines[after - 2].strip():
@@ -88,7 +89,7 @@ def lines_of(text: str, table: Place) -> range:
 
 def _places(text: str) -> Iterator[tuple[Place, int]]:
     """Tables and keys with the numbers of their lines."""
-    headers = {number: table for table, number in _tables(text)}
+    headers = {number: table for table, number in tables(text)}
     table: Place = ()
     for number, line in enumerate(text.splitlines(), 1):
         if number in headers:
@@ -98,7 +99,7 @@ def _places(text: str) -> Iterator[tuple[Place, int]]:
             yield (*table, *_parts(key[1])), number
 
 
-def _tables(text: str) -> Iterator[tuple[Place, int]]:
+def tables(text: str) -> Iterator[tuple[Place, int]]:
     """Tables with the numbers of the lines of their headers."""
     counts: dict[str, int] = {}
     for number, line in enumerate(text.splitlines(), 1):

@@ -18,6 +18,15 @@ from dalembert.study.table import Read, StudyTable, completed, problem, told_apa
 from dalembert.units import is_quantity, si
 
 _TABLES = ("body", "joint", "load")
+_MEANINGS = {
+    "body": "a body of a mechanism",
+    "joint": "a joint of a mechanism",
+    "load": "a force, spring, motor or sensor of a mechanism",
+    "mass": "a mass of a structure",
+    "spring": "a spring of a structure",
+    "force": "a force on a structure",
+    "contact": "a contact of a structure",
+}
 
 
 class ModelTable(StudyTable):
@@ -28,11 +37,13 @@ class ModelTable(StudyTable):
     """
 
     file: str | None = Field(None, description="another TOML file, which holds the model's tables")
-    function: FunctionName | None = None
-    forward: FunctionName | None = None
+    function: FunctionName | None = Field(None, description="Python function that returns a system: 'model.py:name'")
+    forward: FunctionName | None = Field(None, description="Python function that returns a forward model: 'model.py:name'")
     arguments: dict[str, Any] = Field({}, description="fixed arguments of the function")
     space: Literal[False] = Field(False, description="true for a mechanism in space: its components and three axes")
-    gravity: Annotated[list[Any], Read(gravity_key(2))] | None = None
+    gravity: Annotated[list[Any], Read(gravity_key(2))] | None = Field(
+        None, description="acceleration along x and y; [0, -9.81] if not given"
+    )
     driving: list[str] = Field(
         [], description="placement coordinates kept while a closed loop is assembled: 'AB.angle'"
     )
@@ -167,7 +178,9 @@ class SpatialModelTable(ModelTable):
     model_config = ConfigDict(json_schema_extra=_only_mechanism)
 
     space: Literal[True]
-    gravity: Annotated[list[Any], Read(gravity_key(3))] | None = None
+    gravity: Annotated[list[Any], Read(gravity_key(3))] | None = Field(
+        None, description="acceleration along x, y and z; [0, 0, -9.81] if not given"
+    )
     robot: RobotTable | None = None
     structure: Any = None
 
@@ -202,7 +215,8 @@ def _components(words: Words, *, space: bool = False, **options: Any) -> dict[st
             kinds = kinds_of(table, words, space=space)
             kinds = kinds or (kinds_of(table, space=space) if table in (words or ()) else ())
             if kinds:
-                lists[table] = (list[one_of([table_of(target, signal=signal, **options) for target in kinds])], [])
+                tables = [table_of(target, signal=signal, **options) for target in kinds]
+                lists[table] = (list[one_of(tables)], Field([], description=_MEANINGS[table]))
     return lists
 
 
@@ -211,6 +225,6 @@ def model_table(words: Words = None) -> type[ModelTable]:
     """The model's table with all kinds of components that there are, or those that words name."""
     lists = _components(words)
     if words is None or not words.isdisjoint((*PARTS, "structure")):
-        lists |= {name: (kind, []) for name, kind in part_tables().items()}
+        lists |= {name: (kind, Field([], description=_MEANINGS[name])) for name, kind in part_tables().items()}
         lists["structure"] = (structure_table() | None, None)
     return completed(ModelTable, **lists)

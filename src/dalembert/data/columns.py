@@ -165,6 +165,12 @@ def chosen(
     return along, table
 
 
+def of_numbers(columns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The columns of real numbers or dates, one a sample, among others; dates as seconds since the first."""
+    rows = {name: _seconds(column) for name, column in columns.items() if column.ndim == 1}
+    return {name: column for name, column in rows.items() if column.dtype.kind in "fiu"}
+
+
 def _of_trial(path: Path, columns: Mapping[str, np.ndarray], trial: Trial) -> dict[str, np.ndarray]:
     """The samples of one trial, of all columns that are as long as the one that numbers the trials."""
     name = str(trial.column)

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
+import numpy as np
+
 from dalembert.data.columns import Columns, Trial
 from dalembert.data.text_layout import AUTO
 
@@ -74,6 +76,19 @@ class Format(ABC):
         ------
         DataError
         """
+
+    def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
+        """Return all columns of numbers of a file, with the unit that it names, before one is chosen as the times.
+
+        By default those that lie along a column `t`, and that one.
+
+        Raises
+        ------
+        DataError
+        """
+        found = self.columns(path, Request("t", None, "leave-out"))
+        columns = {found.time: found.along, **found.table}
+        return {name: (array, found.units.get(name, "")) for name, array in columns.items()}
 
     def trial_labels(self, path: Path, column: str | int, separator: str, decimal: str) -> list[str]:
         """Return the label of the trial of each sample; only formats with several trials in a file need it.

@@ -2,6 +2,7 @@
 
 import csv
 import math
+import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -94,7 +95,7 @@ def layout(lines: Sequence[Line], time: str | int, separator: str = AUTO, decima
     ]
     first = [text for _, text in plain[:_SAMPLE]]
     cut, mark = max(marks, key=lambda pair: _suits(sample, first, *pair))
-    rows = _split(plain, cut)
+    rows = split(plain, cut)
     counts = Counter(len(cells) for _, cells in rows[len(rows) // 2 :][:_SAMPLE])
     width = counts.most_common(1)[0][0] if counts else 0
     begin = _first_numbers(rows, width, mark)
@@ -126,7 +127,7 @@ def value(cell: str, decimal: str) -> float:
     return float("" if decimal == "," and "." in cell else cell.replace(decimal, "."))
 
 
-def _split(lines: Iterable[Line], separator: str) -> list[Row]:
+def split(lines: Iterable[Line], separator: str) -> list[Row]:
     lines = list(lines)
     if separator == " ":
         return [(number, text.split()) for number, text in lines]
@@ -136,11 +137,11 @@ def _split(lines: Iterable[Line], separator: str) -> list[Row]:
 
 def _suits(sample: Sequence[str], first: Sequence[str], separator: str, decimal: str) -> tuple[float, int]:
     """Share of the cells that are numbers or empty times that of the lines of equal length; the number of columns."""
-    rows = [cells for _, cells in _split(enumerate(sample), separator)]
+    rows = [cells for _, cells in split(enumerate(sample), separator)]
     cells = [cell for row in rows for cell in row]
     good = sum(is_number(cell, decimal) or cell.lower() in GAPS for cell in cells)
     width = Counter(map(len, rows)).most_common(1)[0][0] if rows else 0
-    even = sum(len(cells) == width for _, cells in _split(enumerate(first), separator)) / max(1, len(first))
+    even = sum(len(cells) == width for _, cells in split(enumerate(first), separator)) / max(1, len(first))
     return even * good / max(1, len(cells)), width
 
 
@@ -152,9 +153,14 @@ def _first_numbers(rows: Sequence[Row], width: int, decimal: str) -> int:
         for column in range(width)
         if 2 * sum(is_number(cells[column], decimal) for cells in sample) >= max(1, len(sample))
     ]
-    found = [_has_numbers(cells, numeric, width, decimal) for _, cells in rows]
-    begins = [number for number, there in enumerate(found) if there]
-    return next((number for number in begins if all(found[number : number + _FOLLOW])), (begins or [len(rows)])[0])
+    first = len(rows)
+    for place, (_, cells) in enumerate(rows):
+        if _has_numbers(cells, numeric, width, decimal):
+            first = min(first, place)
+            following = (cells for _, cells in rows[place + 1 : place + _FOLLOW])
+            if all(_has_numbers(cells, numeric, width, decimal) for cells in following):
+                return place
+    return first
 
 
 def _has_numbers(cells: Sequence[str], numeric: Sequence[int], width: int, decimal: str) -> bool:
@@ -179,13 +185,24 @@ def _above(lines: Sequence[Line], before: float, separator: str, width: int, tim
             break
         marked = text.lstrip().startswith(COMMENTS)
         plain = text.lstrip().lstrip("%#").strip() if marked else text
-        ((_, cells),) = _split([(number, plain)], separator)
+        ((_, cells),) = split([(number, plain)], separator)
         cells = plain.split() if marked and len(cells) != width else cells
+        cells = _names_with_blanks(plain, width) or cells if separator == " " and len(cells) != width else cells
         wide = len(cells) == width and not all(map(is_number, cells))
         if not marked or (wide and (not named or time in cells or _are_units(cells, width))):
             rows.append((number, cells))
             named = named or time in cells
     return rows
+
+
+def _names_with_blanks(text: str, width: int) -> list[str] | None:
+    """Names above columns that blanks separate, if they have blanks themselves: before brackets, or single ones.
+
+    >>> _names_with_blanks("t [ms] angle [deg]", 2), _names_with_blanks("Time (ms)   Rod angle", 2)
+    (['t [ms]', 'angle [deg]'], ['Time (ms)', 'Rod angle'])
+    """
+    splits = re.findall(r"\S+(?:\s+[\[(][^\])]*[\])])?", text), re.split(r"\t|\s{2,}", text.strip())
+    return next((names for names in splits if len(names) == width), None)
 
 
 def _head(above: Sequence[Row], width: int) -> tuple[Row | None, Row | None]:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from dalembert.data.columns import Columns, Trial, chosen, trial_label
+from dalembert.data.columns import Columns, Trial, chosen, of_numbers, trial_label
 from dalembert.data.format import Format, Request
 from dalembert.data.text_lines import file_bytes
 from dalembert.errors import DataError, unknown
@@ -24,6 +24,10 @@ class Json(Format):
 
     def columns(self, path: Path, request: Request) -> Columns:
         return json_columns(path, request.time, request.names, request.missing, request.trial)
+
+    def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
+        arrays = {name: _array(path, name, entries) for name, entries in _by_name(path, _content(path)).items()}
+        return {name: (array, "") for name, array in of_numbers(arrays).items()}
 
     def trial_labels(self, path: Path, column: str | int, separator: str, decimal: str) -> list[str]:
         return json_labels(path, column)

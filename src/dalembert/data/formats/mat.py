@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from dalembert.data.columns import Columns, chosen
+from dalembert.data.columns import Columns, chosen, of_numbers
 from dalembert.data.format import Format, Request
 from dalembert.data.guarded import guarded
 from dalembert.data.opening import reading
@@ -21,19 +21,29 @@ class Mat(Format):
     def columns(self, path: Path, request: Request) -> Columns:
         return mat_columns(path, str(request.time), request.labels, request.missing)
 
+    def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
+        arrays = _held(path)
+        samples = max(map(np.size, (array for array in arrays.values() if array.ndim == 1)), default=0)
+        parts = {label: part for name, array in arrays.items() for label, part in _parts(name, array, samples)}
+        return {name: (array, "") for name, array in of_numbers(parts).items()}
+
 
 def mat_columns(path: Path, time: str, names: Iterable[str] | None, missing: str) -> Columns:
     """Times and columns: vectors by name, fields of structs as ``run.x``, columns of a matrix as ``q(:,1)``.
 
     A matrix with a row a channel gives ``q(1,:)``. Text, cells and objects (tables, timeseries) are passed over.
     """
-    with reading(path, "MAT"):
-        import h5py
-
-        held = dict(_version_73(path) if h5py.is_hdf5(path) else _version_5(path))
+    held = _held(path)
     samples = len(held[time]) if time in held and held[time].ndim == 1 else 0
     spread = {label: part for name, array in held.items() for label, part in _parts(name, array, samples)}
     return Columns(path, time, *chosen(path, spread, time, names, missing))
+
+
+def _held(path: Path) -> dict[str, np.ndarray]:
+    with reading(path, "MAT"):
+        import h5py
+
+        return dict(_version_73(path) if h5py.is_hdf5(path) else _version_5(path))
 
 
 def _version_5(path: Path) -> Iterator[tuple[str, np.ndarray]]:

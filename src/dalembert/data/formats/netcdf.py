@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dalembert.data.columns import Columns, chosen
+from dalembert.data.columns import Columns, chosen, of_numbers
 from dalembert.data.format import Format, Request
 from dalembert.data.opening import reading
 from dalembert.errors import DataError, unknown
@@ -25,6 +25,13 @@ class Netcdf(Format):
     def columns(self, path: Path, request: Request) -> Columns:
         return netcdf_columns(path, str(request.time), request.labels, request.missing)
 
+    def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
+        dataset = _dataset(path)
+        along = next((str(name) for name, one in dataset.variables.items() if one.dims == (name,)), "")
+        parts = [part for name in dataset.variables for part in _parts(dataset, name, along)]
+        kept = of_numbers({label: array for label, array, _ in parts})
+        return {label: (array, unit) for label, array, unit in parts if label in kept}
+
 
 def netcdf_columns(path: Path, time: str, names: Iterable[str] | None, missing: str) -> Columns:
     """Times and columns: variables along the times' dimension, each with the unit that its ``units`` attribute names.
@@ -32,6 +39,16 @@ def netcdf_columns(path: Path, time: str, names: Iterable[str] | None, missing: 
     A variable over another dimension too gives a column an entry: ``response[AB.end.x]`` where that dimension has
     labels, else ``q[0]``.
     """
+    dataset = _dataset(path)
+    held = [(label, array, unit) for name in dataset.variables for label, array, unit in _parts(dataset, name, time)]
+    if time not in dataset.variables:
+        raise DataError(unknown("column", time, map(str, dataset.variables), str(path)))
+    along, table = chosen(path, {label: array for label, array, _ in held}, time, names, missing)
+    units = {label: unit for label, _, unit in held if unit and (label in table or label == time)}
+    return Columns(path, time, along, table, units)
+
+
+def _dataset(path: Path) -> "Dataset":
     with reading(path, "NetCDF"):
         import h5py
         from xarray import load_dataset
@@ -39,15 +56,7 @@ def netcdf_columns(path: Path, time: str, names: Iterable[str] | None, missing: 
         engine = "h5netcdf" if h5py.is_hdf5(path) else "scipy"
         if engine == "h5netcdf":
             h5py.File(path, "r").close()  # what fails here would leave h5netcdf half made
-        dataset = load_dataset(path, engine=engine, decode_times=False)
-        held = [
-            (label, array, unit) for name in dataset.variables for label, array, unit in _parts(dataset, name, time)
-        ]
-    if time not in dataset.variables:
-        raise DataError(unknown("column", time, map(str, dataset.variables), str(path)))
-    along, table = chosen(path, {label: array for label, array, _ in held}, time, names, missing)
-    units = {label: unit for label, _, unit in held if unit and (label in table or label == time)}
-    return Columns(path, time, along, table, units)
+        return load_dataset(path, engine=engine, decode_times=False)
 
 
 def _parts(dataset: "Dataset", name: object, time: str) -> Iterator[tuple[str, np.ndarray, str]]:

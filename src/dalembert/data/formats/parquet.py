@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from dalembert.data.columns import Columns, chosen
+from dalembert.data.columns import Columns, chosen, of_numbers
 from dalembert.data.format import Format, Request
 from dalembert.data.opening import library, reading
 
@@ -19,14 +19,20 @@ class Parquet(Format):
     def columns(self, path: Path, request: Request) -> Columns:
         return parquet_columns(path, str(request.time), request.labels, request.missing)
 
+    def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
+        return {name: (array, "") for name, array in of_numbers(_held(path)).items()}
+
 
 def parquet_columns(path: Path, time: str, names: Iterable[str] | None, missing: str) -> Columns:
     """Times and columns; a null is a NaN."""
+    return Columns(path, time, *chosen(path, _held(path), time, names, missing))
+
+
+def _held(path: Path) -> dict[str, np.ndarray]:
     with reading(path, "Parquet"):
         parquet = library("pyarrow.parquet", path, "Parquet files")
         table = parquet.read_table(path)
-        held = {name: _array(table.column(place)) for place, name in enumerate(table.column_names)}
-    return Columns(path, time, *chosen(path, held, time, names, missing))
+        return {name: _array(table.column(place)) for place, name in enumerate(table.column_names)}
 
 
 def _array(column) -> np.ndarray:

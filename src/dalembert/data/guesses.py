@@ -1,0 +1,117 @@
+"""What the columns of a file probably are: the times among them, and the unit of each."""
+
+import re
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from dalembert.data.preview import Preview, PreviewColumn
+from dalembert.errors import InputError
+from dalembert.units import si, symbol
+
+TIMES = {"t", "time", "times", "timestamp", "time stamp", "zeit", "temps", "tiempo", "tempo", "tid", "seconds", "sec"}
+"""What columns of times are called, without a unit."""
+NAMED = {
+    "s": "s", "sec": "s", "ms": "ms", "us": "us", "µs": "us", "ns": "ns", "deg": "deg", "degree": "deg",
+    "degrees": "deg", "rad": "rad", "mm": "mm", "cm": "cm", "m": "m", "um": "um", "rpm": "rpm", "n": "N", "kn": "kN",
+    "nm": "N*m", "hz": "Hz", "khz": "kHz", "mps": "m/s", "degps": "deg/s", "dps": "deg/s", "radps": "rad/s",
+}  # fmt: skip
+"""Units by the last part of names such as ``angle_deg`` and ``time_ms``."""
+OF_STEPS = ((0.5, "s"), (500.0, "ms"), (5e5, "us"), (np.inf, "ns"))
+"""Units of times that no name gives: the first whose limit is above the usual step, at sampling rates above 2 Hz."""
+
+Source = Literal["file", "name", "steps", ""]
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit that a column probably has.
+
+    Parameters
+    ----------
+    name : str
+        ``""`` where nothing gives it.
+    source : {"file", "name", "steps", ""}
+        The file names it; the name of the column ends in it; the steps of the times are usual in it; nothing gives it.
+    """
+
+    name: str
+    source: Source
+
+
+def time_column(found: Preview) -> str | int | None:
+    """Return the column that probably has the times: by its name, else by its unit, else the first that grows evenly.
+
+    >>> from pathlib import Path
+    >>> columns = tuple(PreviewColumn(name, "", np.arange(3.0)) for name in ("count", "Time (s)", "x"))
+    >>> time_column(Preview(Path("a.csv"), "csv", columns, ()))
+    'Time (s)'
+    """
+    columns = found.columns
+    named = [column for column in columns if _bare(str(column.key)) in TIMES or _named_unit(str(column.key)) == "s"]
+    named += [column for column in columns if column.unit and _measures(column.unit) == "s"]
+    growing = [column for column in columns if _grows(column.values)]
+    even = [column for column in growing if _is_even(column.values)]
+    return next((column.key for column in (*named, *even, *growing)), None)
+
+
+def unit_of(column: PreviewColumn, *, times: bool = False) -> Unit:
+    """Return the unit that a column probably has.
+
+    >>> unit_of(PreviewColumn("angle_deg", "", np.zeros(2))), unit_of(PreviewColumn("x", "mm", np.zeros(2)))
+    (Unit(name='deg', source='name'), Unit(name='mm', source='file'))
+    >>> unit_of(PreviewColumn("t", "", np.array([1500.0, 1510.0, 1520.0])), times=True)
+    Unit(name='ms', source='steps')
+    """
+    if column.unit:
+        return Unit(column.unit, "file")
+    unit = _unit_in(str(column.key))
+    if unit and (_measures(unit) == "s") == times:
+        return Unit(unit, "name")
+    if times:
+        steps = np.abs(np.diff(column.values))
+        usual = float(np.nanmedian(steps)) if np.isfinite(steps).any() else 0.0
+        return Unit(next(unit for limit, unit in OF_STEPS if usual < limit), "steps")
+    return Unit("", "")
+
+
+def _bare(name: str) -> str:
+    """A name without brackets and the unit at its end, in lower case."""
+    plain = re.sub(r"[\[(].*?[\])]", "", name).strip().lower()
+    stem = re.sub(r"[_\s.\-]*$", "", plain)
+    first, _, last = re.sub(r"[\s.\-]", "_", stem).rpartition("_")
+    return first.replace("_", " ") if first and last in NAMED else stem.replace("_", " ")
+
+
+def _unit_in(name: str) -> str:
+    """Unit at the end of a name; ``""`` if there is none.
+
+    >>> _unit_in("angle_deg"), _unit_in("ms"), _unit_in("x"), _unit_in("m"), _unit_in("rod.end.x")
+    ('deg', 'ms', '', '', '')
+    """
+    first, _, last = re.sub(r"[\s.\-]", "_", name.strip().lower()).rpartition("_")
+    return NAMED.get(last, "") if first or len(last) > 1 else ""
+
+
+def _named_unit(name: str) -> str:
+    """What the unit measures that is a whole name, such as the column ``ms``; ``""`` if it is none."""
+    return _measures(NAMED[name.lower()]) if len(name) > 1 and name.lower() in NAMED else ""
+
+
+def _measures(unit: str) -> str:
+    """SI unit of what a unit measures; ``""`` if it is unknown."""
+    try:
+        si(f"1 {unit}", None)
+        return symbol(f"1 {unit}")
+    except InputError:
+        return ""
+
+
+def _grows(values: np.ndarray) -> bool:
+    return len(values) > 1 and bool(np.isfinite(values).all() and np.all(np.diff(values) > 0))
+
+
+def _is_even(values: np.ndarray) -> bool:
+    steps = np.diff(values)
+    return bool(np.ptp(steps) <= 0.01 * np.median(steps))

@@ -1,0 +1,201 @@
+"""What a data file is taken to hold, before its columns are chosen; nothing in it is refused that can be shown."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from dalembert.data.known_formats import format_of, known_formats
+from dalembert.data.text_layout import AUTO, COMMENTS, GAPS, Layout, Line, Row, is_number, layout, split, value
+from dalembert.data.text_lines import text_lines
+from dalembert.errors import DataError
+
+HEAD = 5000
+"""Lines whose layout is that of the file."""
+BLOCK = 100_000
+"""Lines whose cells are held at once."""
+SHOWN = 8
+"""First rows that are shown."""
+
+
+@dataclass(frozen=True, eq=False)
+class PreviewColumn:
+    """A column of a file.
+
+    Parameters
+    ----------
+    key : str or int
+        What `[data]` calls it: its name, or its number from 1 where the file has no name that no other column has.
+    unit : str
+        The unit that the file names; ``""`` if it names none.
+    values : array, shape (samples,)
+        As they are in the file; NaN where a cell has no number.
+    missing : int
+        Cells without a value.
+    wrong : (int, str), optional
+        Line, or sample, and content of the first cell that is neither a number nor empty.
+    """
+
+    key: str | int
+    unit: str
+    values: np.ndarray
+    missing: int = 0
+    wrong: tuple[int, str] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Preview:
+    """What a file is taken to hold.
+
+    Parameters
+    ----------
+    path : Path
+    format : str
+    columns : tuple of PreviewColumn
+    first : tuple of rows
+        Cells of the first rows.
+    layout : str
+        What a text file was taken to be, in words.
+    separator, decimal : str
+        Marks of a text file, as they were found or given; ``""`` of another file.
+    uneven : (int, int), optional
+        Line and number of cells of the first line of a text file that has another number of cells.
+    """
+
+    path: Path
+    format: str
+    columns: tuple[PreviewColumn, ...]
+    first: tuple[tuple[str, ...], ...]
+    layout: str = ""
+    separator: str = ""
+    decimal: str = ""
+    uneven: tuple[int, int] | None = None
+
+    @property
+    def samples(self) -> int:
+        """Number of rows."""
+        return max((len(column.values) for column in self.columns), default=0)
+
+    def column(self, key: str | int) -> PreviewColumn | None:
+        """The column of a name or number; None if there is none."""
+        return next((column for column in self.columns if column.key == key), None)
+
+
+def preview(path: Path, separator: str = AUTO, decimal: str = AUTO) -> Preview:
+    """Return what a file is taken to hold.
+
+    Parameters
+    ----------
+    path : Path
+    separator, decimal : str
+        Marks of a text file; ``"auto"`` to find them from its lines.
+
+    Raises
+    ------
+    DataError
+        If the file cannot be read, or has no line of numbers.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "own.txt"
+    ...     _ = file.write_text("time_ms angle_deg\\n1500 20.5\\n1510 20.4\\n1520 error\\n")
+    ...     found = preview(file)
+    >>> found.layout, [column.key for column in found.columns]
+    ('cells separated by blanks, names in line 1', ['time_ms', 'angle_deg'])
+    >>> found.columns[1].values.tolist(), found.columns[1].wrong
+    ([20.5, 20.4, nan], (4, 'error'))
+    """
+    name = format_of(path)
+    if name == "csv":
+        return _text(path, separator, decimal)
+    columns = [
+        PreviewColumn(key, unit, *_real(array)) for key, (array, unit) in known_formats()[name]().held(path).items()
+    ]
+    longest = Counter(len(column.values) for column in columns).most_common(1)
+    columns = [column for column in columns if len(column.values) == longest[0][0]]
+    if not columns:
+        raise DataError(f"{path}: the file has no column of numbers; expected one of times and one of each channel")
+    first = zip(*(map(str, column.values[:SHOWN].tolist()) for column in columns), strict=True)
+    return Preview(path, name, tuple(columns), tuple(first))
+
+
+def _text(path: Path, separator: str, decimal: str) -> Preview:
+    lines = text_lines(path)
+    found = layout(lines[:HEAD], 1, separator, decimal)
+    if not found.rows:
+        raise DataError(f"{path}: the file has no line of numbers; expected column names and then lines of numbers")
+    begin, width = found.rows[0][0], len(found.header)
+    rest = [line for line in lines if line[0] >= begin and not line[1].lstrip().startswith(COMMENTS)]
+    blocks = [_block(rest[place : place + BLOCK], found, width) for place in range(0, len(rest), BLOCK)]
+    keys = [
+        name if found.named is not None and name and found.header.count(name) == 1 else place
+        for place, name in enumerate(found.header, 1)
+    ]
+    columns = tuple(
+        PreviewColumn(key, unit, *_joined([block.columns[place] for block in blocks]))
+        for place, (key, unit) in enumerate(zip(keys, found.units, strict=True))
+    )
+    uneven = next((block.uneven for block in blocks if block.uneven), None)
+    first = tuple(tuple(cells[:width]) for _, cells in found.rows[:SHOWN])
+    return Preview(path, "csv", columns, first, str(found), found.separator, found.decimal, uneven)
+
+
+_Numbers = tuple[np.ndarray, int, tuple[int, str] | None]
+
+
+@dataclass(frozen=True, eq=False)
+class _Block:
+    """Columns of some lines, and the first line that has another number of cells, and that number."""
+
+    columns: list[_Numbers]
+    uneven: tuple[int, int] | None = None
+
+
+def _block(lines: Sequence[Line], found: Layout, width: int) -> _Block:
+    """Numbers of lines: by the fast reader where all cells are numbers, else cell by cell."""
+    texts = [text for _, text in lines]
+    quick = found.decimal == "." or not any("." in text for text in texts)
+    if quick:
+        plain = [text.replace(",", ".") for text in texts] if found.decimal == "," else texts
+        try:
+            cut = None if found.separator == " " else found.separator
+            table = np.loadtxt(plain, delimiter=cut, comments=None, quotechar='"', ndmin=2)
+            if table.shape[1] == width and np.isfinite(table).all():
+                return _Block([(column, 0, None) for column in np.ascontiguousarray(table.T)])
+        except ValueError:
+            pass
+    rows = split(lines, found.separator)
+    whole = [(line, cells + [""] * (width - len(cells))) for line, cells in rows]
+    uneven = next(((line, len(cells)) for line, cells in rows if len(cells) != width and any(cells[width:])), None)
+    uneven = uneven or next(((line, len(cells)) for line, cells in rows if len(cells) < width), None)
+    return _Block([_numbers(whole, place, found.decimal) for place in range(width)], uneven)
+
+
+def _numbers(rows: Sequence[Row], place: int, decimal: str) -> _Numbers:
+    values, missing, wrong = np.full(len(rows), np.nan), 0, None
+    for sample, (line, cells) in enumerate(rows):
+        cell = cells[place]
+        if cell.lower() in GAPS:
+            missing += 1
+        elif is_number(cell, decimal) and np.isfinite(number := value(cell, decimal)):
+            values[sample] = number
+        else:
+            wrong = wrong or (line, cell)
+    return values, missing, wrong
+
+
+def _joined(parts: Sequence[_Numbers]) -> _Numbers:
+    values, missing, wrong = zip(*parts, strict=True)
+    return np.concatenate(values), sum(missing), next(filter(None, wrong), None)
+
+
+def _real(array: np.ndarray) -> _Numbers:
+    """Values of a column that is no text: infinite ones are wrong, NaN is missing."""
+    values = np.asarray(array, dtype=float)
+    infinite = np.flatnonzero(np.isinf(values))
+    wrong = (int(infinite[0]), str(values[infinite[0]])) if len(infinite) else None
+    return np.where(np.isinf(values), np.nan, values), int(np.isnan(values).sum()), wrong

@@ -1,0 +1,260 @@
+"""How the columns of a data file are to be used, and the `[data]` table that says so."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import tomlkit
+from tomlkit.items import InlineTable
+from tomlkit.toml_document import TOMLDocument
+
+from dalembert.data.guesses import Unit, time_column, unit_of
+from dalembert.data.preview import Preview
+from dalembert.data.problems import Use
+from dalembert.data.text_layout import AUTO
+from dalembert.errors import InputError
+from dalembert.findings import Finding
+from dalembert.units import is_si
+
+Key = str | int
+OF_FILE = (
+    "format",
+    "frequency",
+    "split",
+    "trial",
+    "between",
+    "gap",
+    "every",
+    "resample",
+    "lowpass",
+    "more",
+    "derivatives",
+)
+"""Keys of `[data]` that go with the file that they were written for, and that no choice sets."""
+
+
+@dataclass(frozen=True)
+class Choices:
+    """How the columns of a file are to be used.
+
+    Parameters
+    ----------
+    file : str
+        Name of the file, beside the study.
+    time : str or int, optional
+        Column of the times.
+    separator, decimal : str
+        Marks of a text file, or ``"auto"``.
+    units : mapping of str or int to str
+        Units of columns that were chosen; the others are guessed.
+    channels : mapping of str to (str or int)
+        Column of each channel.
+    start : number, "first" or other, optional
+        When the motion begins, as in `[data]`.
+    missing : {"refuse", "leave-out"}
+    wraps : tuple of str
+    decimate : int, optional
+    between : (float, float), optional
+        Times (s) between which samples are kept.
+    """
+
+    file: str
+    time: Key | None = None
+    separator: str = AUTO
+    decimal: str = AUTO
+    units: Mapping[Key, str] = field(default_factory=dict)
+    channels: Mapping[str, Key] = field(default_factory=dict)
+    start: Any = None
+    missing: str = "refuse"
+    wraps: tuple[str, ...] = ()
+    decimate: int | None = None
+    between: tuple[float, float] | None = None
+
+    def unit(self, found: Preview, key: Key) -> Unit:
+        """Unit of a column: the chosen one, or else the guessed one."""
+        column = found.column(key)
+        if key in self.units or column is None:
+            return Unit(self.units.get(key, ""), "")
+        return unit_of(column, times=key == self.time)
+
+    def use(self, found: Preview, units: Mapping[str, str]) -> Use:
+        """The same for a search of problems; ``units`` are the SI units of channels."""
+        return Use(
+            self.time,
+            {column.key: self.unit(found, column.key) for column in found.columns},
+            {channel: (key, units.get(channel, "")) for channel, key in self.channels.items()},
+            self.start if self.start is None or isinstance(self.start, (int, float, str)) else 0.0,
+            self.missing,
+            self.wraps,
+            self.between,
+            self.decimate,
+        )
+
+    def mapped(self, channel: str, key: Key | None) -> "Choices":
+        """The same with another column of a channel, which has none if that is None."""
+        others = {name: column for name, column in self.channels.items() if name != channel}
+        channels = others if key is None else {**others, channel: key}
+        return replace(self, channels=channels, wraps=tuple(name for name in self.wraps if name in channels))
+
+
+def guessed(found: Preview, channels: Mapping[str, str]) -> Choices:
+    """Return how a file is probably to be used.
+
+    Times that do not begin at 0 count from the first sample. A column is used for the channel of its name.
+
+    Parameters
+    ----------
+    found : Preview
+    channels : mapping of str to str
+        Channels of the model, and their SI units.
+    """
+    time = time_column(found)
+    names = {column.key: column.key for column in found.columns if column.key != time and column.key in channels}
+    choices = Choices(found.path.name, time, channels={str(name): key for name, key in names.items()})
+    times = None if time is None else found.column(time)
+    late = times is not None and len(times.values) > 0 and times.values[0] != 0.0
+    gaps = any(column.missing for column in found.columns if column.key != time)
+    return replace(choices, start="first" if late else None, missing="leave-out" if gaps else "refuse")
+
+
+def of_table(table: Mapping[str, Any]) -> Choices:
+    """Return the choices that a `[data]` table says, as it stands in a study file."""
+    columns: list[Any] = [table.get("time"), *table.get("columns", {}).values()]
+    numbers: dict[str, Key] = {str(key): key for key in columns if isinstance(key, int)}
+    between = table.get("between", [])
+    plain = len(between) == 2 and all(isinstance(end, (int, float)) for end in between)
+    return Choices(
+        str(table.get("file", "")),
+        table.get("time"),
+        table.get("separator", AUTO),
+        table.get("decimal", AUTO),
+        {numbers.get(key, key): unit for key, unit in table.get("units", {}).items()},
+        dict(table.get("columns", {})),
+        table.get("start"),
+        table.get("missing", "refuse"),
+        tuple(table.get("wraps", ())),
+        table.get("decimate"),
+        (between[0], between[1]) if plain else None,
+    )
+
+
+def table_of(choices: Choices, found: Preview) -> dict[str, Any]:
+    """Return the keys of the `[data]` table that choices say.
+
+    Raises
+    ------
+    InputError
+        If no column is used as the times, or none for a channel.
+    """
+    if choices.time is None:
+        raise InputError("No column has the times. Choose the column of the times.")
+    if not choices.channels:
+        raise InputError("No column is used for a channel. Choose the channel that a column measures.")
+    table: dict[str, Any] = {"file": choices.file}
+    marks = {"separator": choices.separator, "decimal": choices.decimal}
+    table |= {key: mark for key, mark in marks.items() if mark != AUTO}
+    table |= {"time": choices.time} if choices.time != "t" else {}
+    table["columns"] = dict(choices.channels)
+    units = {
+        str(key): choices.unit(found, key).name for key in dict.fromkeys([choices.time, *choices.channels.values()])
+    }
+    named = {str(column.key): column.unit for column in found.columns}
+    units = {
+        key: unit for key, unit in units.items() if unit != named.get(key, "") and (named.get(key) or not is_si(unit))
+    }
+    options = {
+        "units": units,
+        "start": choices.start,
+        "missing": None if choices.missing == "refuse" else choices.missing,
+        "wraps": list(choices.wraps),
+        "decimate": choices.decimate,
+        "between": None if choices.between is None else list(choices.between),
+    }
+    return table | {key: value for key, value in options.items() if value not in (None, {}, [])}
+
+
+SET = ("file", "separator", "decimal", "time", "columns", "units", "start", "missing", "wraps", "decimate", "between")
+"""Keys that choices set, in the order in which they are written."""
+
+
+def write(document: TOMLDocument, table: Mapping[str, Any], place: tuple[str | int, ...] = ("data",)) -> None:
+    """Write the keys of a `[data]` table into a study; comments, order and other keys stay.
+
+    Keys that go with another file, such as its trial, are removed with it, and deviations of channels that the data no
+    longer have.
+
+    Parameters
+    ----------
+    document : tomlkit document
+    table : mapping
+        As :func:`table_of` gives it.
+    place : tuple
+        ``("data",)``, or an experiment, ``("experiments", 0)``.
+    """
+    if place == ("data",) and "data" not in document:
+        document["data"] = tomlkit.table()
+    here: Any = document
+    for step in place:
+        here = here[step]
+    if here.get("file", table["file"]) != table["file"]:
+        for key in OF_FILE:
+            here.pop(key, None)
+    for key in SET:
+        if key not in table:
+            here.pop(key, None)
+        elif here.get(key) != table[key]:
+            here[key] = _item(table[key])
+    for channel in [name for name in here.get("deviations", {}) if name not in table["columns"]]:
+        del here["deviations"][channel]
+    if "deviations" in here and not here["deviations"]:
+        del here["deviations"]
+
+
+def _item(value: Any) -> Any:
+    """A mapping as an inline table, anything else as it is."""
+    if not isinstance(value, Mapping):
+        return value
+    inline: InlineTable = tomlkit.inline_table()
+    inline.update(value)
+    return inline
+
+
+@dataclass(frozen=True)
+class Fix:
+    """What a button beside a problem does.
+
+    Parameters
+    ----------
+    label : str
+    change : function of (Choices, finding's values)
+        Returns the changed choices.
+    """
+
+    label: str
+    change: Callable[[Choices, Mapping[str, Any]], Choices]
+
+
+FIXES = {
+    "late-times": Fix("Begin with the first sample", lambda choices, _: replace(choices, start="first")),
+    "samples-before-start": Fix(
+        "Leave them out", lambda choices, values: replace(choices, between=(0.0, float(values["last"])))
+    ),
+    "missing-values": Fix("Leave missing values out", lambda choices, _: replace(choices, missing="leave-out")),
+    "angle-jumps": Fix(
+        "Take whole turns as unknown",
+        lambda choices, values: replace(choices, wraps=(*choices.wraps, values["channel"])),
+    ),
+    "suspect-degrees": Fix(
+        "Use deg", lambda choices, values: replace(choices, units={**choices.units, values["column"]: "deg"})
+    ),
+    "many-samples": Fix("Decimate", lambda choices, values: replace(choices, decimate=int(values["factor"]))),
+}
+"""By the codes of findings, where a choice puts right what is wrong."""
+
+
+def fix_of(finding: Finding) -> Fix | None:
+    """The button beside a problem; None where nothing here can put it right."""
+    handled = finding.code == "late-times" and finding.severity == "note"
+    times = finding.code == "missing-values" and finding.values["times"]
+    uneven = finding.code == "many-samples" and not finding.values["even"]
+    return None if handled or times or uneven else FIXES.get(finding.code)

@@ -8,14 +8,11 @@ from pathlib import Path
 import numpy as np
 
 from dalembert.data.known_formats import format_of, known_formats
-from dalembert.data.text_layout import AUTO, COMMENTS, GAPS, Layout, Line, Row, is_number, layout, split, value
+from dalembert.data.text_layout import AUTO, GAPS, Layout, Line, Row, is_number, layout, split, value
 from dalembert.data.text_lines import text_lines
+from dalembert.data.text_numbers import BLOCK, HEAD, lines_of_numbers, quick_numbers
 from dalembert.errors import DataError
 
-HEAD = 5000
-"""Lines whose layout is that of the file."""
-BLOCK = 100_000
-"""Lines whose cells are held at once."""
 SHOWN = 8
 """First rows that are shown."""
 
@@ -128,8 +125,7 @@ def _text(path: Path, separator: str, decimal: str) -> Preview:
     found = layout(lines[:HEAD], 1, separator, decimal)
     if not found.rows:
         raise DataError(f"{path}: the file has no line of numbers; expected column names and then lines of numbers")
-    begin, width = found.rows[0][0], len(found.header)
-    rest = [line for line in lines if line[0] >= begin and not line[1].lstrip().startswith(COMMENTS)]
+    rest, width = lines_of_numbers(lines, found), len(found.header)
     blocks = [_block(rest[place : place + BLOCK], found, width) for place in range(0, len(rest), BLOCK)]
     keys = [
         name if found.named is not None and name and found.header.count(name) == 1 else place
@@ -157,17 +153,9 @@ class _Block:
 
 def _block(lines: Sequence[Line], found: Layout, width: int) -> _Block:
     """Numbers of lines: by the fast reader where all cells are numbers, else cell by cell."""
-    texts = [text for _, text in lines]
-    quick = found.decimal == "." or not any("." in text for text in texts)
-    if quick:
-        plain = [text.replace(",", ".") for text in texts] if found.decimal == "," else texts
-        try:
-            cut = None if found.separator == " " else found.separator
-            table = np.loadtxt(plain, delimiter=cut, comments=None, quotechar='"', ndmin=2)
-            if table.shape[1] == width and np.isfinite(table).all():
-                return _Block([(column, 0, None) for column in np.ascontiguousarray(table.T)])
-        except ValueError:
-            pass
+    table = quick_numbers(lines, found)
+    if table is not None:
+        return _Block([(column, 0, None) for column in np.ascontiguousarray(table.T)])
     rows = split(lines, found.separator)
     whole = [(line, cells + [""] * (width - len(cells))) for line, cells in rows]
     uneven = next(((line, len(cells)) for line, cells in rows if len(cells) != width and any(cells[width:])), None)

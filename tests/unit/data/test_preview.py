@@ -8,7 +8,8 @@ import pytest
 
 from dalembert.data import read
 from dalembert.data.guesses import Unit, time_column, unit_of
-from dalembert.data.preview import BLOCK, preview
+from dalembert.data.preview import preview
+from dalembert.data.text_numbers import BLOCK
 from dalembert.errors import DataError
 
 TEXTS = {

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from dalembert.data import read, read_bands
+from dalembert.data.text_numbers import HEAD
+from dalembert.errors import DataError
 
 TIMES = [0.0, 0.5, 1.0, 1.5]
 ANGLE = [10.25, -0.5, 3.0, 12.0]
@@ -207,3 +209,22 @@ def test_a_column_of_words_does_not_disturb(tmp_path):
 def test_bands_have_the_same_forms(tmp_path):
     (tmp_path / "bands.txt").write_text("t;x_lower;x_upper\n0,0;1,5;2,5\n0,1;1,0;2,0\n")
     assert read_bands(tmp_path / "bands.txt").upper.tolist() == [[2.5], [2.0]]
+
+
+def test_a_long_file_is_read_as_its_lines_are(tmp_path):
+    rows = [f"{row}.5;{row % 7},25" for row in range(HEAD + 10)]
+    plain = [row.replace(".5", ",5") for row in rows]
+    for name, given in {"plain": plain, "gap": [*plain[:-1], f"{HEAD + 9},5;"]}.items():
+        (tmp_path / name).with_suffix(".csv").write_text("\n".join(["t;x", *given]))
+    data = read(tmp_path / "plain.csv")
+    assert data.coordinate.values[[0, -1]].tolist() == [0.5, HEAD + 9.5]
+    assert data.values[:8, 0].tolist() == [0.25, 1.25, 2.25, 3.25, 4.25, 5.25, 6.25, 0.25]
+    assert np.isnan(read(tmp_path / "gap.csv", missing="leave-out").values[-1, 0])
+
+
+def test_a_time_that_goes_back_late_in_a_long_file_has_its_line(tmp_path):
+    rows = [f"{row},1" for row in range(HEAD + 10)]
+    rows[HEAD + 5] = "3,1"
+    (tmp_path / "back.csv").write_text("\n".join(["# rig", "t,x", *rows]))
+    with pytest.raises(DataError, match=f"line {HEAD + 8}, column 't': 3 comes after {HEAD + 4}"):
+        read(tmp_path / "back.csv")

@@ -11,6 +11,7 @@ from dalembert.data.columns import Columns, Trial, of_trial, trial_label
 from dalembert.data.format import Format, Request
 from dalembert.data.text_layout import AUTO, GAPS, Layout, Line, Row, is_number, layout, value
 from dalembert.data.text_lines import text_lines
+from dalembert.data.text_numbers import HEAD, lines_of_numbers, quick_table
 from dalembert.errors import DataError, unknown
 
 
@@ -67,9 +68,9 @@ def csv_columns(
     lines = text_lines(path)
     if not lines:
         raise DataError(f"{path}: the file holds nothing; expected a line of column names and then lines of numbers")
-    found = layout(lines, time, separator, decimal)
+    found, rows, numbers = _laid_out(lines, time, separator, decimal, quick=trial is None)
     if (separator, decimal) != (AUTO, AUTO):
-        _refuse_wrong_marks(path, lines, time, found)
+        _refuse_wrong_marks(path, lines[:HEAD], time, found)
     _refuse_rows(path, found)
     place = _places(path, found)
     if trial is not None:
@@ -81,11 +82,28 @@ def csv_columns(
     others = [k for k in range(len(found.header)) if k not in (first, numbering)]
     wanted = [place(found.header[k]) for k in others] if names is None else [place(one) for one in names]
     labels = [found.header[k] for k in wanted] if names is None else [str(one) for one in names]
-    table = _numbers(path, found, dict.fromkeys([first, *wanted]), missing, first)
-    _refuse_order(path, found, first, table[first])
+    places = dict.fromkeys([first, *wanted])
+    if numbers is None:
+        table = _numbers(path, found, places, missing, first)
+    else:
+        table = {k: np.ascontiguousarray(numbers[:, k]) for k in places}
+    _refuse_order(path, rows or found.rows, found.header[first], table[first])
     units = {label: found.units[k] for label, k in zip([str(time), *labels], [first, *wanted], strict=True)}
     columns = dict(zip(labels, (table[k] for k in wanted), strict=True))
     return Columns(path, str(time), table[first], columns, units, layout=str(found))
+
+
+def _laid_out(
+    lines: Sequence[Line], time: str | int, separator: str, decimal: str, *, quick: bool
+) -> tuple[Layout, list[Line], np.ndarray | None]:
+    """The layout of lines; of many lines of nothing but numbers that of the first ones, all lines, and their numbers."""
+    if quick and len(lines) > HEAD:
+        found = layout(lines[:HEAD], time, separator, decimal)
+        rows = lines_of_numbers(lines, found) if found.rows else []
+        numbers = quick_table(rows, found)
+        if numbers is not None:
+            return found, rows, numbers
+    return layout(lines, time, separator, decimal), [], None
 
 
 def csv_labels(path: Path, column: str | int, separator: str = AUTO, decimal: str = AUTO) -> list[str]:
@@ -214,11 +232,11 @@ def _number(path: Path, row: Row, column: int, found: Layout) -> float:
     return number
 
 
-def _refuse_order(path: Path, found: Layout, time: int, along: np.ndarray) -> None:
+def _refuse_order(path: Path, rows: Sequence[tuple[int, object]], time: str, along: np.ndarray) -> None:
     back: Sequence[int] = np.flatnonzero(np.diff(along) <= 0).tolist()
     if back:
         before, now = along[back[0]], along[back[0] + 1]
         raise DataError(
-            f"{path}, line {found.rows[back[0] + 1][0]}, column {found.header[time]!r}: {now:.10g} comes after "
+            f"{path}, line {rows[back[0] + 1][0]}, column {time!r}: {now:.10g} comes after "
             f"{before:.10g}; expected growing values; sort the lines or remove the repeated one"
         )

@@ -1,0 +1,54 @@
+"""Numbers of the lines of a long text file, without their cells one by one."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from dalembert.data.text_layout import COMMENTS, Layout, Line
+
+HEAD = 5000
+"""Lines whose layout is that of the file."""
+BLOCK = 50_000
+"""Lines that are read at once; other threads have their turn between blocks."""
+
+
+def lines_of_numbers(lines: Sequence[Line], found: Layout) -> list[Line]:
+    """Return the lines from the first one of numbers on, without comments."""
+    first = found.rows[0][0]
+    return [line for line in lines if line[0] >= first and not line[1].lstrip().startswith(COMMENTS)]
+
+
+def quick_numbers(lines: Sequence[Line], found: Layout) -> np.ndarray | None:
+    """Return the numbers (lines, columns) of lines; None if a cell is no finite number, or a line of another length.
+
+    Examples
+    --------
+    >>> from dalembert.data.text_layout import layout
+    >>> lines = [(1, "t;x"), (2, "0,5;1"), (3, "1,5;2")]
+    >>> quick_numbers(lines[1:], layout(lines, "t")).tolist()
+    [[0.5, 1.0], [1.5, 2.0]]
+    >>> quick_numbers([(1, "0;")], layout(lines, "t")) is None
+    True
+    """
+    texts, width = [text for _, text in lines], len(found.header)
+    if found.decimal == ",":
+        if any("." in text for text in texts):  # which may divide thousands
+            return None
+        texts = [text.replace(",", ".") for text in texts]
+    try:
+        separator = None if found.separator == " " else found.separator
+        table = np.loadtxt(texts, delimiter=separator, comments=None, quotechar='"', ndmin=2)
+    except ValueError:
+        return None
+    return table if table.shape[1] == width and bool(np.isfinite(table).all()) else None
+
+
+def quick_table(lines: Sequence[Line], found: Layout) -> np.ndarray | None:
+    """Return the numbers (lines, columns) of all lines of numbers, as :func:`quick_numbers` block by block."""
+    blocks: list[np.ndarray] = []
+    for begin in range(0, len(lines), BLOCK):
+        numbers = quick_numbers(lines[begin : begin + BLOCK], found)
+        if numbers is None:
+            return None
+        blocks.append(numbers)
+    return np.concatenate(blocks) if blocks else None

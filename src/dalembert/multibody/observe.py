@@ -141,14 +141,26 @@ def observer(system: Mechanism, lowered: Lowered, names: Sequence[str]) -> Obser
     return Observer(tuple(Channel(name, row.unit) for name, row in zip(names, rows, strict=True)), rows)
 
 
+def channel_units(system: Mechanism) -> dict[str, str]:
+    """All channels that a system offers, with their units."""
+    units = dict.fromkeys((f"system.{entry}" for entry in _OF_SYSTEM), "J")
+    of_components = {
+        f"{component.name}.{entry}": unit
+        for component in (*system.joints, *system.loads)
+        for entry, unit in component.kind.outputs
+    }
+    of_points = {
+        f"{body.name}.{point}.{entry}": unit
+        for body in system.bodies
+        for point in body.point_names
+        for entry, unit in body.point_outputs
+    }
+    return {**of_points, **of_components, **units}
+
+
 def channel_names(system: Mechanism) -> tuple[str, ...]:
     """All channels that a system offers."""
-    names = []
-    for body in system.bodies:
-        names += [f"{body.name}.{point}.{entry}" for point in body.point_names for entry, _ in body.point_outputs]
-    for component in (*system.joints, *system.loads):
-        names += [f"{component.name}.{entry}" for entry, _ in component.kind.outputs]
-    return (*names, *(f"system.{entry}" for entry in _OF_SYSTEM))
+    return tuple(channel_units(system))
 
 
 def _row(system: Mechanism, lowered: Lowered, name: str) -> _Row:

@@ -14,6 +14,15 @@ def channel_lines(study: Study) -> Iterator[str]:
         yield from grouped(channel_names(study.system()))
 
 
+def channel_units(study: Study) -> dict[str, str]:
+    """Return the channels of a study's mechanism with their SI units; none for another model."""
+    if not study.has_system:
+        return {}
+    from dalembert.multibody.observe import channel_units as units
+
+    return units(study.system())
+
+
 def grouped(names: Iterable[str]) -> Iterator[str]:
     """Yield lines on channels, one for each group of points or components with the same quantities.
 

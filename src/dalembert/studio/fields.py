@@ -256,7 +256,8 @@ def _shape(choices: Sequence[Node], texts: Sequence[str]) -> Shape:
     if "number" in types or {"string", "integer"} <= types:
         return "number"
     shapes: dict[str, Shape] = {"boolean": "switch", "integer": "whole", "string": "text", "array": "list"}
-    return next((shape for kind, shape in shapes.items() if kind in types), "table" if "object" in types else "text")
+    otherwise: Shape = "table" if "object" in types else "text"
+    return next((shape for kind, shape in shapes.items() if kind in types), otherwise)
 
 
 def _shown(value: Any) -> str:

@@ -28,6 +28,9 @@ LOOKS = """
     .study-parts > .q-splitter__before { height: 45vh }
     .study-parts > .q-splitter__separator { display: none }
 }
+.study-hint { max-width: 28rem; padding: 6px 10px; font-size: 13px; white-space: normal }
+.cm-tooltip.cm-completionInfo { max-width: 22rem; padding: 6px 10px; font-size: 13px }
+.cm-completionDetail { font-style: normal !important; opacity: 0.8 }
 .q-uploader__subtitle { display: none }
 .q-uploader__list { min-height: 0; padding: 0 }
 """

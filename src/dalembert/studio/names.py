@@ -4,12 +4,10 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from dalembert.errors import DalembertError
-from dalembert.study.catalogue import kinds_of
-from dalembert.study.spaces import is_in_space
+from dalembert.studio.fields import fields_at
 from dalembert.study.study import Study
 
 Names = Mapping[str, tuple[str, ...]]
-_POINTS = ("start", "end", "centre", "origin")
 
 
 def names_in(document: Mapping[str, Any]) -> dict[str, tuple[str, ...]]:
@@ -28,18 +26,20 @@ def names_in(document: Mapping[str, Any]) -> dict[str, tuple[str, ...]]:
     (('ground', 'rod.start', 'rod.end', 'rod.centre'), ('drag',))
     """
     model = _table(document, "model")
-    bodies = list(_entries(model, "body"))
-    nodes = [str(mass["name"]) for mass in _entries(model, "mass")]
+    bodies = dict(_entries(model, "body"))
     parameters, constants = tuple(_table(document, "parameters")), tuple(_table(document, "constants"))
     return {
-        "body": tuple(str(body["name"]) for body in bodies),
-        "joint": tuple(str(joint["name"]) for joint in _entries(model, "joint")),
-        "point": ("ground", *(f"{body['name']}.{point}" for body in bodies for point in _points(body, model))),
+        "body": tuple(str(body["name"]) for body in bodies.values()),
+        "joint": tuple(str(joint["name"]) for _, joint in _entries(model, "joint")),
+        "point": (
+            "ground",
+            *(f"{body['name']}.{one}" for number, body in bodies.items() for one in _points(document, number, body)),
+        ),
         "parameter": parameters,
         "constant": constants,
         "number": (*parameters, *constants),
         "input": tuple(_table(document, "inputs")),
-        "node": tuple(nodes),
+        "node": tuple(str(mass["name"]) for _, mass in _entries(model, "mass")),
         "channel": tuple(_table(_table(document, "data"), "columns")),
     }
 
@@ -56,23 +56,21 @@ def channels_of(study: Study) -> tuple[str, ...]:
         return ()
 
 
-def _points(body: Mapping[str, Any], model: Mapping[str, Any]) -> Iterator[str]:
-    """Names of the points of a body, without nodes of flexible ones."""
-    kinds = {
-        kind.__name__: kind for kind in kinds_of("body", frozenset([str(body.get("kind"))]), space=is_in_space(model))
-    }
-    kind = kinds.get(str(body.get("kind")))
-    named = [name for name in _POINTS if isinstance(getattr(kind, name, None), property)]
-    yield from named or (("origin", "centre") if is_in_space(model) else ("centre",))
+def _points(document: Mapping[str, Any], number: int, body: Mapping[str, Any]) -> Iterator[str]:
+    """Names of the points of a body by its keys, so that nothing is imported; without nodes of flexible ones."""
+    keys = {field.key for field in fields_at(document, ("model", "body", number))}
+    yield from ("start", "end") if "start" in keys else ()
+    yield from () if "elements" in keys else ("centre",)
+    yield from ("origin",) if "orientation" in keys else ()
     yield from _table(body, "points")
 
 
-def _entries(table: Mapping[str, Any], key: str) -> Iterator[Mapping[str, Any]]:
-    """Tables of a list that have a name."""
+def _entries(table: Mapping[str, Any], key: str) -> Iterator[tuple[int, Mapping[str, Any]]]:
+    """Tables of a list that have a name, with their numbers."""
     given = table.get(key)
-    for entry in given if isinstance(given, list) else ():
+    for number, entry in enumerate(given if isinstance(given, list) else ()):
         if isinstance(entry, dict) and "name" in entry:
-            yield entry
+            yield number, entry
 
 
 def _table(table: Mapping[str, Any], key: str) -> Mapping[str, Any]:

@@ -36,7 +36,7 @@ LOOKS = """
 """
 """Quiet lines; mistakes in red on any ground; no sizes and no empty list before anything was uploaded; the parts of a
 study's page below each other on narrow screens."""
-WAYS = (("Runs", "/"), ("New study", "/new"))
+WAYS = (("Runs", "/"), ("Studies", "/studies"), ("New study", "/new"))
 
 
 @contextmanager

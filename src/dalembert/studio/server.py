@@ -15,8 +15,10 @@ from dalembert.studio.compare_page import compare_page
 from dalembert.studio.guard import Guard
 from dalembert.studio.jobs import Jobs
 from dalembert.studio.new_page import new_page
+from dalembert.studio.pictures import Pictures
 from dalembert.studio.run_page import FILES, run_page
 from dalembert.studio.runs_page import runs_page
+from dalembert.studio.studies_page import studies_page
 from dalembert.studio.study_page import study_page
 from dalembert.studio.workspace import Workspace, checked
 
@@ -39,12 +41,13 @@ def application(root: Path) -> FastAPI:
     from nicegui import app as pages
     from nicegui import ui
 
-    workspace, jobs = Workspace(root.resolve()), Jobs()
+    workspace, jobs, pictures = Workspace(root.resolve()), Jobs(), Pictures()
     pool = ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn"))
     app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
 
     ui.page("/")(lambda: runs_page(workspace))
     ui.page("/new")(lambda: new_page(workspace))
+    ui.page("/studies")(lambda: studies_page(workspace))
 
     @ui.page("/study/{folder}/{file}")
     def study(folder: str, file: str) -> None:
@@ -72,6 +75,18 @@ def application(root: Path) -> FastAPI:
             return PlainTextResponse(f"there is no {file} to read", status_code=404)
         return FileResponse(path)
 
+    @app.get("/picture/{folder}/{file}")
+    async def picture(folder: str, file: str) -> Response:
+        try:
+            path = workspace.study(f"{folder}/{file}")
+        except InputError as error:
+            return PlainTextResponse(str(error), status_code=404)
+        return Response(await pictures.of(path), media_type="image/svg+xml")
+
+    @app.get("/picture-of-template/{name}")
+    async def picture_of_template(name: str) -> Response:
+        return Response(await pictures.of_template(name), media_type="image/svg+xml")
+
     @app.middleware("http")
     async def headers(request: Any, follow: Any) -> Response:
         answer = await follow(request)
@@ -83,6 +98,7 @@ def application(root: Path) -> FastAPI:
 
     ui.run_with(app, title="dalembert", dark=None, show_welcome_message=False, reconnect_timeout=PATIENCE)
     pages.on_shutdown(lambda: pool.shutdown(cancel_futures=True))
+    pages.on_shutdown(pictures.close)
     return app
 
 

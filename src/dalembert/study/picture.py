@@ -1,10 +1,26 @@
 """The picture of a study: its model, as it begins."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
-from dalembert.report.pictures import picture
+from dalembert.errors import DalembertError, InputError
+from dalembert.report.pictures import message_picture, picture
+from dalembert.study.loader import load
 from dalembert.study.structure_builder import StructureBuilder
 from dalembert.study.study import Study
+
+
+def picture_or_message(path: Path) -> str:
+    """Return the picture of a study file, or one that says why there is none."""
+    try:
+        return study_picture(load(path)) or message_picture("No drawing: the model has no shape")
+    except DalembertError as error:
+        what = "the study has errors" if isinstance(error, InputError) else "the model cannot be built"
+        return message_picture(f"No drawing: {what}")
+    except Exception as error:  # the user's function may raise anything
+        return message_picture(f"No drawing: the model raised {type(error).__name__}")
 
 
 def study_picture(study: Study, label: str | None = None) -> str | None:
@@ -29,7 +45,7 @@ def study_picture(study: Study, label: str | None = None) -> str | None:
     return picture(_unreduced(study)(**study.parameters.mapping(study.parameters.start)), label)
 
 
-def _unreduced(study: Study):
+def _unreduced(study: Study) -> Callable[..., Any]:
     """The builder of the model, without what costs time and cannot be seen."""
     builder = study.builder
     if not isinstance(builder, StructureBuilder) or builder.model.structure is None:

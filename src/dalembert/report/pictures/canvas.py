@@ -24,7 +24,7 @@ def between(light: str, dark: str, share: float = 0.15) -> str:
     return "#" + "".join(f"{round(own + share * (other - own)):02x}" for own, other in pairs)
 
 
-INK = between(LIGHT.muted, DARK.muted)
+INK = between(LIGHT.muted, DARK.muted, 0.3)
 COLOURS = tuple(between(*pair) for pair in zip(LIGHT.series, DARK.series, strict=True))
 """Of bodies, as in the figures of reports."""
 
@@ -140,6 +140,13 @@ class Canvas:
             f'role="img" aria-label="{escape(label)}" font-family="{escape(FONT)}" style="max-width:100%">'
             f"{''.join(self._lines)}</svg>"
         )
+
+
+def message_picture(words: str, size: tuple[int, int] = SIZE) -> str:
+    """Return a picture with a short message where there is nothing to draw."""
+    canvas = Canvas(np.zeros(2), np.ones(2), size)
+    canvas.text(np.array(size) / 2, words)
+    return canvas.svg(words)
 
 
 def moved(pixel: np.ndarray, right: float, down: float) -> np.ndarray:

@@ -1,0 +1,47 @@
+"""The last run of each study."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+from dalembert.study.folder import RunFolder
+from dalembert.study.listing import since
+
+
+@dataclass(frozen=True)
+class LastRun:
+    """A run, its state, and since when it is in it (UTC)."""
+
+    name: str
+    state: str
+    since: str
+
+
+def last_runs(root: Path) -> dict[tuple[Path, str], LastRun]:
+    """Return the newest run of each study.
+
+    Parameters
+    ----------
+    root : Path
+        The folder with the runs.
+
+    Returns
+    -------
+    dict of (folder, name) to LastRun
+        By the folder and the name of the study that ran.
+    """
+    newest: dict[tuple[Path, str], tuple[int, Path]] = {}
+    for path in root.glob("*/state.json"):
+        try:
+            kept = json.loads((path.parent / "inputs.json").read_text(encoding="utf-8"))
+            key, changed = (Path(kept["folder"]), str(kept["name"])), path.stat().st_mtime_ns
+        except (OSError, ValueError, TypeError, KeyError):
+            continue  # refused before it began, or damaged
+        if key not in newest or newest[key][0] < changed:
+            newest[key] = changed, path.parent
+    return {key: _last(RunFolder(path)) for key, (_, path) in newest.items()}
+
+
+def _last(folder: RunFolder) -> LastRun:
+    state = folder.state()
+    return LastRun(folder.path.name, str(state["state"]), since(state))

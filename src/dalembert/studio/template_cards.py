@@ -1,0 +1,42 @@
+"""Templates as cards with their pictures; each begins a study."""
+
+from collections.abc import Callable
+from functools import partial
+from urllib.parse import quote
+
+from nicegui import ui
+
+from dalembert.studio.frame import button, complaints
+from dalembert.studio.workspace import Workspace
+from dalembert.study.template import Template, templates
+
+
+def template_cards(workspace: Workspace, name: Callable[[], str]) -> None:
+    """A card for each template, with a button that begins a study from it.
+
+    Parameters
+    ----------
+    workspace : Workspace
+    name : callable
+        Returns the name of the study; the template's, with a number if it is taken, if empty.
+    """
+    with ui.element("div").classes("grid grid-cols-1 sm:grid-cols-2 lg:grid-cols-3 gap-4 w-full").props("role=list"):
+        for one in templates().values():
+            with ui.column().classes("border rounded p-3 gap-2 min-w-0").props("role=listitem"):
+                shown = ui.element("img").props(f'src="/picture-of-template/{one.name}" alt="" loading=lazy')
+                shown.props("width=360 height=225").classes("w-full h-40 object-contain")
+                button(one.title, partial(_begin, workspace, one, name), icon="add").classes("w-full")
+                ui.label(one.description).classes("text-sm break-words")
+
+
+def begin(workspace: Workspace, name: str, text: str, beside: dict[str, str]) -> None:
+    """Make a study with the files beside it, and go to its page."""
+    with complaints():
+        study = workspace.create(name, text)
+        for file, content in beside.items():
+            workspace.put(study, file, content.encode())
+        ui.navigate.to(f"/study/{quote(study)}")
+
+
+def _begin(workspace: Workspace, template: Template, name: Callable[[], str]) -> None:
+    begin(workspace, name() or workspace.free(template.name), template.text, template.beside)

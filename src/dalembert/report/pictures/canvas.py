@@ -39,11 +39,14 @@ class Canvas:
         Corners of what is drawn, in m.
     size : (int, int)
         Width and height in pixels.
+    zoom : float
+        Pixels of the shown picture a pixel.
     """
 
     low: np.ndarray
     high: np.ndarray
     size: tuple[int, int] = SIZE
+    zoom: float = 1.0
     _lines: list[str] = field(default_factory=list)
 
     @classmethod
@@ -135,8 +138,9 @@ class Canvas:
     def svg(self, label: str) -> str:
         """The picture; ``label`` describes it for screen readers."""
         width, height = self.size
+        shown = f'width="{self.zoom * width:g}" height="{self.zoom * height:g}"'
         return (
-            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}" '
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" {shown} '
             f'role="img" aria-label="{escape(label)}" font-family="{escape(FONT)}" style="max-width:100%">'
             f"{''.join(self._lines)}</svg>"
         )

@@ -93,8 +93,9 @@ def _one_way(corners: np.ndarray) -> np.ndarray:
 
 def _chain(system: VibrationSystem, masses: list[str], label: str, size: tuple[int, int]) -> str:
     """Masses in a row, springs between them and to the ground, forces on them and contacts below them."""
-    width, height = size
-    canvas = Canvas(np.zeros(2), np.array([width, height], dtype=float), size)
+    zoom = 1.8 if len(masses) < 3 else 1.2
+    width, height = (round(pixels / zoom) for pixels in size)
+    canvas = Canvas(np.zeros(2), np.ones(2), (width, height), zoom)
     pitch = min(110.0, (width - 90.0) / len(masses))
     left = width / 2 - pitch * (len(masses) - 1) / 2 + 18
     at = {name: np.array([left + pitch * place, height / 2]) for place, name in enumerate(masses)}

@@ -13,7 +13,7 @@ from dalembert.data.text_lines import text_lines
 from dalembert.data.text_numbers import BLOCK, HEAD, lines_of_numbers, quick_numbers
 from dalembert.errors import DataError
 
-SHOWN = 8
+SHOWN = 5
 """First rows that are shown."""
 
 

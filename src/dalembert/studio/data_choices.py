@@ -70,12 +70,21 @@ class Choices:
     decimate: int | None = None
     between: tuple[float, float] | None = None
 
+    @property
+    def used(self) -> tuple[Key | None, ...]:
+        """The column of times, and those of channels."""
+        return (self.time, *self.channels.values())
+
     def unit(self, found: Preview, key: Key) -> Unit:
         """Unit of a column: the chosen one, or else the guessed one."""
         column = found.column(key)
         if key in self.units or column is None:
             return Unit(self.units.get(key, ""), "")
         return unit_of(column, times=key == self.time)
+
+    def with_unit(self, key: Key, unit: str) -> "Choices":
+        """The same with another unit of a column."""
+        return replace(self, units={**self.units, key: unit})
 
     def use(self, found: Preview, units: Mapping[str, str]) -> Use:
         """The same for a search of problems; ``units`` are the SI units of channels."""
@@ -97,7 +106,7 @@ class Choices:
         return replace(self, channels=channels, wraps=tuple(name for name in self.wraps if name in channels))
 
 
-def guessed(found: Preview, channels: Mapping[str, str]) -> Choices:
+def guessed(found: Preview, channels: Mapping[str, str], before: Choices | None = None) -> Choices:
     """Return how a file is probably to be used.
 
     Times that do not begin at 0 count from the first sample. A column is used for the channel of its name.
@@ -107,10 +116,15 @@ def guessed(found: Preview, channels: Mapping[str, str]) -> Choices:
     found : Preview
     channels : mapping of str to str
         Channels of the model, and their SI units.
+    before : Choices, optional
+        Choices on another file: the use of its columns is kept if this file has columns of the same names.
     """
     time = time_column(found)
     names = {column.key: column.key for column in found.columns if column.key != time and column.key in channels}
     choices = Choices(found.path.name, time, channels={str(name): key for name, key in names.items()})
+    if before is not None and all(key is not None and found.column(key) for key in before.used):
+        time = before.time
+        choices = replace(choices, time=time, channels=before.channels, units=before.units, wraps=before.wraps)
     times = None if time is None else found.column(time)
     late = times is not None and len(times.values) > 0 and times.values[0] != 0.0
     gaps = any(column.missing for column in found.columns if column.key != time)
@@ -125,10 +139,10 @@ def of_table(table: Mapping[str, Any]) -> Choices:
     plain = len(between) == 2 and all(isinstance(end, (int, float)) for end in between)
     return Choices(
         str(table.get("file", "")),
-        table.get("time"),
+        table.get("time", "t"),
         table.get("separator", AUTO),
         table.get("decimal", AUTO),
-        {numbers.get(key, key): unit for key, unit in table.get("units", {}).items()},
+        {numbers.get(key, str(key)): str(unit) for key, unit in table.get("units", {}).items()},
         dict(table.get("columns", {})),
         table.get("start"),
         table.get("missing", "refuse"),
@@ -244,9 +258,7 @@ FIXES = {
         "Take whole turns as unknown",
         lambda choices, values: replace(choices, wraps=(*choices.wraps, values["channel"])),
     ),
-    "suspect-degrees": Fix(
-        "Use deg", lambda choices, values: replace(choices, units={**choices.units, values["column"]: "deg"})
-    ),
+    "suspect-degrees": Fix("Use deg", lambda choices, values: choices.with_unit(values["column"], values["unit"])),
     "many-samples": Fix("Decimate", lambda choices, values: replace(choices, decimate=int(values["factor"]))),
 }
 """By the codes of findings, where a choice puts right what is wrong."""

@@ -32,6 +32,7 @@ LOOKS = """
 .cm-tooltip.cm-completionInfo { max-width: 22rem; padding: 6px 10px; font-size: 13px }
 .cm-completionDetail { font-style: normal !important; opacity: 0.8 }
 .q-uploader__subtitle { display: none }
+.no-list .q-uploader__list { display: none }
 .q-uploader__list { min-height: 0; padding: 0 }
 """
 """Quiet lines; mistakes in red on any ground; no sizes and no empty list before anything was uploaded; the parts of a

@@ -96,7 +96,7 @@ def csv_columns(
 def _laid_out(
     lines: Sequence[Line], time: str | int, separator: str, decimal: str, *, quick: bool
 ) -> tuple[Layout, list[Line], np.ndarray | None]:
-    """The layout of lines; of many lines of nothing but numbers that of the first ones, all lines, and their numbers."""
+    """The layout of lines and, of many lines of nothing but numbers, all lines and their numbers."""
     if quick and len(lines) > HEAD:
         found = layout(lines[:HEAD], time, separator, decimal)
         rows = lines_of_numbers(lines, found) if found.rows else []

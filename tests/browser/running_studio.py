@@ -1,0 +1,39 @@
+"""A studio in a process of its own, and its pages in a browser."""
+
+import re
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from playwright.sync_api import Page
+
+from browser.visitor import Visitor, wait_until
+
+COMMAND = Path(sys.executable).with_name("dalembert")
+ALIVE = "document.querySelector('[role=main]') && window.socket?.connected && window.did_handshake"
+
+
+@contextmanager
+def running_studio(root: Path) -> Iterator[str]:
+    """The address of a studio for a folder."""
+    command = [COMMAND, "studio", root, "--port", "0", "--no-browser"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as studio:
+        assert studio.stdout is not None
+        found = re.search(r"http://\S+", studio.stdout.readline())
+        assert found is not None
+        yield found[0].rstrip("/")
+        studio.terminate()
+
+
+def opener(visitor: Visitor, address: str) -> Callable[..., Page]:
+    """A function that opens a page of a studio and waits until it is alive."""
+
+    def visit(path: str, **device) -> Page:
+        page = visitor.page(**device)
+        page.goto(address + path)
+        wait_until(page, ALIVE)
+        return page
+
+    return visit

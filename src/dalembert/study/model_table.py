@@ -38,7 +38,7 @@ class ModelTable(StudyTable):
 
     file: str | None = Field(None, description="another TOML file, which holds the model's tables")
     function: FunctionName | None = Field(None, description="Python function that returns a system: 'model.py:name'")
-    forward: FunctionName | None = Field(None, description="Python function that returns a forward model: 'model.py:name'")
+    forward: FunctionName | None = Field(None, description="Python function that returns a model: 'model.py:name'")
     arguments: dict[str, Any] = Field({}, description="fixed arguments of the function")
     space: Literal[False] = Field(False, description="true for a mechanism in space: its components and three axes")
     gravity: Annotated[list[Any], Read(gravity_key(2))] | None = Field(

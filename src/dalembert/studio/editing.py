@@ -42,7 +42,7 @@ def with_value(text: str, place: Place, value: Any) -> str:
     def change(block: Any) -> None:
         *way, key = place[len(table) :]
         for step in way:
-            if isinstance(step, str) and step not in block:
+            if isinstance(step, str) and not isinstance(block.get(step), Mapping | list):
                 block[step] = tomlkit.inline_table()
             block = block[step]
         block[key] = _item(value)
@@ -152,6 +152,8 @@ def value_of(text: str, field: Field) -> Any:
             raise InputError(f"{field.key}: {text} is not valid TOML: {error}. Write a list as [1, 2]") from None
     if field.shape == "list":
         return [_number_or_text(part.strip()) for part in text.split(",")]
+    if field.shape == "switch" and text in ("true", "false"):
+        return text == "true"
     return _number_or_text(text) if field.shape in ("number", "whole") else text
 
 

@@ -14,6 +14,9 @@ from dalembert.study.places import NAMES
 
 Shape = Literal["number", "whole", "switch", "choice", "text", "list", "table"]
 Node = Mapping[str, Any]
+_SHAPES: dict[str, Shape] = {
+    "boolean": "switch", "integer": "whole", "string": "text", "array": "list", "object": "table",
+}  # fmt: skip
 KIND = "kind"
 _OF_KIND = "What it is."
 _NAMED = {
@@ -68,7 +71,7 @@ class Field:
         'in rad, default 0'
         """
         unit = f"in {self.unit}" if self.unit else ""
-        rule = "required" if self.required else "" if self.default is None else f"default {_shown(self.default)}"
+        rule = "required" if self.required else "" if self.default is None else f"default {shown(self.default)}"
         return ", ".join(filter(None, (unit, rule)))
 
 
@@ -255,15 +258,16 @@ def _shape(choices: Sequence[Node], texts: Sequence[str]) -> Shape:
         return "switch" if types == {"boolean"} else "choice"
     if "number" in types or {"string", "integer"} <= types:
         return "number"
-    shapes: dict[str, Shape] = {"boolean": "switch", "integer": "whole", "string": "text", "array": "list"}
-    otherwise: Shape = "table" if "object" in types else "text"
-    return next((shape for kind, shape in shapes.items() if kind in types), otherwise)
+    for kind, shape in _SHAPES.items():
+        if kind in types:
+            return shape
+    return "text"
 
 
-def _shown(value: Any) -> str:
+def shown(value: Any) -> str:
     """A default as a study file gives it.
 
-    >>> _shown(True), _shown(0.001), _shown("cubic")
+    >>> shown(True), shown(0.001), shown("cubic")
     ('true', '0.001', 'cubic')
     """
     return str(value).lower() if isinstance(value, bool) else f"{value:g}" if isinstance(value, float) else str(value)

@@ -3,7 +3,10 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from nicegui import run
+
 from dalembert.errors import DalembertError
+from dalembert.studio.draft import Draft
 from dalembert.studio.fields import fields_at
 from dalembert.study.study import Study
 
@@ -54,6 +57,27 @@ def channels_of(study: Study) -> tuple[str, ...]:
         return tuple(channel_names(study.system()))
     except DalembertError:
         return ()
+
+
+class Channels:
+    """All channels of the last study of a draft that had no mistakes, found once for each study.
+
+    Attributes
+    ----------
+    known : dict
+        Those that were found last, as names of ``"channel"``.
+    """
+
+    def __init__(self, draft: Draft) -> None:
+        self._draft, self._study = draft, None
+        self.known: dict[str, tuple[str, ...]] = {}
+
+    async def __call__(self) -> Names:
+        """Return the channels, and find them in a thread before if the study is another one."""
+        study = self._draft.good
+        if study is not None and study is not self._study:
+            self._study, self.known = study, {"channel": await run.io_bound(channels_of, study) or ()}
+        return {"channel": (), **self.known}
 
 
 def _points(document: Mapping[str, Any], number: int, body: Mapping[str, Any]) -> Iterator[str]:

@@ -63,10 +63,12 @@ def read(path: Path, text: str) -> Reading:
             return Reading(text, mistakes=tuple(found))
         except DalembertError as error:
             sentence = str(error).replace(f"{draft}: ", "").replace(f"{draft}", path.name)
-            return Reading(text, mistakes=(Mistake((), _line_in(sentence), sentence),))
+            return Reading(text, mistakes=(Mistake((), _line_in(sentence, text), sentence),))
 
 
-def _line_in(sentence: str) -> int:
+def _line_in(sentence: str, text: str) -> int:
     """The line that a sentence of the TOML reader names."""
+    if "(at end of document)" in sentence:
+        return max(1, len(text.splitlines()))
     found = re.search(r"\bline (\d+)", sentence)
     return int(found[1]) if found else 1

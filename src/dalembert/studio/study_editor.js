@@ -53,7 +53,7 @@ function tooltip(pos, { label, detail, info }) {
 
 export default {
   extends: Editor,
-  props: { revision: Number },
+  props: { revision: Number, label: String },
   computed: {
     emitting: { get: () => false, set: () => {} }, // of changes
   },
@@ -68,6 +68,7 @@ export default {
       return [
         ...Editor.methods.setupExtensions.call(this),
         hint,
+        CM.EditorView.contentAttributes.of({ "aria-label": this.label }),
         CM.EditorView.updateListener.of((update) => this.sendText(update)),
         CM.EditorState.languageData.of(() => source),
         CM.hoverTooltip((view, position) => this.explain(view.state, position), { hoverTime: HOVER }),

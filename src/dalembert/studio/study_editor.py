@@ -28,7 +28,7 @@ class StudyEditor(ui.codemirror, component="study_editor.js", esm={"dalembert-co
     def __init__(self, text: str, names: Callable[[], Awaitable[Names]]) -> None:
         super().__init__(text, language="TOML", theme="vscodeLight", line_wrapping=True)
         self._names = names
-        self._props["revision"] = 0
+        self._props["revision"], self._props["label"] = 0, "The study as text"
         self.on("question", self._answer)
 
     def _handle_value_change(self, value: str) -> None:

@@ -9,7 +9,7 @@ from dalembert.errors import InputError
 from dalembert.studio.draft import Draft
 from dalembert.studio.frame import button, complaints, frame, icon_button
 from dalembert.studio.jobs import Jobs
-from dalembert.studio.panels import data
+from dalembert.studio.panels import data, forms
 from dalembert.studio.reading import read
 from dalembert.studio.room import Room
 from dalembert.studio.splitter import splitter
@@ -19,7 +19,7 @@ from dalembert.studio.workspace import Workspace
 from dalembert.study import load
 
 AFTER = 0.4  # s after the last change until the text is checked
-PANELS = (("data", "Data", "show_chart", data.show),)
+PANELS = (("forms", "Forms", "edit_note", forms.show), ("data", "Data", "show_chart", data.show))
 """Name, title, icon and function of each panel."""
 
 

@@ -1,12 +1,11 @@
 """The editor of a study's text, with marks at mistakes and at what is selected."""
 
-from nicegui import events, run, ui
+from nicegui import events, ui
 
 from dalembert.studio.draft import Draft
 from dalembert.studio.lines import is_within, line_of, lines_of, place_at, table_of
-from dalembert.studio.names import channels_of
+from dalembert.studio.names import Channels
 from dalembert.studio.study_editor import StudyEditor
-from dalembert.study.study import Study
 
 WRONG, CHOSEN = "wrong", "chosen"
 """Classes of lines; ``frame.LOOKS`` colours them."""
@@ -30,9 +29,8 @@ class TextEditor:
 
     def __init__(self, draft: Draft) -> None:
         self.draft, self._line = draft, 1
-        self.element = StudyEditor(draft.text, self._names)
-        self._channels: tuple[Study | None, tuple[str, ...]] = (None, ())
-        self.element.classes("w-full h-full border rounded").props("aria-label='The study as text'")
+        self.element = StudyEditor(draft.text, Channels(draft))
+        self.element.classes("w-full h-full border rounded")
         self.element.on_value_change(self._typed)
         for event in ("keyup", "mouseup"):
             self.element.on(event, self._moved, js_handler=_LINE % self.element.id)
@@ -53,13 +51,6 @@ class TextEditor:
     async def _adapt(self) -> None:
         if await ui.run_javascript("matchMedia('(prefers-color-scheme: dark)').matches"):
             self.element.set_theme("vscodeDark")
-
-    async def _names(self) -> dict[str, tuple[str, ...]]:
-        """Return the channels of the last study without mistakes."""
-        study = self.draft.good
-        if study is not None and self._channels[0] is not study:
-            self._channels = (study, await run.io_bound(channels_of, study) or ())
-        return {"channel": self._channels[1]}
 
     def _typed(self) -> None:
         self.draft.set_text(self.element.value or "", typed=True)

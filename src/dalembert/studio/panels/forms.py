@@ -1,0 +1,193 @@
+"""Forms beside the text: add a table, and edit the selected one."""
+
+from collections.abc import Callable
+from functools import partial
+
+from nicegui import ui
+
+from dalembert.studio.additions import Addition, added, additions
+from dalembert.studio.cursor import tolerant
+from dalembert.studio.draft import Draft
+from dalembert.studio.editing import without
+from dalembert.studio.form import Form, Row, form_at, with_row
+from dalembert.studio.frame import button, complaints, icon_button
+from dalembert.studio.names import Channels, Names, names_in
+from dalembert.studio.panels.form_field import FormField
+from dalembert.studio.room import Room
+
+HINT = "Click a table in the text or a part in the drawing to edit it here, or add one."
+
+
+def show(draft: Draft, room: Room) -> None:
+    """Build the panel."""
+    bar, body = ui.row().classes("gap-1 items-center"), ui.column().classes("w-full gap-2 pt-2")
+    Additions(draft, bar, Editor(draft, body).focus)
+
+
+class Additions:
+    """A menu for each kind of table that can be added to a draft."""
+
+    def __init__(self, draft: Draft, bar: ui.row, then: Callable[[], object]) -> None:
+        self.draft, self.bar, self.then = draft, bar, then
+        self.shown: tuple[Addition, ...] = ()
+        self.channels = Channels(draft)
+        draft.follow("text", self.update)
+        self.update()
+
+    def update(self) -> None:
+        """Show what can be added to the text."""
+        found = additions(self.draft.text)
+        if found == self.shown:
+            return
+        self.shown = found
+        self.bar.clear()
+        with self.bar:
+            for addition in found:
+                self._button(addition)
+
+    def _button(self, addition: Addition) -> None:
+        made = ui.button(addition.label, icon="add").props("outline dense no-caps size=sm padding='2px 8px'")
+        made.props["aria-label"] = _add(addition)
+        if not addition.kinds:
+            made.on_click(partial(self._ask, addition))
+            return
+        with made, ui.menu().props("max-height=60vh"):
+            for kind, meaning in addition.kinds.items():
+                with (
+                    ui.menu_item(on_click=partial(self._add, addition, kind)),
+                    ui.column().classes("gap-0 max-w-sm py-1"),
+                ):
+                    ui.label(kind).classes("font-medium")
+                    ui.label(meaning).classes("text-xs opacity-80 whitespace-normal")
+
+    async def _ask(self, addition: Addition) -> None:
+        """Ask for the name of a parameter, or for a channel."""
+        known = (await self.channels())["channel"] if addition.names == "channel" else ()
+        with ui.dialog() as dialog, ui.card().classes("w-80"):
+            ui.label(_add(addition)).classes("text-lg font-bold")
+            if known:
+                name = ui.select(list(known), label="Channel", with_input=True).classes("w-full")
+            else:
+                name = ui.input("Name", placeholder="drag").classes("w-full").props("autofocus")
+                name.on("keydown.enter", lambda: dialog.submit(name.value))
+            with ui.row().classes("w-full justify-end"):
+                ui.button("Cancel", on_click=lambda: dialog.submit(None)).props("flat no-caps")
+                button("Add", lambda: dialog.submit(name.value), icon="add")
+        given = await dialog
+        if given:
+            self._add(addition, str(given).strip())
+
+    def _add(self, addition: Addition, what: str) -> None:
+        with complaints():
+            text, place = added(self.draft.text, addition, what)
+            self.draft.set_text(text)
+            self.draft.select(place)
+            self.then()
+
+
+class Editor:
+    """The form of the selected table."""
+
+    def __init__(self, draft: Draft, body: ui.column) -> None:
+        self.draft, self.body = draft, body
+        self.inner: tuple[str, ...] = ()
+        self.shown: object = None
+        self.names: Names = {}
+        self.fields: dict[str, FormField] = {}
+        self.channels = Channels(draft)
+        draft.follow("text", self.update)
+        draft.follow("study", self.update)
+        draft.follow("selection", self._selected)
+        self.update()
+
+    def update(self) -> None:
+        """Show the values of the text; the form is made anew only if its keys are others."""
+        form = form_at(self.draft.text, self.draft.selection, self.draft.mistakes, inner=self.inner)
+        shown = None if form is None else (form.place, form.keys, form.meaning)
+        if shown != self.shown or form is None:
+            self.shown = shown
+            self._build(form)
+        if form is not None:
+            for row in form.rows:
+                self.fields[row.field.key].show(row)
+            self.heading.set_text(form.title[0].upper() + form.title[1:])
+            self.wrong.set_text("\n".join(form.mistakes))
+            self.wrong.set_visibility(bool(form.mistakes))
+
+    def focus(self) -> None:
+        """Move the focus to the first key that is missing."""
+        missing = [field for field in self.fields.values() if field.row.field.required and field.row.value is None]
+        for field in missing[:1]:
+            field.element.run_method("focus")
+
+    def _selected(self) -> None:
+        self.inner = ()
+        self.update()
+
+    def _build(self, form: Form | None) -> None:
+        self.fields.clear()
+        self.body.clear()
+        with self.body:
+            if form is None:
+                ui.label(HINT).classes("opacity-80")
+                return
+            with ui.row().classes("w-full items-center gap-2 no-wrap"):
+                if self.inner:
+                    icon_button("arrow_back", "Back", self._back)
+                self.heading = ui.label().classes("text-lg font-bold break-words").props("role=heading aria-level=2")
+                ui.space()
+                icon_button("delete", f"Remove {form.title}", self._remove)
+            if form.meaning:
+                ui.label(form.meaning).classes("text-sm")
+            self.wrong = ui.label().classes("text-sm text-negative whitespace-pre-wrap").props("role=alert")
+            self.names = names_in(tolerant(self.draft.text)) | dict(self.channels.known)
+            usual = [row for row in form.rows if row.is_usual]
+            others = [row for row in form.rows if not row.is_usual]
+            self._grid(form, usual)
+            if others:
+                with ui.expansion(f"Further keys ({len(others)})", value=not usual).props("dense").classes("w-full"):
+                    self._grid(form, others)
+            self.help = ui.label().classes("text-sm opacity-90 break-words").props("aria-live=polite")
+
+    def _grid(self, form: Form, rows: list[Row]) -> None:
+        with ui.element("div").classes("grid grid-cols-1 sm:grid-cols-2 gap-x-3 gap-y-3 w-full py-1"):
+            for row in rows:
+                enter = partial(self._enter, row.field.key) if row.field.shape == "table" or row.is_table else None
+                known = self.names.get(row.field.names, ())
+                self.fields[row.field.key] = FormField(row, known, partial(self._commit, form), self._explain, enter)
+
+    def _commit(self, form: Form, row: Row, written: str) -> None:
+        with complaints():
+            self.draft.set_text(with_row(self.draft.text, form.place, row.field, written))
+
+    def _explain(self, row: Row) -> None:
+        self.help.set_text(": ".join(filter(None, (row.field.key, row.field.meaning))))
+
+    def _enter(self, key: str) -> None:
+        self.inner = (*self.inner, key)
+        self.update()
+
+    def _back(self) -> None:
+        self.inner = self.inner[:-1]
+        self.update()
+
+    def _remove(self) -> None:
+        form = form_at(self.draft.text, self.draft.selection, inner=self.inner)
+        if form is None:
+            return
+        with complaints():
+            self.draft.set_text(without(self.draft.text, form.place))
+            self.inner = self.inner[:-1]
+            if not self.inner:
+                self.draft.select(None)
+        ui.notify(f"Removed {form.title}. Undo brings it back.", type="info")
+
+
+def _add(addition: Addition) -> str:
+    """What a button does.
+
+    >>> _add(Addition("Input", ("inputs",))), _add(Addition("Body", ()))
+    ('Add an input', 'Add a body')
+    """
+    name = addition.label.lower()
+    return f"Add {'an' if name[0] in 'aeiou' else 'a'} {name}"

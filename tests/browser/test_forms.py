@@ -71,7 +71,7 @@ def test_a_spring_and_a_parameter_by_forms(study):
     page.get_by_label("stiffness, N/m").fill("k")
     page.keyboard.press("Enter")
     page.get_by_role("button", name="Add a parameter").click()
-    page.get_by_label("Name").fill("k")
+    page.get_by_role("dialog").get_by_label("Name").fill("k")
     page.keyboard.press("Enter")
     page.get_by_label("upper", exact=True).fill("200 N/m")
     page.keyboard.press("Tab")

@@ -110,8 +110,11 @@ def with_table(text: str, place: Place, values: Mapping[str, Any]) -> tuple[str,
     blocks, is_entry = _blocks(text), isinstance(place[-1], int)
     if is_entry:
         place = (*place[:-1], sum(table[:-1] == place[:-1] for table, _, _ in blocks))
-    elif len(place) > 1 and any(table == place[:-1] for table, _, _ in blocks):
-        return with_value(text, place, dict(values)), place
+    elif len(place) == 2 and place[0] != "model":
+        if any(table == place[:1] for table, _, _ in blocks):
+            return with_value(text, place, dict(values)), place
+        if not any(is_within(table, place[:1]) for table, _, _ in blocks):
+            return with_table(text, place[:1], {str(place[1]): values})[0], place
     name = ".".join(_key(step) for step in place if isinstance(step, str))
     lines = [f"{line}\n" for line in text.splitlines()]
     order = list(tables_of({}))
@@ -163,7 +166,7 @@ def text_of(value: Any) -> str:
     Examples
     --------
     >>> text_of("400 mm"), text_of(0.4), text_of([0, "2 m"]), text_of({"end": 2.0})
-    ('400 mm', '0.4', '[0, "2 m"]', '{end = 2.0}')
+    ('400 mm', '0.4', '[0, "2 m"]', '{ end = 2.0 }')
     """
     return "" if value is None else value if isinstance(value, str) else _item(value).as_string()
 
@@ -214,10 +217,8 @@ def _changed(text: str, table: Place, change: Callable[[Any], None]) -> str:
 def _item(value: Any) -> Item:
     """A value as TOML writes it, tables in one line."""
     if isinstance(value, Mapping):
-        table = tomlkit.inline_table()
-        for key, one in value.items():
-            table[key] = _item(one)
-        return table
+        pairs = ", ".join(f"{_key(str(key))} = {_item(one).as_string()}" for key, one in value.items())
+        return tomlkit.value(f"{{ {pairs} }}" if value else "{}")
     if isinstance(value, Sequence) and not isinstance(value, str):
         array = tomlkit.array()
         for one in value:

@@ -79,11 +79,13 @@ def test_a_table_is_added_where_such_tables_stand():
     assert place == ("model", "load", 0)
     assert text.index('name = "second"') < text.index("[[model.load]]") < text.index("# how it is solved")
     text, place = with_table(TEXT, ("parameters", "drag"), {"lower": 0.0, "upper": "1 N*m*s"})
-    assert text.index("[parameters.drag]") < text.index("[model]")
-    text, _ = with_table(text.replace("parameters.drag", "parameters.d"), ("identify",), {})
+    assert text.index('[parameters]\ndrag = { lower = 0.0, upper = "1 N*m*s" }') < text.index("[model]")
+    text, _ = with_table("[parameters.d]\nlower = 1\n\n[model]\n", ("parameters", "e"), {"lower": 2})
+    assert text == "[parameters.d]\nlower = 1\n\n[parameters.e]\nlower = 2\n\n[model]\n"
+    text, _ = with_table(text, ("identify",), {})
     assert text.endswith("[identify]\n")
     text, place = with_table("[parameters]\na = { lower = 0, upper = 1 }  # a\n", ("parameters", "b"), {"lower": 0.5})
-    assert text == "[parameters]\na = { lower = 0, upper = 1 }  # a\nb = {lower = 0.5}\n"
+    assert text == "[parameters]\na = { lower = 0, upper = 1 }  # a\nb = { lower = 0.5 }\n"
     assert with_table("", ("model", "body", 0), {"name": "A"})[0] == '[[model.body]]\nname = "A"\n'
 
 

@@ -66,9 +66,11 @@ class Additions:
         with ui.dialog() as dialog, ui.card().classes("w-80"):
             ui.label(_add(addition)).classes("text-lg font-bold")
             if known:
-                name = ui.select(list(known), label="Channel", with_input=True).classes("w-full")
+                name = (
+                    ui.select(list(known), label="Channel", with_input=True).classes("w-full").props("outlined dense")
+                )
             else:
-                name = ui.input("Name", placeholder="drag").classes("w-full").props("autofocus")
+                name = ui.input("Name").classes("w-full").props("autofocus outlined dense")
                 name.on("keydown.enter", lambda: dialog.submit(name.value))
             with ui.row().classes("w-full justify-end"):
                 ui.button("Cancel", on_click=lambda: dialog.submit(None)).props("flat no-caps")

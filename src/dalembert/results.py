@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from dalembert.contents import Contents
 from dalembert.files import read_dataset, write_contents
 from dalembert.findings import Finding, stored_findings, unclassified
+from dalembert.notebook_display import Displayed
 from dalembert.parameters import Parameter
 from dalembert.stored_fields import Source, Store, restore, store
 
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 
-class Result:
+class Result(Displayed):
     """A result that can be written to a file, drawn, and reported."""
 
     FORMAT: ClassVar[str]

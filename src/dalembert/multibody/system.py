@@ -15,6 +15,7 @@ from dalembert.multibody.components.planar.joint import Joint
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.points import Ground
 from dalembert.multibody.stated_state import NONE, JointStates, joint_values
+from dalembert.notebook_display import Displayed
 
 PLACED, EQUILIBRIUM = STARTS = "placed", "equilibrium"
 """Where a motion begins: as the bodies are placed, or at rest under gravity and the loads."""
@@ -22,7 +23,7 @@ PLACED, EQUILIBRIUM = STARTS = "placed", "equilibrium"
 Component = TypeVar("Component", bound=BaseBody | BaseJoint | BaseLoad)
 
 
-class Mechanism:
+class Mechanism(Displayed):
     """What mechanisms in the plane and in space share: a mechanism is built by adding components.
 
     Parameters

@@ -25,13 +25,14 @@ from dalembert.multibody.redundant_constraints import redundant_constraints
 from dalembert.multibody.skipped_samples import skipped_samples
 from dalembert.multibody.slip_rates import rubbing, slip_findings
 from dalembert.multibody.system import Mechanism
+from dalembert.notebook_display import Displayed
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
 
 @dataclass(frozen=True, eq=False)
-class Trajectory:
+class Trajectory(Displayed):
     """The motion of a system, as :func:`simulate` returns it.
 
     Parameters

@@ -11,6 +11,7 @@ from scipy.sparse import csc_array, issparse
 
 from dalembert.arguments import Checked, is_number, names_of
 from dalembert.errors import InputError, shown
+from dalembert.notebook_display import Displayed
 from dalembert.structure.damping import Modal, Rayleigh
 from dalembert.structure.dofs import Dofs
 from dalembert.structure.nodes import Nodes
@@ -30,7 +31,7 @@ FAINT = 1e-20
 
 
 @dataclass(frozen=True, eq=False)
-class Structure(Checked):
+class Structure(Displayed, Checked):
     r"""A linear structure :math:`M \ddot x + C \dot x + K x = f`, perhaps with hysteretic damping.
 
     Hysteretic (structural) damping is a loss matrix D: the dynamic stiffness at :math:`\omega > 0` is

@@ -5,12 +5,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from dalembert.errors import DataError, InputError, ModelError, require_known
 from dalembert.forward import Checkpoint, Executor, ForwardModel, Recorded, on_cluster
+from dalembert.notebook_display import Displayed
 from dalembert.parameters import Parameters
 from dalembert.study.builder import FunctionBuilder, SystemBuilder
 from dalembert.study.data_table import DataTable
@@ -68,7 +69,7 @@ def _refuse_outside(files: str, times: np.ndarray) -> None:
 
 
 @dataclass(frozen=True)
-class Study:
+class Study(Displayed):
     """A study file, understood.
 
     Parameters
@@ -90,6 +91,8 @@ class Study:
     beside : DataTable, optional
         Of the experiment that the study is: inputs without a file are in its file.
     """
+
+    NOTEBOOK: ClassVar[str] = "dalembert.study.notebook:html_of"
 
     path: Path
     content: bytes

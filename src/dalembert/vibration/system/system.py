@@ -5,6 +5,7 @@ from typing import TypeVar
 
 from dalembert.arguments import Checked
 from dalembert.errors import InputError, ModelError, shown
+from dalembert.notebook_display import Displayed
 from dalembert.structure import Structure
 from dalembert.vibration.laws.contacts import FrictionContact, Number
 from dalembert.vibration.laws.element import LawElement
@@ -58,7 +59,7 @@ Element = FrictionContact | LawElement | UserElement
 Part = TypeVar("Part", bound=HarmonicForce | StaticForce | Element)
 
 
-class VibrationSystem:
+class VibrationSystem(Displayed):
     """A linear structure with forces on it and nonlinear elements in it.
 
     Parameters

@@ -16,10 +16,11 @@ from dalembert.report.sections.motion.mechanism import mechanisms
 def trajectory(result: Trajectory, asked: Asked) -> list[Section]:
     """The mechanism in motion, and its diagnostics."""
     moving = {"": result}
-    return [_headline(result), *mechanisms(moving, asked.points), diagnostics(moving)]
+    return [motion_headline(result), *mechanisms(moving, asked.points), diagnostics(moving)]
 
 
-def _headline(result: Trajectory) -> Headline:
+def motion_headline(result: Trajectory) -> Headline:
+    """What was simulated, and how far it can be trusted."""
     times, balance = np.asarray(result.times), largest(result.energies, "balance")
     swing = max((float(np.ptp(values)) for key, values in result.energies.items() if key != "balance"), default=0.0)
     status = "The motion was simulated to its end."

@@ -1,0 +1,22 @@
+"""What a notebook shows of a study."""
+
+from dalembert.parameters import Parameter
+from dalembert.report.digits import shown
+from dalembert.report.notebook import Summary
+from dalembert.report.quantities import labelled
+from dalembert.study.picture import picture_or_message
+from dalembert.study.runner import plan
+from dalembert.study.study import Study
+
+
+def html_of(study: Study) -> str:
+    """Return the HTML of a study: its picture, what it does, and its parameters."""
+    facts = {"task": study.task.replace("_", " "), "it does": plan(study)}
+    facts |= {labelled(item.name, item.unit): _range(item) for item in study.parameters.declared}
+    return Summary(
+        study.title, sentences=[study.file.study.description], facts=facts, pictures=[picture_or_message(study.path)]
+    ).html()
+
+
+def _range(item: Parameter) -> str:
+    return f"{shown(float(item.lower))} to {shown(float(item.upper))}"

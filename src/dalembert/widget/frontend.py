@@ -1,0 +1,99 @@
+"""The widget: its state, which the browser shares, and the answers to its sliders."""
+
+from functools import cached_property
+from importlib.resources import files
+from typing import Any
+
+import anywidget
+import numpy as np
+import traitlets
+
+from dalembert.errors import DalembertError
+from dalembert.parameters import Parameter
+from dalembert.report.digits import shown
+from dalembert.report.pictures.canvas import COLOURS, INK
+from dalembert.widget.film import film_of
+from dalembert.widget.sliders import Source
+
+MOST = 200
+"""Measured points of a channel that are drawn."""
+SCRIPTS = ("drawing.js", "sliders.js")
+
+
+def script() -> str:
+    """The JavaScript of the widget as one module."""
+    texts = [files("dalembert.widget").joinpath(name).read_text(encoding="utf-8") for name in SCRIPTS]
+    return "\n".join(line for text in texts for line in text.splitlines() if not line.startswith("import "))
+
+
+class MechanismSliders(anywidget.AnyWidget):
+    """A mechanism in motion with a slider for each parameter.
+
+    Parameters
+    ----------
+    source : Source
+    """
+
+    _esm = script()
+    look = traitlets.Dict({"series": list(COLOURS), "ink": INK}).tag(sync=True)
+    parameters = traitlets.List().tag(sync=True)
+    asked = traitlets.Dict({"number": 0, "values": {}}).tag(sync=True)
+    """Number of a request, and the values of its sliders by name."""
+    answered = traitlets.Int(-1).tag(sync=True)
+    """Number of the request that film and curves belong to."""
+    film = traitlets.Dict({}).tag(sync=True)
+    curves = traitlets.Dict({}).tag(sync=True)
+    message = traitlets.Unicode("").tag(sync=True)
+
+    def __init__(self, source: Source) -> None:
+        self._source = source
+        starts = zip(source.parameters, source.parameters.start, strict=True)
+        super().__init__(parameters=[_slider(item, float(value)) for item, value in starts])
+        self._answer()
+        self.observe(lambda _: self._answer(), "asked")
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Current values of the parameters by name, SI."""
+        starts = {item["name"]: item["value"] for item in self.parameters}
+        asked: Any = self.asked
+        return starts | {name: float(value) for name, value in asked["values"].items() if name in starts}
+
+    def _answer(self) -> None:
+        """Simulate at the values that are asked for."""
+        asked: Any = self.asked
+        number = int(asked["number"])
+        try:
+            motion = self._source.at(self.values)
+            found: dict[str, Any] = {"film": film_of(motion), "curves": self._lines(motion), "message": ""}
+        except DalembertError as error:
+            found = {"message": str(error)}
+        with self.hold_sync():
+            for name, value in {**found, "answered": number}.items():
+                setattr(self, name, value)
+
+    def _lines(self, motion: Any) -> dict[str, Any]:
+        """Channels over time, with measured points: part of the duration, value."""
+        if not self._source.channels:
+            return {}
+        values = motion.channels(self._source.channels)
+        series = dict(zip(self._source.channels, values.T.tolist(), strict=True))
+        ranges = {name: [shown(end, digits=3) for end in (min(own), max(own))] for name, own in series.items()}
+        return {"series": series, "ranges": ranges, "measured": self._measured}
+
+    @cached_property
+    def _measured(self) -> dict[str, list[list[float]]]:
+        """Measured points of the channels, the first and every few of them."""
+        data, found = self._source.data, {}
+        for column, name in enumerate(data.channels if data else ()):
+            assert data is not None
+            points = np.column_stack([data.coordinate.values / self._source.end, data.values[:, column]])
+            points = points[np.isfinite(points).all(axis=1) & (points[:, 0] <= 1.0)]
+            found[name] = points[:: max(1, len(points) // MOST)].tolist()
+        return found
+
+
+def _slider(item: Parameter, value: float) -> dict[str, Any]:
+    """What the browser needs of a parameter."""
+    bounds = {"lower": float(item.lower), "upper": float(item.upper)}
+    return {"name": item.name, "unit": item.unit, "value": value, **bounds}

@@ -4,6 +4,7 @@ Sphinx calls :func:`write` before it reads the pages. ``docs/gallery/index.md`` 
 ``<!-- gallery: six-joint-robot duffing -->`` or ``<!-- gallery -->``, where pictures stand.
 """
 
+import logging
 import re
 import shutil
 from collections.abc import Iterable, Iterator
@@ -77,6 +78,7 @@ def shown(folders: Iterable[Path]) -> list[Shown]:
 
 def write(target: Path, folders: Iterable[Path] | None = None) -> None:
     """Write the pages and their pictures into a folder; remove those of former builds."""
+    logging.getLogger("skfem").setLevel(logging.WARNING)  # Sphinx shows what it says of each mesh
     known = shown(STUDIES.iterdir() if folders is None else folders)
     for page in target.glob(f"*{SUFFIX}"):
         page.unlink()

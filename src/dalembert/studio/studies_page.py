@@ -14,16 +14,18 @@ SHOWN = 60
 GRID = "grid grid-cols-1 sm:grid-cols-2 lg:grid-cols-3 gap-4 w-full"
 
 
-async def studies_page(workspace: Workspace) -> None:
+def studies_page(workspace: Workspace) -> None:
     """Studies of the workspace, templates and examples."""
     with frame("Studies"):
         with ui.row().classes("w-full items-center gap-4"):
             search = ui.input("Search studies").classes("grow max-w-md").props("outlined dense clearable type=search")
             button("New study", lambda: ui.navigate.to("/new"), icon="add")
-        folders = await run.io_bound(study_folders, workspace) or []
 
         @ui.refreshable
-        def listed() -> None:
+        def listed(folders: list[StudyFolder] | None) -> None:
+            if folders is None:
+                ui.spinner(size="lg").props('aria-label="The studies are read"')
+                return
             found = [folder for folder in folders if folder.matches(search.value or "")]
             own = [folder for folder in found if not folder.example]
             examples = [folder for folder in found if folder.example]
@@ -38,8 +40,12 @@ async def studies_page(workspace: Workspace) -> None:
                 ui.label("Studies with known results, which tests check.").classes("text-sm")
                 _cards(examples, "")
 
-        listed()
-        search.on_value_change(listed.refresh)
+        async def look() -> None:
+            listed.refresh(await run.io_bound(study_folders, workspace) or [])
+
+        listed(None)
+        search.on_value_change(lambda: listed.refresh())  # noqa: PLW0108  the event is no list of folders
+        ui.timer(0.0, look, once=True)
 
 
 def heading(text: str) -> None:

@@ -1,10 +1,9 @@
 """The studies of a workspace by their folders, with what they say about themselves and their last runs."""
 
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
+from dalembert.studio.documents import document_of
 from dalembert.studio.last_runs import LastRun, last_runs
 from dalembert.studio.workspace import Workspace
 from dalembert.study.tasks import TASKS
@@ -77,21 +76,13 @@ def study_folders(workspace: Workspace) -> list[StudyFolder]:
 
 def _entry(workspace: Workspace, name: str, runs: dict[tuple[Path, str], LastRun]) -> Entry:
     path = workspace.root / "studies" / f"{name}.toml"
-    document = _document(path)
+    document = document_of(path) or {}
     about = document.get("study")
     about = about if isinstance(about, dict) else {}
     task = next((key for key in document if key in TASKS), "")
     title, description = (" ".join(str(about.get(key, "")).split()) for key in ("title", "description"))
     last = runs.get((path.parent.resolve(), str(about.get("name") or path.stem)))
     return Entry(name, title, description, task, last)
-
-
-def _document(path: Path) -> dict[str, Any]:
-    """Content of a TOML file; empty if it has mistakes."""
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except (ValueError, OSError):
-        return {}
 
 
 def _folder(path: Path, entries: list[Entry]) -> StudyFolder:

@@ -1,12 +1,12 @@
 """The folder that the studio works in: its studies, their files, and their runs."""
 
 import re
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
 from dalembert.errors import InputError, no_text, require_known
 from dalembert.files import free_path, replacing, write_text
+from dalembert.studio.documents import document_of
 from dalembert.study import schema_file
 from dalembert.study.folder import RunFolder, find_runs
 from dalembert.study.loader import LARGEST
@@ -153,8 +153,7 @@ def as_text(content: bytes, name: str) -> str:
 
 def _is_study(path: Path) -> bool:
     """Whether a TOML file asks for something, or is not yet whole; tables of expected numbers are neither."""
-    try:
-        document = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (ValueError, OSError):
+    document = document_of(path)
+    if document is None:
         return path.name == "study.toml"
     return path.name == "study.toml" or (bool(document.keys() & TASKS.keys()) and "model" in document)

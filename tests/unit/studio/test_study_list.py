@@ -68,3 +68,11 @@ def test_a_study_with_mistakes_and_damaged_runs_are_listed(workspace):
     (workspace.root / "runs" / "damaged" / "state.json").write_text("")
     found = {folder.name: folder for folder in study_folders(workspace)}
     assert (found["broken"].title, found["broken"].entries[0].task) == ("broken", "")
+
+
+def test_a_file_is_read_again_after_a_change(workspace):
+    (own,) = [folder for folder in study_folders(workspace) if not folder.example]
+    path = workspace.root / "studies" / "mine" / "study.toml"
+    path.write_text(path.read_text().replace("Parameters from a measured motion", "Another title"))
+    (changed,) = [folder for folder in study_folders(workspace) if not folder.example]
+    assert (own.title, changed.title) == ("Parameters from a measured motion", "Another title")

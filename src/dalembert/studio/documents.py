@@ -1,0 +1,27 @@
+"""Contents of study files for lists: a file is read again only if it has changed."""
+
+import tomllib
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+KEPT = 4096
+"""Files whose contents are kept."""
+
+
+def document_of(path: Path) -> dict[str, Any] | None:
+    """Return the content of a TOML file, which must not be changed; None if it has mistakes or is not there."""
+    try:
+        about = path.stat()
+    except OSError:
+        return None
+    return _read(path, about.st_mtime_ns, about.st_size)
+
+
+@lru_cache(KEPT)
+def _read(path: Path, changed: int, size: int) -> dict[str, Any] | None:
+    """The content of a file as it was at its last change."""
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except (ValueError, OSError, RecursionError):
+        return None

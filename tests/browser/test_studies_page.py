@@ -77,3 +77,13 @@ def test_a_card_leads_to_its_study_and_its_run(chromium, address):
     page.go_back()
     page.get_by_role("link", name=re.compile("^first, ")).click()
     wait_until(page, "location.pathname === '/run/first'")
+
+
+def test_more_studies_are_shown_on_demand(chromium, address, root):
+    for number in range(30):
+        shutil.copytree(root / "studies" / "mine", root / "studies" / f"copy {number:02d}")
+    page = open_studies(chromium, address)
+    page.get_by_label("Search studies").fill("copy")
+    wait_until(page, "document.querySelectorAll('[role=listitem]').length === 24")
+    page.get_by_role("button", name="Show 6 of 6 more").click()
+    wait_until(page, "document.querySelectorAll('[role=listitem]').length === 30")

@@ -9,8 +9,8 @@ from dalembert.studio.study_list import Entry, StudyFolder, study_folders
 from dalembert.studio.template_cards import template_cards
 from dalembert.studio.workspace import Workspace
 
-SHOWN = 60
-"""Cards of a section; a search shows others."""
+SHOWN = 24
+"""Cards of a section at first; a button shows more."""
 GRID = "grid grid-cols-1 sm:grid-cols-2 lg:grid-cols-3 gap-4 w-full"
 
 
@@ -63,11 +63,18 @@ def _cards(folders: list[StudyFolder], none: str) -> None:
     if not folders:
         ui.label(none)
         return
-    with ui.element("div").classes(GRID).props("role=list"):
-        for folder in folders[:SHOWN]:
-            _card(folder)
-    if len(folders) > SHOWN:
-        ui.label(f"{len(folders) - SHOWN} more are not shown. Search for them.")
+    grid, waiting = ui.element("div").classes(GRID).props("role=list"), list(folders)
+
+    def add() -> None:
+        with grid:
+            for folder in waiting[:SHOWN]:
+                _card(folder)
+        del waiting[:SHOWN]
+        more.set_text(f"Show {min(SHOWN, len(waiting))} of {len(waiting)} more")
+        more.set_visibility(bool(waiting))
+
+    more = button("", add, icon="expand_more")
+    add()
 
 
 def _card(folder: StudyFolder) -> None:
@@ -77,6 +84,8 @@ def _card(folder: StudyFolder) -> None:
         with ui.link(target=f"/study/{quote(first.name)}").classes("w-full font-bold break-words"):
             picture(f"/picture/{quote(first.name)}")
             ui.label(folder.title)
+        if folder.title != folder.name:
+            ui.label(folder.name).classes("text-xs opacity-80 break-all")
         ui.label(folder.description).classes("text-sm break-words line-clamp-4")
         ui.space()
         if not others:

@@ -64,6 +64,10 @@ def link(page: Page, text: str) -> Locator:
     return page.locator("a", has_text=re.compile(f"^{re.escape(text)}$")).first
 
 
+def tab(page: Page, text: str) -> Locator:
+    return page.locator("[role=tab]", has_text=text)
+
+
 def name_of_study(page: Page) -> Locator:
     return page.locator("input[placeholder]").first
 
@@ -85,6 +89,7 @@ def external(chromium, address):
 def test_from_nothing_to_an_identified_parameter(chromium, visit, address, root):
     page = visit("/new")
     new_study(page, "drag", "Parameters from a measured motion")
+    tab(page, "Data").click()
     wait_until(page, "document.querySelectorAll('.js-plotly-plot .trace').length === 2")
     button(page, "Run").click()
     wait_until(page, "location.pathname === '/run/drag'")
@@ -156,6 +161,7 @@ def test_mistakes_stand_at_their_lines(visit):
 def test_measured_data_are_taken_and_drawn_before_anything_runs(visit, root, tmp_path):
     page = visit("/new")
     new_study(page, "data", "Parameters from a measured motion")
+    tab(page, "Data").click()
     (tmp_path / "mine.csv").write_text((root / "studies" / "data" / "motion.csv").read_text())
     page.locator("input[type=file]").first.set_input_files(tmp_path / "mine.csv")
     wait_until(page, f"{TEXT}.includes('mine.csv lies beside the study now')")
@@ -232,7 +238,7 @@ def test_two_runs_side_by_side(chromium, visit, known, address):
         ("/new", "document.querySelector('input[type=file]')"),
         (
             "/study/known/known",
-            "document.querySelectorAll('.cm-line').length && document.querySelector('.js-plotly-plot .trace')",
+            "document.querySelectorAll('.cm-line').length && document.querySelector('.model-drawing svg')",
         ),
         ("/run/first", "document.querySelector('iframe')"),
         (

@@ -1,6 +1,7 @@
 """A mechanism in one pose: its drawing, and the points that its joints and loads hold on to."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -29,29 +30,37 @@ class Sketch:
         One frame.
     ends : mapping of str to array, shape (1 or 2, 2 or 3)
         Positions in m of the points that a joint or a load acts on, by its name.
+    marks : mapping of str to array, shape (2 or 3,)
+        Positions in m of further points of bodies, by ``"body.point"``.
     """
 
     system: Mechanism
     drawing: Drawing
     ends: dict[str, np.ndarray]
+    marks: dict[str, np.ndarray] = field(default_factory=dict)
 
     @property
     def positions(self) -> np.ndarray:
         """All points that are drawn, (points, 2 or 3)."""
         across = len(self.system.AXES)
         own = self.drawing
-        known = [*own.lines.values(), *own.joints.values(), *self.ends.values(), *map(own.corners, own.surfaces)]
+        known = [*own.lines.values(), *own.joints.values(), *self.ends.values(), *self.marks.values()]
+        known += map(own.corners, own.surfaces)
         return np.concatenate([np.reshape(array, (-1, across)) for array in known])
 
 
-def sketch(system: Mechanism, points: int = 8) -> Sketch:
-    """Return the mechanism as it begins: assembled, or as placed if `simulate` would refuse it.
+def sketch(system: Mechanism, points: int = 8, *, marks: Sequence[str] = (), assemble: bool = True) -> Sketch:
+    """Return the mechanism as it begins: assembled, or as its bodies are placed.
 
     Parameters
     ----------
     system : Mechanism
     points : int
         Drawn points of a beam element.
+    marks : sequence of str
+        Points of bodies to locate, ``"body.point"``.
+    assemble : bool
+        Whether to close the joints.
 
     Raises
     ------
@@ -60,9 +69,10 @@ def sketch(system: Mechanism, points: int = 8) -> Sketch:
     """
     placed = lower(system)
     prepare(placed.kernels(False))
-    lowered = assembled(system, placed=placed)
+    lowered = assembled(system, placed=placed) if assemble else placed
     x = np.real(lowered.x)[None]
-    return Sketch(system, draw(system, lowered, np.zeros(1), x, points), _ends(system, lowered, x))
+    located = dict(zip(marks, _positions(system, lowered, x, list(marks)), strict=True))
+    return Sketch(system, draw(system, lowered, np.zeros(1), x, points), _ends(system, lowered, x), located)
 
 
 def is_grounded(component: Any) -> bool:

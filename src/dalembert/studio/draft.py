@@ -13,11 +13,11 @@ from dalembert.errors import InputError, no_text, require_known
 from dalembert.files import free_path, write_text
 from dalembert.studio.history import History
 from dalembert.studio.lines import Place
-from dalembert.studio.reading import Mistake, Reading, read
+from dalembert.studio.reading import Mistake, Reading, mistake, read
 from dalembert.study.loader import LARGEST
 from dalembert.study.study import Study
 
-Topic = Literal["text", "study", "values", "selection", "disk"]
+Topic = Literal["text", "study", "mistakes", "values", "selection", "disk"]
 Disk = Literal["same", "changed", "gone"]
 
 
@@ -61,6 +61,7 @@ class Draft:
         self.values: dict[str, float] = {}
         self.selection: Place | None = None
         self.disk: Disk = "same"
+        self._found: tuple[Mistake, ...] = ()
 
     @property
     def name(self) -> str:
@@ -74,7 +75,8 @@ class Draft:
 
     @property
     def mistakes(self) -> tuple[Mistake, ...]:
-        return self.reading.mistakes
+        """Mistakes of the text, and those that panels found."""
+        return (*self.reading.mistakes, *self._found)
 
     @property
     def is_saved(self) -> bool:
@@ -132,11 +134,19 @@ class Draft:
         """Accept what a text is as a study, unless the text has changed meanwhile."""
         if reading.text != self.text:
             return
-        self.reading = reading
+        self.reading, self._found = reading, ()
         if reading.study is not None:
             self._start_values(reading.study)
             self.good = reading.study
         self._tell("study")
+        self._tell("mistakes")
+
+    def find(self, sentence: str) -> None:
+        """Add what is wrong with a study whose text is valid, such as a mechanism that cannot be assembled."""
+        found = mistake(self.text, (), sentence)
+        if found not in self._found:
+            self._found = (*self._found, found)
+            self._tell("mistakes")
 
     def select(self, place: Place | None) -> None:
         """Select a place in the file."""

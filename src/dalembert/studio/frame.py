@@ -21,6 +21,12 @@ LOOKS = """
 .study-parts > .q-splitter__after { padding-left: 8px }
 .study-parts .grip { position: absolute; inset: 0 -4px; border-radius: 4px }
 .study-parts .grip:focus-visible { outline: 3px solid currentColor }
+.model-drawing { overflow: hidden; touch-action: pan-y; user-select: none }
+.model-drawing > svg { width: 100%; height: 100%; display: block; overflow: visible }
+.model-drawing g[data-part] { cursor: pointer }
+.model-drawing g.chosen { filter: drop-shadow(0 0 2px #3987e5) drop-shadow(0 0 4px #3987e5) }
+.model-drawing g.wrong { filter: drop-shadow(0 0 2px #e03131) drop-shadow(0 0 4px #e03131) }
+.model-drawing g:focus-visible { outline: 2px solid #3987e5; outline-offset: 3px }
 @media (min-width: 1024px) { .wide { height: calc(100dvh - 3.25rem) } }
 @media (max-width: 1023px) {
     .study-parts { flex-direction: column }

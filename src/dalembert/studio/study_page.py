@@ -9,7 +9,7 @@ from dalembert.errors import InputError
 from dalembert.studio.draft import Draft
 from dalembert.studio.frame import button, complaints, frame, icon_button
 from dalembert.studio.jobs import Jobs
-from dalembert.studio.panels import data, forms
+from dalembert.studio.panels import data, forms, model
 from dalembert.studio.reading import read
 from dalembert.studio.room import Room
 from dalembert.studio.splitter import splitter
@@ -19,7 +19,11 @@ from dalembert.studio.workspace import Workspace
 from dalembert.study import load
 
 AFTER = 0.4  # s after the last change until the text is checked
-PANELS = (("forms", "Forms", "edit_note", forms.show), ("data", "Data", "show_chart", data.show))
+PANELS = (
+    ("model", "Model", "precision_manufacturing", model.show),
+    ("forms", "Forms", "edit_note", forms.show),
+    ("data", "Data", "show_chart", data.show),
+)
 """Name, title, icon and function of each panel."""
 
 
@@ -55,7 +59,7 @@ def _panels(draft: Draft, room: Room) -> None:
             ui.tab(name, title, icon)
     with ui.tab_panels(tabs, value=PANELS[0][0], animated=False).classes("w-full grow bg-transparent"):
         for name, _, _, show in PANELS:
-            with ui.tab_panel(name).classes("px-0 py-2"):
+            with ui.tab_panel(name).style("padding: 4px 0"):
                 show(draft, room)
 
 
@@ -77,7 +81,7 @@ def _head(draft: Draft, room: Room, editor: TextEditor) -> None:
 
     def show_study() -> None:
         count = len(draft.mistakes)
-        verdict.set_text("Valid." if draft.study else f"{count} error{'s' if count > 1 else ''}:")
+        verdict.set_text(f"{count} error{'s' if count > 1 else ''}:" if count else "Valid.")
         does.set_text(draft.reading.does)
         start.set_enabled(draft.study is not None)
         wrong.clear()
@@ -89,7 +93,7 @@ def _head(draft: Draft, room: Room, editor: TextEditor) -> None:
                     ui.label(mistake.sentence).classes("text-sm break-words")
 
     draft.follow("text", show_text)
-    draft.follow("study", show_study)
+    draft.follow("mistakes", show_study)
     show_text()
 
 

@@ -37,7 +37,7 @@ class TextEditor:
         for key, act in (("Mod-z", draft.undo), ("Mod-Shift-z", draft.redo), ("Mod-y", draft.redo)):
             self.element.map_key(key, act)
         draft.follow("text", self._show)
-        draft.follow("study", self._mark)
+        draft.follow("mistakes", self._mark)
         draft.follow("selection", self._select)
         ui.timer(0.0, self._adapt, once=True)
 

@@ -59,6 +59,20 @@ def test_a_draft_is_the_study_that_its_text_is(draft):
     assert heard == ["values", "study", "text", "study"]
 
 
+def test_a_panel_can_find_mistakes_in_a_valid_text(draft):
+    draft.check()
+    heard = followed(draft, "study", "mistakes")
+    draft.find("[[model.joint]] 'pin': it is not closed")
+    draft.find("[[model.joint]] 'pin': it is not closed")
+    assert [(one.place, draft.text.splitlines()[one.line - 1]) for one in draft.mistakes] == [
+        (("model", "joint", 0), "[[model.joint]]")
+    ]
+    assert draft.study is not None
+    assert heard == ["mistakes"]
+    draft.check()
+    assert draft.mistakes == ()
+
+
 def test_a_reading_of_an_older_text_is_left_out(draft):
     old = read(draft.path, draft.text)
     draft.set_text("")

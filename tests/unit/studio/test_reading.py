@@ -30,6 +30,13 @@ def test_a_mistake_stands_at_its_line(tmp_path):
     assert found[1][1] == "[[model.joint]] 'pin': unknown key 'viscus'; did you mean 'viscous'?"
 
 
+def test_a_mistake_that_names_its_table_stands_there(tmp_path):
+    for right, wrong in (('b = "rod.start"', 'b = "rood.start"'), ('b = "rod.start"', 'b = "rod.strat"')):
+        ((line, sentence),) = mistakes_of(tmp_path, TEXT.replace(right, wrong))
+        assert line == wrong
+        assert sentence.startswith("[[model.joint]] 'pin', b: ")
+
+
 def test_what_is_no_toml_stands_at_its_line(tmp_path):
     for wrong in ('length "800 mm"', 'length = "800 mm" x'):
         ((line, sentence),) = mistakes_of(tmp_path, TEXT.replace('length = "800 mm"', wrong))

@@ -41,21 +41,24 @@ class Canvas:
         Width and height in pixels.
     zoom : float
         Pixels of the shown picture a pixel.
+    choosable : bool
+        Whether its parts are buttons that the keyboard reaches.
     """
 
     low: np.ndarray
     high: np.ndarray
     size: tuple[int, int] = SIZE
     zoom: float = 1.0
+    choosable: bool = False
     _lines: list[str] = field(default_factory=list)
 
     @classmethod
-    def around(cls, points: np.ndarray, size: tuple[int, int] = SIZE) -> "Canvas":
+    def around(cls, points: np.ndarray, size: tuple[int, int] = SIZE, choosable: bool = False) -> "Canvas":
         """Return an empty canvas that holds points (points, 2)."""
         known = points[np.isfinite(points).all(axis=1)]
         if not len(known):
             known = np.zeros((1, 2))
-        return cls(known.min(axis=0), known.max(axis=0), size)
+        return cls(known.min(axis=0), known.max(axis=0), size, choosable=choosable)
 
     @property
     def scale(self) -> float:
@@ -73,7 +76,8 @@ class Canvas:
     @contextmanager
     def part(self, name: str, role: str) -> Iterator[None]:
         """A group of shapes that show one part of the model: ``data-part`` is its name, ``class`` its role."""
-        self._lines.append(f'<g class="{role}" data-part="{escape(name)}"><title>{escape(name)}</title>')
+        button = f' tabindex="0" role="button" aria-label="{escape(f"{role} {name}")}"' if self.choosable else ""
+        self._lines.append(f'<g class="{role}" data-part="{escape(name)}"{button}><title>{escape(name)}</title>')
         yield
         self._lines.append("</g>")
 
@@ -139,9 +143,10 @@ class Canvas:
         """The picture; ``label`` describes it for screen readers."""
         width, height = self.size
         shown = f'width="{self.zoom * width:g}" height="{self.zoom * height:g}"'
+        role = "group" if self.choosable else "img"
         return (
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" {shown} '
-            f'role="img" aria-label="{escape(label)}" font-family="{escape(FONT)}" style="max-width:100%">'
+            f'role="{role}" aria-label="{escape(label)}" font-family="{escape(FONT)}" style="max-width:100%">'
             f"{''.join(self._lines)}</svg>"
         )
 

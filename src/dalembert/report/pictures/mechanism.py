@@ -29,13 +29,18 @@ def mechanism_picture(sketch: Sketch, label: str, size: tuple[int, int] = SIZE) 
     """
     view = Projection.of(len(sketch.system.AXES))
     canvas = Canvas.around(view(sketch.positions), size)
+    draw_mechanism(canvas, view, sketch)
+    return canvas.svg(label)
+
+
+def draw_mechanism(canvas: Canvas, view: Projection, sketch: Sketch) -> None:
+    """Draw the parts of a mechanism."""
     _bodies(canvas, view, sketch)
     for load in sketch.system.loads:
         _load(canvas, view, load, sketch)
     for joint in sketch.system.joints:
         _joint(canvas, view, joint, sketch)
     _gravity(canvas, view, sketch)
-    return canvas.svg(label)
 
 
 def _bodies(canvas: Canvas, view: Projection, sketch: Sketch) -> None:
@@ -99,8 +104,27 @@ def _load(canvas: Canvas, view: Projection, load: Any, sketch: Sketch) -> None:
             arc = ends[0] + 13 * np.column_stack([np.cos(turn), np.sin(turn)])
             canvas.stroke(arc[:-2], COLOURS[1], 2)
             canvas.arrow(arc[-3], arc[-3] + 3 * (arc[-1] - arc[-3]), COLOURS[1])
+        elif (along := _pull(view, load)) is not None:
+            canvas.arrow(ends[0] - 44 * along, ends[0], COLOURS[3])
         else:
             canvas.circle(ends[0], 3, COLOURS[1])
+
+
+def _pull(view: Projection, load: Any) -> np.ndarray | None:
+    """Direction of a force in pixels; None for other loads, and for one without a direction in the picture."""
+    if load.kind.name != "force" or getattr(load, "follower", False):
+        return None
+    size = np.array([_size(getattr(load, axis)) for axis in "xyz"[: view.axes.shape[1]]])
+    along = view(size[None])[0] * (1, -1)
+    length = float(np.linalg.norm(along))
+    return along / length if length > 0 else None
+
+
+def _size(course: Any) -> float:
+    """A number, or what a function of time is multiplied with; 1 where that is not one number."""
+    for name in ("value", "amplitude"):
+        course = getattr(course, name, course)
+    return float(np.real(course)) if np.isscalar(course) else 1.0
 
 
 def _gravity(canvas: Canvas, view: Projection, sketch: Sketch) -> None:

@@ -20,7 +20,9 @@ BOX = 17.0
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
-def structure_picture(system: VibrationSystem, label: str, size: tuple[int, int] = SIZE) -> str | None:
+def structure_picture(
+    system: VibrationSystem, label: str, size: tuple[int, int] = SIZE, *, choosable: bool = False
+) -> str | None:
     """Return the SVG picture of a structure; None where neither its nodes nor few masses are known.
 
     Each part is a group ``<g class="ROLE" data-part="NAME">``; roles are body, spring, force and contact.
@@ -32,20 +34,22 @@ def structure_picture(system: VibrationSystem, label: str, size: tuple[int, int]
         For screen readers.
     size : (int, int)
         Pixels.
+    choosable : bool
+        Whether the parts are buttons.
     """
     nodes = system.structure.nodes
     if nodes is not None and len(nodes.names):
-        return _mesh(system, label, size)
+        return _mesh(system, label, size, choosable)
     masses = list(dict.fromkeys(name.rpartition(".")[0] for name in system.structure.dofs.names))
-    return _chain(system, masses, label, size) if len(masses) <= MOST_MASSES else None
+    return _chain(system, masses, label, size, choosable) if len(masses) <= MOST_MASSES else None
 
 
-def _mesh(system: VibrationSystem, label: str, size: tuple[int, int]) -> str:
+def _mesh(system: VibrationSystem, label: str, size: tuple[int, int], choosable: bool) -> str:
     """Faces and edges of the structure; arrows of forces; contacts at their nodes."""
     nodes = system.structure.nodes
     assert nodes is not None
     view, places = Projection.of(3), nodes.places
-    canvas = Canvas.around(view(places), size)
+    canvas = Canvas.around(view(places), size, choosable)
     pixels, faces = canvas.at(view(places)), nodes.faces
     with canvas.part("structure", "body"):
         if faces is None or not len(faces):
@@ -91,11 +95,11 @@ def _one_way(corners: np.ndarray) -> np.ndarray:
     return corners if float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))) >= 0 else corners[::-1]
 
 
-def _chain(system: VibrationSystem, masses: list[str], label: str, size: tuple[int, int]) -> str:
+def _chain(system: VibrationSystem, masses: list[str], label: str, size: tuple[int, int], choosable: bool) -> str:
     """Masses in a row, springs between them and to the ground, forces on them and contacts below them."""
     zoom = 1.8 if len(masses) < 3 else 1.2
     width, height = (round(pixels / zoom) for pixels in size)
-    canvas = Canvas(np.zeros(2), np.ones(2), (width, height), zoom)
+    canvas = Canvas(np.zeros(2), np.ones(2), (width, height), zoom, choosable)
     pitch = min(110.0, (width - 90.0) / len(masses))
     left = width / 2 - pitch * (len(masses) - 1) / 2 + 18
     at = {name: np.array([left + pitch * place, height / 2]) for place, name in enumerate(masses)}

@@ -1,0 +1,145 @@
+"""The drawing of a study's model, computed in the process of the study's page."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dalembert.errors import DalembertError, ModelError, SolveError
+from dalembert.studio.lines import Place
+from dalembert.studio.model.parts import places_of, shown_channels
+from dalembert.studio.reading import read
+from dalembert.studio.worker import Kept
+from dalembert.study.study import Study
+
+if TYPE_CHECKING:
+    from dalembert.multibody.sketch import Sketch
+
+SIZE = (720, 460)
+CHAIN = (480, 307)
+"""Size of the drawing of a chain of masses, which has few parts."""
+MARGIN = 0.09
+"""Room for names beside the drawing, as part of its size."""
+MOST_POINTS = 40
+"""Points of bodies that are drawn and named."""
+NOTHING = "This model is a Python function of its parameters alone. It has no shape to draw."
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A model as a page draws it.
+
+    Parameters
+    ----------
+    svg : str
+        Empty if there is nothing to draw.
+    places : dict of str to tuple
+        Places in the text by the parts of the drawing, as :func:`~dalembert.studio.model.parts.places_of` gives them.
+    box : array, shape (2, 2), optional
+        Corners of what is drawn, m.
+    message : str
+        What to know about the drawing.
+    mistake : str
+        What is wrong with the model; empty if nothing is.
+    """
+
+    svg: str = ""
+    places: dict[str, Place] = field(default_factory=dict)
+    box: np.ndarray | None = None
+    message: str = ""
+    mistake: str = ""
+
+
+def model_picture(
+    kept: Kept, path: Path, text: str, values: Mapping[str, float], box: np.ndarray | None = None
+) -> Picture:
+    """Draw the model of a text at values of its parameters.
+
+    Parameters
+    ----------
+    box : array, shape (2, 2), optional
+        Corners of an earlier drawing, kept if the model fits into it: a drawing that follows a slider stands still.
+    """
+    study = kept.newest("drawn study", (path, text), lambda: read(path, text).study)
+    if study is None:
+        return Picture(message="The text has mistakes. The drawing follows when they are corrected.")
+    places = places_of(study)
+    if study.file.model.forward is not None:
+        return Picture(places=places, message=NOTHING)
+    parameters = study.parameters
+    try:
+        system = _unreduced(study)(**parameters.mapping([values[name] for name in parameters.names]))
+    except DalembertError as error:
+        return Picture(places=places, message="The model cannot be built.", mistake=str(error))
+    if study.has_system:
+        return _mechanism(study, system, places, box)
+    return _structure(system, places)
+
+
+def _mechanism(study: Study, system: Any, places: dict[str, Place], box: np.ndarray | None) -> Picture:
+    from dalembert.multibody.sketch import sketch
+    from dalembert.report.pictures.canvas import Canvas
+    from dalembert.report.pictures.mechanism import draw_mechanism
+    from dalembert.report.pictures.names import draw_names
+    from dalembert.report.pictures.projection import Projection
+
+    marks, message, mistake = _marks(study, system), "", ""
+    try:
+        drawn = sketch(system, marks=marks)
+    except (ModelError, SolveError) as error:
+        drawn = sketch(system, marks=marks, assemble=False)
+        message, mistake = "Drawn as placed: the mechanism cannot be assembled.", str(error)
+    view = Projection.of(len(system.AXES))
+    corners = _box(view(drawn.positions), box)
+    canvas = Canvas(corners[0], corners[1], SIZE, choosable=True)
+    draw_mechanism(canvas, view, drawn)
+    draw_names(canvas, view, drawn, _channels(study, drawn))
+    return Picture(canvas.svg("Drawing of the mechanism"), places, corners, message, mistake)
+
+
+def _structure(system: Any, places: dict[str, Place]) -> Picture:
+    from dalembert.report.pictures.structure import structure_picture
+
+    size = CHAIN if system.structure.nodes is None else SIZE
+    svg = structure_picture(system, "Drawing of the structure", size, choosable=True)
+    return Picture(svg or "", places, message="" if svg else "The structure has no nodes with positions to draw.")
+
+
+def _unreduced(study: Study) -> Any:
+    from dalembert.study import picture as pictures
+
+    return pictures._unreduced(study)
+
+
+def _marks(study: Study, system: Any) -> list[str]:
+    """Points of bodies that a table names, and those whose channels are shown."""
+    shown = {channel.rpartition(".")[0] for channel in shown_channels(study)}
+    own = [f"{body.name}.{point}" for body in system.bodies for point in body.point_names]
+    declared = {f"{body.name}.{point}" for body in system.bodies for point in getattr(body, "points", ())}
+    return [point for point in own if point in shown or point in declared][:MOST_POINTS]
+
+
+def _channels(study: Study, drawn: "Sketch") -> dict[str, tuple[np.ndarray, list[str]]]:
+    """Positions of points, joints and loads with shown channels, and these channels."""
+    known = {name: ends.mean(axis=0) for name, ends in drawn.ends.items()}
+    known |= {name: motion[0] for name, motion in drawn.drawing.joints.items()} | drawn.marks
+    found: dict[str, tuple[np.ndarray, list[str]]] = {}
+    for channel in shown_channels(study):
+        owner = channel.rpartition(".")[0]
+        if owner in known:
+            found.setdefault(owner, (known[owner], []))[1].append(channel)
+    return found
+
+
+def _box(points: np.ndarray, before: np.ndarray | None) -> np.ndarray:
+    """Corners around points, or the earlier ones if the points lie in them and fill a third of them."""
+    points = points[np.isfinite(points).all(axis=1)]
+    low, high = points.min(axis=0), points.max(axis=0)
+    if before is not None:
+        size, old = float(np.max(high - low)), float(np.max(before[1] - before[0]))
+        if (low >= before[0] - 0.02 * old).all() and (high <= before[1] + 0.02 * old).all() and 3 * size > old:
+            return before
+    room = MARGIN * float(np.max(high - low))
+    return np.array([low - room, high + room])

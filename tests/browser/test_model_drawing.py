@@ -1,0 +1,141 @@
+"""The model drawn beside its text: it follows the text, and each shows what is selected in the other."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page
+
+from browser.visitor import wait_until
+from dalembert.study.template import begin
+
+pytestmark = pytest.mark.slow
+COMMAND = Path(sys.executable).with_name("dalembert")
+DRAWING = "document.querySelector('.model-drawing')"
+CURSOR = "document.querySelector('.cm-activeLine')?.innerText"
+
+
+@pytest.fixture(scope="module")
+def root(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("drawings")
+    for template in ("identify", "response", "spatial"):
+        begin(template, folder / "studies" / template)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def address(root):
+    command = [COMMAND, "studio", root, "--port", "0", "--no-browser"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as studio:
+        found = re.search(r"http://\S+", studio.stdout.readline())
+        yield found[0].rstrip("/")
+        studio.terminate()
+
+
+@pytest.fixture
+def visit(chromium, address):
+    """Open a study, until its model is drawn."""
+
+    def visit(name, **device) -> Page:
+        page = chromium.page(**device)
+        page.goto(f"{address}/study/{name}/{name}")
+        wait_until(page, f"{DRAWING}?.querySelector('[data-part]')")
+        return page
+
+    return visit
+
+
+def parts(page, role: str) -> list[str]:
+    """Names of the parts of a role in the drawing."""
+    return page.evaluate(f"[...{DRAWING}.querySelectorAll('g.{role}')].map((part) => part.dataset.part)")
+
+
+def chosen(page) -> list[str]:
+    return page.evaluate(f"[...{DRAWING}.querySelectorAll('g.chosen')].map((part) => part.dataset.part)")
+
+
+def line_of(page, start: str):
+    return page.locator(".cm-line", has_text=re.compile(f"^{re.escape(start)}")).first
+
+
+def write(page, start: str, text: str) -> None:
+    """Replace a line of the text."""
+    line_of(page, start).click()
+    page.keyboard.press("End")
+    page.keyboard.press("Shift+Home")
+    page.keyboard.insert_text(text)
+
+
+def test_the_drawing_follows_the_text(chromium, visit):
+    page = visit("identify")
+    assert {role: parts(page, role) for role in ("body", "joint", "channel", "gravity")} == {
+        "body": ["rod"],
+        "joint": ["pin"],
+        "channel": ["rod.end.x"],
+        "gravity": ["gravity"],
+    }
+    shape = f"{DRAWING}.querySelector('g.body path').getAttribute('d')"
+    before = page.evaluate(shape)
+    write(page, "length", 'length = "500 mm"')
+    wait_until(page, f"{shape} !== '{before}'")
+    shorter = page.evaluate(shape)
+    page.keyboard.press("Control+z")
+    wait_until(page, f"{shape} === '{before}'")
+    page.keyboard.press("Control+y")
+    wait_until(page, f"{shape} === '{shorter}'")
+    assert chromium.complaints == []
+
+
+def test_a_part_selects_its_table_and_a_table_its_part(visit):
+    page = visit("identify")
+    page.locator("g.body[data-part=rod]").click()
+    wait_until(page, f"{CURSOR} === '[[model.body]]'")
+    assert chosen(page) == ["rod"]
+    marked = page.evaluate("[...document.querySelectorAll('.cm-line.chosen')].map((line) => line.innerText)")
+    assert marked[:3] == ["[[model.body]]", 'kind = "RigidBar"', 'name = "rod"']
+    line_of(page, "viscous").click()
+    wait_until(page, f"{DRAWING}.querySelector('g.joint').classList.contains('chosen')")
+    assert chosen(page) == ["pin"]
+    page.keyboard.press("PageDown")  # to the end of the text
+    wait_until(page, f"{DRAWING}.querySelectorAll('.chosen').length === 0")
+    page.locator("g.channel").focus()
+    page.keyboard.press("Enter")
+    wait_until(page, f"{CURSOR} === '[data]'")
+
+
+def test_a_mistake_is_marked_in_the_text_and_in_the_drawing(visit):
+    page = visit("identify")
+    write(page, "b =", 'b = "rod.strat"')
+    wait_until(page, "document.querySelector('.cm-line.wrong')?.innerText === 'b = \"rod.strat\"'")
+    wait_until(page, f"{DRAWING}.querySelector('g.joint').classList.contains('wrong')")
+    assert "The drawing shows the last valid text." in page.inner_text("body")
+    page.keyboard.press("Control+z")
+    wait_until(page, f"{DRAWING}.querySelectorAll('.wrong').length === 0")
+
+
+def test_structures_and_mechanisms_in_space_are_drawn(chromium, visit):
+    page = visit("response")
+    assert {role: parts(page, role) for role in ("body", "spring", "contact", "force")} == {
+        "body": ["m"],
+        "spring": ["m – ground"],
+        "contact": ["slider"],
+        "force": ["m"],
+    }
+    page.locator("g.contact").click()
+    wait_until(page, f"{CURSOR} === '[[model.contact]]'")
+    page = visit("spatial")
+    assert parts(page, "body") == ["plate"]
+    assert len(parts(page, "joint")) == 3
+    assert chromium.complaints == []
+
+
+def test_the_drawing_is_enlarged_and_fits_again(visit):
+    page = visit("identify")
+    view = f"{DRAWING}.firstElementChild.getAttribute('viewBox')"
+    whole = page.evaluate(view)
+    page.locator("[aria-label='Enlarge the drawing']").click()
+    wait_until(page, f"{view} !== '{whole}'")
+    page.locator("[aria-label='Show all of the drawing']").click()
+    wait_until(page, f"{view} === '{whole}'")

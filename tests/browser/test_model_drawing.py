@@ -123,7 +123,7 @@ def test_structures_and_mechanisms_in_space_are_drawn(chromium, visit):
         "contact": ["slider"],
         "force": ["m"],
     }
-    page.locator("g.contact").click()
+    page.locator("g.contact").click(force=True)  # beside its thin lines
     wait_until(page, f"{CURSOR} === '[[model.contact]]'")
     page = visit("spatial")
     assert parts(page, "body") == ["plate"]

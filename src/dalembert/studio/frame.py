@@ -17,6 +17,7 @@ LOOKS = """
 .border, .border-t { border-color: rgba(118, 129, 143, 0.45) }
 .cm-line.wrong { background: rgba(224, 49, 49, 0.28) !important }
 .cm-line.chosen { background: rgba(57, 135, 229, 0.16) !important }
+.disk-notice { background: rgba(240, 180, 41, 0.22) }
 .study-parts > .q-splitter__before { padding-right: 8px; overflow: hidden }
 .study-parts > .q-splitter__after { padding-left: 8px }
 .study-parts .grip { position: absolute; inset: 0 -4px; border-radius: 4px }

@@ -6,6 +6,7 @@ from urllib.parse import quote
 from nicegui import run, ui
 
 from dalembert.errors import InputError
+from dalembert.studio.disk_notice import disk_notice
 from dalembert.studio.draft import Draft
 from dalembert.studio.frame import button, complaints, frame, icon_button
 from dalembert.studio.jobs import Jobs
@@ -65,6 +66,7 @@ def _panels(draft: Draft, room: Room) -> None:
 
 def _head(draft: Draft, room: Room, editor: TextEditor) -> None:
     """Build the buttons, what the study does, and its mistakes."""
+    disk_notice(draft)
     with ui.row().classes("gap-2 items-center"):
         start = button("Run", complaints()(lambda: _start(draft, room)), icon="play_arrow")
         save = button("Save", complaints()(lambda: _save(draft)), icon="save")

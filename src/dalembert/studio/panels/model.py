@@ -52,10 +52,10 @@ class _Panel:
         self._mark()
         draft = self.draft
         if draft.study is None:
-            self.told.set_text(
-                "The text has mistakes: the drawing shows the last study without any." * bool(self.places)
-            )
+            self.told.set_text("The text has mistakes. The drawing shows the last valid text." if self.drawn else "")
             return
+        if not self.drawn:
+            self.told.set_text("Drawing the model …")
         try:
             values = dict(draft.values)
             ask = self.room.worker.ask

@@ -125,10 +125,25 @@ def test_structures_and_mechanisms_in_space_are_drawn(chromium, visit):
     }
     page.locator("g.contact").click(force=True)  # beside its thin lines
     wait_until(page, f"{CURSOR} === '[[model.contact]]'")
-    page = visit("spatial")
-    assert parts(page, "body") == ["plate"]
-    assert len(parts(page, "joint")) == 3
     assert chromium.complaints == []
+
+
+def test_a_mechanism_in_space_is_turned_and_its_parts_are_chosen(chromium, visit):
+    page = visit("spatial")
+    wait_until(page, "document.querySelectorAll('.model-space button').length >= 6")
+    names = page.evaluate("[...document.querySelectorAll('.model-space button')].map((name) => name.ariaLabel)")
+    assert {"body plate", "joint wire1", "joint wire2", "joint wire3", "load air", "gravity gravity"} <= set(names)
+    page.locator(".model-space button", has_text=re.compile("^wire2$")).focus()
+    page.keyboard.press("Enter")
+    wait_until(page, f"{CURSOR} === '[[model.joint]]'")
+    line_of(page, 'name = "wire3"').click()
+    wait_until(page, "document.querySelector('.model-space button.chosen')?.innerText === 'wire3'")
+    where = "[...document.querySelectorAll('.model-space span')].map((one) => one.getBoundingClientRect().x | 0).join()"
+    before = page.evaluate(where)
+    page.locator(".model-space").focus()
+    page.keyboard.press("ArrowLeft")
+    wait_until(page, f"{where} !== '{before}'")
+    assert [one for one in chromium.complaints if "GPU stall" not in one] == []
 
 
 def test_the_drawing_is_enlarged_and_fits_again(visit):

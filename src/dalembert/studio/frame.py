@@ -19,11 +19,18 @@ LOOKS = """
 .cm-line.chosen { background: rgba(57, 135, 229, 0.16) !important }
 .disk-notice { background: rgba(240, 180, 41, 0.22) }
 .study-parts > .q-splitter__before { padding-right: 8px; overflow: hidden }
-.study-parts > .q-splitter__after { padding-left: 8px }
+.study-parts > .q-splitter__after { padding-left: 8px; gap: 0 }
 .study-parts .grip { position: absolute; inset: 0 -4px; border-radius: 4px }
 .study-parts .grip:focus-visible { outline: 3px solid currentColor }
 .model-drawing { overflow: hidden; touch-action: pan-y; user-select: none }
 .model-drawing > svg { width: 100%; height: 100%; display: block; overflow: visible }
+.model-space { overflow: hidden; --ground: #fff }
+.body--dark .model-space { --ground: #121212 }
+.model-space button, .model-space span { text-shadow: 0 0 2px var(--ground), 0 0 3px var(--ground) }
+.model-space button { background: none; border: 0; border-radius: 4px; cursor: pointer }
+.model-space button.chosen { outline: 2px solid #3987e5 }
+.model-space button.wrong { outline: 2px solid #e03131 }
+.model-space:focus-visible, .model-space button:focus-visible { outline: 2px solid #3987e5; outline-offset: -2px }
 .model-drawing g[data-part] { cursor: pointer }
 .model-drawing g.chosen { filter: drop-shadow(0 0 2px #3987e5) drop-shadow(0 0 4px #3987e5) }
 .model-drawing g.wrong { filter: drop-shadow(0 0 2px #e03131) drop-shadow(0 0 4px #e03131) }

@@ -66,12 +66,12 @@ def _panels(draft: Draft, room: Room) -> None:
 
 def _head(draft: Draft, room: Room, editor: TextEditor) -> None:
     """Build the buttons, what the study does, and its mistakes."""
-    disk_notice(draft)
     with ui.row().classes("gap-2 items-center"):
         start = button("Run", complaints()(lambda: _start(draft, room)), icon="play_arrow")
         save = button("Save", complaints()(lambda: _save(draft)), icon="save")
         undo, redo = icon_button("undo", "Undo", draft.undo), icon_button("redo", "Redo", draft.redo)
         verdict = ui.label("").props("role=status aria-live=polite")
+    disk_notice(draft)  # after the buttons, which come first by keyboard
     does = ui.label("").classes("break-words")
     wrong = ui.column().classes("gap-1 w-full")
     editor.element.map_key("Mod-s", complaints()(lambda: _save(draft)))

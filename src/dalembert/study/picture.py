@@ -42,11 +42,11 @@ def study_picture(study: Study, label: str | None = None) -> str | None:
     if study.file.model.forward is not None:
         return None
     label = label or f"Drawing of the model: {study.title}"
-    return picture(_unreduced(study)(**study.parameters.mapping(study.parameters.start)), label)
+    return picture(unreduced(study)(**study.parameters.mapping(study.parameters.start)), label)
 
 
-def _unreduced(study: Study) -> Callable[..., Any]:
-    """The builder of the model, without what costs time and cannot be seen."""
+def unreduced(study: Study) -> Callable[..., Any]:
+    """Return the builder of the model, without what costs time and cannot be seen."""
     builder = study.builder
     if not isinstance(builder, StructureBuilder) or builder.model.structure is None:
         return builder

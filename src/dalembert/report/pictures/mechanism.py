@@ -114,14 +114,14 @@ def _pull(view: Projection, load: Any) -> np.ndarray | None:
     """Direction of a force in pixels; None for other loads, and for one without a direction in the picture."""
     if load.kind.name != "force" or getattr(load, "follower", False):
         return None
-    size = np.array([_size(getattr(load, axis)) for axis in "xyz"[: view.axes.shape[1]]])
+    size = np.array([size_of(getattr(load, axis)) for axis in "xyz"[: view.axes.shape[1]]])
     along = view(size[None])[0] * (1, -1)
     length = float(np.linalg.norm(along))
     return along / length if length > 0 else None
 
 
-def _size(course: Any) -> float:
-    """A number, or what a function of time is multiplied with; 1 where that is not one number."""
+def size_of(course: Any) -> float:
+    """Return a number, or what a function of time is multiplied with; 1 where that is not one number."""
     for name in ("value", "amplitude"):
         course = getattr(course, name, course)
     return float(np.real(course)) if np.isscalar(course) else 1.0

@@ -35,6 +35,8 @@ class Picture:
     ----------
     svg : str
         Empty if there is nothing to draw.
+    scene : Scene, optional
+        The same in three dimensions, of a model in space.
     places : dict of str to tuple
         Places in the text by the parts of the drawing, as :func:`~dalembert.studio.model.parts.places_of` gives them.
     box : array, shape (2, 2), optional
@@ -46,6 +48,7 @@ class Picture:
     """
 
     svg: str = ""
+    scene: dict[str, Any] | None = None
     places: dict[str, Place] = field(default_factory=dict)
     box: np.ndarray | None = None
     message: str = ""
@@ -68,9 +71,11 @@ def model_picture(
     places = places_of(study)
     if study.file.model.forward is not None:
         return Picture(places=places, message=NOTHING)
+    from dalembert.study.picture import unreduced
+
     parameters = study.parameters
     try:
-        system = _unreduced(study)(**parameters.mapping([values[name] for name in parameters.names]))
+        system = unreduced(study)(**parameters.mapping([values[name] for name in parameters.names]))
     except DalembertError as error:
         return Picture(places=places, message="The model cannot be built.", mistake=str(error))
     if study.has_system:
@@ -84,6 +89,7 @@ def _mechanism(study: Study, system: Any, places: dict[str, Place], box: np.ndar
     from dalembert.report.pictures.mechanism import draw_mechanism
     from dalembert.report.pictures.names import draw_names
     from dalembert.report.pictures.projection import Projection
+    from dalembert.studio.model.scene import mechanism_scene
 
     marks, message, mistake = _marks(study, system), "", ""
     try:
@@ -95,22 +101,24 @@ def _mechanism(study: Study, system: Any, places: dict[str, Place], box: np.ndar
     corners = _box(view(drawn.positions), box)
     canvas = Canvas(corners[0], corners[1], SIZE, choosable=True)
     draw_mechanism(canvas, view, drawn)
-    draw_names(canvas, view, drawn, _channels(study, drawn))
-    return Picture(canvas.svg("Drawing of the mechanism"), places, corners, message, mistake)
+    channels = _channels(study, drawn)
+    draw_names(canvas, view, drawn, channels)
+    scene = None if view.flat else mechanism_scene(drawn, channels)
+    return Picture(canvas.svg("Drawing of the mechanism"), scene, places, corners, message, mistake)
 
 
 def _structure(system: Any, places: dict[str, Place]) -> Picture:
     from dalembert.report.pictures.structure import structure_picture
+    from dalembert.studio.model.scene import structure_scene
 
     size = CHAIN if system.structure.nodes is None else SIZE
     svg = structure_picture(system, "Drawing of the structure", size, choosable=True)
-    return Picture(svg or "", places, message="" if svg else "The structure has no nodes with positions to draw.")
-
-
-def _unreduced(study: Study) -> Any:
-    from dalembert.study import picture as pictures
-
-    return pictures._unreduced(study)
+    return Picture(
+        svg or "",
+        structure_scene(system),
+        places,
+        message="" if svg else "The structure has no nodes with positions to draw.",
+    )
 
 
 def _marks(study: Study, system: Any) -> list[str]:

@@ -1,0 +1,123 @@
+"""A model in space as a browser draws it in three dimensions: shapes of its parts, and names."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dalembert.report.charts.frequency.body import edges, triangles
+from dalembert.report.charts.motion.outlines import unfolded
+from dalembert.report.pictures.canvas import COLOURS, INK
+from dalembert.report.pictures.mechanism import size_of
+
+if TYPE_CHECKING:
+    from dalembert.multibody.sketch import Sketch
+    from dalembert.vibration import VibrationSystem
+
+Scene = dict[str, Any]
+"""``shapes`` with the part that each shows, ``names``, and the corners ``low`` and ``high`` of all, in m."""
+AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+MOST_NAMES = 24
+
+
+def mechanism_scene(sketch: "Sketch", channels: Mapping[str, tuple[np.ndarray, list[str]]]) -> Scene:
+    """Return a mechanism: bodies as surfaces or lines, joints, loads, gravity, points with channels."""
+    from dalembert.multibody.components.points import Point
+    from dalembert.multibody.sketch import is_grounded
+
+    drawing, shapes, names = sketch.drawing, [], []
+    for number, (name, line) in enumerate(drawing.lines.items()):
+        part, colour = f"body {name}", COLOURS[number % len(COLOURS)]
+        if name in drawing.surfaces:
+            shapes.append(_mesh(part, drawing.corners(name)[0], drawing.surfaces[name].triangles, colour))
+        else:
+            shapes.append(_shape("line", part, unfolded(line)[0], colour))
+        names.append(_name(part, line[0].mean(axis=0)))
+    for joint in sketch.system.joints:
+        ends, at = sketch.ends.get(joint.name), drawing.joints.get(joint.name)
+        own = ends if ends is not None else at
+        if own is None:
+            continue
+        part, centre = f"joint {joint.name}", own[-1:] if at is None else at[:1]
+        shapes.append(_shape("ball", part, centre, INK))
+        if is_grounded(joint):
+            held = own[:1] if isinstance(joint.b, Point) else own[-1:]
+            shapes.append(_shape("ground", part, held, INK))
+        shapes += [_shape("dashes", part, own, INK)] * (len(own) == 2)
+        names.append(_name(part, own.mean(axis=0)))
+    for load in sketch.system.loads:
+        if load.name in sketch.ends:
+            shapes.append(_load(load, sketch.ends[load.name]))
+            names.append(_name(f"load {load.name}", sketch.ends[load.name].mean(axis=0)))
+    for owner, (position, own) in channels.items():
+        outputs = ", ".join(channel.rpartition(".")[2] for channel in own)
+        shapes.append(_shape("ring", f"channel {own[0]}", position[None], COLOURS[1]))
+        names.append(_name(f"channel {own[0]}", position, f"{owner}: {outputs}", COLOURS[1]))
+    shapes += [_shape("point", f"point {name}", position[None], INK) for name, position in sketch.marks.items()]
+    pull = np.real(np.array(sketch.system.gravity, dtype=complex))
+    scene = _scene(shapes, names, sketch.positions)
+    return scene | ({"gravity": (pull / np.linalg.norm(pull)).tolist()} if pull.any() else {})
+
+
+def structure_scene(system: "VibrationSystem") -> Scene | None:
+    """Return a structure with a mesh, its forces and contacts; None without positions of nodes."""
+    from dalembert.vibration import FrictionContact
+
+    nodes = system.structure.nodes
+    if nodes is None or not len(nodes.names):
+        return None
+    places, known, shapes, names = nodes.places, set(nodes.names), [], []
+    if nodes.faces is None or not len(nodes.faces):
+        shapes.append(_shape("points", "body structure", places, COLOURS[0]))
+    else:
+        shapes.append(_mesh("body structure", places, triangles(nodes.faces), COLOURS[0]))
+        shapes.append(_shape("edges", "body structure", places[edges(places, nodes.faces)].reshape(-1, 3), INK))
+    for element in system.elements:
+        if isinstance(element, FrictionContact) and element.first in known:
+            at = places[nodes.rows([element.first])]
+            shapes.append(_shape("ball", f"contact {element.name}", at, COLOURS[1]))
+            names.append(_name(f"contact {element.name}", at[0]))
+    for force in system.forces:
+        node, _, axis = force.dof.rpartition(".")
+        if node in known and axis in AXES:
+            at = places[nodes.rows([node])]
+            shapes.append(_shape("arrow", f"force {force.dof}", at, COLOURS[3]) | {"along": AXES[axis]})
+            names.append(_name(f"force {force.dof}", at[0]))
+    return _scene(shapes, names, places)
+
+
+def _load(load: Any, ends: np.ndarray) -> dict[str, Any]:
+    part = f"load {load.name}"
+    if len(ends) == 2 and np.ptp(ends, axis=0).max() > 0:
+        return _shape("spring", part, ends, COLOURS[2])
+    size = np.array([size_of(getattr(load, axis, 0.0)) for axis in "xyz"])
+    if load.kind.name.endswith("force") and size.any() and not getattr(load, "follower", False):
+        return _shape("arrow", part, ends[:1], COLOURS[3]) | {"along": (size / np.linalg.norm(size)).tolist()}
+    return _shape("ball", part, ends[:1], COLOURS[2])
+
+
+def _shape(kind: str, part: str, points: np.ndarray, colour: str) -> dict[str, Any]:
+    """A shape through points; those that are not finite are gaps of a line."""
+    numbers = [[None if np.isnan(one) else round(one, 7) for one in point] for point in np.asarray(points).tolist()]
+    return {"kind": kind, "part": part, "points": numbers, "colour": colour}
+
+
+def _mesh(part: str, corners: np.ndarray, faces: np.ndarray, colour: str) -> dict[str, Any]:
+    return _shape("mesh", part, corners, colour) | {"triangles": np.asarray(faces).ravel().tolist()}
+
+
+def _name(part: str, position: np.ndarray, words: str = "", colour: str = INK) -> dict[str, Any]:
+    return {
+        "part": part,
+        "at": np.asarray(position).tolist(),
+        "words": words or part.partition(" ")[2],
+        "colour": colour,
+    }
+
+
+def _scene(shapes: list[dict[str, Any]], names: list[dict[str, Any]], positions: np.ndarray) -> Scene:
+    known = positions[np.isfinite(positions).all(axis=1)]
+    shown = names if len(names) <= MOST_NAMES else []
+    return {
+        "shapes": shapes, "names": shown, "low": known.min(axis=0).tolist(), "high": known.max(axis=0).tolist()
+    }  # fmt: skip

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from dalembert.multibody.sketch import Sketch
 
 SIZE = (720, 460)
-CHAIN = (480, 307)
-"""Size of the drawing of a chain of masses, which has few parts."""
 MARGIN = 0.09
 """Room for names beside the drawing, as part of its size."""
 MOST_POINTS = 40
@@ -111,8 +109,7 @@ def _structure(system: Any, places: dict[str, Place]) -> Picture:
     from dalembert.report.pictures.structure import structure_picture
     from dalembert.studio.model.scene import structure_scene
 
-    size = CHAIN if system.structure.nodes is None else SIZE
-    svg = structure_picture(system, "Drawing of the structure", size, choosable=True)
+    svg = structure_picture(system, "Drawing of the structure", SIZE, choosable=True)
     return Picture(
         svg or "",
         structure_scene(system),

@@ -42,6 +42,7 @@ def study(chromium, address, root, request):
     page.goto(f"{address}/study/{name}/{name}")
     wait_until(page, ALIVE)
     expect(page.get_by_text("Valid.")).to_be_visible()
+    page.get_by_role("tab", name="Forms").click()
     yield page, path
     assert chromium.complaints == []
 

@@ -1,18 +1,16 @@
 """A study that is open in two tabs, or changed by another program: nothing is overwritten, nothing is lost."""
 
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Page
 
+from browser.running_studio import running_studio
 from browser.visitor import wait_until
 from dalembert.study.template import begin
 
 pytestmark = pytest.mark.slow
-COMMAND = Path(sys.executable).with_name("dalembert")
 TEXT = "(document.body?.innerText ?? '')"
 CHANGED = "changed on disk, and the text here has changes too. Nothing was overwritten."
 
@@ -24,11 +22,8 @@ def root(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def address(root):
-    command = [COMMAND, "studio", root, "--port", "0", "--no-browser"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as studio:
-        found = re.search(r"http://\S+", studio.stdout.readline())
-        yield found[0].rstrip("/")
-        studio.terminate()
+    with running_studio(root) as found:
+        yield found
 
 
 @pytest.fixture

@@ -42,7 +42,7 @@ def parts_at(places: Mapping[str, Place], place: Place | None) -> list[str]:
     """
     if place is None or len(place) < 2:
         return []
-    return [name for name, table in places.items() if is_within(place, table) or is_within(table, place)]
+    return [name for name, table in places.items() if name and (is_within(place, table) or is_within(table, place))]
 
 
 def shown_channels(study: Study) -> list[str]:

@@ -1,0 +1,145 @@
+"""The drawing of a study's model: its parts, their tables, the pose at the values of parameters, and what is wrong."""
+
+import re
+
+import numpy as np
+import pytest
+
+from dalembert.studio.model.parts import parts_at, place_of
+from dalembert.studio.model.picture import NOTHING, Picture, model_picture
+from dalembert.studio.reading import read
+from dalembert.studio.worker import Kept
+from dalembert.study.template import templates
+
+IDENTIFY = templates()["identify"].text
+LOOP = """
+[model]
+[[model.body]]
+kind = "RigidBar"
+name = "rod"
+length = 1
+mass = 1
+[[model.joint]]
+kind = "RevoluteJoint"
+name = "left"
+a = "ground(0, 0)"
+b = "rod.start"
+[[model.joint]]
+kind = "RevoluteJoint"
+name = "right"
+a = "ground(3, 0)"
+b = "rod.end"
+[solver]
+step = 0.01
+[simulate]
+end = 1
+"""
+CURVE = """
+from dalembert.forward import PythonModel
+
+def build(parameters):
+    return PythonModel(lambda rate: [rate, rate], parameters, ["x"], [0.0, 1.0])
+"""
+
+
+@pytest.fixture
+def draw(tmp_path):
+    """Draw a text at the start values, or at others."""
+
+    def draw(text: str, template: str = "", box=None, **values: float) -> Picture:
+        path = tmp_path / "study.toml"
+        for name, content in (templates()[template].beside if template else {}).items():
+            (tmp_path / name).write_text(content)
+        study = read(path, text).study
+        start = {} if study is None else study.parameters.mapping(study.parameters.start)
+        return model_picture(Kept(), path, text, {**start, **values}, box)
+
+    return draw
+
+
+def parts(svg: str) -> list[str]:
+    """Roles and names of the parts of a drawing."""
+    return [f"{role} {name}" for role, name in re.findall(r'<g class="(\w+)" data-part="([^"]*)"', svg)]
+
+
+def test_each_part_is_drawn_and_has_its_table(draw):
+    picture = draw(IDENTIFY, "identify")
+    assert sorted(parts(picture.svg)) == [
+        "body rod",
+        "channel rod.end.x",
+        "gravity gravity",
+        "joint pin",
+        "point rod.end",
+    ]
+    assert picture.places["joint pin"] == ("model", "joint", 0)
+    assert picture.places["channel rod.end.y"] == ("data",)
+    assert place_of(picture.places, "point rod.end") == ("model", "structure")
+    assert 'role="button" aria-label="body rod"' in picture.svg
+    assert (picture.message, picture.mistake, picture.scene) == ("", "", None)
+
+
+def test_the_pose_is_that_of_the_values(draw):
+    level, hanging = (draw(IDENTIFY, "identify", angle=angle).box for angle in (0.0, -np.pi / 3))
+    length = 0.8
+    assert np.ptp(level, axis=0)[0] == pytest.approx(1.18 * length)
+    assert np.ptp(hanging, axis=0) == pytest.approx(length * (np.array([0.5, 3**0.5 / 2]) + 0.18 * 3**0.5 / 2))
+
+
+def test_a_drawing_that_moves_stands_still(draw):
+    first = draw(IDENTIFY, "identify", angle=-0.7)
+    assert draw(IDENTIFY, "identify", first.box, angle=-0.75).box is first.box
+    assert draw(IDENTIFY, "identify", first.box, angle=-1.0).box is not first.box
+
+
+def test_parts_of_structures_have_their_tables(draw):
+    picture = draw(templates()["response"].text, "response")
+    assert {part: place_of(picture.places, part) for part in parts(picture.svg)} == {
+        "spring m – ground": ("model", "spring", 0),
+        "contact slider": ("model", "contact", 0),
+        "body m": ("model", "mass", 0),
+        "force m": ("model", "force", 0),
+    }
+
+
+def test_a_mechanism_in_space_has_a_scene(draw):
+    scene = draw(templates()["spatial"].text, "spatial").scene
+    assert {shape["part"] for shape in scene["shapes"]} >= {
+        "body plate",
+        "joint wire1",
+        "load air",
+        "channel plate.first.x",
+    }
+    wire = next(shape for shape in scene["shapes"] if (shape["kind"], shape["part"]) == ("dashes", "joint wire1"))
+    first, second = np.array(wire["points"])
+    assert np.linalg.norm(second - first) == pytest.approx(1.2, abs=1e-6)
+    assert scene["gravity"] == [0.0, 0.0, -1.0]
+    held = next(shape for shape in scene["shapes"] if (shape["kind"], shape["part"]) == ("ground", "joint wire1"))
+    assert held["points"] == [[0.15, 0.0, 0.0]]
+
+
+def test_a_robot_belongs_to_its_table(draw):
+    picture = draw(templates()["robot"].text, "robot")
+    assert place_of(picture.places, "body upper") == ("model", "robot")
+    assert any(shape["kind"] == "mesh" for shape in picture.scene["shapes"])
+
+
+def test_what_cannot_be_assembled_is_drawn_as_placed(draw):
+    picture = draw(LOOP)
+    assert "body rod" in parts(picture.svg)
+    assert picture.message == "Drawn as placed: the mechanism cannot be assembled."
+    assert "'right'" in picture.mistake
+
+
+def test_a_model_without_a_shape_says_so(draw, tmp_path):
+    (tmp_path / "curve.py").write_text(CURVE)
+    text = '[parameters]\nrate = { lower = 1, upper = 2 }\n[model]\nforward = "curve.py:build"\n[sweep]\nat = 1.0\n'
+    picture = draw(f'{text}channels = ["x"]\nover = {{ rate = {{ count = 5 }} }}\n')
+    assert (picture.svg, picture.message) == ("", NOTHING)
+
+
+def test_parts_at_a_place():
+    places = {"": ("model",), "body rod": ("model", "body", 0), "body disc": ("model", "body", 1)}
+    assert parts_at(places, ("model", "body", 1, "mass")) == ["body disc"]
+    assert parts_at(places, ("model", "body")) == ["body rod", "body disc"]
+    assert parts_at(places, ("model",)) == []
+    assert parts_at(places, None) == []

@@ -101,7 +101,7 @@ def test_edits_at_once_are_kept_by_choice(open_study):
 def test_a_copy_keeps_both(open_study, root):
     file, (page,) = open_study("copied")
     write_at_start(page, "# mine")
-    wait_until(page, shown("# mine"))
+    wait_until(page, f"{TEXT}.includes('Save •')")
     file.write_text(f"# theirs\n{file.read_text()}")
     wait_until(page, f"{TEXT}.includes({CHANGED!r})")
     click(page, "Save as a copy")

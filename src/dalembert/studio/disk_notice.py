@@ -17,7 +17,7 @@ SAYS = {
 def disk_notice(draft: Draft) -> None:
     """Build the notice, which is hidden while the file is what was read or saved.
 
-    A text without changes of its own follows the file; undo brings the former text back.
+    A text without unsaved changes follows the file; undo brings the earlier text back.
     """
     with ui.row().classes("w-full items-center gap-2 p-2 rounded border disk-notice").props("role=alert") as notice:
         ui.icon("sync_problem", size="sm")

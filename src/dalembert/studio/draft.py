@@ -103,6 +103,12 @@ class Draft:
         self._history.add(text, self._clock() if typed else None)
         self._show(text)
 
+    def recall(self, text: str) -> None:
+        """Put a text that came too late to be taken before the present one, where :meth:`undo` finds it."""
+        self._history.add(text)
+        self._history.add(self.text)
+        self._tell("text")
+
     def edit(self, function: Callable[[tomlkit.TOMLDocument], object]) -> None:
         """Change the text by a function that changes the document; comments and order stay.
 

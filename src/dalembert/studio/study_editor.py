@@ -23,11 +23,15 @@ class StudyEditor(ui.codemirror, component="study_editor.js", esm={"dalembert-co
     text : str
     names : function
         Coroutine function that returns names that the text does not say, such as channels.
+    late : function
+        Called with a text that was typed when the browser had not yet received the present one.
     """
 
-    def __init__(self, text: str, names: Callable[[], Awaitable[Names]]) -> None:
+    def __init__(
+        self, text: str, names: Callable[[], Awaitable[Names]], late: Callable[[str], object] = lambda text: None
+    ) -> None:
         super().__init__(text, language="TOML", theme="vscodeLight", line_wrapping=True)
-        self._names = names
+        self._names, self._late = names, late
         self._props["revision"], self._props["label"] = 0, "The study as text"
         self.on("question", self._answer)
 
@@ -38,7 +42,10 @@ class StudyEditor(ui.codemirror, component="study_editor.js", esm={"dalembert-co
 
     def _event_args_to_value(self, e: events.GenericEventArguments) -> str:
         """Return the text that was typed; the present one if the browser had not yet received it."""
-        return e.args["text"] if e.args["revision"] == self._props["revision"] else self.value
+        if e.args["revision"] == self._props["revision"]:
+            return e.args["text"]
+        self._late(e.args["text"])
+        return self.value
 
     async def _answer(self, event: events.GenericEventArguments) -> None:
         """Send completions, or the meaning of a word."""

@@ -106,6 +106,14 @@ def test_what_is_typed_without_a_pause_is_one_step(path):
     assert draft.text == IDENTIFY.text
 
 
+def test_what_was_typed_too_late_is_found_by_undo(draft):
+    draft.set_text("theirs")
+    draft.recall("mine")
+    assert draft.text == "theirs"
+    draft.undo()
+    assert draft.text == "mine"
+
+
 def test_an_edit_keeps_comments_and_order(draft):
     draft.set_text("# mine\nb = 1 # one\na = 2\n")
     draft.edit(lambda document: document.update({"b": 3}))

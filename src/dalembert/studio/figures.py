@@ -1,14 +1,16 @@
 """Figures of runs that go on, and of runs side by side."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import plotly.graph_objects as go
-from nicegui import ui
 
 from dalembert.report.charts.drawing import logarithmic, positive
 from dalembert.report.look import LIGHT, plain, themed
+
+if TYPE_CHECKING:
+    from nicegui import ui
 
 NEUTRAL = "#76818f"
 """Readable on a light and on a dark page."""
@@ -52,8 +54,10 @@ def followed(points: Sequence[tuple[float, float]], axes: tuple[str, str]) -> go
     return on_any_page(figure.update_layout(showlegend=False))
 
 
-def plot(figure: go.Figure) -> ui.plotly:
+def plot(figure: go.Figure) -> "ui.plotly":
     """The figure on a page, without the buttons that would cover it on a phone."""
+    from nicegui import ui  # not for processes that make figures, and show none
+
     return ui.plotly(bare(figure))
 
 

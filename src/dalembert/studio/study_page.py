@@ -10,7 +10,7 @@ from dalembert.studio.disk_notice import disk_notice
 from dalembert.studio.draft import Draft
 from dalembert.studio.frame import button, complaints, frame, icon_button
 from dalembert.studio.jobs import Jobs
-from dalembert.studio.panels import data, forms, model
+from dalembert.studio.panels import data, forms, model, sliders
 from dalembert.studio.reading import read
 from dalembert.studio.room import Room
 from dalembert.studio.splitter import splitter
@@ -23,6 +23,7 @@ AFTER = 0.4  # s after the last change until the text is checked
 PANELS = (
     ("model", "Model", "precision_manufacturing", model.show),
     ("forms", "Forms", "edit_note", forms.show),
+    ("sliders", "Sliders", "tune", sliders.show),
     ("data", "Data", "show_chart", data.show),
 )
 """Name, title, icon and function of each panel."""

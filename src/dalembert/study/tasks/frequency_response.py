@@ -114,7 +114,7 @@ def _best(table: FrequencyResponseTable, result: Any) -> dict[str, Any]:
     return {"values": {table.sweep.parameter: best, **found}}
 
 
-def _drawn(table: FrequencyResponseTable, result: Any) -> tuple[str, ...]:
+def drawn_dofs(table: FrequencyResponseTable, result: Any) -> tuple[str, ...]:
     """The degrees of freedom that figures show: the one whose peak is told, or those that were asked for."""
     if table.dof is not None:
         return tuple(name for name in result.dofs if table.dof in (name, name.rpartition(".")[0]))
@@ -123,7 +123,7 @@ def _drawn(table: FrequencyResponseTable, result: Any) -> tuple[str, ...]:
 
 def _response(study: Study, result: Any, told: Mapping[str, Any]) -> Response:
     """The outcome, with the numbers of its peak."""
-    options = {"dofs": _drawn(study.table, result), "amplitude": study.table.amplitude}
+    options = {"dofs": drawn_dofs(study.table, result), "amplitude": study.table.amplitude}
     return Response(study, result, _best(study.table, result), options, told)
 
 
@@ -206,7 +206,7 @@ class FrequencyResponseTask(Task):
         from dalembert.vibration import frequency_response, frequency_responses
 
         table = study.table
-        options = _options(study)
+        options = curve_options(study)
         if table.sweep is None:
             emit("following", begin=float(table.along[0]), end=float(table.along[-1]))
             study.equations()
@@ -246,7 +246,7 @@ class FrequencyResponseTask(Task):
         return _response(study, kind.load(path), beside_curve.load(path))
 
 
-def _options(study: Study) -> dict[str, Any]:
+def curve_options(study: Study) -> dict[str, Any]:
     """Settings of a curve, or of each curve of a family."""
     own = study.table.picked("continuation", "stability")
     return {**own, "observe": _observed(study), "checkpoint": study.checkpoint}
@@ -260,7 +260,7 @@ def _any_curve(study: Study) -> None:
     for value in _values(study).tolist():
         try:
             system = build(**{study.table.sweep.parameter: value})
-            frequency_response(system, study.table.along, study.balance, **_options(study))
+            frequency_response(system, study.table.along, study.balance, **curve_options(study))
             return
         except DalembertError as error:
             errors.append(error)

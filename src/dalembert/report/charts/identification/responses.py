@@ -7,8 +7,8 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.inverse import ExperimentFit, Fit
-from dalembert.report.charts.bounds.bands import draw_line, dressed, selected
-from dalembert.report.charts.drawing import colour_of, stacked
+from dalembert.report.charts.bounds.bands import dressed, selected
+from dalembert.report.charts.drawing import colour_of, draw, stacked
 from dalembert.report.look import plain
 from dalembert.report.thin import thinned
 
@@ -45,20 +45,32 @@ def responses(
     return dressed(figure, fit.data, chosen, title, below="residual")
 
 
+def computed_line(fit: Fit | ExperimentFit, column: int) -> tuple[np.ndarray, np.ndarray]:
+    """Abscissae and ordinates of the computed line of a channel."""
+    measured = fit.data.values[:, column]
+    computed, nearest = fit.response[:, column], measured + fit.residuals[:, column]
+    computed = np.where(np.abs(computed - nearest) > 1, nearest, computed)  # whole turns away, where they do not count
+    return thinned(fit.data.coordinate.values, computed)
+
+
+def residual_line(fit: Fit | ExperimentFit, column: int) -> tuple[np.ndarray, np.ndarray]:
+    """Abscissae and ordinates of the line of a channel's residuals."""
+    taken = np.flatnonzero(fit.data.taken[:, column])
+    return thinned(fit.data.coordinate.values[taken], fit.residuals[taken, column])
+
+
 def _channel(figure: go.Figure, fit: Fit | ExperimentFit, column: int, colour: str) -> None:
     at, name = fit.data.coordinate.values, plain(fit.data.channels[column])
     taken = np.flatnonzero(fit.data.taken[:, column])
-    measured, residual = fit.data.values[:, column], fit.residuals[:, column]
-    computed, nearest = fit.response[:, column], measured + residual
-    computed = np.where(np.abs(computed - nearest) > 1, nearest, computed)  # whole turns away, where they do not count
     few = len(taken) <= FEW
     dots = {"size": 7, "symbol": "circle-open"} if few else {"size": 3, "opacity": 0.4}
-    x, y = thinned(at[taken], measured[taken])
+    x, y = thinned(at[taken], fit.data.values[taken, column])
     style = {"mode": "markers", "marker": {"color": colour, **dots}, "legendgroup": name}
     figure.add_scatter(x=x, y=y, name=f"{name} measured", **style, showlegend=True, row=1, col=1)
-    draw_line(figure, at, computed, f"{name} computed", name, colour, 2, row=1, showlegend=True)
+    draw(figure, *computed_line(fit, column), f"{name} computed", colour, 2, row=1, legendgroup=name, showlegend=True)
     style = {"mode": "lines+markers" if few else "lines", "marker": {"color": colour, "size": 4}}
-    draw_line(figure, at[taken], residual[taken], f"{name} residual", name, colour, 1, row=2, **style)
+    hidden = {"legendgroup": name, "showlegend": False}
+    draw(figure, *residual_line(fit, column), f"{name} residual", colour, 1, row=2, **hidden, **style)
     if fit.data.deviations is not None:
         line: Any = {"color": colour, "width": 1, "dash": "dot"}
         for bound in (-2 * fit.data.deviations[column], 2 * fit.data.deviations[column]):

@@ -1,0 +1,137 @@
+"""One parameter with its slider, its number, what can be done with its value, and how strongly it acts."""
+
+from collections.abc import Callable, Mapping
+from html import escape
+from typing import Any
+
+from nicegui import events, ui
+
+from dalembert.parameters import Parameter
+from dalembert.report.charts.drawing import colour_of
+from dalembert.studio.travel import STEPS, Travel
+
+THROTTLE = 0.02  # s between two values of a slider that is dragged
+SHOWN = 4
+"""Channels of which bars are drawn: those that a parameter acts on most."""
+LOOKS = """
+.parameter-row { display: grid; grid-template-columns: minmax(5rem, 1fr) minmax(6rem, 3fr) 9.5rem auto; gap: 0 10px;
+  align-items: center; width: 100% }
+.parameter-row input[type=range] { width: 100%; height: 28px; accent-color: var(--q-primary); cursor: pointer }
+.body--dark input[type=range] { color-scheme: dark }
+.parameter-row input[type=range]:focus-visible { outline: 2px solid currentColor; outline-offset: 1px }
+.parameter-row .bounds { display: flex; justify-content: space-between; font-size: 11px; opacity: 0.75;
+  margin-top: -4px }
+.parameter-row .effects { grid-column: 1 / -1; display: flex; flex-wrap: wrap; gap: 0 14px; font-size: 12px }
+.parameter-row .effect { display: inline-flex; align-items: center; gap: 5px }
+.parameter-row .track { width: 44px; height: 6px; border-radius: 3px; background: rgba(118, 129, 143, 0.25) }
+.parameter-row .bar { height: 6px; border-radius: 3px; min-width: 1px }
+@media (max-width: 599px) {
+  .parameter-row { grid-template-columns: 1fr 9.5rem auto }
+  .parameter-row .way { grid-column: 1 / -1; grid-row: 2 }
+}
+"""
+
+
+class Way(ui.element, component="way.js"):
+    """A slider that emits ``moved`` with its position."""
+
+    def place(self, position: int, text: str) -> None:
+        """Move it to a position, whose value is a text."""
+        self._props["position"] = position
+        self._props["aria-valuetext"] = text
+        self.update()
+
+
+class ParameterRow:
+    """A parameter on a page.
+
+    Parameters
+    ----------
+    item : Parameter
+    value : float
+        Current value, SI.
+    chosen : function
+        Called with a value that the user chose.
+    kept : mapping of str to function
+        What can be done with the value, by its text in the menu.
+    """
+
+    def __init__(
+        self,
+        item: Parameter,
+        value: float,
+        chosen: Callable[[float], None],
+        kept: Mapping[str, Callable[[], object]],
+    ) -> None:
+        self.item, self._travel, self._chosen, self._value = item, Travel(item), chosen, value
+        with ui.element("div").classes("parameter-row").props(f'role=group aria-label="{escape(item.name)}"'):
+            ui.label(item.name).classes("font-bold break-words")
+            self._build_way()
+            self._build_number()
+            with ui.button(icon="more_vert").props(f'flat round dense aria-label="Use {escape(item.name)}"'), ui.menu():
+                for text, act in kept.items():
+                    ui.menu_item(text, act).props("role=menuitem")
+            self._effects = ui.html("", sanitize=False).classes("effects")
+        self.settle()
+
+    def show(self, value: float) -> None:
+        """Show a value that was set elsewhere."""
+        if value != self._value:
+            self._value = value
+            self._number.set_value(value)
+            self.settle()
+
+    def settle(self) -> None:
+        """Bring the slider to its value."""
+        text = f"{self._value:.6g} {self.item.unit}".rstrip()
+        self._way.place(self._travel.position(self._value), text)
+
+    def show_effects(self, channels: tuple[str, ...], effects: list[float], largest: float) -> None:
+        """Show bars for the channels that the parameter acts on, relative to the largest effect of all parameters."""
+        order = sorted(range(len(channels)), key=lambda place: -effects[place])[:SHOWN]
+        bars = [_bar(channels[k], effects[k], effects[k] / largest, colour_of(k)) for k in sorted(order)]
+        self._effects.set_content("".join(bars))
+
+    def _build_way(self) -> None:
+        item = self.item
+        with ui.element("div").classes("way"):
+            self._way = Way().props(f'max={STEPS} aria-label="{escape(item.name)}"')
+            self._way.on("moved", self._moved, throttle=THROTTLE)
+            with ui.element("div").classes("bounds").props("aria-hidden=true"):
+                ui.label(f"{item.lower:.6g}")
+                ui.label(f"{item.upper:.6g}")
+
+    def _build_number(self) -> None:
+        item = self.item
+        bounds = f"{item.lower:.6g} to {item.upper:.6g}"
+        checks = {f"Enter {bounds}": self._is_within}
+        self._number = ui.number(value=self._value, format="%.6g", validation=checks, on_change=self._typed)
+        self._number.props(f'dense outlined debounce=300 hide-bottom-space suffix="{escape(item.unit)}"')
+        self._number.props(f'step=any aria-label="Value of {escape(item.name)}"')
+
+    def _moved(self, event: events.GenericEventArguments) -> None:
+        value = self._travel.value(float(event.args))
+        if value != self._value:
+            self._value = value
+            self._number.set_value(value)
+            self._chosen(value)
+
+    def _typed(self) -> None:
+        value = self._number.value
+        if value is not None and self._is_within(value) and value != self._value:
+            self._value = float(value)
+            self.settle()
+            self._chosen(self._value)
+
+    def _is_within(self, value: Any) -> bool:
+        return value is not None and self.item.lower <= value <= self.item.upper
+
+
+def _bar(channel: str, effect: float, share: float, colour: str) -> str:
+    """A bar, with the effect in words for those who do not see it."""
+    percent = f"{effect:.0f} ×" if effect > 10 else f"{100 * effect:.{0 if effect > 0.1 else 1}f} %"
+    name, told = escape(channel), f"Changes {escape(channel)} by about {percent} of its range between the bounds"
+    inside = f'<span class="bar" style="width:{100 * share:.0f}%;background:{colour};display:block"></span>'
+    return (
+        f'<span class="effect" title="{told}"><span class="track">{inside}</span><span>{name} {percent}</span></span>'
+    )

@@ -1,0 +1,247 @@
+"""Sliders of the parameters: the mechanism plays and curves lie over the data at the values that they show."""
+
+import asyncio
+from functools import partial
+from typing import Any
+
+from nicegui import background_tasks, ui
+
+from dalembert.parameters import Parameter
+from dalembert.studio.chosen_values import use_as_start, use_as_value
+from dalembert.studio.draft import Draft
+from dalembert.studio.frame import button, complaints
+from dalembert.studio.panels.parameter_row import LOOKS, ParameterRow
+from dalembert.studio.player import Player
+from dalembert.studio.room import Room
+from dalembert.studio.simulation.answers import Influences, Simulated, Source, influences, simulated
+from dalembert.studio.simulation.parts import names
+from dalembert.studio.worker import WorkerError
+
+STILL = 0.3
+"""Seconds without a change after which the effects of parameters are computed."""
+PATIENCE = 1.0
+"""Seconds of a simulation after which the page says that it is computed."""
+
+
+def show(draft: Draft, room: Room) -> None:
+    """Build the panel."""
+    ui.add_css(LOOKS)
+    Sliders(draft, room)
+
+
+class Sliders:
+    """The panel of one draft.
+
+    Parameters
+    ----------
+    draft : Draft
+    room : Room
+    """
+
+    def __init__(self, draft: Draft, room: Room) -> None:
+        self._draft, self._room = draft, room
+        self._rows: dict[str, ParameterRow] = {}
+        self._plots: list[ui.plotly] = []
+        self._drawn: tuple[Source, str] | None = None
+        self._at_start: float | None = None
+        self._later: list[asyncio.TimerHandle] = []
+        self._visible, self._asked, self._stale = False, False, False
+        with ui.column().classes("w-full gap-2"):
+            self._build()
+        draft.follow("study", self._take_study)
+        draft.follow("values", self._take_values)
+
+    def _build(self) -> None:
+        with ui.row().classes("w-full items-center gap-2"):
+            self._start = button("Use as start", complaints()(self._use_as_start), icon="flag")
+            self._reset = button("Reset", self._reset_values, icon="restart_alt", colour="grey-8")
+            self._choice = ui.select([""], value="", label="Experiment", on_change=self._ask).props("dense outlined")
+            self._told = ui.label("").classes("break-words text-sm grow basis-60").props("role=status")
+            self._busy = ui.row().classes("items-center gap-2")
+            with self._busy:
+                ui.spinner(size="sm")
+                ui.label("Computing …").props("role=status")
+                button("Stop", self._room.worker.interrupt, icon="stop", colour="negative").props("dense")
+        self._problem = ui.label("").classes("text-negative break-words").props("role=alert")
+        self._parameters = ui.column().classes("w-full gap-3")
+        self._scene = ui.element("div").classes("w-full border rounded p-1")
+        with self._scene:  # an invisible element does not hear its events
+            self._player = Player("Motion of the mechanism")
+        self._player.on("shown", partial(self._appear, True))
+        self._player.on("hidden", partial(self._appear, False))
+        self._curves = ui.column().classes("w-full gap-2")
+        for part in (self._busy, self._choice, self._scene, self._problem):
+            part.set_visibility(False)
+
+    @property
+    def _changed(self) -> dict[str, float]:
+        """Values that are not first guesses, by name."""
+        study = self._draft.good
+        if study is None:
+            return {}
+        start = study.parameters.mapping(study.parameters.start)
+        return {name: value for name, value in self._draft.values.items() if value != start.get(name)}
+
+    def _take_study(self) -> None:
+        study = self._draft.study
+        if study is None:
+            return
+        choices = list(names(study))
+        self._choice.set_options(choices, value=self._choice.value if self._choice.value in choices else choices[0])
+        self._choice.set_visibility(len(choices) > 1)
+        if [_range(row.item) for row in self._rows.values()] != [_range(item) for item in study.parameters]:
+            self._build_rows()
+        self._at_start = None
+        self._take_values()
+
+    def _build_rows(self) -> None:
+        study = self._draft.study
+        assert study is not None
+        self._parameters.clear()
+        with self._parameters:
+            self._rows = {
+                item.name: ParameterRow(
+                    item,
+                    self._draft.values[item.name],
+                    partial(self._draft.set_value, item.name),
+                    {
+                        "Reset": partial(self._reset_value, item.name),
+                        "Use as start": complaints()(partial(self._use_as_start, item.name)),
+                        "Use as value": complaints()(partial(self._use_as_value, item.name)),
+                    },
+                )
+                for item in study.parameters
+            }
+            if not self._rows:
+                ui.label("The study has no parameters. Add one to [parameters] to get its slider.")
+
+    def _take_values(self) -> None:
+        for name, row in self._rows.items():
+            row.show(self._draft.values[name])
+        for one in (self._start, self._reset):
+            one.set_enabled(bool(self._changed))
+        self._ask()
+
+    def _reset_value(self, name: str) -> None:
+        study = self._draft.good
+        if study is not None:
+            self._draft.set_value(name, study.parameters.mapping(study.parameters.start)[name])
+
+    def _reset_values(self) -> None:
+        for name in self._changed:
+            self._reset_value(name)
+
+    def _use_as_start(self, *chosen: str) -> None:
+        values = {name: self._draft.values[name] for name in chosen} or self._changed
+        self._draft.edit(lambda document: use_as_start(document, values))
+
+    def _use_as_value(self, name: str) -> None:
+        self._draft.edit(lambda document: use_as_value(document, name, self._draft.values[name]))
+
+    def _appear(self, visible: bool) -> None:
+        self._visible = visible
+        if visible and self._stale:
+            self._ask()
+
+    def _ask(self) -> None:
+        """Simulate at the current values; a newer request takes the place of one that waits.
+
+        While another panel is open this is done once, so that all is compiled and read when this one opens.
+        """
+        if self._draft.study is None or self._draft.reading.text != self._draft.text:
+            return
+        self._stale = self._asked and not self._visible
+        self._asked = True
+        if not self._stale:
+            background_tasks.create(self._simulate())
+
+    async def _simulate(self) -> None:
+        draft, worker, name = self._draft, self._room.worker, self._choice.value
+        assert draft.study is not None
+        source = Source.of(draft.study, draft.path, draft.text)
+        worker.drop("influences")
+        self._wait(PATIENCE, lambda: self._busy.set_visibility(True))
+        values, figures = dict(draft.values), self._drawn != (source, name)
+        try:
+            found = await worker.ask("simulation", simulated, source, name, values, figures=figures)
+        except WorkerError as error:
+            self._show_problem(str(error))
+            return
+        if found is None:  # a newer one is on its way
+            return
+        if figures:
+            self._drawn = source, name
+        self._show(found)
+        self._wait(STILL, lambda: background_tasks.create(self._weigh(source, name, values)))
+
+    async def _weigh(self, source: Source, name: str, values: dict[str, float]) -> None:
+        """Show how strongly the parameters act at the values."""
+        try:
+            found = await self._room.worker.ask("influences", influences, source, name, values)
+        except WorkerError:  # what is wrong was said by the simulation, or there are no derivatives
+            found = Influences((), {})
+        if found is None:
+            return
+        largest = max((effect for effects in found.effects.values() for effect in effects), default=0.0)
+        for name, row in self._rows.items():
+            row.settle()
+            row.show_effects(found.channels, found.effects.get(name, []) if largest > 0 else [], largest)
+
+    def _wait(self, seconds: float, act: Any) -> None:
+        """Act after some time without another change; what waited before is left out."""
+        self._forget()
+        self._later.append(asyncio.get_running_loop().call_later(seconds, act))
+
+    def _forget(self) -> None:
+        while self._later:
+            self._later.pop().cancel()
+
+    def _show_problem(self, sentence: str) -> None:
+        self._forget()
+        self._busy.set_visibility(False)
+        self._problem.set_text(sentence)
+        self._problem.set_visibility(bool(sentence))
+
+    def _show(self, found: Simulated) -> None:
+        self._show_problem("")
+        self._told.set_text(self._facts(found))
+        self._scene.set_visibility(found.film is not None)
+        if found.film is not None:
+            self._player.show(found.film)
+        if any(curves.figure for curves in found.curves) or len(found.curves) != len(self._plots):
+            self._draw(found)
+            return
+        for plot, curves in zip(self._plots, found.curves, strict=True):
+            assert isinstance(plot.figure, dict)
+            for trace, (x, y) in curves.lines.items():
+                plot.figure["data"][trace] |= {"x": x, "y": y}
+            plot.update()
+
+    def _draw(self, found: Simulated) -> None:
+        """Draw the figures anew; a figure keeps its place and the user's zoom."""
+        if len(found.curves) != len(self._plots):
+            self._curves.clear()
+            with self._curves:
+                self._plots = [
+                    ui.plotly({}).classes("w-full").props('role=img aria-label="Computed channels and data"')
+                    for _ in found.curves
+                ]
+        for plot, curves in zip(self._plots, found.curves, strict=True):
+            curves.figure["layout"]["uirevision"] = "kept"
+            plot.update_figure(curves.figure)
+
+    def _facts(self, found: Simulated) -> str:
+        """The misfit and what it is at the first guesses, residuals and time, in words."""
+        facts = []
+        if found.misfit is not None:
+            if not self._changed:
+                self._at_start = found.misfit
+            start = "" if self._at_start is None else f" (at the start values {self._at_start:.4g})"
+            facts.append(f"Misfit {found.misfit:.4g}{start}")
+        facts += [f"rms residual of {name} {size:.3g}" for name, size in list(found.residuals.items())[:4]]
+        return " · ".join([*facts, f"simulated in {1000 * found.seconds:.0f} ms"])
+
+
+def _range(item: Parameter) -> tuple[object, ...]:
+    """What the slider of a parameter depends on."""
+    return item.name, item.unit, item.lower, item.upper, item.logarithmic

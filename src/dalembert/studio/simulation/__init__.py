@@ -1,0 +1,1 @@
+"""What the process of a study computes at the current values of its parameters."""

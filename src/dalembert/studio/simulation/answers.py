@@ -1,0 +1,212 @@
+"""The functions that the process of a study is asked for: a simulation, and how strongly parameters act."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dalembert.errors import SolveError
+from dalembert.report.sections.motion.mechanism import measured
+from dalembert.studio.simulation.curves import Curves, curves, on_page
+from dalembert.studio.simulation.film import Film, film, frames
+from dalembert.studio.simulation.parts import OVER_FREQUENCY, Part, part
+from dalembert.studio.worker import Kept
+from dalembert.study import load
+from dalembert.study.study import Study
+from dalembert.study.tasks.frequency_response import curve_options, drawn_dofs
+
+if TYPE_CHECKING:
+    from dalembert.multibody import Drawing, Trajectory
+
+
+@dataclass(frozen=True)
+class Source:
+    """What a study is made of.
+
+    Parameters
+    ----------
+    path : Path
+    text : str
+    stamps : tuple of (str, int)
+        The other files that it names, with the times of their last changes.
+    """
+
+    path: Path
+    text: str
+    stamps: tuple[tuple[str, int], ...] = ()
+
+    @classmethod
+    def of(cls, study: Study, path: Path, text: str) -> "Source":
+        """The source of a study that was read from a text."""
+        files = [file for file in study.files.values() if file.is_file()]
+        return cls(path, text, tuple((str(file), file.stat().st_mtime_ns) for file in files))
+
+
+@dataclass(frozen=True)
+class Simulated:
+    """A simulation as a page shows it.
+
+    Parameters
+    ----------
+    film : Film, optional
+        Of a mechanism.
+    curves : tuple of Curves
+    misfit : float, optional
+        Weighted sum of squares of the residuals; None without data.
+    residuals : dict of str to float
+        Root mean square of each channel's.
+    seconds : float
+        Time of the simulation.
+    """
+
+    film: Film | None = None
+    curves: tuple[Curves, ...] = ()
+    misfit: float | None = None
+    residuals: dict[str, float] = field(default_factory=dict)
+    seconds: float = 0.0
+
+
+@dataclass(frozen=True)
+class Influences:
+    """How strongly parameters act on channels, to first order.
+
+    Parameters
+    ----------
+    channels : tuple of str
+    effects : dict of str to list of float
+        Of each parameter on each channel: root mean square of the change from its lower to its upper bound, relative to
+        the range of the channel.
+    """
+
+    channels: tuple[str, ...]
+    effects: dict[str, list[float]]
+
+
+def simulated(
+    kept: Kept, source: Source, name: str, values: Mapping[str, float], *, figures: bool = False
+) -> Simulated:
+    """Simulate a part of a study at values of its parameters by name.
+
+    Parameters
+    ----------
+    figures : bool
+        Whether to make the figures of the curves too, not their lines alone.
+    """
+    own = _part(kept, source, name)
+    began = perf_counter()
+    if own.model is None and own.study.task == OVER_FREQUENCY:
+        return _followed(own, values, began)
+    if not own.end:
+        response, moving = _response(own, values), None
+    else:
+        response, moving = _motion(own, values)
+    seconds = perf_counter() - began
+    found = () if response is None else curves(own, response, figures=figures)
+    misfit, residuals = (None, {}) if own.data is None or response is None else _misfit(own, response)
+    return Simulated(None if moving is None else _film(own, *moving), found, misfit, residuals, seconds)
+
+
+def influences(kept: Kept, source: Source, name: str, values: Mapping[str, float]) -> Influences:
+    """Return how strongly the parameters act on the channels of a part at values of them by name."""
+    own = _part(kept, source, name)
+    if own.model is None:
+        return Influences((), {})
+    vector, parameters = own.vector(values), own.model.parameters
+    response, jacobian = own.model.linearise(vector)
+    columns, channels = _columns(own), tuple(channel.name for channel in own.model.channels)
+    spans = [
+        value * np.log(item.upper / item.lower) if item.logarithmic else item.upper - item.lower
+        for item, value in zip(parameters, vector.tolist(), strict=True)
+    ]
+    ranges = np.ptp(response[:, columns], axis=0)
+    ranges = np.where(ranges > 0, ranges, np.maximum(np.abs(response[:, columns]).max(axis=0), 1e-300))
+    sizes = np.sqrt(np.mean(jacobian[:, columns] ** 2, axis=0)) * np.array(spans) / ranges[:, None]
+    effects = dict(zip(parameters.names, np.nan_to_num(sizes).T.tolist(), strict=True))
+    return Influences(tuple(channels[column] for column in columns), effects)
+
+
+def _part(kept: Kept, source: Source, name: str) -> Part:
+    study = kept.newest("study", source, lambda: _study(source))
+    return kept.newest("part", (source, name), lambda: part(study, name))
+
+
+def _study(source: Source) -> Study:
+    with TemporaryDirectory() as folder:
+        copy = Path(folder) / source.path.name
+        copy.write_text(source.text, encoding="utf-8")
+        return load(copy, name=source.path.stem, folder=source.path.parent)
+
+
+def _columns(own: Part) -> list[int]:
+    """Columns of the model that are shown: those of the data, or all."""
+    assert own.model is not None
+    channels = [channel.name for channel in own.model.channels]
+    return [channels.index(name) for name in (channels if own.data is None else own.data.channels)]
+
+
+def _response(own: Part, values: Mapping[str, float]) -> np.ndarray:
+    """The channels that are shown, (samples, channels)."""
+    assert own.model is not None
+    found = own.model.evaluate(own.vector(values)[None])
+    if found.failures[0] is not None:
+        raise SolveError(found.failures[0])
+    return found.values[0][:, _columns(own)]
+
+
+def _motion(own: Part, values: Mapping[str, float]) -> "tuple[np.ndarray | None, tuple[Trajectory, np.ndarray]]":
+    """Response and motion, by one simulation where the model reads its channels off a motion and does no more.
+
+    The motion has its frames in some of its rows.
+    """
+    from dalembert.multibody import TimeResponse
+
+    model, shown = own.model, frames(own.end)
+    if not isinstance(model, TimeResponse):
+        trajectory = own.motion(values, shown)
+        return None if model is None else _response(own, values), (trajectory, np.arange(len(shown)))
+    times = np.union1d(shown, model.times)
+    trajectory = own.motion(values, times)
+    names = [channel.name for channel in model.channels]
+    channels = trajectory.channels([names[column] for column in _columns(own)])
+    return channels[np.searchsorted(times, model.times)], (trajectory, np.searchsorted(times, shown))
+
+
+def _film(own: Part, trajectory: "Trajectory", rows: np.ndarray) -> Film:
+    whole = trajectory.drawing()
+    drawing: Drawing = replace(
+        whole,
+        times=whole.times[rows],
+        lines={name: line[rows] for name, line in whole.lines.items()},
+        joints={name: joint[rows] for name, joint in whole.joints.items()},
+    )
+    axes = "xyz"[: len(trajectory.system.AXES)]
+    return film(drawing, {} if own.data is None else measured(own.data.channels, own.data.values, axes))
+
+
+def _misfit(own: Part, response: np.ndarray) -> tuple[float, dict[str, float]]:
+    """Weighted sum of squares, with the weights of an identification, and root mean squares by channel."""
+    data: Any = own.data
+    given, residual = getattr(own.study.table, "weights", None), data.difference(response)
+    if given is not None:
+        weights = np.array([given[channel] for channel in data.channels])
+    else:
+        weights = np.ones(len(data.channels)) if data.deviations is None else data.deviations**-2.0
+    squares = np.nansum(residual**2, axis=0)
+    means = np.sqrt(squares / np.maximum(np.isfinite(residual).sum(axis=0), 1))
+    return float(weights @ squares), dict(zip(data.channels, means.tolist(), strict=True))
+
+
+def _followed(own: Part, values: Mapping[str, float], began: float) -> Simulated:
+    """The curve of a structure over frequency."""
+    from dalembert.report.charts import frequency_curve
+    from dalembert.vibration import frequency_response
+
+    study, table = own.study, own.study.table
+    curve = frequency_response(study.system(own.vector(values)), table.along, study.balance, **curve_options(study))
+    seconds = perf_counter() - began
+    figure = frequency_curve(curve, drawn_dofs(table, curve) or None, kind=table.amplitude, title="")
+    return Simulated(curves=(Curves(figure=on_page(figure)),), seconds=seconds)

@@ -1,0 +1,110 @@
+"""What of a study is simulated at values of its parameters: its only data, an experiment, or what the task names."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dalembert.errors import InputError, require_known
+from dalembert.forward import ForwardModel
+from dalembert.study.posing import posed
+from dalembert.study.study import Study
+
+if TYPE_CHECKING:
+    from dalembert.data import Measurements
+    from dalembert.multibody import Trajectory
+
+POINTS = 401
+"""Samples of channels that are compared with no data."""
+FROM_DATA = ("identify", "identify_set")
+"""Tasks whose data the channels are compared with."""
+OVER_FREQUENCY = "frequency_response"
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """One motion or response of a study.
+
+    Parameters
+    ----------
+    study : Study
+        As it is in the experiment.
+    model : ForwardModel, optional
+        From parameters to channels; None where no channel is known.
+    data : Measurements, optional
+        What the channels are compared with.
+    end : float
+        Last time of the motion of a mechanism, s; 0 without a motion.
+    """
+
+    study: Study
+    model: ForwardModel | None
+    data: "Measurements | None"
+    end: float
+
+    def vector(self, values: Mapping[str, float]) -> np.ndarray:
+        """Parameters of the model (parameters,): values by name, first guesses of those that are not named."""
+        parameters = self.study.parameters if self.model is None else self.model.parameters
+        given = zip(parameters.names, parameters.start.tolist(), strict=True)
+        return np.array([values.get(name, start) for name, start in given])
+
+    def motion(self, values: Mapping[str, float], times: np.ndarray) -> "Trajectory":
+        """The motion of the mechanism at some times (s)."""
+        parameters = self.study.parameters
+        return self.study.motion(self.end, parameters.vector({name: values[name] for name in parameters.names}), times)
+
+
+def names(study: Study) -> tuple[str, ...]:
+    """Names of the parts; one that is empty where there are no experiments."""
+    return tuple(table.name for table in study.file.experiments if study.task in FROM_DATA) or ("",)
+
+
+def part(study: Study, name: str) -> Part:
+    """Return the part with a name.
+
+    Raises
+    ------
+    InputError
+        If the task names nothing that can be simulated.
+    """
+    if study.task in FROM_DATA:
+        return _measured(study, name)
+    if study.has_system and study.file.solver is not None:
+        return _moving(study)
+    if study.file.model.forward is not None:
+        model = study.forward(tuple(getattr(study.table, "channels", None) or ()), np.zeros(0))
+        return Part(study, model, None, 0.0)
+    if study.task == OVER_FREQUENCY:
+        return Part(study, None, None, 0.0)
+    raise InputError(f"There is nothing to simulate for [{study.task}]. Run the study to see its result.")
+
+
+def _measured(study: Study, name: str) -> Part:
+    model, data = posed(study)
+    if isinstance(model, list):
+        found = {experiment.name: experiment for experiment in model}
+        require_known("experiment", name, found)
+        table = next(table for table in study.file.experiments if table.name == name)
+        study, model, data = study.variant(table), found[name].model, found[name].data
+    assert data is not None
+    return Part(study, model, data, float(data.coordinate.values[-1]) if study.has_system else 0.0)
+
+
+def _moving(study: Study) -> Part:
+    """A mechanism without data: until the last time that the task names, with its channels."""
+    table = study.table
+    end = next((float(time) for time in _ends(table) if time), 0.0)
+    if not end > 0:
+        raise InputError(f"[{study.task}] names no time until which the motion lasts. Run the study to see its result.")
+    points = [f"{point}.{axis}" for point in getattr(table, "points", ()) for axis in "xy"]
+    channels = tuple(getattr(table, "channels", None) or points)
+    model = study.forward(channels, np.linspace(0.0, end, POINTS)) if channels else None
+    return Part(study, model, None, end)
+
+
+def _ends(table: Any) -> list[Any]:
+    """Last times that a task's table may name."""
+    times = getattr(table, "times", None)
+    at = getattr(table, "at", None)
+    return [getattr(table, "last", None), times and times[-1], getattr(table, "end", None), None if at == {} else at]

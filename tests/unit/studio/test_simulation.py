@@ -1,0 +1,122 @@
+"""What the process of a study computes for its sliders."""
+
+from base64 import b64decode
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dalembert.errors import InputError
+from dalembert.studio.simulation.answers import Source, influences, simulated
+from dalembert.studio.simulation.parts import names, part
+from dalembert.studio.worker import Kept
+from dalembert.study import load
+from dalembert.study.posing import posed
+from dalembert.study.template import begin
+
+OSCILLATOR = """
+[parameters]
+k = { lower = 3.0, upper = 5.0, unit = "N/m" }
+[model]
+mass = [{ name = "m", mass = 1.0 }]
+spring = [{ first = "m", stiffness = "k", damping = 0.1 }]
+force = [{ dof = "m", amplitude = 1.0 }]
+[frequency_response]
+frequencies = [0.2, 0.25, 0.3, 0.35, 0.4]
+"""
+
+
+@pytest.fixture(scope="module")
+def identification(tmp_path_factory):
+    return begin("identify", tmp_path_factory.mktemp("studies") / "pendulum")
+
+
+def source(path: Path) -> Source:
+    return Source.of(load(path), path, path.read_text())
+
+
+def start(path: Path) -> dict[str, float]:
+    parameters = load(path).parameters
+    return parameters.mapping(parameters.start)
+
+
+def test_curves_are_those_of_the_model_that_is_identified(identification):
+    study = load(identification)
+    model, data = posed(study)
+    values = start(identification) | {"drag": 0.25}
+    found = simulated(Kept(), source(identification), "", values, figures=True)
+    expected = model.evaluate(np.array([[values[name] for name in model.parameters.names]])).only()[0]
+    lines = [curves.lines for curves in found.curves]
+    computed = [line[trace][1] for line in lines for trace in sorted(line)[::2]]
+    residual = [line[trace][1] for line in lines for trace in sorted(line)[1::2]]
+    assert pytest.approx(expected, abs=1e-6) == np.array(computed).T
+    assert pytest.approx(expected - data.values, abs=1e-6) == np.array(residual).T
+    assert found.misfit == pytest.approx(np.sum((expected - data.values) ** 2 / (data.deviations or 1.0) ** 2))
+    for curves in found.curves:
+        for trace, (_, y) in curves.lines.items():
+            drawn = curves.figure["data"][trace]
+            assert ("computed" in drawn["name"]) == (y in computed)
+            assert "measured" not in drawn["name"]
+
+
+def test_a_film_holds_the_positions_of_bodies_and_joints(identification):
+    found = simulated(Kept(), source(identification), "", start(identification))
+    film, study = found.film, load(identification)
+    assert film is not None
+    assert found.curves[0].figure == {}
+    positions = np.frombuffer(b64decode(film.positions), "<f4").reshape(len(film.times), -1, film.across)
+    drawing = study.motion(film.times[-1], times=np.array(film.times)).drawing()
+    expected = [*drawing.lines.values(), *(at[:, None] for at in drawing.joints.values())]
+    assert positions == pytest.approx(np.concatenate(expected, axis=1), abs=1e-5)
+    assert sum(film.bodies.values()) + len(film.joints) == positions.shape[1]
+
+
+def test_effects_are_the_changes_of_the_channels_between_the_bounds(identification):
+    study = load(identification)
+    model, _ = posed(study)
+    values, wanted = start(identification), {}
+    found = influences(Kept(), source(identification), "", values)
+    vector = np.array([values[name] for name in model.parameters.names])
+    for place, item in enumerate(model.parameters):
+        aside = np.zeros(len(vector))
+        aside[place] = 1e-4 * (item.upper - item.lower)
+        low, middle, high = model.evaluate(np.array([vector - aside, vector, vector + aside])).values
+        wanted[item.name] = np.sqrt(np.mean((high - low) ** 2, axis=0)) / 2e-4 / np.ptp(middle, axis=0)
+    assert set(found.effects) == set(wanted)
+    for name, effects in wanted.items():
+        assert found.effects[name] == pytest.approx(effects, rel=1e-2)
+
+
+def test_a_study_is_read_again_only_if_it_changed(identification, monkeypatch):
+    kept, values = Kept(), start(identification)
+    simulated(kept, source(identification), "", values)
+    with monkeypatch.context() as changed:
+        changed.setattr("dalembert.studio.simulation.answers.load", None)
+        simulated(kept, source(identification), "", values)
+        with pytest.raises(TypeError):
+            simulated(kept, Source(identification, identification.read_text() + "\n"), "", values)
+
+
+def test_a_curve_over_frequency_is_drawn(tmp_path):
+    path = tmp_path / "study.toml"
+    path.write_text(OSCILLATOR)
+    peaks = []
+    for stiffness in (3.0, 5.0):
+        (curves,) = simulated(Kept(), source(path), "", {"k": stiffness}).curves
+        (line,) = curves.figure["data"]
+        peaks.append(np.frombuffer(b64decode(line["y"]["bdata"]), line["y"]["dtype"]))
+    assert len(peaks[0]) == 5
+    assert not np.allclose(peaks[0], peaks[1])
+
+
+def test_experiments_are_simulated_one_by_one():
+    study = load(Path("studies/friction-from-curve/identify.toml"))
+    assert names(study) == ("low", "high")
+    assert part(study, "high").study.file.constants != part(study, "low").study.file.constants
+    with pytest.raises(InputError, match="unknown experiment 'middle'"):
+        part(study, "middle")
+
+
+def test_a_task_without_a_simulation_says_so():
+    with pytest.raises(InputError, match=r"^There is nothing to simulate for \[backbone\]\. Run the study"):
+        part(load(Path("studies/duffing/backbone.toml")), "")

@@ -24,9 +24,10 @@ NAMES = (
     "spatial",
     "robots",
     "startup",
+    "sliders",
 )
 
-PAGES = (*NAMES[:-4], "vibration-cost", *NAMES[-4:-2], "spatial-sensitivities", *NAMES[-2:])
+PAGES = (*NAMES[:-5], "vibration-cost", *NAMES[-5:-3], "spatial-sensitivities", *NAMES[-3:])
 """Results that the page shows, in its order."""
 
 

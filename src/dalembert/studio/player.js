@@ -73,9 +73,10 @@ export default {
       if (first || !same || this.grown) this.build();
       const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
       if (!still && (first || !this.playing)) this.play();
+      const taken = performance.timeOrigin + performance.now();
       requestAnimationFrame(() => {
         this.draw();
-        this.$el.dataset.number = this.film.number;
+        Object.assign(this.$el.dataset, { taken, ...this.film.facts });
       });
     },
     // The box holds all motions so far, so that the picture does not jump while a value changes.

@@ -1,6 +1,7 @@
 """Sliders of the parameters: the mechanism plays and curves lie over the data at the values that they show."""
 
 import asyncio
+import time
 from functools import partial
 from typing import Any
 
@@ -158,7 +159,7 @@ class Sliders:
     async def _simulate(self) -> None:
         draft, worker, name = self._draft, self._room.worker, self._choice.value
         assert draft.study is not None
-        source = Source.of(draft.study, draft.path, draft.text)
+        received, source = time.time(), Source.of(draft.study, draft.path, draft.text)
         worker.drop("influences")
         self._wait(PATIENCE, lambda: self._busy.set_visibility(True))
         values, figures = dict(draft.values), self._drawn != (source, name)
@@ -171,7 +172,7 @@ class Sliders:
             return
         if figures:
             self._drawn = source, name
-        self._show(found)
+        self._show(found, received)
         self._wait(STILL, lambda: background_tasks.create(self._weigh(source, name, values)))
 
     async def _weigh(self, source: Source, name: str, values: dict[str, float]) -> None:
@@ -202,12 +203,13 @@ class Sliders:
         self._problem.set_text(sentence)
         self._problem.set_visibility(bool(sentence))
 
-    def _show(self, found: Simulated) -> None:
+    def _show(self, found: Simulated, received: float) -> None:
         self._show_problem("")
         self._told.set_text(self._facts(found))
         self._scene.set_visibility(found.film is not None)
         if found.film is not None:
-            self._player.show(found.film)
+            own = {"received": received, "simulated": found.seconds, "computed": found.computed}
+            self._player.show(found.film, **own, answered=time.time())
         if any(curves.figure for curves in found.curves) or len(found.curves) != len(self._plots):
             self._draw(found)
             return

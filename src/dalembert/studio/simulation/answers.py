@@ -59,8 +59,8 @@ class Simulated:
         Weighted sum of squares of the residuals; None without data.
     residuals : dict of str to float
         Root mean square of each channel's.
-    seconds : float
-        Time of the simulation.
+    seconds, computed : float
+        Time of the simulation, and with film and curves.
     """
 
     film: Film | None = None
@@ -68,6 +68,7 @@ class Simulated:
     misfit: float | None = None
     residuals: dict[str, float] = field(default_factory=dict)
     seconds: float = 0.0
+    computed: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -107,7 +108,8 @@ def simulated(
     seconds = perf_counter() - began
     found = () if response is None else curves(own, response, figures=figures)
     misfit, residuals = (None, {}) if own.data is None or response is None else _misfit(own, response)
-    return Simulated(None if moving is None else _film(own, *moving), found, misfit, residuals, seconds)
+    played = None if moving is None else _film(own, *moving)
+    return Simulated(played, found, misfit, residuals, seconds, perf_counter() - began)
 
 
 def influences(kept: Kept, source: Source, name: str, values: Mapping[str, float]) -> Influences:

@@ -93,7 +93,12 @@ def new(
 
 @app.command()
 def run(
-    study: StudyFile,
+    study: Annotated[
+        Path,
+        typer.Argument(
+            metavar="STUDY.toml", help="The study file, or the folder of a run to repeat.", show_default=False
+        ),
+    ],
     out: Annotated[
         Path | None,
         typer.Option(help="Folder of the run. By default runs/NAME, or NAME-2 and so on if that is taken."),
@@ -103,12 +108,12 @@ def run(
     cluster: Cluster = None,
 ) -> None:
     """Do what a study says, in a run folder of its own."""
-    from dalembert.study import load, run_study
+    from dalembert.study import RunFolder, load, run_study
     from dalembert.study.progress import Watch
     from dalembert.study.runner import unknowns
 
     _begin(cluster)
-    read = load(study)
+    read = RunFolder(study).kept() if RunFolder(study).is_run else load(study)
     if seed is not None:
         read = read.with_seed(seed)
     with Watch(_console(sys.stderr, soft_wrap=True), unknowns(read)) as watch:

@@ -11,7 +11,13 @@ from dalembert.errors import DalembertError
 from dalembert.report.look import LIGHT
 from dalembert.study.folder import RunFolder
 
-STATES = {"finished": "positive", "running": "primary", "interrupted": "warning", "killed": "warning"}
+STATES = {
+    "finished": "positive",
+    "running": "primary",
+    "interrupted": "warning",
+    "paused": "warning",
+    "killed": "warning",
+}
 """Colour of a state's badge; that of an error for the others."""
 LOOKS = """
 .border, .border-t { border-color: rgba(118, 129, 143, 0.45) }
@@ -55,12 +61,15 @@ WAYS = (("Runs", "/"), ("Studies", "/studies"), ("New study", "/new"))
 
 
 @contextmanager
-def frame(title: str, *, wide: bool = False) -> Iterator[None]:
-    """A page with the head on top; what is made in the block is its content, in all of the window if ``wide``."""
+def frame(title: str, *, wide: bool = False, most: str = "max-w-6xl") -> Iterator[None]:
+    """A page with the head on top; what is made in the block is its content.
+
+    It takes all of the window if ``wide``, else at most the width of a class, ``most``.
+    """
     ui.page_title(f"{title} · dalembert")
     ui.colors(primary=LIGHT.series[0])
     ui.add_css(LOOKS)
-    width = "wide flex-nowrap gap-2 p-2" if wide else "max-w-6xl mx-auto p-2 sm:p-4 gap-4"
+    width = "wide flex-nowrap gap-2 p-2" if wide else f"{most} mx-auto p-2 sm:p-4 gap-4"
     main = ui.column().classes(f"w-full {width}").props("role=main id=main")
     with ui.header().classes("items-center gap-x-6 gap-y-1 py-2").props("role=banner"):
         ui.link("dalembert", "/").classes("text-white no-underline text-lg font-bold")

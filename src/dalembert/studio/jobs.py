@@ -7,7 +7,7 @@ import sys
 import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 from dalembert.errors import InputError
 from dalembert.study.folder import RUNNING, RunFolder
@@ -22,6 +22,10 @@ class Jobs:
     def start(self, study: Path, folder: Path) -> None:
         """Run a study in a new folder."""
         self._begin(folder, ["run", str(study), "--out", str(folder)])
+
+    def rerun(self, old: Path, folder: Path) -> None:
+        """Run the study of a run again, with the same files, in a new folder."""
+        self._begin(folder, ["run", str(old), "--out", str(folder)])
 
     def resume(self, folder: Path) -> None:
         """Go on with a run."""
@@ -74,6 +78,21 @@ class Job:
         return "".join(self.output.read().strip().splitlines()[-1:])
 
 
+def pause(folder: RunFolder) -> None:
+    """Stop a run to resume it later; its state says so.
+
+    The process ends: a paused run takes no memory, holds no lock that others wait for, and survives a restart.
+
+    Raises
+    ------
+    InputError
+        If it is not going on.
+    """
+    _require_running(folder)
+    folder.pause.touch()
+    stop(folder)
+
+
 def stop(folder: RunFolder) -> None:
     """Ask a run to end, as Ctrl-C does; whoever started it.
 
@@ -82,7 +101,12 @@ def stop(folder: RunFolder) -> None:
     InputError
         If it is not going on.
     """
+    os.kill(int(_require_running(folder)["process"]), signal.SIGTERM)
+
+
+def _require_running(folder: RunFolder) -> dict[str, Any]:
+    """State of a run that is going on."""
     state = folder.state()
     if state["state"] != RUNNING:
         raise InputError(f"{folder.path.name} is not running: it is {state['state']}")
-    os.kill(int(state["process"]), signal.SIGTERM)
+    return state

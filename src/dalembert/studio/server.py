@@ -16,6 +16,7 @@ from dalembert.studio.guard import Guard
 from dalembert.studio.jobs import Jobs
 from dalembert.studio.new_page import new_page
 from dalembert.studio.pictures import Pictures
+from dalembert.studio.run_list import RunList
 from dalembert.studio.run_page import FILES, run_page
 from dalembert.studio.runs_page import runs_page
 from dalembert.studio.studies_page import studies_page
@@ -45,7 +46,12 @@ def application(root: Path) -> FastAPI:
     pool = ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn"))
     app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
 
-    ui.page("/")(lambda: runs_page(workspace))
+    listed = RunList(workspace.runs_folder)
+
+    @ui.page("/")
+    async def runs() -> None:
+        await runs_page(workspace, jobs, listed)
+
     ui.page("/new")(lambda: new_page(workspace))
     ui.page("/studies")(lambda: studies_page(workspace))
 

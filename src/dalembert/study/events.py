@@ -69,7 +69,7 @@ class EventLog:
     def emit(self, kind: str, **details: Any) -> None:
         """Write one event; it is in the file when this returns."""
         event = {"n": self.number, "at": datetime.now(UTC).isoformat(timespec="milliseconds"), "event": kind}
-        event |= {key: _plain(value) for key, value in details.items()}
+        event |= {key: plain(value) for key, value in details.items()}
         if self.known and not kind.startswith(OF_THE_RUN):
             self.known -= 1
         else:
@@ -150,14 +150,14 @@ def _repair(path: Path) -> Path | None:
     return aside
 
 
-def _plain(value: Any) -> Any:
-    """Value as JSON can hold it; what is not finite becomes null."""
+def plain(value: Any) -> Any:
+    """Return a value as JSON can hold it; what is not finite becomes null."""
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     if isinstance(value, dict):
-        return {str(key): _plain(entry) for key, entry in value.items()}
+        return {str(key): plain(entry) for key, entry in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_plain(entry) for entry in value]
+        return [plain(entry) for entry in value]
     return value if isinstance(value, (int, str, bool)) or value is None else str(value)

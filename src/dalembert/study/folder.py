@@ -22,10 +22,11 @@ FINISHED = "finished"
 FAILED = "failed"  # the solver could not
 INPUT = "input"  # what was given cannot run
 INTERRUPTED = "interrupted"  # stopped by the user
+PAUSED = "paused"  # never written: stopped by the user, who said that the run will be resumed
 KILLED = "killed"  # never written: the process of a running run is gone
 DAMAGED = "damaged"  # never written: state.json holds no state
 WRITTEN = (RUNNING, FINISHED, FAILED, INPUT, INTERRUPTED)
-RESUMABLE = (KILLED, INTERRUPTED, FAILED)
+RESUMABLE = (KILLED, INTERRUPTED, PAUSED, FAILED)
 
 
 class _File:
@@ -57,6 +58,8 @@ class RunFolder:
     report = _File("report.html")
     checkpoint = _File("checkpoint")
     """What the model has answered so far, while the run is not finished."""
+    pause = _File("pause")
+    """Mark of a run that was stopped to be resumed later."""
     _state = _File("state.json")
     _lock = _File("lock")
 
@@ -91,6 +94,8 @@ class RunFolder:
             state = self._logged_state()
         if state["state"] == RUNNING and not self._is_locked():
             state["state"] = KILLED
+        if state["state"] == INTERRUPTED and self.pause.exists():
+            state["state"] = PAUSED
         return state
 
     def _logged_state(self) -> dict[str, Any]:
@@ -133,8 +138,7 @@ class RunFolder:
                 shutil.copyfile(path, temporary)
             copies[name] = {"copy": copy.relative_to(self.path).as_posix(), "sha256": sha256(copy)}
         seed = getattr(study.table, "seed", None)
-        origin = str(study.path.parent.resolve())
-        about = {"name": study.name, "folder": origin, "seed": seed, "sha256": sha256(self.study)}
+        about = {"name": study.name, "folder": _origin(study), "seed": seed, "sha256": sha256(self.study)}
         _write_json(self.inputs, {**about, "files": copies})
 
     def digests(self) -> dict[str, str]:
@@ -217,6 +221,14 @@ class RunFolder:
             return True
         except PermissionError:  # no run is going on where none may write
             return False
+
+
+def _origin(study: Study) -> str:
+    """Folder of a study, from which its functions are imported; for the study of a run that of its first run."""
+    folder = RunFolder(study.path.parent.resolve())
+    if folder.is_run and study.path.resolve() == folder.study:
+        return str(json.loads(folder.inputs.read_text(encoding="utf-8"))["folder"])
+    return str(folder.path)
 
 
 def sha256(path: Path) -> str:

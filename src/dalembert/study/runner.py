@@ -12,10 +12,11 @@ from time import monotonic, perf_counter
 from dalembert import __version__
 from dalembert.errors import DalembertError, InputError, SolveError, StorageError, not_begun, users_place
 from dalembert.files import write_text
+from dalembert.findings import stored_findings
 from dalembert.forward import Checkpoint, Executor, connected
 from dalembert.kernels.preparation import observed
 from dalembert.study.duration import StartFailed, duration, spoken, timed, too_long
-from dalembert.study.events import LOST, Event, EventLog
+from dalembert.study.events import LOST, Event, EventLog, plain
 from dalembert.study.folder import DAMAGED, FAILED, FINISHED, INPUT, INTERRUPTED, RUNNING, RunFolder, new_folder
 from dalembert.study.functions import users_code
 from dalembert.study.study import Study
@@ -124,7 +125,9 @@ def _executed(
     """Do what a study says in a folder that is held, and say so in its state and its events."""
     about = {"study": study.name, "title": study.title, "task": study.task, "version": __version__}
     with EventLog(folder.events, (listener,) if listener else ()) as log:
-        folder.set_state(RUNNING, **about, process=os.getpid())
+        earlier = float(folder.state().get("seconds") or 0.0) if folder.is_run else 0.0
+        folder.set_state(RUNNING, **about, process=os.getpid(), seconds=earlier)
+        folder.pause.unlink(missing_ok=True)
         began = perf_counter()
         try:
             log.emit(beginning, **about)
@@ -147,17 +150,22 @@ def _executed(
                     write_text(folder.path / "error.txt", traceback.format_exc())
                 log.emit("run-ended", state=state, message=message)
             with suppress(StorageError):  # the state may fit where the event does not
-                folder.set_state(state, message=message, **about)
+                folder.set_state(state, message=message, **about, seconds=_since(began, earlier))
             if isinstance(error, KeyboardInterrupt):
                 raise Stopped(folder.path) from None
             raise
         state = FINISHED if outcome.success else FAILED
         ended = {"state": state, "message": outcome.status, "digests": folder.digests()}
-        log.emit("run-ended", **ended, seconds=round(perf_counter() - began, 3))
-        findings = [{"code": one.code, "severity": one.severity, "message": one.message} for one in outcome.findings]
-        folder.set_state(**ended, best=outcome.best, findings=findings, **about)
+        log.emit("run-ended", **ended, seconds=_since(began))
+        findings = plain(stored_findings(outcome.findings))
+        folder.set_state(**ended, best=outcome.best, findings=findings, **about, seconds=_since(began, earlier))
         folder.checkpoint.unlink(missing_ok=True)
     return outcome
+
+
+def _since(began: float, earlier: float = 0.0) -> float:
+    """Seconds since ``began``, a value of ``perf_counter``, and those that a run took before it was resumed."""
+    return round(earlier + perf_counter() - began, 3)
 
 
 def _noting(compiled: list[Compilation], listener: Listener | None) -> Callable[[int, int, str], None]:

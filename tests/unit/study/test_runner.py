@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 from dalembert.errors import InputError
-from dalembert.findings import Finding
+from dalembert.findings import Finding, stored_findings
 from dalembert.forward import Checkpoint
 from dalembert.study import RunFolder, load, report_run, run_study
 from dalembert.study.events import read_events
@@ -247,7 +247,7 @@ def test_the_state_has_findings_and_deviations_so_that_a_list_loads_no_result(st
     assert 0 < deviations["rate"] < 0.5
     assert deviations["spare"] is None
     findings = state["findings"]
-    assert all(finding.keys() == {"code", "severity", "message"} for finding in findings)
+    assert findings == stored_findings(outcome.findings)
     assert any(finding["severity"] == "warning" and "'spare'" in finding["message"] for finding in findings)
     assert [finding["message"] for finding in findings] == [finding.message for finding in outcome.findings]
     (row,) = rows(Path("runs"))

@@ -1,6 +1,5 @@
 """What differs between two texts, line by line."""
 
-from collections.abc import Iterator
 from difflib import SequenceMatcher
 from typing import Literal
 
@@ -34,12 +33,10 @@ def differences(old: str, new: str) -> list[Line]:
     return found
 
 
-def _lines(kind: str, old: list[str], new: list[str]) -> Iterator[Line]:
+def _lines(kind: str, old: list[str], new: list[str]) -> list[Line]:
     if kind == "equal":
-        yield from (("same", line) for line in old)
-        return
-    yield from (("removed", line) for line in old)
-    yield from (("added", line) for line in new)
+        return [("same", line) for line in old]
+    return [*(("removed", line) for line in old), *(("added", line) for line in new)]
 
 
 def as_text(lines: list[Line]) -> str:
@@ -55,7 +52,7 @@ def as_text(lines: list[Line]) -> str:
 def show_differences(lines: list[Line]) -> None:
     """Show differences on a page: a mark and a colour for each line."""
     grounds = {"added": "bg-positive/20", "removed": "bg-negative/20", "left out": "opacity-60"}
-    with ui.column().classes("w-full gap-0 border rounded overflow-x-auto py-1").props('role=group aria-label="Changes"'):
+    with ui.column().classes("w-full gap-0 border rounded overflow-x-auto py-1").props("role=group aria-label=Changes"):
         for kind, line in lines:
             text = ui.label(f"{_MARKS[kind]} {line}")
             text.classes(f"w-full min-w-fit whitespace-pre font-mono text-sm px-3 {grounds.get(kind, '')}")

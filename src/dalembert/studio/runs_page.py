@@ -16,7 +16,7 @@ from dalembert.studio.workspace import Workspace
 from dalembert.study.folder import RESUMABLE
 
 EVERY = 2.0  # s between two looks at the folder
-HINT = "Arrow keys move, Space selects, Enter opens, F2 renames or edits a note, Delete deletes."
+HINT = "In the table: arrow keys move, Space selects, Enter opens, F2 renames or edits a note, Delete deletes."
 
 
 async def runs_page(workspace: Workspace, jobs: Jobs, listed: RunList) -> None:

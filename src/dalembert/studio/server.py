@@ -12,6 +12,7 @@ from fastapi.responses import FileResponse, PlainTextResponse, Response
 
 from dalembert.errors import InputError
 from dalembert.studio.compare_page import compare_page
+from dalembert.studio.continue_page import continue_page
 from dalembert.studio.guard import Guard
 from dalembert.studio.jobs import Jobs
 from dalembert.studio.new_page import new_page
@@ -66,6 +67,10 @@ def application(root: Path) -> FastAPI:
         except InputError as error:
             return PlainTextResponse(str(error), status_code=404)
         return run_page(workspace, jobs, pool, name)
+
+    @ui.page("/continue/{name}")
+    def go_on(name: str, code: str = "", number: int = 0) -> None:
+        continue_page(workspace, name, code, number)
 
     @ui.page("/compare")
     def compare(run: list[str] = Query(default=[])) -> None:  # noqa: B008  FastAPI reads the default

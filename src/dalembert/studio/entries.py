@@ -1,0 +1,104 @@
+"""Entries of a study's document as a user would write them: with units, in the same style, comments kept."""
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+import tomlkit
+from tomlkit.items import InlineTable, Item
+
+from dalembert.errors import InputError
+from dalembert.study.expressions import Expression
+from dalembert.study.numbers import read_number
+from dalembert.units import is_quantity
+
+_NUMBER = re.compile(r"\s*[+-]?[\d.]+([eE][+-]?\d+)?")
+DIGITS = 6
+"""Significant digits of numbers that are written into a study."""
+
+
+def table_at(document: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    """Return a table of a document; an empty one if it is not there."""
+    found = document.get(name)
+    return found if isinstance(found, Mapping) else {}
+
+
+def number_of(given: object) -> float | None:
+    """Return the number that an entry is, in SI units; None for an expression of names, and for no entry.
+
+    >>> number_of("1 ms"), number_of(0.5), number_of("pi / 2"), number_of("angle"), number_of(None)
+    (0.001, 0.5, 1.5707963267948966, None, None)
+    """
+    if given is None or isinstance(given, bool):
+        return None
+    try:
+        found = read_number(given, None, None)
+    except InputError:
+        return None
+    return None if isinstance(found, Expression) else float(found)
+
+
+def units_of(given: object) -> str:
+    """Return the unit that an entry has with it; empty if there is none.
+
+    >>> units_of("1 ms"), units_of(0.001), units_of("pi / 2")
+    ('ms', '', '')
+    """
+    if not isinstance(given, str) or not is_quantity(given):
+        return ""
+    return _NUMBER.sub("", given).strip()
+
+
+def like(given: object, number: float, table: Mapping[str, Any] | None = None) -> str | float:
+    """Return a number in SI units as an entry with the unit of another one.
+
+    Parameters
+    ----------
+    given : str, float or None
+        An entry.
+    number : float
+    table : mapping, optional
+        Others of its entries give the unit if ``given`` has none.
+
+    Examples
+    --------
+    >>> like("1 ms", 0.0005), like(0.001, 0.0005), like(0, 1.0, {"lower": 0, "upper": "90 deg"})
+    ('0.5 ms', 0.0005, '57.2958 deg')
+    """
+    texts = [given, *(table or {}).values()]
+    unit = next(filter(None, map(units_of, texts)), "")
+    if unit:
+        zero, one = (number_of(f"{size} {unit}") for size in (0, 1))
+        if zero == 0 and one:
+            return f"{number / one:.{DIGITS}g} {unit}"
+    return float(f"{number:.{DIGITS}g}")
+
+
+def put(parent: Any, name: str | int, **entries: Any) -> None:
+    """Set entries of a table, which is made if it is not there; None removes an entry.
+
+    >>> document = tomlkit.parse("a = { b = 1, c = 2 } # kept\\n")
+    >>> put(document, "a", b=None, d=[0.0, 0.5])
+    >>> print(tomlkit.dumps(document), end="")
+    a = { c = 2, d = [0.0, 0.5] } # kept
+    """
+    known: Any = parent.get(name) if isinstance(name, str) else parent[name]
+    is_table = hasattr(known, "items")
+    if isinstance(known, InlineTable) or not (is_table or isinstance(parent, tomlkit.TOMLDocument)):
+        parent[name] = _inline(known if is_table else {}, entries)
+        return
+    if not is_table:
+        parent[name] = tomlkit.table()
+        known = parent[name]
+    for key, value in entries.items():
+        if value is not None:
+            known[key] = value
+        elif key in known:
+            del known[key]
+
+
+def _inline(known: Any, entries: Mapping[str, Any]) -> Item:
+    """An inline table with spaces as people write them."""
+    merged = {key: entry for key, entry in {**dict(known or {}), **entries}.items() if entry is not None}
+    parts = [f"{tomlkit.key(key).as_string()} = {tomlkit.item(entry).as_string()}" for key, entry in merged.items()]
+    return tomlkit.value(f"{{ {', '.join(parts)} }}")

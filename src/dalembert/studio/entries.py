@@ -88,8 +88,8 @@ def put(parent: Any, name: str | int, **entries: Any) -> None:
         parent[name] = _inline(known if is_table else {}, entries)
         return
     if not is_table:
-        parent[name] = tomlkit.table()
-        known = parent[name]
+        known = tomlkit.table()
+        parent.append(name, known)
     for key, value in entries.items():
         if value is not None:
             known[key] = value

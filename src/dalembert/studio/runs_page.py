@@ -1,4 +1,4 @@
-"""The first page: all runs in a table with what can be done to them, and the studies that can be run."""
+"""The first page: all runs in a table, with what can be done to them."""
 
 from collections.abc import Callable
 from functools import partial
@@ -20,23 +20,12 @@ HINT = "In the table: arrow keys move, Space selects, Enter opens, F2 renames or
 
 
 async def runs_page(workspace: Workspace, jobs: Jobs, listed: RunList) -> None:
-    """Runs and studies of the workspace."""
+    """Runs of the workspace."""
     with frame("Runs", most="max-w-screen-2xl"):
         rows = await run.io_bound(listed.rows)
         page = _Page(workspace, jobs, listed, rows or [])
         page.build()
         ui.timer(EVERY, page.look)
-        _studies(workspace)
-
-
-def _studies(workspace: Workspace) -> None:
-    with ui.column().classes("gap-2"):
-        ui.label("Studies").classes("text-xl font-bold").props("role=heading aria-level=2")
-        names = workspace.studies()
-        for name in names:
-            ui.link(name, f"/study/{quote(name)}")
-        if not names:
-            ui.label("None yet. They lie in studies/NAME/ of the folder that the studio was started in.")
 
 
 class _Page:
@@ -51,7 +40,7 @@ class _Page:
     def build(self) -> None:
         self.empty = ui.row().classes("items-center")
         with self.empty:
-            ui.label("No runs yet. Create a study, or open one below, and run it.")
+            ui.label("No runs yet. Create a study, or open one under Studies, and run it.")
             button("New study", lambda: ui.navigate.to("/new"), icon="add")
         self.tools = ui.column().classes("w-full gap-2")
         with self.tools:

@@ -89,7 +89,7 @@ def put(parent: Any, name: str | int, **entries: Any) -> None:
         return
     if not is_table:
         known = tomlkit.table()
-        parent.append(name, known)
+        parent.append(str(name), known)
     for key, value in entries.items():
         if value is not None:
             known[key] = value

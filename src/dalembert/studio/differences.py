@@ -51,8 +51,9 @@ def as_text(lines: list[Line]) -> str:
 
 def show_differences(lines: list[Line]) -> None:
     """Show differences on a page: a mark and a colour for each line."""
-    grounds = {"added": "bg-positive/20", "removed": "bg-negative/20", "left out": "opacity-60"}
+    grounds = {"added": "rgba(33, 186, 69, 0.2)", "removed": "rgba(224, 49, 49, 0.2)"}
     with ui.column().classes("w-full gap-0 border rounded overflow-x-auto py-1").props("role=group aria-label=Changes"):
         for kind, line in lines:
             text = ui.label(f"{_MARKS[kind]} {line}")
-            text.classes(f"w-full min-w-fit whitespace-pre font-mono text-sm px-3 {grounds.get(kind, '')}")
+            text.classes("w-full min-w-fit whitespace-pre font-mono text-sm px-3")
+            text.style(f"background: {grounds.get(kind, 'transparent')}")

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import plotly.graph_objects as go
+from plotly.subplots import make_subplots
 
 from dalembert.report.charts.drawing import logarithmic, positive
 from dalembert.report.look import LIGHT, plain, themed
@@ -12,6 +13,8 @@ from dalembert.report.look import LIGHT, plain, themed
 if TYPE_CHECKING:
     from nicegui import ui
 
+MOST_ROWS = 12
+"""Parameters that are drawn over simulations, the first ones."""
 NEUTRAL = "#76818f"
 """Readable on a light and on a dark page."""
 
@@ -33,6 +36,31 @@ def convergence(curves: Mapping[str, Sequence[tuple[float, float]]]) -> go.Figur
     figure.update_xaxes(title="simulations", rangemode="tozero")
     figure.update_yaxes(title="best fitness so far", **logarithmic(figure))
     return on_any_page(figure.update_layout(showlegend=len(curves) > 1))
+
+
+def wandering(visited: Sequence[tuple[float, int, Sequence[float]]], names: Sequence[str]) -> go.Figure:
+    """Parameters over the simulations, each in a row, a line for each start.
+
+    Parameters
+    ----------
+    visited : sequence of (simulations, start, values)
+    names : sequence of str
+        Of the parameters.
+    """
+    rows = min(len(names), MOST_ROWS)
+    figure = make_subplots(rows=rows, cols=1, shared_xaxes=True, vertical_spacing=0.04)
+    for start in sorted({start for _, start, _ in visited}):
+        own = [(at, values) for at, number, values in visited if number == start]
+        line = {"color": LIGHT.series[start % len(LIGHT.series)], "width": 2}
+        for row in range(rows):
+            style = {"name": f"start {start + 1}", "legendgroup": str(start), "showlegend": row == 0, "line": line}
+            x, y = [at for at, _ in own], [values[row] for _, values in own]
+            figure.add_scatter(x=x, y=y, mode="lines+markers", marker={"size": 4}, row=row + 1, col=1, **style)
+    themed(figure, "", height=80 + 110 * rows)
+    for row, name in enumerate(names[:rows], start=1):
+        figure.update_yaxes(title=plain(name), row=row)
+    figure.update_xaxes(title="simulations", rangemode="tozero", row=rows)
+    return on_any_page(figure)
 
 
 def followed(points: Sequence[tuple[float, float]], axes: tuple[str, str]) -> go.Figure:

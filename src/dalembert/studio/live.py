@@ -4,6 +4,7 @@ from collections import deque
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from dalembert.studio.remaining import Remaining
 from dalembert.study.events import Event, event_of
 from dalembert.study.progress import Told
 
@@ -26,6 +27,9 @@ class Live:
     ----------
     followed, axes : list of (float, float), (str, str)
         Amplitudes along what is followed so far, in its order, and what the axes are called.
+    visited : list of (float, int, list of float)
+        Simulations, number of the start, and values of the unknowns, of each iteration.
+    remaining : Remaining
     """
 
     path: Path
@@ -35,6 +39,8 @@ class Live:
     convergence: list[tuple[float, float]] = field(default_factory=list)
     followed: list[tuple[float, float]] = field(default_factory=list)
     axes: tuple[str, str] = ("", "")
+    visited: list[tuple[float, int, list[float]]] = field(default_factory=list)
+    remaining: Remaining = field(default_factory=Remaining)
     recent: deque[Event] = field(default_factory=lambda: deque(maxlen=SHOWN))
     _told: Told = field(default_factory=Told)
     _place: int = 0
@@ -76,6 +82,7 @@ class Live:
         self.count += 1
         self.recent.append(event)
         self._told.take(event)
+        self.remaining.take(event, *self.progress[1:])
         self._follow(event)
         best = event.get("best")
         if best is None:
@@ -86,8 +93,12 @@ class Live:
             self.best, self.values = best, event.get("values") or self.values
         if self.count % self._every == 0:
             self.convergence.append((event.get("simulations", self.count), self.best))
+            if event.get("values"):
+                self.visited.append((event.get("simulations", self.count), event.get("start", 0), event["values"]))
         if len(self.convergence) > POINTS:
             self.convergence, self._every = self.convergence[::2], 2 * self._every
+        if len(self.visited) > POINTS:
+            self.visited = self.visited[::2]
 
     def _follow(self, event: Event) -> None:
         """Amplitudes along a path that grows: over frequency, or the peaks of whole curves over a parameter."""

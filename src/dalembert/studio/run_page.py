@@ -3,6 +3,7 @@
 import asyncio
 import json
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import suppress
 from pathlib import Path
 from urllib.parse import quote
 
@@ -10,11 +11,13 @@ import plotly.graph_objects as go
 from nicegui import ui
 
 from dalembert.errors import InputError
-from dalembert.studio.figures import bare, convergence, followed, on_any_page, plot
+from dalembert.studio.figures import bare, convergence, followed, on_any_page, plot, wandering
+from dalembert.studio.findings_list import findings_list
 from dalembert.studio.fit_so_far import fit_so_far
 from dalembert.studio.frame import STATES, badge, button, complaints, frame, report_of
-from dalembert.studio.jobs import Jobs, stop
+from dalembert.studio.jobs import Jobs, pause, stop
 from dalembert.studio.live import Live
+from dalembert.studio.remaining import most_simulations
 from dalembert.studio.workspace import Workspace
 from dalembert.study.folder import FINISHED, RESUMABLE, RUNNING, RunFolder
 from dalembert.study.listing import best
@@ -53,6 +56,7 @@ class _Page:
         self.state, self.shown, self.drawn = "", 0, 0
         self.fitted: list[float] = []
         self.fitting: asyncio.Task | None = None
+        self.learning: asyncio.Task | None = None
 
     def build(self) -> None:
         with ui.row().classes("items-center gap-x-4 gap-y-2"):
@@ -60,22 +64,24 @@ class _Page:
             self.told = ui.label("").props("role=status aria-live=polite").classes("break-words")
         self.bar = ui.linear_progress(0, show_value=False).props('aria-label="Progress" indeterminate')
         with ui.row().classes("gap-2"):
+            self.pause = button("Pause", complaints()(lambda: pause(self.folder)), icon="pause")
             self.stop = button("Stop", complaints()(lambda: stop(self.folder)), icon="stop", colour="negative")
             self.resume = button("Resume", complaints()(lambda: self.jobs.resume(self.folder.path)), icon="play_arrow")
         self.message = ui.label("").classes("whitespace-pre-wrap break-words")
         self.live_part = ui.column().classes("w-full gap-4")
         with self.live_part:
-            self.curve, self.fit = ui.column().classes("w-full"), ui.column().classes("w-full")
+            self.fit, self.curve, self.paths = (ui.column().classes("w-full") for _ in range(3))
             with ui.expansion("Events", icon="list").classes("w-full"):
                 self.log = ui.log(max_lines=200).classes("w-full h-64")
         self.files = ui.row().classes("gap-4")
+        self.findings = ui.column().classes("w-full gap-2")
         self.report = ui.column().classes("w-full")
 
     def look(self) -> None:
         """Bring the page up to what the run's folder says."""
         state = self._state()
-        if not self.live.names and self.folder.is_run:
-            self.live.name(_names(self.folder))
+        if self.learning is None and state == RUNNING:
+            self.learning = asyncio.create_task(self._learn())
         if self.live.advance():
             self._show_events()
         if self.live.values != self.fitted and state == RUNNING and (self.fitting is None or self.fitting.done()):
@@ -100,12 +106,14 @@ class _Page:
         self.badge.set_text(state)
         self.badge.props(f"color={STATES.get(state, 'grey' if state == STARTING else 'negative')}")
         self.stop.set_visibility(state == RUNNING)
+        self.pause.set_visibility(state == RUNNING)
         self.resume.set_visibility(state in RESUMABLE)
         self.bar.set_visibility(not ended)
         said = self.folder.state().get("message", "") if self.folder.is_run else ""
         self.message.set_text(str(said or self.jobs.complaint(self.folder.path)) if ended else "")
         self.files.clear()
         self.report.clear()
+        self.findings.clear()
         if not ended:
             return
         name = quote(self.folder.path.name)
@@ -114,6 +122,9 @@ class _Page:
             for file, what in FILES.items():
                 if (self.folder.path / file).is_file():
                     ui.link(what, f"/files/{name}/{file}").props(f'download="{_saved(self.folder, file)}"')
+        with self.findings:
+            if self.folder.is_run:
+                findings_list(self.folder)
         if state == FINISHED:
             self.told.set_text(best(self.folder, self.folder.state()))
         self.live_part.set_visibility(state != FINISHED)
@@ -123,7 +134,7 @@ class _Page:
 
     def _show_events(self) -> None:
         text, done, total = self.live.progress
-        self.told.set_text(text)
+        self.told.set_text(" · ".join(filter(None, (text, self.live.remaining.sentence()))))
         self.bar.set_value(done / total if total else 0.0)
         self.bar.props("indeterminate" if not total else "", remove="indeterminate" if total else "")
         new = min(self.live.count - self.shown, len(self.live.recent))
@@ -134,10 +145,19 @@ class _Page:
         if len(points) > 1 and len(points) != self.drawn:
             self.drawn = len(points)
             _draw(self.curve, "Best value over simulations", convergence({self.folder.path.name: points}))
+            if self.live.visited and self.live.names:
+                _draw(self.paths, "Parameters over simulations", wandering(self.live.visited, self.live.names))
         points = self.live.followed
         if len(points) > 1 and len(points) != self.drawn:
             self.drawn = len(points)
             _draw(self.curve, "The response computed so far", followed(points, self.live.axes))
+
+    async def _learn(self) -> None:
+        """Ask another process for the names of the unknowns and the number of simulations, which take imports."""
+        loop = asyncio.get_running_loop()
+        with suppress(Exception):  # whatever a user's model raises, the run itself says it
+            self.live.name(await loop.run_in_executor(self.pool, _names, self.folder))
+            self.live.remaining.most = await loop.run_in_executor(self.pool, most_simulations, self.folder.path)
 
     async def _show_fit(self, values: list[float]) -> None:
         """The best fit so far; a run whose model another process cannot make has none."""

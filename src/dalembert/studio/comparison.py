@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import plotly.graph_objects as go
 
@@ -13,6 +14,7 @@ from dalembert.report import sections_of
 from dalembert.report.asked import Asked
 from dalembert.report.headline import Headline
 from dalembert.report.look import LIGHT, plain, themed
+from dalembert.report.quantities import labelled, unit
 from dalembert.report.section import Block, Plot, Section, Source
 from dalembert.report.table import Cell, Table, cell
 from dalembert.report.thin import thinned
@@ -22,7 +24,6 @@ from dalembert.study.folder import RunFolder
 
 MOST_FIGURES = 24
 """Channels that are drawn, the first ones."""
-KINDS = {"identify": "dalembert.inverse:Fit", "simulate": ""}
 _FACTS = ("study", "task", "state", "misfit", "duration", "date", "findings", "tags", "note")
 
 
@@ -129,15 +130,19 @@ def _studies(comparison: RunComparison) -> Iterator[Block]:
 
 
 def curves_of(folder: RunFolder) -> Iterator[Curve]:
-    """Yield the responses in the result of a run; none where they are not over time or frequency."""
-    from dalembert.report.quantities import labelled, unit
-    from dalembert.study.runner import loaded
+    """Yield the responses in the result of a run over time or frequency, with the data that they were fitted to."""
+    from dalembert.inverse import Fit
 
     try:
-        result = loaded(folder)
-    except (DalembertError, OSError):
+        with h5py.File(folder.result) as file:
+            is_fit = file.attrs.get("format") == Fit.FORMAT
+        yield from _of_fit(Fit.load(folder.result)) if is_fit else _of_dataset(folder.result)
+    except (DalembertError, OSError):  # no result, or a damaged one
         return
-    for name, data, response in _fitted(result):
+
+
+def _of_fit(fit: Any) -> Iterator[Curve]:
+    for name, data, response in _fitted(fit):
         along = labelled(data.coordinate.name, data.coordinate.unit)
         for column, channel in enumerate(data.channels):
             label = labelled(f"{name}{channel}", unit(channel))
@@ -146,10 +151,22 @@ def curves_of(folder: RunFolder) -> Iterator[Curve]:
             yield Curve(label, along, at, response[:, column])
 
 
+def _of_dataset(path: Path) -> Iterator[Curve]:
+    """Variables over one coordinate, without those that say how a simulation went."""
+    from xarray import load_dataset
+
+    dataset = load_dataset(path, engine="h5netcdf")
+    for name, variable in dataset.data_vars.items():
+        own = variable.dims == ("time",) or variable.dims == ("frequency",)
+        if own and variable.dims[0] in dataset.coords and not str(name).startswith(("energy.", "violation.")):
+            coordinate = dataset.coords[variable.dims[0]]
+            along = labelled(str(coordinate.name), str(coordinate.attrs.get("units", "")))
+            label = labelled(str(name), str(variable.attrs.get("units", "")))
+            yield Curve(label, along, coordinate.values, np.asarray(variable.values, dtype=float))
+
+
 def _fitted(result: Any) -> Iterator[tuple[str, Any, np.ndarray]]:
     """Data and responses of a fit, with the name of each experiment before its channels."""
-    if not hasattr(result, "experiments"):
-        return
     if not result.experiments:
         yield "", result.data, result.response
     for one in result.experiments:

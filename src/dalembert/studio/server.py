@@ -11,7 +11,7 @@ from fastapi import FastAPI, Query
 from fastapi.responses import FileResponse, PlainTextResponse, Response
 
 from dalembert.errors import InputError
-from dalembert.studio.compare_page import compare_page
+from dalembert.studio.compare_page import ADDRESS, compare_page, comparison_file
 from dalembert.studio.continue_page import continue_page
 from dalembert.studio.guard import Guard
 from dalembert.studio.jobs import Jobs
@@ -76,6 +76,14 @@ def application(root: Path) -> FastAPI:
     def compare(run: list[str] = Query(default=[])) -> None:  # noqa: B008  FastAPI reads the default
         compare_page(workspace, run)
 
+    @app.get(ADDRESS)
+    def comparison(run: list[str] = Query(default=[])) -> Response:  # noqa: B008
+        return comparison_file(workspace, run)
+
+    @app.get(f"{ADDRESS}.csv")
+    def values(run: list[str] = Query(default=[])) -> Response:  # noqa: B008
+        return comparison_file(workspace, run, csv=True)
+
     @app.get("/files/{name}/{file}")
     def files(name: str, file: str) -> Response:
         try:
@@ -101,7 +109,7 @@ def application(root: Path) -> FastAPI:
     @app.middleware("http")
     async def headers(request: Any, follow: Any) -> Response:
         answer = await follow(request)
-        if not request.url.path.startswith("/files/"):  # a report has a policy of its own, and a sandbox
+        if not request.url.path.startswith(("/files/", ADDRESS)):  # a report has a policy of its own, and a sandbox
             answer.headers["Content-Security-Policy"] = POLICY
         answer.headers["X-Content-Type-Options"] = "nosniff"
         answer.headers["Referrer-Policy"] = "no-referrer"

@@ -24,6 +24,7 @@ from dalembert.study.folder import RunFolder
 
 MOST_FIGURES = 24
 """Channels that are drawn, the first ones."""
+_UNITS = {"duration": " (s)", "date": " (UTC)"}
 _FACTS = ("study", "task", "state", "misfit", "duration", "date", "findings", "tags", "note")
 
 
@@ -67,7 +68,7 @@ class RunComparison:
         rows = [row(folder) for folder in self.folders]
         states = [(folder.state().get("best") or {}) for folder in self.folders]
         values, deviations = ([one.get(key) or {} for one in states] for key in ("values", "deviations"))
-        found: list[list[Any]] = [[fact, *(_cell(one[fact]) for one in rows)] for fact in _FACTS]
+        found: list[list[Any]] = [[fact + _UNITS.get(fact, ""), *(_cell(one[fact]) for one in rows)] for fact in _FACTS]
         for name in dict.fromkeys(name for one in values for name in one):
             known = [(one.get(name), own.get(name)) for one, own in zip(values, deviations, strict=True)]
             found.append([name, *(_cell(value, with_deviation(value, own)) for value, own in known)])

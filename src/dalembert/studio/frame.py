@@ -37,10 +37,10 @@ LOOKS = """
 .model-space button.chosen { outline: 2px solid #3987e5 }
 .model-space button.wrong { outline: 2px solid #e03131 }
 .model-space:focus-visible, .model-space button:focus-visible { outline: 2px solid #3987e5; outline-offset: -2px }
-.model-drawing g[data-part] { cursor: pointer }
+.model-drawing g[data-part] { cursor: pointer; outline: none }
 .model-drawing g.chosen { filter: drop-shadow(0 0 2px #3987e5) drop-shadow(0 0 4px #3987e5) }
 .model-drawing g.wrong { filter: drop-shadow(0 0 2px #e03131) drop-shadow(0 0 4px #e03131) }
-.model-drawing g:focus-visible { outline: 2px solid #3987e5; outline-offset: 3px }
+.model-drawing g[data-part]:focus-visible { outline: 2px solid #3987e5; outline-offset: 3px }
 @media (min-width: 1024px) { .wide { height: calc(100dvh - 3.25rem) } }
 @media (max-width: 1023px) {
     .study-parts { flex-direction: column }

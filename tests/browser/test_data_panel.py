@@ -15,6 +15,8 @@ from dalembert.study.template import begin
 pytestmark = pytest.mark.slow
 TEXT = "(document.body?.innerText ?? '')"
 MOST_CLICKS = 25
+LONGEST_ANSWER = 5.0
+"""Seconds, on a machine whose cores other processes use as well."""
 DRAG, ANGLE = 0.12, 40.0
 """Of the pendulum that was measured: N m s, and degrees from the vertical."""
 
@@ -129,3 +131,39 @@ def test_columns_are_corrected_by_menus_and_problems_by_buttons(visit, root, tmp
     page.get_by_role("button", name="Undo").click()
     wait_until(page, "document.querySelector('.cm-content').innerText.includes('motion.csv')")
     page.get_by_label("Use of column x").wait_for()
+
+
+def test_a_file_of_50_mb_does_not_block_the_studio(visit, root, tmp_path):
+    study = begin("identify", root / "studies" / "large")
+    rows = 1_250_000
+    times = 1000 + np.arange(rows) * 0.5
+    line = "%.4f;%.11f;%.13f\n"
+    file = tmp_path / "large.csv"
+    with file.open("w") as text:
+        text.write("time_ms;angle_deg;current\n")
+        for part in np.array_split(times, 25):
+            text.write((line * len(part)) % tuple(np.c_[part, np.sin(part / 1000), np.cos(part / 300)].ravel()))
+    assert file.stat().st_size > 50e6
+    page, other = visit("/study/large/large"), visit("/")
+    page.get_by_role("tab", name="Data").click()
+    page.get_by_label("Use of column x").wait_for()
+    page.locator("input[type=file]").first.set_input_files(file)
+    longest = 0.0
+    while not page.get_by_label("Use of column angle_deg").is_visible():
+        longest = max(longest, answer_time(other))
+    hand = Hand()
+    hand.choose(page, "Use of column angle_deg", "rod.start.angle (rad)")
+    wait_until(page, f"{TEXT}.includes('The record has 1250000 samples')")
+    page.get_by_role("button", name="Decimate").click()
+    page.get_by_role("button", name="Write into the study").click()
+    while "angle from 5000 samples" not in page.inner_text("body"):
+        longest = max(longest, answer_time(other))
+    assert longest < LONGEST_ANSWER
+    assert (study.parent / "large.csv").stat().st_size == file.stat().st_size
+
+
+def answer_time(page: Page) -> float:
+    """Seconds until the studio answers a request for a page."""
+    return page.evaluate(
+        "async () => { const t = performance.now(); await fetch('/'); return (performance.now() - t) / 1000 }"
+    )

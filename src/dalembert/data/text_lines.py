@@ -9,6 +9,7 @@ from dalembert.data.opening import absent
 from dalembert.errors import DataError
 
 _GZIP = b"\x1f\x8b"
+_BLOCK = 1_000_000  # characters that are looked at once; other threads have their turn between
 _BINARY = re.compile("[\x00-\x08\x0e-\x1f]")  # control characters that no text has
 
 
@@ -49,6 +50,6 @@ def _decoded(path: Path, content: bytes) -> str:
             text = content.decode(encoding)
         except UnicodeDecodeError:
             continue
-        if not _BINARY.search(text):
+        if not any(_BINARY.search(text, begin, begin + _BLOCK) for begin in range(0, len(text), _BLOCK)):
             return text
     raise DataError(f"{path}: the file is not text; give its format, or save it as UTF-8 text")

@@ -8,7 +8,7 @@ from dalembert.data.text_layout import COMMENTS, Layout, Line
 
 HEAD = 5000
 """Lines whose layout is that of the file."""
-BLOCK = 50_000
+BLOCK = 10_000
 """Lines that are read at once; other threads have their turn between blocks."""
 
 

@@ -14,6 +14,7 @@ from dalembert.studio.data_choices import Choices, fix_of, of_table, write
 from dalembert.studio.data_examined import FEW, Examined, compare, examine
 from dalembert.studio.draft import Draft
 from dalembert.studio.worker import Worker
+from dalembert.study.schema_file import NAME as SCHEMA
 
 Place = tuple[str | int, ...]
 DATA: Place = ("data",)
@@ -60,7 +61,8 @@ class DataGuide:
         """Names of the data files beside the study."""
         suffixes = tuple(suffix for form in known_formats().values() for suffix in form.suffixes)
         found = (path.name for path in self.draft.path.parent.iterdir() if path.is_file())
-        return sorted(name for name in found if name.lower().removesuffix(".gz").endswith(suffixes))
+        named = (name for name in found if name.lower().removesuffix(".gz").endswith(suffixes))
+        return sorted(name for name in named if name != SCHEMA)
 
     @property
     def tables(self) -> dict[Place, str]:

@@ -159,7 +159,7 @@ def _of_times(found: Preview, times: PreviewColumn, use: Use) -> Iterator[Findin
             "many-samples",
             "warning",
             {"samples": len(there), "factor": factor, "even": not len(long) and bool(np.ptp(steps) < 0.01 * usual)},
-            f"The record has {len(there)} samples. A fit takes long with so many, and learns little more from them.",
+            f"The record has {len(there)} samples. A fit takes long, and fewer samples give nearly the same values.",
             f"Keep every {factor}th sample behind a low-pass filter (decimate), or a shorter part of the record.",
         )
 

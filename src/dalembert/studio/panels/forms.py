@@ -46,7 +46,9 @@ class Additions:
                 self._button(addition)
 
     def _button(self, addition: Addition) -> None:
-        made = ui.button(addition.label, icon="add").props("outline dense no-caps size=sm padding='2px 8px'")
+        made = ui.button(addition.label, icon="add", color=None).props(
+            "outline dense no-caps size=sm padding='4px 8px'"
+        )
         made.props["aria-label"] = _add(addition)
         if not addition.kinds:
             made.on_click(partial(self._ask, addition))

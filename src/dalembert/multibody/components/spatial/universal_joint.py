@@ -108,9 +108,8 @@ class UniversalJoint(Joint):
     def turned(self) -> tuple[np.ndarray, np.ndarray]:
         across = np.cross(self.axis_a, self.axis_b)
         parallel = np.real(across @ across) < 1e-12  # of pins that are given in markers that are turned
-        towards, normal = (None, None) if parallel else (self.axis_b, across)
-        first = Orientation.by_axes(self.axis_a, towards).matrix
-        second = Orientation.by_axes(self.axis_b, normal).matrix
+        first = Orientation.by_axes(self.axis_a, None if parallel else self.axis_b).matrix
+        second = Orientation.by_axes(self.axis_b, None if parallel else tuple(across)).matrix
         return first[:, [2, 0, 1]], second[:, [1, 2, 0]]  # the pin as the first axis of a, the second of b
 
     def lower(self, lowering: SpatialLowering) -> None:

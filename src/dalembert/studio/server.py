@@ -11,17 +11,17 @@ from fastapi import FastAPI, Query
 from fastapi.responses import FileResponse, PlainTextResponse, Response
 
 from dalembert.errors import InputError
-from dalembert.studio.compare_page import ADDRESS, compare_page, comparison_file
-from dalembert.studio.continue_page import continue_page
 from dalembert.studio.guard import Guard
 from dalembert.studio.jobs import Jobs
-from dalembert.studio.new_page import new_page
-from dalembert.studio.pictures import Pictures
-from dalembert.studio.run_list import RunList
-from dalembert.studio.run_page import FILES, run_page
-from dalembert.studio.runs_page import runs_page
-from dalembert.studio.studies_page import studies_page
-from dalembert.studio.study_page import study_page
+from dalembert.studio.runs.compare_page import ADDRESS, compare_page, comparison_file
+from dalembert.studio.runs.continue_page import continue_page
+from dalembert.studio.runs.run_list import RunList
+from dalembert.studio.runs.run_page import FILES, run_page
+from dalembert.studio.runs.runs_page import runs_page
+from dalembert.studio.studies.new_page import new_page
+from dalembert.studio.studies.pictures import Pictures
+from dalembert.studio.studies.studies_page import studies_page
+from dalembert.studio.studies.study_page import study_page
 from dalembert.studio.workspace import Workspace, checked
 
 PATIENCE = 30.0  # s that a browser may be out of reach, on a machine that runs are busy on

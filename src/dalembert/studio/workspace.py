@@ -6,7 +6,7 @@ from pathlib import Path
 
 from dalembert.errors import InputError, no_text, require_known
 from dalembert.files import free_path, replacing, write_text
-from dalembert.studio.documents import document_of
+from dalembert.studio.studies.documents import document_of
 from dalembert.study import schema_file
 from dalembert.study.folder import RunFolder, find_runs
 from dalembert.study.loader import LARGEST

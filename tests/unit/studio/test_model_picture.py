@@ -5,9 +5,9 @@ import re
 import numpy as np
 import pytest
 
+from dalembert.studio.editor.reading import read
 from dalembert.studio.model.parts import parts_at, place_of
 from dalembert.studio.model.picture import NOTHING, Picture, model_picture
-from dalembert.studio.reading import read
 from dalembert.studio.worker import Kept
 from dalembert.study.template import templates
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from dalembert.studio.lines import Place, is_within
+from dalembert.studio.editor.lines import Place, is_within
 from dalembert.study.experiments import measured_channels
 from dalembert.study.study import Study
 

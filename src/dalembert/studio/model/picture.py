@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dalembert.errors import DalembertError, ModelError, SolveError
-from dalembert.studio.lines import Place
+from dalembert.studio.editor.lines import Place
+from dalembert.studio.editor.reading import read
 from dalembert.studio.model.parts import places_of, shown_channels
-from dalembert.studio.reading import read
 from dalembert.studio.worker import Kept
 from dalembert.study.study import Study
 

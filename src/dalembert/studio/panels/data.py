@@ -6,16 +6,16 @@ from functools import partial
 from nicegui import events, run, ui
 
 from dalembert.findings import Finding
-from dalembert.studio.data_choices import Choices
-from dalembert.studio.data_columns import ColumnTable
-from dalembert.studio.data_examined import Examined
-from dalembert.studio.data_figure import columns_figure
-from dalembert.studio.data_guide import DataGuide
-from dalembert.studio.draft import Draft
-from dalembert.studio.figures import bare
+from dalembert.studio.data.choices import Choices
+from dalembert.studio.data.columns import ColumnTable
+from dalembert.studio.data.examined import Examined
+from dalembert.studio.data.figure import columns_figure
+from dalembert.studio.data.guide import DataGuide
+from dalembert.studio.editor.draft import Draft
 from dalembert.studio.frame import button, complaints
 from dalembert.studio.latest import Latest
 from dalembert.studio.room import Room
+from dalembert.studio.runs.figures import bare
 from dalembert.studio.uploads import upload
 
 KINDS = ".csv,.txt,.dat,.tsv,.asc,.log,.gz,.json,.parquet,.pq,.mat,.uff,.unv,.uf,.bunv,.nc,.nc4,.cdf"

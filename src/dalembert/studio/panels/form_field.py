@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 
 from nicegui import events, ui
 
-from dalembert.studio.fields import shown
-from dalembert.studio.form import Row
+from dalembert.studio.editor.fields import shown
+from dalembert.studio.editor.form import Row
 
 
 class FormField:

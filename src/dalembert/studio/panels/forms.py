@@ -5,13 +5,13 @@ from functools import partial
 
 from nicegui import ui
 
-from dalembert.studio.additions import Addition, added, additions
-from dalembert.studio.cursor import tolerant
-from dalembert.studio.draft import Draft
-from dalembert.studio.editing import without
-from dalembert.studio.form import Form, Row, form_at, with_row
+from dalembert.studio.editor.additions import Addition, added, additions
+from dalembert.studio.editor.cursor import tolerant
+from dalembert.studio.editor.draft import Draft
+from dalembert.studio.editor.editing import without
+from dalembert.studio.editor.form import Form, Row, form_at, with_row
+from dalembert.studio.editor.names import Channels, Names, names_in
 from dalembert.studio.frame import button, complaints, icon_button
-from dalembert.studio.names import Channels, Names, names_in
 from dalembert.studio.panels.form_field import FormField
 from dalembert.studio.room import Room
 

@@ -2,14 +2,14 @@
 
 from nicegui import ui
 
-from dalembert.studio.draft import Draft
+from dalembert.studio.editor.draft import Draft
+from dalembert.studio.editor.lines import Place
+from dalembert.studio.editor.reading import Mistake
 from dalembert.studio.frame import icon_button
 from dalembert.studio.latest import Latest
-from dalembert.studio.lines import Place
 from dalembert.studio.model.drawing import ModelDrawing, ModelSpace, ModelView
 from dalembert.studio.model.parts import parts_at, place_of
 from dalembert.studio.model.picture import Picture, model_picture
-from dalembert.studio.reading import Mistake
 from dalembert.studio.room import Room
 from dalembert.studio.worker import WorkerError
 

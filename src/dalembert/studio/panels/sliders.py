@@ -8,12 +8,12 @@ from typing import Any
 from nicegui import background_tasks, ui
 
 from dalembert.parameters import Parameter
-from dalembert.studio.chosen_values import use_as_start, use_as_value
-from dalembert.studio.draft import Draft
+from dalembert.studio.editor.chosen_values import use_as_start, use_as_value
+from dalembert.studio.editor.draft import Draft
 from dalembert.studio.frame import button, complaints
 from dalembert.studio.panels.parameter_row import LOOKS, ParameterRow
-from dalembert.studio.player import Player
 from dalembert.studio.room import Room
+from dalembert.studio.runs.player import Player
 from dalembert.studio.simulation.answers import Influences, Simulated, Source, influences, simulated
 from dalembert.studio.simulation.parts import names
 from dalembert.studio.worker import WorkerError

@@ -73,7 +73,7 @@ def _plain(part: Part, group: Sequence[str], lines: Sequence[tuple[np.ndarray, n
 
 def on_page(figure: go.Figure) -> dict[str, Any]:
     """The figure as a page of the studio takes it."""
-    from dalembert.studio.figures import bare, on_any_page
+    from dalembert.studio.runs.figures import bare, on_any_page
 
     return bare(on_any_page(figure))
 

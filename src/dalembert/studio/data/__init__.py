@@ -1,0 +1,1 @@
+"""The way from a data file to the table `[data]`."""

@@ -1,0 +1,211 @@
+"""What the panel of measured data shows of a file, computed in a process of its own: files may be large."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+
+from dalembert.data.guesses import Unit
+from dalembert.data.preview import Preview, PreviewColumn, preview
+from dalembert.data.problems import outliers, problems
+from dalembert.data.text_layout import AUTO
+from dalembert.errors import DalembertError, InputError
+from dalembert.findings import Finding
+from dalembert.report.thin import thinned
+from dalembert.studio.data.choices import Choices, Key, guessed, table_of
+from dalembert.studio.worker import Kept
+from dalembert.study import Study, load
+from dalembert.study.channels import channel_units
+from dalembert.study.experiments import reads
+
+POINTS = 1000
+"""Most points of a curve."""
+FEW = 20_000
+"""Samples up to which data are compared with the response at the first guesses."""
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A column over the times.
+
+    Parameters
+    ----------
+    key : str or int
+    unit : Unit
+        Chosen, or guessed.
+    along, values : array, shape (points,)
+        Time in s from the beginning of the motion, or number of the row without a column of times; the column as it is
+        in the file. Thinned so that peaks stay.
+    far : array, shape (2, points)
+        The same of outliers.
+    missing : int
+        Cells without a value.
+    """
+
+    key: Key
+    unit: Unit
+    along: np.ndarray
+    values: np.ndarray
+    far: np.ndarray
+    missing: int
+
+
+@dataclass(frozen=True, eq=False)
+class Examined:
+    """A file as it is read with some choices.
+
+    Parameters
+    ----------
+    choices : Choices
+        The given ones, or the guessed ones.
+    channels : mapping of str to str
+        Channels of the model, and their SI units.
+    layout : str
+        What a text file was taken to be, in words.
+    separator, decimal : str
+        Marks that were found or given; ``""`` where the file is no text.
+    first : tuple of rows
+        Cells of the first rows.
+    samples : int
+    curves : tuple of Curve
+        One a column.
+    begins : float
+        First time (s) of the file.
+    findings : tuple of Finding
+    table : mapping
+        The `[data]` table; empty if it lacks something.
+    lacks : str
+        What the table lacks, in words.
+    """
+
+    choices: Choices
+    channels: Mapping[str, str]
+    layout: str
+    separator: str
+    decimal: str
+    first: tuple[tuple[str, ...], ...]
+    samples: int
+    curves: tuple[Curve, ...]
+    begins: float
+    findings: tuple[Finding, ...]
+    table: Mapping[str, Any]
+    lacks: str = ""
+
+
+def examine(kept: Kept, study: Path, text: str, file: str, choices: Choices | None, before: Choices | None) -> Examined:
+    """Return how a file is read with some choices, or with guessed ones.
+
+    Parameters
+    ----------
+    kept : Kept
+        Keeps the file and the study that were read last.
+    study : Path
+    text : str
+        Of the study.
+    file : str
+        Name of the file, beside the study.
+    choices : Choices, optional
+    before : Choices, optional
+        Of another file, which are kept if this one has the same columns.
+
+    Raises
+    ------
+    DataError
+        If the file cannot be read.
+    """
+    channels = kept.newest("channels", text, lambda: _channels(study, text))
+    marks = (AUTO, AUTO) if choices is None else (choices.separator, choices.decimal)
+    path = study.parent / file
+    stamp = (path.stat().st_mtime_ns, path.stat().st_size) if path.is_file() else None
+    found = kept.newest("data file", (path, *marks, stamp), lambda: preview(path, *marks))
+    choices = guessed(found, channels, before) if choices is None else choices
+    if choices.time == "t" and found.column("t") is None and found.column(1) is not None:
+        choices = replace(choices, time=1)  # the first column of a file without names
+    use = choices.use(found, channels)
+    times = None if choices.time is None else found.column(choices.time)
+    along = np.arange(1.0, found.samples + 1) if times is None else times.values * use.factor(choices.time)
+    begins = float(along[0]) if len(along) else 0.0
+    start = use.start if isinstance(use.start, (int, float)) else begins if use.start == "first" else 0.0
+    table, lacks = _table(choices, found)
+    return Examined(
+        choices,
+        channels,
+        found.layout,
+        found.separator,
+        found.decimal,
+        found.first,
+        found.samples,
+        tuple(_curve(column, choices, found, along - start) for column in found.columns),
+        begins,
+        tuple(problems(found, use)),
+        table,
+        lacks,
+    )
+
+
+def compare(kept: Kept, study: Path, text: str) -> tuple[Finding, ...]:
+    """Return what the response at the first guesses makes suspect in the data of a study: units and zeros.
+
+    Parameters
+    ----------
+    kept : Kept
+    study : Path
+    text : str
+        Of the study.
+    """
+    return kept.newest("comparison", (study, text), lambda: tuple(_suspect(study, text)))
+
+
+def _channels(study: Path, text: str) -> dict[str, str]:
+    """Channels of the study's model with their units; none while the study has mistakes."""
+    try:
+        return channel_units(_read(study, text))
+    except DalembertError:
+        return {}
+
+
+def _suspect(study: Path, text: str) -> Iterator[Finding]:
+    from dalembert.inverse.experiments.suspect_offsets import first_findings
+
+    try:
+        one = _read(study, text)
+        data = one.data()
+        if one.task != "identify" or len(data.coordinate.values) > FEW:
+            return
+        found = first_findings(one.forward(data.channels, data.coordinate.values), data)
+    except DalembertError:  # the page says what is wrong with the study
+        return
+    offsets = [name for name, sensor in one.file.sensors.items() if sensor.offset is not None]
+    for finding in found:
+        known = any(reads(name, [finding.values["channel"]]) for name in offsets)
+        if finding.code != "suspect-offset" or not known:
+            yield finding
+
+
+def _read(study: Path, text: str) -> Study:
+    """The study of a text, without writing to its folder."""
+    with TemporaryDirectory() as folder:
+        draft = Path(folder) / study.name
+        draft.write_text(text, encoding="utf-8")
+        return load(draft, name=study.stem, folder=study.parent)
+
+
+def _table(choices: Choices, found: Preview) -> tuple[dict[str, Any], str]:
+    """The `[data]` table, or what it lacks."""
+    try:
+        return table_of(choices, found), ""
+    except InputError as error:
+        return {}, str(error)
+
+
+def _curve(column: PreviewColumn, choices: Choices, found: Preview, along: np.ndarray) -> Curve:
+    far = np.zeros((2, 0))
+    if column.key in choices.channels.values():
+        there = np.flatnonzero(np.isfinite(column.values))
+        rows = there[outliers(column.values[there])][:POINTS]
+        far = np.stack([along[rows], column.values[rows]])
+    points = thinned(along, column.values, POINTS)
+    return Curve(column.key, choices.unit(found, column.key), *points, far, column.missing)

@@ -1,0 +1,108 @@
+"""What can be added to a study by a form: bodies, joints, forces, contacts, sensors, parameters, tasks and so on."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from itertools import count
+from typing import Any
+
+from dalembert.studio.editor.cursor import tolerant
+from dalembert.studio.editor.editing import with_table, with_value, without
+from dalembert.studio.editor.fields import KIND, child, fields_at, kinds_at, tables_of
+from dalembert.studio.editor.lines import Place
+from dalembert.study.tasks import TASKS
+
+_MECHANISM = {"body": "Body", "joint": "Joint", "load": "Force"}
+_STRUCTURE = {"mass": "Mass", "spring": "Spring", "force": "Force", "contact": "Contact"}
+_NAMED = {"parameters": "Parameter", "constants": "Constant", "sensors": "Sensor", "inputs": "Input"}
+_BEGINNING = {"parameters": {"lower": 0.0, "upper": 1.0}}
+"""With what a table begins."""
+TASK = "Task"
+
+
+@dataclass(frozen=True)
+class Addition:
+    """Something that can be added.
+
+    Parameters
+    ----------
+    label : str
+    place : tuple of str or int
+        Of the table or list of tables that it is added to; empty for one of the tables of ``kinds``.
+    kinds : dict of str to str
+        Kinds, or tables, with their meanings; empty where a name is asked for instead.
+    names : str
+        What the name is one of: "channel" where it must be that of a channel; empty for a new name.
+    """
+
+    label: str
+    place: Place
+    kinds: Mapping[str, str] = field(default_factory=dict)
+    names: str = ""
+
+
+def additions(text: str) -> tuple[Addition, ...]:
+    """Return what can be added to a study.
+
+    Examples
+    --------
+    >>> [one.label for one in additions("[[model.mass]]")]
+    ['Mass', 'Spring', 'Force', 'Contact', 'Parameter', 'Constant', 'Sensor', 'Input', 'Task', 'Table']
+    >>> additions("")[1].kinds["RevoluteJoint"]
+    'A pin: both points coincide.'
+    """
+    document = tolerant(text)
+    model = child(document, ("model",)) or {}
+    is_structure = any(key in model for key in (*_STRUCTURE, "structure"))
+    parts = _STRUCTURE if is_structure else _MECHANISM
+    found = [Addition(label, ("model", key, 0), kinds_at(document, ("model", key, 0))) for key, label in parts.items()]
+    found += [Addition(label, (key,), names="channel" if key == "sensors" else "") for key, label in _NAMED.items()]
+    tables = {place[0]: meaning for place, meaning in tables_of(document).items() if len(place) == 1}
+    rest = {key: meaning for key, meaning in tables.items() if key not in (*TASKS, *_NAMED, *document)}
+    tasks = {str(key): meaning for key, meaning in tables.items() if key in TASKS and key not in document}
+    return (*found, Addition(TASK, (), tasks), Addition("Table", (), {str(key): one for key, one in rest.items()}))
+
+
+def added(text: str, addition: Addition, what: str) -> tuple[str, Place]:
+    """Return the text with an addition, and its place.
+
+    A task replaces the one that there is, as a study has one.
+
+    Parameters
+    ----------
+    text : str
+    addition : Addition
+    what : str
+        One of its kinds, or a name.
+
+    Examples
+    --------
+    >>> text, place = added("", additions("")[0], "PointMass")
+    >>> place, text
+    (('model', 'body', 0), '[[model.body]]\\nkind = "PointMass"\\nname = "body1"\\n')
+    """
+    document = tolerant(text)
+    if addition.place == ("constants",):
+        return with_value(text, ("constants", what), 0.0), ("constants", what)
+    if not addition.kinds:
+        return with_table(text, (*addition.place, what), _BEGINNING.get(str(addition.place[0]), {}))
+    if not addition.place:
+        for task in document.keys() & TASKS.keys() if addition.label == TASK else ():
+            text = without(text, (task,))
+        return with_table(text, (what,), {})
+    values = {KIND: what}
+    model = document.get("model") or {}
+    entry = {"model": {**model, str(addition.place[1]): [values]}}
+    if any(one.key == "name" for one in fields_at(entry, addition.place)):
+        values["name"] = _free(model, str(addition.place[1]))
+    return with_table(text, addition.place, values)
+
+
+def _free(model: Mapping[str, Any], what: str) -> str:
+    """A name that nothing in a model has.
+
+    >>> _free({"body": [{"name": "body1"}]}, "body")
+    'body2'
+    """
+    lists = [entries for entries in model.values() if isinstance(entries, list)]
+    taken = {entry.get("name") for entries in lists for entry in entries if isinstance(entry, dict)}
+    return next(name for number in count(1) if (name := f"{what}{number}") not in taken)

@@ -1,0 +1,273 @@
+"""What a study file may say at a place: the keys of a table with unit, default, meaning, allowed names and kinds.
+
+All of it comes from the JSON schema of study files, which the tables of the study make.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from dalembert.studio.editor.lines import Place
+from dalembert.study import schema_file
+from dalembert.study.numbers import UNIT
+from dalembert.study.places import NAMES
+
+Shape = Literal["number", "whole", "switch", "choice", "text", "list", "table"]
+Node = Mapping[str, Any]
+_SHAPES: dict[str, Shape] = {
+    "boolean": "switch", "integer": "whole", "string": "text", "array": "list", "object": "table",
+}  # fmt: skip
+KIND = "kind"
+_OF_KIND = "What it is."
+_NAMED = {
+    "channels": "channel", "wraps": "channel", "of": "channel", "observe": "channel",
+    "points": "point", "driving": "point", "input": "input", "own": "parameter", "parameters": "parameter",
+    "first": "node", "second": "node", "dof": "node", "fixed": "node", "masters": "node",
+}  # fmt: skip
+"""What texts of a key are names of, where the schema does not say it; also the keys of a table of this name."""
+_OF_KEYS = {"columns": "channel", "deviations": "channel", "weights": "channel", "derivatives": "channel",
+            "sensors": "channel", "intervals": "parameter", "truth": "parameter", "over": "parameter",
+            "pose": "joint", "rates": "joint", "inputs": "input"}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Field:
+    """A key of a table.
+
+    Parameters
+    ----------
+    key : str
+    shape : str
+        What a value of it is.
+    meaning : str
+        With what is expected.
+    unit : str, optional
+        Of a number; empty where it has none.
+    default : optional
+        None where the key has no default, or one that depends on others.
+    required : bool
+    choices : tuple of str
+        Texts that are allowed, such as kinds.
+    names : str
+        What a text, or each text of a list, is the name of: a "point", "joint", "channel" and so on.
+    """
+
+    key: str
+    shape: Shape
+    meaning: str = ""
+    unit: str | None = None
+    default: Any = None
+    required: bool = False
+    choices: tuple[str, ...] = ()
+    names: str = ""
+
+    @property
+    def facts(self) -> str:
+        """Unit and default in a few words.
+
+        Examples
+        --------
+        >>> Field("angle", "number", unit="rad", default=0.0).facts
+        'in rad, default 0'
+        """
+        unit = f"in {self.unit}" if self.unit else ""
+        rule = "required" if self.required else "" if self.default is None else f"default {shown(self.default)}"
+        return ", ".join(filter(None, (unit, rule)))
+
+
+def fields_at(document: Any, place: Place) -> tuple[Field, ...]:
+    """Return the keys of the table at a place of a document; none where there is no table with known keys.
+
+    Parameters
+    ----------
+    document : mapping
+        The study as TOML reads it. Its kinds, and whether it is in space, choose among tables.
+    place : tuple of str or int
+
+    Examples
+    --------
+    >>> study = {"model": {"joint": [{"kind": "RevoluteJoint"}]}}
+    >>> [field.key for field in fields_at(study, ("model", "joint", 0))][:5]
+    ['kind', 'name', 'a', 'b', 'viscous']
+    """
+    tables = _tables_at(document, place)
+    chosen = _chosen(tables, child(document, place)) or {}
+    keys, required, kinds = chosen.get("properties", {}), chosen.get("required", ()), tuple(_kinds(tables))
+    found = [_field(key, node, key in required, kinds if key == KIND else ()) for key, node in keys.items()]
+    if kinds and KIND not in keys:  # it chooses among the tables
+        found.insert(0, Field(KIND, "choice", _OF_KIND, required=not keys, choices=kinds))
+    return tuple(found)
+
+
+def field_at(document: Any, place: Place) -> Field | None:
+    """Return the key that a place is; None if it is not known."""
+    if not place or isinstance(place[-1], int):
+        return None
+    key = str(place[-1])
+    known = {field.key: field for field in fields_at(document, place[:-1])}
+    if key in known:
+        return known[key]
+    more = _more_at(document, place[:-1])
+    return None if more is None else _field(key, more, False, ())
+
+
+def kinds_at(document: Any, place: Place) -> dict[str, str]:
+    """Return the kinds that the table at a place may be of, with what each is.
+
+    Examples
+    --------
+    >>> kinds_at({}, ("model", "joint", 0))["RevoluteJoint"]
+    'A pin: both points coincide.'
+    """
+    return _kinds(_tables_at(document, place))
+
+
+def keys_named(place: Place) -> str:
+    """Return what the keys of the table at a place are names of, empty if of nothing that is known."""
+    return _OF_KEYS.get(str(place[-1]), "") if place else ""
+
+
+def tables_of(document: Any) -> dict[Place, str]:
+    """Return the meanings of the tables that a study may have, by their places; those of lists have a trailing 0."""
+    found: dict[Place, str] = {}
+    for path in ((), ("model",)):
+        for key, node in (
+            (_chosen(_tables_at(document, path), child(document, path)) or {}).get("properties", {}).items()
+        ):
+            for one in _alternatives(node):
+                if one.get("type") == "array" and any(map(_is_table, _alternatives(one.get("items", {})))):
+                    found[(*path, key, 0)] = _meaning(node)
+                elif _is_table(one):
+                    found.setdefault((*path, key), _meaning({**one, **node}))
+    return found
+
+
+def child(value: Any, place: Sequence[str | int]) -> Any:
+    """Return what is at a place of a document, None if nothing is.
+
+    Examples
+    --------
+    >>> child({"a": [{"b": 1}]}, ("a", 0, "b")), child({"a": [1]}, ("a", 3))
+    (1, None)
+    """
+    for step in place:
+        try:
+            value = value[step]
+        except (KeyError, IndexError, TypeError):
+            return None
+    return value
+
+
+def _tables_at(document: Any, place: Place) -> list[Node]:
+    """Tables that a place may be by the schema."""
+    nodes: list[Node] = [schema_file.schema()]
+    value: Any = document
+    for step in place:
+        if isinstance(step, int):
+            nodes = [node["items"] for one in nodes for node in _alternatives(one) if "items" in node]
+        else:
+            tables = [one for node in nodes for one in _alternatives(node) if _is_table(one)]
+            table = _chosen(tables, value) or {}
+            inner = table.get("properties", {}).get(step, table.get("additionalProperties"))
+            nodes = [inner] if isinstance(inner, Mapping) else []
+        value = child(value, (step,))
+    return [one for node in nodes for one in _alternatives(node) if _is_table(one)]
+
+
+def _more_at(document: Any, place: Place) -> Node | None:
+    """Schema of the values of a table with any keys."""
+    table = _chosen(_tables_at(document, place), child(document, place)) or {}
+    more = table.get("additionalProperties")
+    return more if isinstance(more, Mapping) else None
+
+
+def _alternatives(node: Node) -> Iterator[Node]:
+    """The schemas that a schema allows one of, references resolved."""
+    while "$ref" in node:
+        own = {key: value for key, value in node.items() if key != "$ref"}
+        node = {**schema_file.schema()["$defs"][node["$ref"].rpartition("/")[2]], **own}
+    choices = [*node.get("anyOf", ()), *node.get("oneOf", ())]
+    if not choices:
+        yield node
+    shared = {key: node[key] for key in (UNIT, NAMES) if key in node}
+    for choice in choices:
+        yield from _alternatives({**shared, **choice})
+
+
+def _is_table(node: Node) -> bool:
+    return "properties" in node or isinstance(node.get("additionalProperties"), Mapping)
+
+
+def _chosen(tables: Sequence[Node], value: Any) -> Node | None:
+    """The table that a value is by its kind; the only one, or the one of the default kind, without a value."""
+    given = value if isinstance(value, Mapping) else {}
+    fitting = [one for one in tables if all(given.get(key, default) == const for key, default, const in _fixed(one))]
+    return max(fitting, key=lambda one: sum(key in given for key, _, _ in _fixed(one)), default=None)
+
+
+def _fixed(table: Node) -> Iterator[tuple[str, Any, Any]]:
+    """Keys of a table that have one value alone: its default, and this value."""
+    for key, node in table.get("properties", {}).items():
+        if "const" in node:
+            yield key, node.get("default"), node["const"]
+
+
+def _kinds(tables: Sequence[Node]) -> dict[str, str]:
+    return {
+        table["properties"][KIND]["const"]: _meaning(table)
+        for table in tables
+        if "const" in table.get("properties", {}).get(KIND, {})
+    }
+
+
+def _field(key: str, node: Node, required: bool, kinds: tuple[str, ...]) -> Field:
+    choices = list(_alternatives(node))
+    whole = next(_alternatives({name: value for name, value in node.items() if name not in ("anyOf", "oneOf")}))
+    inner = [*choices, *(one for choice in choices if "items" in choice for one in _alternatives(choice["items"]))]
+    texts = kinds or tuple(
+        dict.fromkeys(
+            str(text)
+            for one in choices
+            for text in one.get("enum", [one["const"]] if "const" in one else _kinds([one]))
+        )
+    )
+    return Field(
+        key,
+        _shape(choices, texts),
+        _OF_KIND if kinds else _meaning(whole),
+        next((one[UNIT] for one in inner if UNIT in one), None),
+        whole.get("default"),
+        required,
+        texts,
+        next((one[NAMES] for one in inner if NAMES in one), _NAMED.get(key, "")),
+    )
+
+
+def _meaning(node: Node) -> str:
+    """The first paragraph of a description, without marks of code."""
+    return node.get("description", "").partition("\n\n")[0].replace("``", "")
+
+
+def _shape(choices: Sequence[Node], texts: Sequence[str]) -> Shape:
+    types = {
+        kind
+        for one in choices
+        for kind in ([one.get("type")] if isinstance(one.get("type"), str) else one.get("type") or [])
+    }
+    if texts and types <= {"string", "object", "boolean"}:
+        return "switch" if types == {"boolean"} else "choice"
+    if "number" in types or {"string", "integer"} <= types:
+        return "number"
+    for kind, shape in _SHAPES.items():
+        if kind in types:
+            return shape
+    return "text"
+
+
+def shown(value: Any) -> str:
+    """A default as a study file gives it.
+
+    >>> shown(True), shown(0.001), shown("cubic")
+    ('true', '0.001', 'cubic')
+    """
+    return str(value).lower() if isinstance(value, bool) else f"{value:g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,102 @@
+"""Names that a study defines: what a key that refers to something may say."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from nicegui import run
+
+from dalembert.errors import DalembertError
+from dalembert.studio.editor.draft import Draft
+from dalembert.studio.editor.fields import fields_at
+from dalembert.study.study import Study
+
+Names = Mapping[str, tuple[str, ...]]
+
+
+def names_in(document: Mapping[str, Any]) -> dict[str, tuple[str, ...]]:
+    """Return the names that the tables of a document give, by what they are names of.
+
+    Parameters
+    ----------
+    document : mapping
+        As TOML reads it.
+
+    Examples
+    --------
+    >>> bar = {"kind": "RigidBar", "name": "rod"}
+    >>> names = names_in({"model": {"body": [bar]}, "parameters": {"drag": {}}})
+    >>> names["point"], names["parameter"]
+    (('ground', 'rod.start', 'rod.end', 'rod.centre'), ('drag',))
+    """
+    model = _table(document, "model")
+    bodies = dict(_entries(model, "body"))
+    parameters, constants = tuple(_table(document, "parameters")), tuple(_table(document, "constants"))
+    return {
+        "body": tuple(str(body["name"]) for body in bodies.values()),
+        "joint": tuple(str(joint["name"]) for _, joint in _entries(model, "joint")),
+        "point": (
+            "ground",
+            *(f"{body['name']}.{one}" for number, body in bodies.items() for one in _points(document, number, body)),
+        ),
+        "parameter": parameters,
+        "constant": constants,
+        "number": (*parameters, *constants),
+        "input": tuple(_table(document, "inputs")),
+        "node": tuple(str(mass["name"]) for _, mass in _entries(model, "mass")),
+        "channel": tuple(_table(_table(document, "data"), "columns")),
+    }
+
+
+def channels_of(study: Study) -> tuple[str, ...]:
+    """Return all channels of a study's mechanism; none of another model, or where it cannot be built."""
+    if not study.has_system:
+        return ()
+    from dalembert.multibody.observe import channel_names
+
+    try:
+        return tuple(channel_names(study.system()))
+    except DalembertError:
+        return ()
+
+
+class Channels:
+    """All channels of the last study of a draft that had no mistakes, found once for each study.
+
+    Attributes
+    ----------
+    known : dict
+        Those that were found last, as names of ``"channel"``.
+    """
+
+    def __init__(self, draft: Draft) -> None:
+        self._draft, self._study = draft, None
+        self.known: dict[str, tuple[str, ...]] = {}
+
+    async def __call__(self) -> Names:
+        """Return the channels, and find them in a thread before if the study is another one."""
+        study = self._draft.good
+        if study is not None and study is not self._study:
+            self._study, self.known = study, {"channel": await run.io_bound(channels_of, study) or ()}
+        return {"channel": (), **self.known}
+
+
+def _points(document: Mapping[str, Any], number: int, body: Mapping[str, Any]) -> Iterator[str]:
+    """Names of the points of a body by its keys, so that nothing is imported; without nodes of flexible ones."""
+    keys = {field.key for field in fields_at(document, ("model", "body", number))}
+    yield from ("start", "end") if "start" in keys else ()
+    yield from () if "elements" in keys else ("centre",)
+    yield from ("origin",) if "orientation" in keys else ()
+    yield from _table(body, "points")
+
+
+def _entries(table: Mapping[str, Any], key: str) -> Iterator[tuple[int, Mapping[str, Any]]]:
+    """Tables of a list that have a name, with their numbers."""
+    given = table.get(key)
+    for number, entry in enumerate(given if isinstance(given, list) else ()):
+        if isinstance(entry, dict) and "name" in entry:
+            yield number, entry
+
+
+def _table(table: Mapping[str, Any], key: str) -> Mapping[str, Any]:
+    given = table.get(key)
+    return given if isinstance(given, Mapping) else {}

@@ -1,0 +1,116 @@
+"""What a text is as a study: the study and what it does, or its mistakes with their places and lines."""
+
+import re
+import tempfile
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from dalembert.errors import DalembertError
+from dalembert.studio.editor.lines import Place, line_of
+from dalembert.study import load, plan
+from dalembert.study.loader import StudyError
+from dalembert.study.study import Study
+
+_PLACE = re.compile(r"\[{1,2}([\w.]+)\]{1,2}(?: '([^']+)')?(?:, (\w+))?")
+"""Beginning of a sentence about a table and a key."""
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """What is wrong at a place of a study's text.
+
+    Parameters
+    ----------
+    place : tuple of str or int
+        Tables, keys and numbers of entries; empty if only the line is known.
+    line : int
+        From 1.
+    sentence : str
+    """
+
+    place: Place
+    line: int
+    sentence: str
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A text and the study that it is.
+
+    Parameters
+    ----------
+    text : str
+    study : Study, optional
+        None if there are mistakes.
+    does : str
+        What a run of the study does, as a sentence; empty if there are mistakes.
+    mistakes : tuple of Mistake
+    """
+
+    text: str
+    study: Study | None = None
+    does: str = ""
+    mistakes: tuple[Mistake, ...] = ()
+
+
+def read(path: Path, text: str) -> Reading:
+    """Read a text as the study of a path, without writing to its folder."""
+    with tempfile.TemporaryDirectory() as folder:
+        draft = Path(folder) / path.name
+        try:
+            draft.write_text(text, encoding="utf-8")
+            study = load(draft, name=path.stem, folder=path.parent)
+            return Reading(text, study, f"It {plan(study)}.")
+        except StudyError as error:
+            return Reading(text, mistakes=tuple(mistake(text, *found) for found in error.mistakes))
+        except DalembertError as error:
+            sentence = str(error).replace(f"{draft}: ", "").replace(f"{draft}", path.name)
+            return Reading(text, mistakes=(mistake(text, (), sentence),))
+
+
+def mistake(text: str, place: Place, sentence: str) -> Mistake:
+    """Return a mistake at the place that its sentence begins with, such as ``[[model.joint]] 'pin', b``, or at a place.
+
+    Examples
+    --------
+    >>> mistake('[model]\\n[[model.joint]]\\nname = "pin"\\nb = 1\\n', ("model",), "[[model.joint]] 'pin', b: wrong")
+    Mistake(place=('model', 'joint', 0, 'b'), line=4, sentence="[[model.joint]] 'pin', b: wrong")
+    """
+    place = max(place, _named(text, sentence), key=len)
+    return Mistake(place, line_of(text, place) if place else _line_in(sentence, text), sentence)
+
+
+def _line_in(sentence: str, text: str) -> int:
+    """The line that a sentence of the TOML reader names."""
+    if "(at end of document)" in sentence:
+        return max(1, len(text.splitlines()))
+    found = re.search(r"\bline (\d+)", sentence)
+    return int(found[1]) if found else 1
+
+
+def _named(text: str, sentence: str) -> Place:
+    """The place of the table and the key that a sentence begins with; an empty one if there is none."""
+    found = _PLACE.match(sentence)
+    if found is None:
+        return ()
+    table, name, key = found.groups()
+    place: Place = tuple(table.split("."))
+    if name is not None:
+        number = _number_of(text, place, name)
+        if number is None:
+            return ()
+        place = (*place, number)
+    return (*place, key) if key else place
+
+
+def _number_of(text: str, tables: Place, name: str) -> int | None:
+    """Number of the entry with a name in a list of tables."""
+    try:
+        entries: Any = tomllib.loads(text)
+        for table in tables:
+            entries = entries[table]
+        return [entry.get("name") for entry in entries].index(name)
+    except (ValueError, KeyError, TypeError, AttributeError):
+        return None

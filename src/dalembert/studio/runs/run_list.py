@@ -1,0 +1,153 @@
+"""All runs as rows of a table, read quickly: a run is read again only if its files have changed."""
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from dalembert.findings import Severity
+from dalembert.studio.runs.run_note import NOTE, read_note
+from dalembert.study.events import last_progress
+from dalembert.study.folder import RUNNING, RunFolder
+from dalembert.study.listing import counted, doubts, since
+
+Row = dict[str, Any]
+Stamp = tuple[int, ...]
+_WEIGHTS: Mapping[Severity, int] = {"error": 1_000_000, "warning": 1_000, "note": 1}
+_WATCHED = ("state.json", NOTE)
+
+
+@dataclass
+class RunList:
+    """The runs of a folder as rows.
+
+    Parameters
+    ----------
+    root : Path
+        The folder with the runs.
+
+    Notes
+    -----
+    A row has ``id``, which stays when the run is renamed, ``run``, ``study``, ``title``, ``task``, ``state``,
+    ``message``, ``findings`` (text), ``severity`` (a number to sort by), ``doubts`` (messages), ``values`` (text),
+    ``misfit``, ``duration`` (s), ``date`` (UTC), ``tags`` and ``note``. A number that is not known is None.
+    """
+
+    root: Path
+    _known: dict[str, tuple[Stamp, Row]] = field(default_factory=dict, repr=False)
+
+    def rows(self) -> list[Row]:
+        """Return a row for each run, the newest first."""
+        found: dict[str, tuple[Stamp, Row]] = {}
+        for name, stamp in self._stamps():
+            known = self._known.get(name)
+            if known is None or known[0] != stamp or known[1]["state"] == RUNNING:
+                known = stamp, {"id": str(stamp[0]), **row(RunFolder(self.root / name))}
+            found[name] = known
+        self._known = found
+        return sorted((row for _, row in found.values()), key=lambda row: (row["date"], row["run"]), reverse=True)
+
+    def _stamps(self) -> list[tuple[str, Stamp]]:
+        """Names of the runs with the numbers of their folders, and when their files were changed."""
+        try:
+            with os.scandir(self.root) as entries:
+                names = [(entry.name, entry.inode()) for entry in entries if entry.is_dir()]
+        except FileNotFoundError:
+            return []
+        stamps = ((name, (number, *_changes(f"{self.root}/{name}"))) for name, number in names)
+        return [(name, stamp) for name, stamp in stamps if stamp[1]]
+
+
+def row(folder: RunFolder) -> Row:
+    """Return the row of a run; see :class:`RunList`, which adds its ``id``."""
+    state = folder.state()
+    best = state.get("best") or {}
+    note = read_note(folder.path)
+    return {
+        "run": folder.path.name,
+        "study": str(state.get("study", "")),
+        "title": str(state.get("title", "")),
+        "task": str(state.get("task", "")),
+        "state": str(state["state"]),
+        "message": str(state.get("message", "")),
+        "findings": _counted(state),
+        "severity": _severity(state),
+        "doubts": doubts(state),
+        "values": values_text(best),
+        "misfit": _misfit(folder, best),
+        "duration": _duration(state),
+        "date": since(state),
+        "tags": ", ".join(note.tags),
+        "note": note.text,
+    }
+
+
+def values_text(best: Mapping[str, Any]) -> str:
+    """Return identified values with their standard deviations in one line.
+
+    >>> values_text({"values": {"drag": 0.1999, "angle": -0.5}, "deviations": {"drag": 0.00123, "angle": None}})
+    'drag = 0.1999 ± 0.0012, angle = -0.5'
+    """
+    deviations = best.get("deviations") or {}
+    return ", ".join(
+        f"{name} = {with_deviation(value, deviations.get(name))}" for name, value in (best.get("values") or {}).items()
+    )
+
+
+def with_deviation(value: object, deviation: object) -> str:
+    """Return an identified value and its standard deviation, with two digits, if they are known.
+
+    >>> with_deviation(0.7853981, 1.23e-4), with_deviation(2.0, None), with_deviation(None, None)
+    ('0.785398 ± 0.00012', '2', '')
+    """
+    text = f"{value:.6g}" if isinstance(value, int | float) else ""
+    return f"{text} ± {deviation:.2g}" if text and isinstance(deviation, int | float) else text
+
+
+def _changes(folder: str) -> Stamp:
+    """Times of change of the files that a row depends on; 0 for those that are not there."""
+    return tuple(map(_changed, (f"{folder}/{name}" for name in _WATCHED)))
+
+
+def _changed(path: str) -> int:
+    try:
+        return os.stat(path).st_mtime_ns  # noqa: PTH116  Path objects would double the time
+    except OSError:
+        return 0
+
+
+def _counted(state: Mapping[str, Any]) -> str:
+    """Numbers of errors, warnings and notes in words."""
+    notes = _numbers(state)["note"]
+    parts = [counted(dict(state)), f"{notes} note{'s' * (notes > 1)}" if notes else ""]
+    return ", ".join(filter(None, parts))
+
+
+def _severity(state: Mapping[str, Any]) -> int:
+    """Number that orders runs by their errors, then warnings, then notes."""
+    return sum(_WEIGHTS[severity] * count for severity, count in _numbers(state).items())
+
+
+def _numbers(state: Mapping[str, Any]) -> dict[Severity, int]:
+    given = [finding.get("severity") for finding in state.get("findings") or []]
+    return {severity: given.count(severity) for severity in _WEIGHTS}
+
+
+def _misfit(folder: RunFolder, best: Mapping[str, Any]) -> float | None:
+    """Misfit of the result, or the best so far."""
+    if best.get("fitness") is not None:
+        return float(best["fitness"])
+    event = None if best else last_progress(folder.events)
+    return None if event is None else float(event["best"])
+
+
+def _duration(state: Mapping[str, Any]) -> float | None:
+    """Seconds of computation, those of a run that is going on included; None for runs of former versions."""
+    if "seconds" not in state:
+        return None
+    seconds = float(state["seconds"])
+    if state["state"] == RUNNING:
+        seconds += (datetime.now(UTC) - datetime.fromisoformat(state["since"])).total_seconds()
+    return round(seconds, 3)

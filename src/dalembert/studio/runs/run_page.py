@@ -1,0 +1,193 @@
+"""A run: live while it goes on, with its report when it has ended."""
+
+import asyncio
+import json
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import suppress
+from pathlib import Path
+from urllib.parse import quote
+
+import plotly.graph_objects as go
+from nicegui import ui
+
+from dalembert.errors import InputError
+from dalembert.studio.runs.figures import bare, convergence, followed, on_any_page, plot, wandering
+from dalembert.studio.runs.findings_list import findings_list
+from dalembert.studio.runs.fit_so_far import fit_so_far
+from dalembert.studio.frame import STATES, badge, button, complaints, frame, report_of
+from dalembert.studio.jobs import Jobs, pause, stop
+from dalembert.studio.runs.live import Live
+from dalembert.studio.runs.remaining import most_simulations
+from dalembert.studio.workspace import Workspace
+from dalembert.study.folder import FINISHED, RESUMABLE, RUNNING, RunFolder
+from dalembert.study.listing import best
+from dalembert.study.runner import unknowns
+
+EVERY = 0.5  # s between two looks at the events
+FILES = {"report.html": "Report", "result.nc": "Result (NetCDF)", "study.toml": "Study", "events.jsonl": "Events"}
+"""Files of a run that can be downloaded, and what they are called."""
+STARTING = "starting"
+
+
+def run_page(workspace: Workspace, jobs: Jobs, pool: ProcessPoolExecutor, name: str) -> None:
+    """Watch a run, stop it or go on with it, and read its report."""
+    folder = RunFolder(workspace.runs_folder / name)
+    with frame(name):
+        page = _Page(folder, jobs, pool)
+        page.build()
+        page.look()
+        ui.timer(EVERY, page.look)
+
+
+class _Page:
+    """What changes on the page of a run.
+
+    Parameters
+    ----------
+    folder : RunFolder
+    jobs : Jobs
+    pool : ProcessPoolExecutor
+        Where the best fit so far is computed.
+    """
+
+    def __init__(self, folder: RunFolder, jobs: Jobs, pool: ProcessPoolExecutor) -> None:
+        self.folder, self.jobs, self.pool = folder, jobs, pool
+        self.live = Live(folder.events)
+        self.state, self.shown, self.drawn = "", 0, 0
+        self.fitted: list[float] = []
+        self.fitting: asyncio.Task | None = None
+        self.learning: asyncio.Task | None = None
+
+    def build(self) -> None:
+        with ui.row().classes("items-center gap-x-4 gap-y-2"):
+            self.badge = badge(STARTING)
+            self.told = ui.label("").props("role=status aria-live=polite").classes("break-words")
+        self.bar = ui.linear_progress(0, show_value=False).props('aria-label="Progress" indeterminate')
+        with ui.row().classes("gap-2"):
+            self.pause = button("Pause", complaints()(lambda: pause(self.folder)), icon="pause")
+            self.stop = button("Stop", complaints()(lambda: stop(self.folder)), icon="stop", colour="negative")
+            self.resume = button("Resume", complaints()(lambda: self.jobs.resume(self.folder.path)), icon="play_arrow")
+        self.message = ui.label("").classes("whitespace-pre-wrap break-words")
+        self.live_part = ui.column().classes("w-full gap-4")
+        with self.live_part:
+            self.fit, self.curve, self.paths = (ui.column().classes("w-full") for _ in range(3))
+            with ui.expansion("Events", icon="list").classes("w-full"):
+                self.log = ui.log(max_lines=200).classes("w-full h-64")
+        self.files = ui.row().classes("gap-4")
+        self.findings = ui.column().classes("w-full gap-2")
+        self.report = ui.column().classes("w-full")
+
+    def look(self) -> None:
+        """Bring the page up to what the run's folder says."""
+        state = self._state()
+        if self.learning is None and state == RUNNING:
+            self.learning = asyncio.create_task(self._learn())
+        if self.live.advance():
+            self._show_events()
+        if self.live.values != self.fitted and state == RUNNING and (self.fitting is None or self.fitting.done()):
+            self.fitted = list(self.live.values)
+            self.fitting = asyncio.create_task(self._show_fit(self.fitted))
+        if state != self.state:
+            self.state = state
+            self._show_state()
+        if not self.live.count and state in (RUNNING, STARTING):
+            self.message.set_text(self.jobs.said(self.folder.path))
+        elif state == RUNNING:
+            self.message.set_text("")
+
+    def _state(self) -> str:
+        if self.folder.is_run:
+            return str(self.folder.state()["state"])
+        return "input" if self.jobs.complaint(self.folder.path) else STARTING
+
+    def _show_state(self) -> None:
+        """The state itself, what can be done now, and what there is to read."""
+        state, ended = self.state, self.state not in (RUNNING, STARTING)
+        self.badge.set_text(state)
+        self.badge.props(f"color={STATES.get(state, 'grey' if state == STARTING else 'negative')}")
+        self.stop.set_visibility(state == RUNNING)
+        self.pause.set_visibility(state == RUNNING)
+        self.resume.set_visibility(state in RESUMABLE)
+        self.bar.set_visibility(not ended)
+        said = self.folder.state().get("message", "") if self.folder.is_run else ""
+        self.message.set_text(str(said or self.jobs.complaint(self.folder.path)) if ended else "")
+        self.files.clear()
+        self.report.clear()
+        self.findings.clear()
+        if not ended:
+            return
+        name = quote(self.folder.path.name)
+        with self.files:
+            ui.label("Download:")
+            for file, what in FILES.items():
+                if (self.folder.path / file).is_file():
+                    ui.link(what, f"/files/{name}/{file}").props(f'download="{_saved(self.folder, file)}"')
+        with self.findings:
+            if self.folder.is_run:
+                findings_list(self.folder)
+        if state == FINISHED:
+            self.told.set_text(best(self.folder, self.folder.state()))
+        self.live_part.set_visibility(state != FINISHED)
+        if self.folder.report.is_file():
+            with self.report:
+                report_of(self.folder, "85vh")
+
+    def _show_events(self) -> None:
+        text, done, total = self.live.progress
+        self.told.set_text(" · ".join(filter(None, (text, self.live.remaining.sentence()))))
+        self.bar.set_value(done / total if total else 0.0)
+        self.bar.props("indeterminate" if not total else "", remove="indeterminate" if total else "")
+        new = min(self.live.count - self.shown, len(self.live.recent))
+        for event in list(self.live.recent)[len(self.live.recent) - new :]:
+            self.log.push(json.dumps(event, ensure_ascii=False)[:400])
+        self.shown = self.live.count
+        points = self.live.convergence
+        if len(points) > 1 and len(points) != self.drawn:
+            self.drawn = len(points)
+            _draw(self.curve, "Best value over simulations", convergence({self.folder.path.name: points}))
+            if self.live.visited and self.live.names:
+                _draw(self.paths, "Parameters over simulations", wandering(self.live.visited, self.live.names))
+        points = self.live.followed
+        if len(points) > 1 and len(points) != self.drawn:
+            self.drawn = len(points)
+            _draw(self.curve, "The response computed so far", followed(points, self.live.axes))
+
+    async def _learn(self) -> None:
+        """Ask another process for the names of the unknowns and the number of simulations, which take imports."""
+        loop = asyncio.get_running_loop()
+        with suppress(Exception):  # whatever a user's model raises, the run itself says it
+            self.live.name(await loop.run_in_executor(self.pool, _names, self.folder))
+            self.live.remaining.most = await loop.run_in_executor(self.pool, most_simulations, self.folder.path)
+
+    async def _show_fit(self, values: list[float]) -> None:
+        """The best fit so far; a run whose model another process cannot make has none."""
+        loop = asyncio.get_running_loop()
+        try:
+            figure = await loop.run_in_executor(self.pool, fit_so_far, self.folder.path, values)
+        except Exception:  # whatever a user's model raises, the run itself says it
+            return
+        if figure is not None:
+            _draw(self.fit, "Best fit so far, and the data", on_any_page(go.Figure(figure)))
+
+
+def _draw(place: ui.column, name: str, figure: go.Figure) -> None:
+    """Draw a figure in its place, or a newer one in the place of an older."""
+    plots = [child for child in place if isinstance(child, ui.plotly)]
+    for drawn in plots:
+        drawn.update_figure(bare(figure))
+    if not plots:
+        with place:
+            plot(figure).classes("w-full").props(f'role=img aria-label="{name}"')
+
+
+def _names(folder: RunFolder) -> tuple[str, ...]:
+    """Names of the unknowns; none of a run that has not begun."""
+    try:
+        return unknowns(folder.kept()) if folder.is_run else ()
+    except (InputError, OSError):
+        return ()
+
+
+def _saved(folder: RunFolder, file: str) -> str:
+    """Name under which a file of a run is saved."""
+    return f"{folder.path.name}-{Path(file).name}".replace('"', "")

@@ -1,0 +1,1 @@
+"""Studies: their cards, their pages, templates and pictures."""

@@ -1,0 +1,105 @@
+"""The studies of a workspace by their folders, with what they say about themselves and their last runs."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from dalembert.studio.runs.last_runs import LastRun, last_runs
+from dalembert.studio.studies.documents import document_of
+from dalembert.studio.workspace import Workspace
+from dalembert.study.tasks import TASKS
+
+EXPECTED = "expected.toml"
+"""File with the numbers that must come out of the studies of a folder: such studies are examples."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A study file.
+
+    Parameters
+    ----------
+    name : str
+        ``"folder/file"``.
+    title, description, task : str
+        Empty if the file does not say them.
+    last : LastRun, optional
+        None if it was never run.
+    """
+
+    name: str
+    title: str
+    description: str
+    task: str
+    last: LastRun | None
+
+    @property
+    def heading(self) -> str:
+        """The title, or else the name."""
+        return self.title or self.name.removesuffix("/study")
+
+
+@dataclass(frozen=True)
+class StudyFolder:
+    """A folder with studies, the one that stands for them first.
+
+    Parameters
+    ----------
+    name : str
+    title, description : str
+        Those of its ``README.md``, or else of its first study.
+    entries : tuple of Entry
+    example : bool
+        Whether its results are known.
+    """
+
+    name: str
+    title: str
+    description: str
+    entries: tuple[Entry, ...]
+    example: bool
+
+    def matches(self, words: str) -> bool:
+        """Return True if the folder or one of its studies has all words of a search."""
+        texts = [self.name, self.title, self.description]
+        texts += [text for entry in self.entries for text in (entry.name, entry.title, entry.description, entry.task)]
+        known = " ".join(texts).casefold()
+        return all(word in known for word in words.casefold().split())
+
+
+def study_folders(workspace: Workspace) -> list[StudyFolder]:
+    """Return all folders with studies, by name."""
+    runs, found = last_runs(workspace.runs_folder), {}
+    for name in workspace.studies():
+        found.setdefault(name.partition("/")[0], []).append(_entry(workspace, name, runs))
+    return [_folder(workspace.root / "studies" / name, own) for name, own in found.items()]
+
+
+def _entry(workspace: Workspace, name: str, runs: dict[tuple[Path, str], LastRun]) -> Entry:
+    path = workspace.root / "studies" / f"{name}.toml"
+    document = document_of(path) or {}
+    about = document.get("study")
+    about = about if isinstance(about, dict) else {}
+    task = next((key for key in document if key in TASKS), "")
+    title, description = (" ".join(str(about.get(key, "")).split()) for key in ("title", "description"))
+    last = runs.get((path.parent.resolve(), str(about.get("name") or path.stem)))
+    return Entry(name, title, description, task, last)
+
+
+def _folder(path: Path, entries: list[Entry]) -> StudyFolder:
+    ordered = sorted(entries, key=lambda entry: not entry.name.endswith("/study"))
+    first = ordered[0]
+    title, description = _readme(path / "README.md")
+    shown = description or first.description
+    return StudyFolder(path.name, title or first.heading, shown, tuple(ordered), (path / EXPECTED).is_file())
+
+
+def _readme(path: Path) -> tuple[str, str]:
+    """Heading and first paragraph of a Markdown file; empty if there are none."""
+    try:
+        heading, *paragraphs = path.read_text(encoding="utf-8").strip().split("\n\n")
+    except (OSError, ValueError):
+        return "", ""
+    if not heading.startswith("# "):
+        return "", ""
+    first = " ".join(paragraphs[0].replace("`", "").split()) if paragraphs else ""
+    return heading.removeprefix("# ").strip(), first if first[:1].isalnum() else ""

@@ -1,0 +1,135 @@
+"""A study: its text on the left, panels that show it on the right, and the button that runs it."""
+
+from functools import partial
+from urllib.parse import quote
+
+from nicegui import run, ui
+
+from dalembert.errors import InputError
+from dalembert.studio.editor.disk_notice import disk_notice
+from dalembert.studio.editor.draft import Draft
+from dalembert.studio.editor.reading import read
+from dalembert.studio.editor.text_editor import TextEditor
+from dalembert.studio.frame import button, complaints, frame, icon_button
+from dalembert.studio.jobs import Jobs
+from dalembert.studio.panels import data, forms, model, sliders
+from dalembert.studio.room import Room
+from dalembert.studio.splitter import splitter
+from dalembert.studio.worker import Worker
+from dalembert.studio.workspace import Workspace
+from dalembert.study import load
+
+AFTER = 0.4  # s after the last change until the text is checked
+PANELS = (
+    ("model", "Model", "precision_manufacturing", model.show),
+    ("forms", "Forms", "edit_note", forms.show),
+    ("sliders", "Sliders", "tune", sliders.show),
+    ("data", "Data", "show_chart", data.show),
+)
+"""Name, title, icon and function of each panel."""
+
+
+def study_page(workspace: Workspace, jobs: Jobs, name: str) -> None:
+    """Edit, check and run a study."""
+    try:
+        draft = Draft(workspace.study(name))
+    except InputError as error:
+        with frame("No such study"):
+            ui.label(str(error)).props("role=alert")
+        return
+    room = Room(workspace, jobs, Worker())
+    room.worker.start()
+    ui.context.client.on_delete(room.worker.stop)
+    with frame(name, wide=True):
+        head = ui.column().classes("w-full gap-1")
+        with splitter("Width of the text") as (left, right):
+            with left:
+                editor = TextEditor(draft)
+            with right:
+                _panels(draft, room)
+        with head:
+            _head(draft, room, editor)
+    _check_after_changes(draft)
+
+
+def _panels(draft: Draft, room: Room) -> None:
+    """Build a tab for each panel."""
+    with (
+        ui.tabs().props("dense no-caps inline-label align=left outside-arrows mobile-arrows").classes("w-full") as tabs
+    ):
+        for name, title, icon, _ in PANELS:
+            ui.tab(name, title, icon)
+    with ui.tab_panels(tabs, value=PANELS[0][0], animated=False).classes("w-full grow bg-transparent"):
+        for name, _, _, show in PANELS:
+            with ui.tab_panel(name).style("padding: 4px 0"):
+                show(draft, room)
+
+
+def _head(draft: Draft, room: Room, editor: TextEditor) -> None:
+    """Build the buttons, what the study does, and its mistakes."""
+    with ui.row().classes("gap-2 items-center"):
+        start = button("Run", complaints()(lambda: _start(draft, room)), icon="play_arrow")
+        save = button("Save", complaints()(lambda: _save(draft)), icon="save")
+        undo, redo = icon_button("undo", "Undo", draft.undo), icon_button("redo", "Redo", draft.redo)
+        verdict = ui.label("").props("role=status aria-live=polite")
+    disk_notice(draft)  # after the buttons, which come first by keyboard
+    does = ui.label("").classes("break-words")
+    wrong = ui.column().classes("gap-1 w-full")
+    editor.element.map_key("Mod-s", complaints()(lambda: _save(draft)))
+
+    def show_text() -> None:
+        undo.set_enabled(draft.can_undo)
+        redo.set_enabled(draft.can_redo)
+        save.set_text("Save" if draft.is_saved else "Save •")
+
+    def show_study() -> None:
+        count = len(draft.mistakes)
+        verdict.set_text(f"{count} error{'s' if count > 1 else ''}:" if count else "Valid.")
+        does.set_text(draft.reading.does)
+        start.set_enabled(draft.study is not None)
+        wrong.clear()
+        with wrong:
+            for mistake in draft.mistakes:
+                with ui.row().classes("items-start gap-2 flex-nowrap").props("role=alert"):
+                    go = ui.button(f"line {mistake.line}", on_click=partial(editor.go, mistake.line), color="negative")
+                    go.props("dense no-caps unelevated size=sm").classes("shrink-0")
+                    ui.label(mistake.sentence).classes("text-sm break-words")
+
+    draft.follow("text", show_text)
+    draft.follow("mistakes", show_study)
+    show_text()
+
+
+def _check_after_changes(draft: Draft) -> None:
+    """Check the text in a thread once it has not changed for a moment."""
+
+    async def check() -> None:
+        reading = await run.io_bound(read, draft.path, draft.text)
+        if reading is not None:  # or the studio is ending
+            draft.take(reading)
+
+    waiting = ui.timer(0.0, check, once=True)
+    place = ui.context.slot
+
+    def changed() -> None:
+        nonlocal waiting
+        waiting.cancel()
+        with place:
+            waiting = ui.timer(AFTER, check, once=True)
+
+    draft.follow("text", changed)
+
+
+def _save(draft: Draft) -> None:
+    draft.save()
+    ui.notify("Saved.", type="positive")
+
+
+def _start(draft: Draft, room: Room) -> None:
+    """Save, run in a process of its own, and go to the run's page."""
+    _save(draft)
+    path = draft.path
+    folder = room.workspace.new_run(load(path).name if path.stem != "study" else path.parent.name)
+    folder.parent.mkdir(exist_ok=True)
+    room.jobs.start(path, folder)
+    ui.navigate.to(f"/run/{quote(folder.name)}")

@@ -1,0 +1,107 @@
+"""From a data file to the table of data of a draft, without a page."""
+
+import asyncio
+import tomllib
+
+import numpy as np
+import pytest
+
+from dalembert.errors import InputError
+from dalembert.studio.data.figure import columns_figure, drawn_columns
+from dalembert.studio.data.guide import DataGuide
+from dalembert.studio.editor.draft import Draft
+from dalembert.studio.worker import Kept
+from dalembert.study.template import begin
+
+ANGLE = "rod.start.angle"
+
+
+class Here:
+    """Computes in this process what a worker computes in another one."""
+
+    def __init__(self):
+        self.kept = Kept()
+
+    async def ask(self, subject, function, *arguments):
+        return function(self.kept, *arguments)
+
+
+@pytest.fixture
+def guide(tmp_path):
+    """A guide of the study of a pendulum, with a record of angles from the vertical beside it."""
+    draft = Draft(begin("identify", tmp_path / "pendulum"))
+    draft.check()
+    times = np.arange(0, 4, 0.02)
+    angles = 40 * np.exp(-0.1 * times) * np.cos(4.3 * times)
+    rows = [f"{1500 + 1000 * time:.0f} {angle:.3f}" for time, angle in zip(times, angles, strict=True)]
+    (draft.path.parent / "own.txt").write_text("\n".join(["time_ms angle_deg", *rows]))
+    return DataGuide(draft, Here())
+
+
+def looked(guide):
+    asyncio.run(guide.look())
+    asyncio.run(guide.doubt())
+    return guide
+
+
+def test_the_study_has_its_own_choices_first(guide):
+    assert guide.follow()
+    assert guide.files == ["motion.csv", "own.txt"]
+    looked(guide)
+    assert (guide.is_written, guide.is_reading, guide.findings, guide.error) == (True, False, (), "")
+    assert not guide.follow()
+
+
+def test_a_file_is_mapped_written_and_its_offset_estimated(guide):
+    guide.follow()
+    guide.choose_file("own.txt")
+    assert guide.is_reading
+    looked(guide)
+    with pytest.raises(InputError, match="No column is used for a channel"):
+        guide.write()
+    guide.choices = guide.choices.mapped(ANGLE, "angle_deg")
+    with pytest.raises(InputError, match="No column is used for a channel"):
+        guide.write()
+    looked(guide)
+    assert [finding.code for finding in guide.findings] == ["late-times", "suspect-offset"]
+    assert [guide.remedy(finding) for finding in guide.findings] == ["", "Estimate the offset"]
+    guide.apply(guide.findings[1])
+    tables = tomllib.loads(guide.draft.text)
+    assert tables["data"]["columns"] == {ANGLE: "angle_deg"}
+    assert list(tables["sensors"]) == [ANGLE]
+    assert guide.is_written
+    guide.draft.check()
+    assert guide.draft.mistakes == ()
+    assert [finding.code for finding in looked(guide).findings] == ["late-times"]
+
+
+def test_a_wrong_unit_is_put_right(guide):
+    guide.follow()
+    guide.choose_file("own.txt")
+    looked(guide)
+    guide.choices = guide.choices.mapped(ANGLE, "angle_deg").with_unit("angle_deg", "rad")
+    looked(guide)
+    suspect = next(finding for finding in guide.findings if finding.code in ("suspect-degrees", "suspect-unit"))
+    assert guide.remedy(suspect) == "Use deg"
+    guide.apply(suspect)
+    assert guide.choices.units["angle_deg"] == "deg"
+
+
+def test_a_file_that_cannot_be_read_is_a_sentence(guide):
+    (guide.draft.path.parent / "empty.csv").write_text("a,b\nc,d\n")
+    guide.choose_file("empty.csv")
+    looked(guide)
+    assert guide.error == "empty.csv: the file has no line of numbers; expected column names and then lines of numbers"
+    assert not guide.is_reading
+    with pytest.raises(InputError, match="Choose a data file first"):
+        guide.write()
+
+
+def test_columns_are_drawn_without_the_times(guide):
+    guide.follow()
+    guide.choose_file("own.txt")
+    looked(guide)
+    assert [curve.key for curve in drawn_columns(guide.examined)] == ["angle_deg"]
+    figure = columns_figure(guide.examined)
+    assert [trace.name for trace in figure.data] == ["angle_deg"]
+    assert figure.data[0].x[0] == 0.0

@@ -1,0 +1,78 @@
+"""Studies by their folders, and the last run of each."""
+
+import json
+import os
+import shutil
+from pathlib import Path
+
+import pytest
+
+from dalembert.studio.runs.last_runs import LastRun, last_runs
+from dalembert.studio.studies.study_list import study_folders
+from dalembert.studio.workspace import Workspace
+from dalembert.study.template import begin
+
+STUDIES = Path(__file__).parents[4] / "studies"
+
+
+@pytest.fixture
+def workspace(tmp_path):
+    begin("identify", tmp_path / "studies" / "mine").rename(tmp_path / "studies" / "mine" / "study.toml")
+    shutil.copytree(STUDIES / "duffing", tmp_path / "studies" / "duffing")
+    return Workspace(tmp_path)
+
+
+def add_run(root, name, folder, study, state="finished", at=1.0):
+    path = root / "runs" / name
+    path.mkdir(parents=True)
+    (path / "inputs.json").write_text(json.dumps({"folder": str(folder), "name": study, "files": {}}))
+    (path / "state.json").write_text(json.dumps({"state": state, "since": "2026-01-01T10:00:00+00:00"}))
+    os.utime(path / "state.json", (at, at))
+
+
+def test_folders_have_titles_descriptions_and_their_studies(workspace):
+    examples, own = study_folders(workspace)
+    assert (own.name, own.title, own.example) == ("mine", "Parameters from a measured motion", False)
+    assert [(entry.name, entry.task) for entry in own.entries] == [("mine/study", "identify")]
+    assert examples.example
+    assert examples.title == "Duffing oscillator: past the folds"
+    assert examples.description.startswith("A mass of 1 kg on a spring of 1 N/m that hardens")
+    assert [entry.name for entry in examples.entries] == [
+        "duffing/backbone", "duffing/fold", "duffing/levels", "duffing/track"
+    ]  # fmt: skip
+
+
+def test_a_search_finds_words_of_any_study_of_a_folder(workspace):
+    examples, own = study_folders(workspace)
+    assert examples.matches("BACKBONE duffing")
+    assert not own.matches("backbone")
+    assert own.matches("")
+
+
+def test_the_newest_run_of_a_study_is_its_last(workspace):
+    mine = workspace.root / "studies" / "mine"
+    add_run(workspace.root, "old", mine, "study", state="failed", at=10.0)
+    add_run(workspace.root, "new", mine, "study", at=20.0)
+    add_run(workspace.root, "other", mine.parent / "duffing", "duffing", at=30.0)
+    assert last_runs(workspace.runs_folder)[(mine, "study")] == LastRun("new", "finished", "2026-01-01 10:00:00")
+    examples, own = study_folders(workspace)
+    assert own.entries[0].last.name == "new"
+    assert [entry.last and entry.last.name for entry in examples.entries] == [None, "other", None, None]
+
+
+def test_a_study_with_mistakes_and_damaged_runs_are_listed(workspace):
+    broken = workspace.root / "studies" / "broken"
+    broken.mkdir()
+    (broken / "study.toml").write_text("a = [")
+    (workspace.root / "runs" / "damaged").mkdir(parents=True)
+    (workspace.root / "runs" / "damaged" / "state.json").write_text("")
+    found = {folder.name: folder for folder in study_folders(workspace)}
+    assert (found["broken"].title, found["broken"].entries[0].task) == ("broken", "")
+
+
+def test_a_file_is_read_again_after_a_change(workspace):
+    (own,) = [folder for folder in study_folders(workspace) if not folder.example]
+    path = workspace.root / "studies" / "mine" / "study.toml"
+    path.write_text(path.read_text().replace("Parameters from a measured motion", "Another title"))
+    (changed,) = [folder for folder in study_folders(workspace) if not folder.example]
+    assert (own.title, changed.title) == ("Parameters from a measured motion", "Another title")

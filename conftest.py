@@ -16,6 +16,15 @@ from sybil.parsers.markdown import CodeBlockParser, PythonCodeBlockParser, SkipP
 
 collect_ignore = ["docs/conf.py", "docs/mathml.py"]
 """It is Sphinx's, which the tests do without."""
+SLOW_PAGES = {"raw-records.md", "real-measurements.md"}
+"""Pages whose examples fit long records: `make verify` runs them."""
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    for item in items:
+        if item.path.name in SLOW_PAGES:
+            item.add_marker("slow")
 
 
 @pytest.fixture(scope="module")

@@ -336,7 +336,7 @@ def tried(path, missing="refuse"):
 @pytest.mark.filterwarnings("ignore::ResourceWarning")  # libraries that stumble leave the file to be closed by itself
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 @pytest.mark.parametrize("name", WRITERS)
-@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.data())
 def test_a_malformed_file_gives_measurements_or_a_data_error(name, folder, data):
     """Bytes changed anywhere, or the end cut off: whatever the library meets, it is told in our words."""

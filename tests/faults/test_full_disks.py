@@ -148,9 +148,8 @@ def test_in_a_read_only_folder_there_is_a_sentence(rights):
     assert (code, said) == (1, "closed/lock" + NOT_BEGUN.format(reason="Permission denied"))
 
 
-@pytest.mark.parametrize(
-    "evaluations", [pytest.param(1, marks=pytest.mark.slow), 200, pytest.param(400, marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("evaluations", [1, 200, 400])
 def test_a_folder_that_becomes_read_only_keeps_what_was_written(evaluations, rights, undisturbed):
     words = ("run", "study.toml", "--out", "run")
     code, said = command(rights, *words, before=bound, CLOSED_AFTER=str(evaluations))

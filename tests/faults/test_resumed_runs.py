@@ -97,8 +97,8 @@ STUDIES |= {
     "values = { count = 17 }\n",
     "compared integrators": MECHANISM,
 }
-QUICK = ("least-squares", "improved-swarm", "bands", "set", "sweep", "curve past folds")
-"""One study of each way to keep what was computed; the others are slow tests."""
+QUICK = ("least-squares", "sweep")
+"""The others are slow tests."""
 KILLS = 2
 MANY = 25
 

@@ -64,6 +64,7 @@ def test_run_list_report(dalembert, tmp_path):
     assert dalembert("report", "runs/decay").stdout == made.stdout
 
 
+@pytest.mark.slow
 def test_a_fit_with_a_fixed_parameter(dalembert, tmp_path):
     rows = "".join(f"{k / 10},{2.71828 ** (-0.12 * k) + 1e-3 * (-1) ** k}\n" for k in range(11))
     (tmp_path / "decay.csv").write_text(f"t,x\n{rows}")

@@ -183,6 +183,7 @@ def damped(preload: float) -> da.VibrationSystem:
     return system
 
 
+@pytest.mark.slow
 def test_a_family_of_curves_goes_there_and_its_curves_are_kept(client, tmp_path):
     asked = (damped, "preload", [0.0, 2.0, 7.0, -1.0, 4.0], (0.12, 0.25), da.HarmonicBalance(3, samples=128))
     here, told = da.frequency_responses(*asked, stability=True), []

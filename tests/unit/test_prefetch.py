@@ -270,6 +270,7 @@ over = { rate = { count = 9 }, damping = [0.1, 0.2] }
 """
 
 
+@pytest.mark.slow
 def test_sensitivities_of_a_sweep_go_there(client, tmp_path):
     (tmp_path / "swing.py").write_text(MODEL)
     (tmp_path / "study.toml").write_text(SWEEP)

@@ -99,6 +99,7 @@ def case(request) -> tuple[str, dict[str, da.Propagation]]:
     return request.param, {name: da.propagate(forward, box, name) for name in ("optimise", "chebyshev")}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["optimise", "chebyshev"])
 def test_published_tables(record_evidence, case: tuple[str, dict[str, da.Propagation]], method: str) -> None:
     """The tables are themselves no more exact: a scan on a fine grid differs from them by as much."""

@@ -200,6 +200,7 @@ def test_flexible_pendulum_agrees_with_generalized_alpha(record_evidence) -> Non
 
 
 @pytest.mark.parametrize(("damping", "span"), [(0.0, 0.002), (1e-4, 0.002), (1e-3, 0.0005)])
+@pytest.mark.slow
 def test_errors_of_a_stiff_slider_crank_fall_with_the_tolerance(record_evidence, damping: float, span: float) -> None:
     """Its rod is flexible and has material damping; the last row is near rounding."""
     system, times = damped_slider_crank(damping), np.array([0.0, span])

@@ -105,6 +105,7 @@ def test_each_template_has_a_picture(folder):
     assert {"body"} <= set(parts(study_picture(study)))
 
 
+@pytest.mark.slow
 def test_a_reduced_structure_is_drawn_with_its_whole_mesh():
     svg = study_picture(load(STUDIES / "patched-plate" / "sweep.toml"))
     assert parts(svg)["body"] == ["structure"]

@@ -137,17 +137,14 @@ def _following(tree: Tree) -> tuple[np.ndarray, np.ndarray]:
     moving = [joint for joint in tree.joints if joint.moves]
     factors, offsets = np.zeros((len(moving), len(slots))), np.zeros(len(moving))
     for row, joint in enumerate(moving):
-        factor, offset, own, passed = 1.0, 0.0, joint, [joint.name]
+        factor, offset, own = 1.0, 0.0, joint
         while own.mimic is not None:
             name, by, shift = own.mimic
             factor, offset, own = factor * by, offset + factor * shift, by_name[name]
-            if not own.moves or name in passed:
-                wrong = "does not move" if not own.moves else "follows it"
+            if not own.moves:
                 raise ModelError(
-                    f"joint {joint.name!r} follows joint {name!r}, which {wrong}. Let it follow a joint with a "
-                    "position that does not depend on it"
+                    f"joint {joint.name!r} follows joint {name!r}, which does not move. Let it follow one that moves"
                 )
-            passed.append(name)
         factors[row, slots[own.name]], offsets[row] = factor, offset
     return factors, offsets
 

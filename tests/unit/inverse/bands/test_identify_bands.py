@@ -94,6 +94,7 @@ def test_deviations_are_those_of_the_linear_closed_form():
     np.testing.assert_allclose(fit.correlation, np.eye(2), atol=1e-9)
 
 
+@pytest.mark.slow
 def test_deviations_say_how_far_identified_middles_and_radii_scatter():
     """Over 40 noisy bands, the scatter is the mean of the deviations within 25 %."""
     fits = []

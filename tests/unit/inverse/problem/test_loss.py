@@ -72,6 +72,7 @@ def test_every_method_minimises_the_same_loss(method):
     np.testing.assert_allclose(fit.values, best.values, rtol=1e-2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_the_usual_scale_costs_five_per_cent_of_the_efficiency_and_deviations_say_so(name):
     """Over 400 normal data sets of a linear model."""

@@ -62,7 +62,7 @@ def record(builder, channels, times, noise=2e-3, missing=()):
     [
         (driven, ["bar.end.angle"]),
         pytest.param(driven, ["bar.end.x", "bar.end.y"], marks=pytest.mark.slow),
-        (loop, ["rod.centre.x", "rod.centre.y"]),
+        pytest.param(loop, ["rod.centre.x", "rod.centre.y"], marks=pytest.mark.slow),
     ],
     ids=["angle", "point", "loop"],
 )

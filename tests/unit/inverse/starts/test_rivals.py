@@ -69,6 +69,7 @@ def test_minima_that_starts_ended_in_are_named(model, values):
     assert all(map(named, ended))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("settings", [{"method": "L-BFGS-B", "starts": 4}, {"method": ParticleSwarm(), "starts": 3}])
 def test_minima_of_methods_without_sensitivities_are_named(settings):
     fits = [fitted(MIRRORED, (1.5, 2.0), seed, **settings) for seed in range(24)]

@@ -102,19 +102,12 @@ def test_a_following_joint_reduces_the_coordinates():
     np.testing.assert_allclose(poses(tree, q).positions, poses(free, every[0]).positions, **NEAR)
 
 
-@pytest.mark.parametrize("follower", ["joint1", "joint0"])
-def test_joints_that_cannot_follow_are_refused(follower):
-    tree = following(random_robot(1, "frr"), "joint2", "joint1", 1.0, 0.0)
-    tree = (
-        following(tree, "joint1", "joint2", 1.0, 0.0)
-        if follower == "joint1"
-        else following(tree, "joint0", "joint1", 1.0, 0.0)
-    )
+def test_a_joint_that_follows_a_fixed_one_is_refused():
+    tree = following(random_robot(1, "frr"), "joint0", "joint1", 1.0, 0.0)
     with pytest.raises(ModelError) as error:
         mass_matrix(tree, np.zeros((1, len(tree.moving))))
-    reason = "joint1', which follows it" if follower == "joint1" else "joint0', which does not move"
     assert str(error.value) == (
-        f"joint 'joint1' follows joint '{reason}. Let it follow a joint with a position that does not depend on it"
+        "joint 'joint1' follows joint 'joint0', which does not move. Let it follow one that moves"
     )
 
 

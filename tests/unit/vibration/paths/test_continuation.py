@@ -40,6 +40,7 @@ def test_a_point_behind_a_fold_is_found_along_the_curve(number: int) -> None:
     assert max(outcome.residuals) < ACCEPTED
 
 
+@pytest.mark.slow
 def test_a_mass_that_bounces_on_a_rigid_contact_is_found_from_a_motion_that_just_touches() -> None:
     own = random_system(9)
     curve = frequency_response(own.system, own.frequencies[2:], METHOD, check=False)

@@ -4,7 +4,7 @@ SHELL := /bin/sh
 .DEFAULT_GOAL := help
 .SUFFIXES:
 .DELETE_ON_ERROR:
-.PHONY: help demo names schema checks kernels test wording verify validation docs bench wheel clean
+.PHONY: help demo names schema checks kernels checked test wording verify validation docs bench wheel clean
 
 DEMO_STUDY := studies/flexible-pendulum/identify.toml
 DEMO_RUN := runs/demo
@@ -56,14 +56,18 @@ checks: .venv/test.stamp
 kernels: .venv/test.stamp
 	$(BIN)/dalembert compile
 
-test: checks kernels
+# At once, since the checks use one core.
+checked: .venv/test.stamp
+	$(MAKE) --jobs=2 checks kernels
+
+test: checked
 	$(BIN)/pytest -n auto --dist loadfile
 
 # Messages in tests are snapshots. This writes the messages of today into the tests below TESTS: read the difference.
 wording: .venv/test.stamp
 	$(BIN)/pytest -n 0 --inline-snapshot=create,fix $(TESTS)
 
-verify: .venv/verify.stamp checks kernels
+verify: .venv/verify.stamp checked
 	$(BIN)/pytest -n auto --dist loadfile -m "$(ALL)" --evidence=$(EVIDENCE)
 	$(BIN)/python docs/validation.py $(EVIDENCE) --check
 

@@ -1,6 +1,7 @@
 """The folder that the studio works in: its studies, their files, and their runs."""
 
 import re
+import unicodedata
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,8 +13,10 @@ from dalembert.study.folder import RunFolder, find_runs
 from dalembert.study.loader import LARGEST
 from dalembert.study.tasks import TASKS
 
-NAME = re.compile(r"\w[\w .-]{0,99}")
-"""What a study, a file or a run may be called: no separators of folders, and nothing that begins with a dot."""
+NAME = re.compile(r"""(?![ .-])[^/\\:*?"<>|]{1,100}(?<![ .])""")
+"""What a study, a file or a run may be called on every system. A dot first would hide it."""
+LONGEST = 200
+"""Bytes of a name; files have at most 255, with what is added to them."""
 MOST_BYTES = 200_000_000
 """Of an uploaded file."""
 
@@ -82,7 +85,8 @@ class Workspace:
             If a study has this name already, if the name has characters that :func:`checked` does not allow, and if
             the text has more than ``LARGEST`` bytes.
         """
-        folder = self.root / "studies" / checked(name)
+        name = checked(name)
+        folder = self.root / "studies" / name
         if folder.exists():
             raise InputError(f"there is a study {name!r} already; choose another name")
         folder.mkdir(parents=True)
@@ -110,9 +114,8 @@ class Workspace:
         Raises
         ------
         InputError
-            If the study does not exist, if the name has other characters than letters, digits, spaces, dots, hyphens
-            and underscores or more than 100, if it ends in ``.py``, ``.pyc``, ``.so`` or ``.toml``, and if the content
-            has more than ``MOST_BYTES`` bytes.
+            If the study does not exist, if :func:`checked` refuses the name, if it ends in ``.py``, ``.pyc``, ``.so`` or
+            ``.toml``, and if the content has more than ``MOST_BYTES`` bytes.
         """
         name = checked(name)
         if Path(name).suffix.lower() in (".py", ".pyc", ".so", ".toml"):
@@ -126,11 +129,16 @@ class Workspace:
 
 
 def checked(name: str) -> str:
-    """The name itself, if a study, a file or a run may have it."""
-    if not NAME.fullmatch(name):
+    """Return the name with composed characters, if a study, a file or a run may have it.
+
+    >>> checked("Pendel (2) für 50 %")
+    'Pendel (2) für 50 %'
+    """
+    name = unicodedata.normalize("NFC", name)
+    if not (NAME.fullmatch(name) and name.isprintable() and len(name.encode()) <= LONGEST):
         raise InputError(
-            f"{name[:100]!r} cannot be a name here; expected letters, digits, spaces, dots, hyphens and underscores, a "
-            "letter or digit first, and at most 100 of them"
+            f"{name[:100]!r} cannot be a name here; expected at most 100 characters ({LONGEST} bytes) without "
+            '/ \\ : * ? " < > | and without a dot or a space at either end or a hyphen at the start'
         )
     return name
 

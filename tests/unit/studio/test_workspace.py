@@ -24,7 +24,13 @@ BAD = [
     "<script>",
     "x" * 101,
     "C:x",
+    "ends in a dot.",
+    " a",
+    "a\u202eb",
+    "摆" * 67,
+    "a\udc80",
 ]
+GOOD = ["Pendel (2)", "50 %", "a#b", "it's", "für & wider", "单摆", "a, b; c = d + 1", "नमस्ते", "x" * 100, "摆" * 66, "a..b"]
 
 
 @pytest.fixture
@@ -40,9 +46,22 @@ def test_names_that_lead_elsewhere_or_say_more_than_a_name_are_refused(workspace
         lambda: workspace.put(study, name, b""),
         lambda: workspace.new_run(name),
     ):
-        with pytest.raises(InputError, match="cannot be a name here; expected letters, digits"):
+        with pytest.raises(InputError, match="cannot be a name here; expected at most 100 characters"):
             refused()
     assert [path.name for path in tmp_path.iterdir()] == ["studies"]
+
+
+@pytest.mark.parametrize("name", GOOD)
+def test_names_of_every_language_are_allowed(workspace, name):
+    study = workspace.create(name, "[study]\n")
+    assert workspace.studies() == [study]
+    assert workspace.put(study, f"{name[:60]}.csv", b"t,x\n").read_bytes() == b"t,x\n"
+
+
+def test_the_same_name_is_one_name_however_it_is_composed(workspace):
+    assert workspace.create("fu\u0308r", "") == "f\u00fcr/study"
+    with pytest.raises(InputError, match="there is a study"):
+        workspace.create("f\u00fcr", "")
 
 
 @pytest.mark.parametrize("name", ["../mine/study", "mine/../../x", "mine/nothing", "mine", ""])

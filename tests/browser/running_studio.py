@@ -3,7 +3,7 @@
 import re
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -18,13 +18,20 @@ ALIVE = "document.querySelector('[role=main]') && window.socket?.connected && wi
 @contextmanager
 def running_studio(root: Path) -> Iterator[str]:
     """The address of a studio for a folder."""
-    command = [COMMAND, "studio", root, "--port", "0", "--no-browser"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as studio:
-        assert studio.stdout is not None
-        found = re.search(r"http://\S+", studio.stdout.readline())
-        assert found is not None
-        yield found[0].rstrip("/")
+    studio, address = start_studio(root)
+    with studio:
+        yield address
         studio.terminate()
+
+
+def start_studio(root: Path, port: int | str = 0, before: Sequence[str] = ()) -> tuple[subprocess.Popen, str]:
+    """Start a studio for a folder, by the arguments of a command ``before`` if given; return it and its address."""
+    command = [*before, COMMAND, "studio", root, "--port", str(port), "--no-browser"]
+    studio = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    assert studio.stdout is not None
+    found = re.search(r"http://\S+", studio.stdout.readline())
+    assert found is not None
+    return studio, found[0].rstrip("/")
 
 
 def opener(visitor: Visitor, address: str) -> Callable[..., Page]:

@@ -51,6 +51,7 @@ def disk_notice(draft: Draft) -> None:
 
 
 def _copy(draft: Draft) -> None:
-    """Write the text to a new file and go to its page."""
+    """Write the text to a new file and go to its page; the page that is left has the text of its file."""
     copy = draft.save_copy()
+    draft.reload()
     ui.navigate.to(f"/study/{quote(copy.parent.name)}/{quote(copy.stem)}")

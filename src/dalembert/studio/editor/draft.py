@@ -79,6 +79,11 @@ class Draft:
         return (*self.reading.mistakes, *self._found)
 
     @property
+    def saved(self) -> str:
+        """The text of the file when it was last read or saved."""
+        return self._saved
+
+    @property
     def is_saved(self) -> bool:
         """Whether the text is that of the file when it was last read or saved."""
         return self.text == self._saved
@@ -108,6 +113,20 @@ class Draft:
         self._history.add(text)
         self._history.add(self.text)
         self._tell("text")
+
+    def restore(self, text: str, saved: str) -> None:
+        """Show a text that was not saved when its page was lost.
+
+        Parameters
+        ----------
+        text : str
+        saved : str
+            The text of the file that it was based on. If the file has another one, it was changed by somebody else.
+        """
+        if saved != self._saved:
+            self._saved, self._digest = saved, sha256(saved.encode()).digest()
+        self.set_text(text)
+        self.check_disk(always=True)
 
     def edit(self, function: Callable[[tomlkit.TOMLDocument], object]) -> None:
         """Change the text by a function that changes the document; comments and order stay.

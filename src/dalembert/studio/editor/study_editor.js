@@ -2,6 +2,9 @@
 //
 // It sends its whole text, with the number of the server's text that it is based on. NiceGUI's own sends changes, and takes
 // the server's text at each update of any property: both lose what is typed at that moment.
+//
+// A text that is not saved is kept in the browser's tab, so that it is there after a reload, which NiceGUI does when the
+// studio was started again or when the connection was lost for long. Leaving the page with such a text asks first.
 import Editor from "dalembert-codemirror/codemirror.js";
 import * as CM from "nicegui-codemirror";
 
@@ -53,7 +56,7 @@ function tooltip(pos, { label, detail, info }) {
 
 export default {
   extends: Editor,
-  props: { revision: Number, label: String },
+  props: { revision: Number, label: String, saved: String },
   computed: {
     emitting: { get: () => false, set: () => {} }, // of changes
   },
@@ -61,6 +64,22 @@ export default {
     this.shown = this.revision;
     this.questions = new Map();
     this.asked = 0;
+    this.place = `unsaved text of ${location.pathname}`;
+    this.kept = sessionStorage.getItem(this.place);
+  },
+  mounted() {
+    addEventListener("beforeunload", this.warn);
+    const kept = JSON.parse(this.kept);
+    if (kept && kept.text !== this.saved) this.$emit("kept", kept);
+    setTimeout(() => window.socket.listeners("connect_error").unshift(this.prepareReload)); // before NiceGUI's reload
+  },
+  unmounted() {
+    removeEventListener("beforeunload", this.warn);
+  },
+  watch: {
+    saved() {
+      this.keep();
+    },
   },
   methods: {
     setupExtensions() {
@@ -86,10 +105,32 @@ export default {
       this.showing = true;
       Editor.methods.setEditorValue.call(this, value);
       this.showing = false;
+      this.keep();
+    },
+    isSaved() {
+      return !this.editor || this.editor.state.doc.toString() === this.saved;
+    },
+    keep() {
+      try {
+        if (this.isSaved()) sessionStorage.removeItem(this.place);
+        else {
+          const text = this.editor.state.doc.toString();
+          sessionStorage.setItem(this.place, JSON.stringify({ text, saved: this.saved }));
+        }
+      } catch (error) {
+        console.warn(`The text cannot be kept in the browser: ${error}`);
+      }
+    },
+    warn(event) {
+      if (!this.isReloading && !this.isSaved()) event.preventDefault();
+    },
+    prepareReload(error) {
+      this.isReloading = error.message === "timeout" || error.message === "Implicit handshake failed";
     },
     sendText(update) {
       if (!update.docChanged || this.showing) return;
       this.$emit("update:value", { text: update.state.doc.toString(), revision: this.shown });
+      this.keep();
     },
     ask(kind, state, position) {
       const number = ++this.asked;

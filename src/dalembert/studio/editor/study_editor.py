@@ -25,15 +25,27 @@ class StudyEditor(ui.codemirror, component="study_editor.js", esm={"dalembert-co
         Coroutine function that returns names that the text does not say, such as channels.
     late : function
         Called with a text that was typed when the browser had not yet received the present one.
+    kept : function
+        Called with a text that the browser kept when its page was lost, and the saved text that it was based on.
     """
 
     def __init__(
-        self, text: str, names: Callable[[], Awaitable[Names]], late: Callable[[str], object] = lambda text: None
+        self,
+        text: str,
+        names: Callable[[], Awaitable[Names]],
+        late: Callable[[str], object] = lambda text: None,
+        kept: Callable[[str, str], object] = lambda text, saved: None,
     ) -> None:
         super().__init__(text, language="TOML", theme="vscodeLight", line_wrapping=True)
         self._names, self._late = names, late
-        self._props["revision"], self._props["label"] = 0, "The study as text"
+        self._props["revision"], self._props["label"], self._props["saved"] = 0, "The study as text", text
         self.on("question", self._answer)
+        self.on("kept", lambda event: kept(event.args["text"], event.args["saved"]))
+
+    def set_saved(self, text: str) -> None:
+        """Say what the file holds: the browser keeps another text over a reload, and warns before it is left."""
+        if self._props["saved"] != text:
+            self._props["saved"] = text
 
     def _handle_value_change(self, value: str) -> None:
         if self._send_update_on_value_change:

@@ -29,7 +29,7 @@ class TextEditor:
 
     def __init__(self, draft: Draft) -> None:
         self.draft, self._line = draft, 1
-        self.element = StudyEditor(draft.text, Channels(draft))
+        self.element = StudyEditor(draft.text, Channels(draft), self._recall, self._restore)
         self.element.classes("w-full h-full border rounded")
         self.element.on_value_change(self._typed)
         for event in ("keyup", "mouseup"):
@@ -55,7 +55,19 @@ class TextEditor:
     def _typed(self) -> None:
         self.draft.set_text(self.element.value or "", typed=True)
 
+    def _recall(self, text: str) -> None:
+        """Keep a text that was typed while another change came."""
+        self.draft.recall(text)
+        ui.notify("The text changed while you typed. Undo brings back what you typed.")
+
+    def _restore(self, text: str, saved: str) -> None:
+        self.draft.restore(text, saved)
+        ui.notify(
+            "The unsaved text of this tab is back. Undo brings back that of the file.", timeout=0, close_button="Close"
+        )
+
     def _show(self) -> None:
+        self.element.set_saved(self.draft.saved)
         if self.element.value != self.draft.text:
             self.element.set_value(self.draft.text)
 

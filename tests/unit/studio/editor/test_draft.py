@@ -114,6 +114,26 @@ def test_what_was_typed_too_late_is_found_by_undo(draft):
     assert draft.text == "mine"
 
 
+def test_a_text_of_a_lost_page_is_shown_again(draft, path):
+    draft.restore("mine = 1\n", IDENTIFY.text)
+    assert (draft.text, draft.is_saved, draft.disk) == ("mine = 1\n", False, "same")
+    draft.undo()
+    assert draft.is_saved
+    draft.redo()
+    draft.save()
+    assert path.read_text() == "mine = 1\n"
+
+
+def test_a_text_of_a_lost_page_does_not_replace_what_others_wrote_meanwhile(draft, path):
+    draft.restore("mine = 1\n", "before = 1\n")
+    assert draft.disk == "changed"
+    with pytest.raises(ChangedOnDiskError):
+        draft.save()
+    assert path.read_text() == IDENTIFY.text
+    draft.undo()
+    assert draft.text == IDENTIFY.text
+
+
 def test_an_edit_keeps_comments_and_order(draft):
     draft.set_text("# mine\nb = 1 # one\na = 2\n")
     draft.edit(lambda document: document.update({"b": 3}))

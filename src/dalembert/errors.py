@@ -12,6 +12,7 @@ _LONGEST = 60  # text of a value in a sentence
 _ROOM = "see that the disk has room and that the folder may be written to"
 _BEGUN = f"; what was written before is whole: {_ROOM}, and continue the run by 'dalembert resume'"
 _NOT_BEGUN = f"; nothing has run yet: {_ROOM}, and run the study again"
+_UNCHANGED = f"; what was there before is unchanged: {_ROOM}, and try again"
 
 
 class DalembertError(Exception):
@@ -58,6 +59,19 @@ def not_begun(error: StorageError) -> StorageError:
     'and run the study again'
     """
     return StorageError(str(error).replace(_BEGUN, _NOT_BEGUN))
+
+
+def unchanged(error: Exception) -> str:
+    """Sentence of an error about a file that is replaced as a whole or not at all, outside a run.
+
+    >>> unchanged(unwritable("studies/a/study.toml", "No space left on device")).partition(": ")[2].partition(":")[0]
+    'No space left on device; what was there before is unchanged'
+    >>> unchanged(PermissionError(13, "Permission denied", "studies/b")).partition(";")[0]
+    'studies/b cannot be written or read: Permission denied'
+    """
+    if isinstance(error, OSError):
+        return f"{error.filename or 'A file'} cannot be written or read: {error.strerror or error}{_UNCHANGED}"
+    return str(error).replace(_BEGUN, _UNCHANGED)
 
 
 def unknown(what: str, given: object, known: Iterable[str], where: str = "") -> str:

@@ -1,13 +1,16 @@
 """What all pages share: head, way about, colours, and how messages are shown."""
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ContextDecorator, contextmanager
+from functools import wraps
+from inspect import iscoroutinefunction
+from typing import Any
 from urllib.parse import quote
 
 from nicegui import ui
 
 from dalembert import __version__
-from dalembert.errors import DalembertError
+from dalembert.errors import DalembertError, told, unchanged
 from dalembert.report.look import LIGHT
 from dalembert.study.folder import RunFolder
 
@@ -67,6 +70,7 @@ def frame(title: str, *, wide: bool = False, most: str = "max-w-6xl") -> Iterato
     It takes all of the window if ``wide``, else at most the width of a class, ``most``.
     """
     ui.page_title(f"{title} · dalembert")
+    ui.on_exception(_Once())
     ui.colors(primary=LIGHT.series[0])
     ui.add_css(LOOKS)
     width = "wide flex-nowrap gap-2 p-2" if wide else f"{most} mx-auto p-2 sm:p-4 gap-4"
@@ -92,13 +96,52 @@ def badge(state: str) -> ui.badge:
     return ui.badge(state, color=STATES.get(state, "negative")).props("role=status")
 
 
-@contextmanager
-def complaints() -> Iterator[None]:
-    """A block whose errors are shown as a message that stays until it is read."""
-    try:
-        yield
-    except (DalembertError, OSError) as error:
-        ui.notify(str(error), type="negative", multi_line=True, close_button="Close", timeout=0)
+class _Once:
+    """Shows what no block caught; an error that a timer meets again and again is shown once."""
+
+    def __init__(self) -> None:
+        self._shown: set[str] = set()
+
+    def __call__(self, error: Exception) -> None:
+        if told(error) not in self._shown:
+            self._shown.add(told(error))
+            complain(error)
+
+
+def complain(error: Exception) -> None:
+    """Show an error as a message that stays until it is read."""
+    if isinstance(error, DalembertError | OSError):
+        sentence = unchanged(error)
+    else:
+        sentence = f"The studio met an error: {told(error)}. Reload the page: a text that is not saved is kept."
+    ui.notify(sentence, type="negative", multi_line=True, close_button="Close", timeout=0)
+
+
+class _Complaints(ContextDecorator):
+    def __enter__(self) -> None:
+        """Begin the block."""
+
+    def __exit__(self, kind: object, error: object, trace: object) -> bool:
+        if not isinstance(error, DalembertError | OSError):
+            return False
+        complain(error)
+        return True
+
+    def __call__(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        if not iscoroutinefunction(function):
+            return super().__call__(function)
+
+        @wraps(function)
+        async def guarded(*arguments: object, **named: object) -> object:
+            with self:
+                return await function(*arguments, **named)
+
+        return guarded
+
+
+def complaints() -> _Complaints:
+    """Return a block, which decorates functions and coroutine functions too, whose errors are shown as messages."""
+    return _Complaints()
 
 
 def report_of(folder: RunFolder, height: str) -> None:

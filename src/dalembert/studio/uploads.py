@@ -4,10 +4,26 @@ from collections.abc import Awaitable, Callable
 
 from nicegui import events, ui
 
+from dalembert.studio.frame import complain
 from dalembert.studio.workspace import MOST_BYTES
 
 
 def upload(label: str, kinds: str, uploaded: Callable[[events.UploadEventArguments], Awaitable[None]]) -> None:
     """Build a field that takes files of some kinds, such as ``".csv,.txt"``."""
-    field = ui.upload(label=label, auto_upload=True, on_upload=uploaded, max_file_size=MOST_BYTES)
+
+    def refuse() -> None:
+        ui.notify(
+            f"The file was not taken. Choose one of at most {MOST_BYTES // 10**6} MB whose name ends in "
+            f"{', '.join(kinds.split(','))}.",
+            type="negative",
+            multi_line=True,
+            close_button="Close",
+            timeout=0,
+        )
+
+    def fail() -> None:
+        complain(OSError(0, "the upload failed", "The file"))
+
+    field = ui.upload(label=label, auto_upload=True, on_upload=uploaded, on_rejected=refuse, max_file_size=MOST_BYTES)
+    field.on("failed", fail, args=[])
     field.props(f'accept="{kinds}" flat bordered').classes("w-full max-w-md")

@@ -2,8 +2,10 @@
 
 import re
 import unicodedata
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from shutil import rmtree
 
 from dalembert.errors import InputError, no_text, require_known
 from dalembert.files import free_path, replacing, write_text
@@ -76,8 +78,15 @@ class Workspace:
         require_known("study", name, self.studies())
         return self.root / "studies" / f"{name}.toml"
 
-    def create(self, name: str, content: str) -> str:
-        """A new study with its text, and the schema beside it; its name as :meth:`studies` gives it.
+    def create(self, name: str, content: str, beside: Callable[[Path], object] = lambda folder: None) -> str:
+        """Make a new study with its text and the schema beside it; return its name as :meth:`studies` gives it.
+
+        Parameters
+        ----------
+        name : str
+        content : str
+        beside : callable
+            Writes further files into the folder. If it fails, there is no new study.
 
         Raises
         ------
@@ -90,8 +99,13 @@ class Workspace:
         if folder.exists():
             raise InputError(f"there is a study {name!r} already; choose another name")
         folder.mkdir(parents=True)
-        self.write(folder / "study.toml", content)
-        schema_file.write(folder)
+        try:
+            self.write(folder / "study.toml", content)
+            schema_file.write(folder)
+            beside(folder)
+        except BaseException:
+            rmtree(folder, ignore_errors=True)
+            raise
         return f"{name}/study"
 
     def write(self, path: Path, content: str) -> None:

@@ -219,7 +219,7 @@ class RunFolder:
                 return False
         except Timeout:
             return True
-        except PermissionError:  # no run is going on where none may write
+        except OSError:  # no run is going on where none may write
             return False
 
 

@@ -38,7 +38,12 @@ class StudyError(InputError):
 
 
 def load(
-    path: str | Path, *, name: str = "", folder: Path | None = None, files: Mapping[str, Path] | None = None
+    path: str | Path,
+    *,
+    name: str = "",
+    folder: Path | None = None,
+    files: Mapping[str, Path] | None = None,
+    content: bytes | None = None,
 ) -> Study:
     """Read and check a study file.
 
@@ -51,6 +56,8 @@ def load(
         Where the files that it names are looked for; its own folder if not given.
     files : mapping of str to Path, optional
         Files that it names and that lie elsewhere.
+    content : bytes, optional
+        Of the file, in place of what is on the disk.
 
     Raises
     ------
@@ -59,7 +66,7 @@ def load(
     """
     path = Path(path)
     context = Context(folder or path.parent, files=dict(files or {}))
-    content, document = _read(path)
+    content, document = _read(path) if content is None else _document(path, content)
     _refuse_parts(document, path)
     shared = _with_model_file(document, context, path)
     names = {name for table in ("parameters", "constants") for name in _table(document, table)}
@@ -99,14 +106,19 @@ def _read(path: Path) -> tuple[bytes, dict[str, Any]]:
             raise InputError(f"{path} is a folder; expected a study file{f' such as {inside[0]}' if inside else ''}")
         if path.stat().st_size > LARGEST:
             raise InputError(f"{path} has more than {LARGEST} bytes; expected a study file")
-        content = path.read_bytes()
-        return content, tomllib.loads(content.decode("utf-8"))
+        return _document(path, path.read_bytes())
     except FileNotFoundError:
         near = [entry.name for entry in path.parent.glob("*.toml")] if path.parent.is_dir() else []
         where = "" if path.parent == Path() else f"folder {path.parent}"
         raise InputError(unknown("study file", path.name, near, where)) from None
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}") from None
+
+
+def _document(path: Path, content: bytes) -> tuple[bytes, dict[str, Any]]:
+    """The same from the content of a file."""
+    try:
+        return content, tomllib.loads(content.decode("utf-8"))
     except UnicodeDecodeError as error:
         raise InputError(no_text(path, error)) from None
     except (RecursionError, ValueError) as error:

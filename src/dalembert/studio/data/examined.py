@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -186,11 +185,8 @@ def _suspect(study: Path, text: str) -> Iterator[Finding]:
 
 
 def _read(study: Path, text: str) -> Study:
-    """The study of a text, without writing to its folder."""
-    with TemporaryDirectory() as folder:
-        draft = Path(folder) / study.name
-        draft.write_text(text, encoding="utf-8")
-        return load(draft, name=study.stem, folder=study.parent)
+    """The study of a text."""
+    return load(study, name=study.stem, content=text.encode())
 
 
 def _table(choices: Choices, found: Preview) -> tuple[dict[str, Any], str]:

@@ -1,7 +1,6 @@
 """What a text is as a study: the study and what it does, or its mistakes with their places and lines."""
 
 import re
-import tempfile
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
@@ -56,18 +55,15 @@ class Reading:
 
 
 def read(path: Path, text: str) -> Reading:
-    """Read a text as the study of a path, without writing to its folder."""
-    with tempfile.TemporaryDirectory() as folder:
-        draft = Path(folder) / path.name
-        try:
-            draft.write_text(text, encoding="utf-8")
-            study = load(draft, name=path.stem, folder=path.parent)
-            return Reading(text, study, f"It {plan(study)}.")
-        except StudyError as error:
-            return Reading(text, mistakes=tuple(mistake(text, *found) for found in error.mistakes))
-        except DalembertError as error:
-            sentence = str(error).replace(f"{draft}: ", "").replace(f"{draft}", path.name)
-            return Reading(text, mistakes=(mistake(text, (), sentence),))
+    """Read a text as the study of a path, which is not written."""
+    try:
+        study = load(path, name=path.stem, content=text.encode())
+        return Reading(text, study, f"It {plan(study)}.")
+    except StudyError as error:
+        return Reading(text, mistakes=tuple(mistake(text, *found) for found in error.mistakes))
+    except DalembertError as error:
+        sentence = str(error).replace(f"{path}: ", "").replace(f"{path}", path.name)
+        return Reading(text, mistakes=(mistake(text, (), sentence),))
 
 
 def mistake(text: str, place: Place, sentence: str) -> Mistake:

@@ -113,15 +113,16 @@ def continued(workspace: Workspace, folder: RunFolder, name: str, text: str) -> 
     """
     kept = _kept(folder)
     places = {given: _beside(given) for given in kept["files"]}
-    study = workspace.create(name, renamed_files(text, places))
-    target = workspace.study(study).parent
-    for given, entry in kept["files"].items():
-        _copy(folder.path / entry["copy"], target / places[given], places)
-    if any(place.endswith(".py") for place in places.values()):
-        for module in Path(kept["folder"]).glob("*.py"):  # functions may import them
-            if not (target / module.name).exists():
-                shutil.copyfile(module, target / module.name)
-    return study
+
+    def copy_files(target: Path) -> None:
+        for given, entry in kept["files"].items():
+            _copy(folder.path / entry["copy"], target / places[given], places)
+        if any(place.endswith(".py") for place in places.values()):
+            for module in Path(kept["folder"]).glob("*.py"):  # functions may import them
+                if not (target / module.name).exists():
+                    shutil.copyfile(module, target / module.name)
+
+    return workspace.create(name, renamed_files(text, places), copy_files)
 
 
 def renamed_files(text: str, places: dict[str, str]) -> str:

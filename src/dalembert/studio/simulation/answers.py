@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
@@ -137,10 +136,7 @@ def _part(kept: Kept, source: Source, name: str) -> Part:
 
 
 def _study(source: Source) -> Study:
-    with TemporaryDirectory() as folder:
-        copy = Path(folder) / source.path.name
-        copy.write_text(source.text, encoding="utf-8")
-        return load(copy, name=source.path.stem, folder=source.path.parent)
+    return load(source.path, name=source.path.stem, content=source.text.encode())
 
 
 def _columns(own: Part) -> list[int]:

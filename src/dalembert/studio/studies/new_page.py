@@ -16,13 +16,16 @@ def new_page(workspace: Workspace) -> None:
         name = ui.input("Name (optional)", placeholder="my-pendulum")
         name.classes("w-full max-w-md").props("outlined")
 
+        def chosen() -> str:
+            return (name.value or "").strip()
+
         ui.label("Start from a template").classes("text-xl font-bold").props("role=heading aria-level=2")
-        template_cards(workspace, lambda: name.value or "")
+        template_cards(workspace, chosen)
         ui.label("Open a study file").classes("text-xl font-bold").props("role=heading aria-level=2")
 
         async def uploaded(event: events.UploadEventArguments) -> None:
             with complaints():
                 text = as_text(await event.file.read(), event.file.name)
-                begin(workspace, name.value or workspace.free(Path(event.file.name).stem), text, {})
+                begin(workspace, chosen() or workspace.free(Path(event.file.name).stem), text, {})
 
         upload("Choose a study file (.toml)", ".toml", uploaded)

@@ -2,10 +2,12 @@
 
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 from urllib.parse import quote
 
 from nicegui import ui
 
+from dalembert.files import write_text
 from dalembert.studio.frame import button, complaints
 from dalembert.studio.workspace import Workspace
 from dalembert.study.template import Template, templates
@@ -32,10 +34,13 @@ def template_cards(workspace: Workspace, name: Callable[[], str]) -> None:
 def begin(workspace: Workspace, name: str, text: str, beside: dict[str, str]) -> None:
     """Make a study with the files beside it, and go to its page."""
     with complaints():
-        study = workspace.create(name, text)
-        for file, content in beside.items():
-            workspace.put(study, file, content.encode())
+        study = workspace.create(name, text, partial(_write, beside))
         ui.navigate.to(f"/study/{quote(study)}")
+
+
+def _write(contents: dict[str, str], folder: Path) -> None:
+    for file, content in contents.items():
+        write_text(folder / file, content)
 
 
 def _begin(workspace: Workspace, template: Template, name: Callable[[], str]) -> None:

@@ -12,7 +12,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from queue import SimpleQueue
 from threading import Thread
-from typing import Any, Concatenate, ParamSpec, TypeVar, cast
+from typing import Any, Concatenate, Literal, ParamSpec, TypeVar, cast
 
 from dalembert.errors import DalembertError, told
 
@@ -22,10 +22,21 @@ ANSWER, WRONG, MEMORY = "answer", "wrong", "memory"
 CLOSED = "The study was closed."
 FREE = 0.5
 """Share of the machine's memory that a process may fill."""
+Cause = Literal["failed", "ended", "time", "memory"]
 
 
 class WorkerError(DalembertError):
-    """A computation that failed, or whose process ended."""
+    """A computation that failed, or whose process ended.
+
+    Parameters
+    ----------
+    message : str
+    cause : {"failed", "ended", "time", "memory"}
+    """
+
+    def __init__(self, message: str, cause: Cause = "failed") -> None:
+        super().__init__(message)
+        self.cause: Cause = cause
 
 
 @dataclass(frozen=True)
@@ -82,6 +93,7 @@ class Worker:
         self._process: BaseProcess | None = None
         self._connection: Connection | None = None
         self._ended = ""
+        self._cause: Cause = "ended"
         Thread(target=self._take_turns, daemon=True).start()  # the studio ends without waiting for it
 
     def start(self) -> None:
@@ -144,10 +156,10 @@ class Worker:
             turn()
         self._end(CLOSED)  # one that started meanwhile
 
-    def _end(self, reason: str) -> None:
+    def _end(self, reason: str, cause: Cause = "ended") -> None:
         process = self._process
         if process is not None and process.is_alive():
-            self._ended = reason
+            self._ended, self._cause = reason, cause
             process.kill()
             self._connection = None  # the next request starts another process
 
@@ -156,7 +168,7 @@ class Worker:
         if self._connection is None or self._process is None or not self._process.is_alive():
             context = multiprocessing.get_context("spawn")
             self._connection, theirs = context.Pipe()
-            self._ended = ""
+            self._ended, self._cause = "", "ended"
             self._process = context.Process(target=_serve, args=(theirs, self.limits.bytes), daemon=True)
             self._process.start()
             theirs.close()
@@ -169,16 +181,18 @@ class Worker:
             if not connection.poll(self.limits.seconds):
                 self._end(
                     f"The computation took more than {self.limits.seconds:g} s and was stopped. Simulate a shorter "
-                    "time or take larger steps; the next change starts it again."
+                    "time or take larger steps; the next change starts it again.",
+                    "time",
                 )
             outcome, content = connection.recv()
         except (EOFError, OSError):
-            raise WorkerError(self._ending()) from None
+            raise WorkerError(self._ending(), self._cause) from None
         if outcome == MEMORY:
             self._end("")
             raise WorkerError(
                 f"The computation needs more than {self.limits.bytes / 1e9:.3g} GB of memory and was stopped. Take "
-                "fewer samples or larger steps; the next change starts it again."
+                "fewer samples or larger steps; the next change starts it again.",
+                "memory",
             )
         if outcome == WRONG:
             raise WorkerError(content)

@@ -13,9 +13,17 @@ from dalembert.study.study import Study
 
 
 def picture_or_message(path: Path) -> str:
-    """Return the picture of a study file, or one that says why there is none."""
+    """Return the picture of a study file, or one that says why there is none.
+
+    Raises
+    ------
+    MemoryError
+        If the model needs more memory than there is.
+    """
     try:
         return study_picture(load(path)) or message_picture("No drawing: the model has no shape")
+    except MemoryError:  # of the process that draws, which says so
+        raise
     except DalembertError as error:
         what = "the study has errors" if isinstance(error, InputError) else "the model cannot be built"
         return message_picture(f"No drawing: {what}")

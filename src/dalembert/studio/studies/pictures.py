@@ -1,29 +1,33 @@
-"""Pictures of studies, drawn in a process of their own and kept until a file of the study changes."""
+"""Pictures of studies, drawn in a separate process and kept until a file of the study changes."""
 
 import asyncio
-import multiprocessing
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
 from importlib.resources import as_file
 from pathlib import Path
 
 from dalembert.report.pictures import message_picture
+from dalembert.studio.worker import Cause, Kept, Limits, Worker, WorkerError
 from dalembert.study.picture import picture_or_message
 from dalembert.study.template import TEMPLATES
 
 PATIENCE = 60.0
 """Seconds that one picture may take; a mesh may have to be made first."""
+BECAUSE: dict[Cause, str] = {
+    "failed": "the model cannot be drawn",
+    "ended": "the model ended its process",
+    "time": "it takes too long",
+    "memory": "it needs too much memory",
+}
+"""Why there is no picture, in few words."""
 Stamp = tuple[tuple[str, int, int], ...]
 
 
 @dataclass
 class Pictures:
-    """Draws one picture after another. A study that hangs or crashes ends its process only."""
+    """Draws one picture after another. A study that hangs, crashes or fills the memory ends its process only."""
 
-    patience: float = PATIENCE
+    worker: Worker = field(default_factory=lambda: Worker(Limits(seconds=PATIENCE)))
     _known: dict[Path, tuple[Stamp, str]] = field(default_factory=dict)
-    _pool: ProcessPoolExecutor | None = None
     _turn: asyncio.Lock = field(default_factory=asyncio.Lock)
 
     async def of(self, path: Path) -> str:
@@ -45,25 +49,18 @@ class Pictures:
 
     def close(self) -> None:
         """End the process."""
-        if self._pool is not None:
-            processes = list((self._pool._processes or {}).values())
-            self._pool.shutdown(wait=False, cancel_futures=True)
-            for process in processes:
-                process.kill()
-            self._pool = None
+        self.worker.stop()
 
     async def _drawn(self, path: Path) -> str:
-        if self._pool is None:
-            self._pool = ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn"))
         try:
-            drawing = asyncio.wrap_future(self._pool.submit(picture_or_message, path))
-            return await asyncio.wait_for(drawing, self.patience)
-        except TimeoutError:
-            self.close()
-            return message_picture(f"No drawing: it takes over {self.patience:g} s")
-        except BrokenProcessPool:
-            self.close()
-            return message_picture("No drawing: the model ended its process")
+            drawn = await self.worker.ask(str(path), _draw, path)
+        except WorkerError as error:
+            return message_picture(f"No drawing: {BECAUSE[error.cause]}")
+        return drawn or message_picture("No drawing")
+
+
+def _draw(kept: Kept, path: Path) -> str:
+    return picture_or_message(path)
 
 
 def _stamp(folder: Path) -> Stamp:

@@ -5,6 +5,7 @@ import asyncio
 import pytest
 
 from dalembert.studio.studies.pictures import Pictures
+from dalembert.studio.worker import Limits, Worker
 from dalembert.study.picture import picture_or_message
 from dalembert.study.template import begin
 
@@ -23,7 +24,7 @@ channels = ["rod.end.x"]
 
 @pytest.fixture
 def pictures():
-    made = Pictures(patience=20.0)
+    made = Pictures(Worker(Limits(seconds=100.0, bytes=1_000_000_000)))
     yield made
     made.close()
 
@@ -57,13 +58,17 @@ def test_templates_have_pictures(pictures):
 
 
 @pytest.mark.slow
-def test_a_model_that_crashes_or_hangs_ends_its_process_only(tmp_path, pictures):
+def test_a_model_that_crashes_hangs_or_fills_the_memory_ends_its_process_only(tmp_path, pictures):
     study = of_model(tmp_path, "os._exit(3)")
     assert "No drawing: the model ended its process" in asyncio.run(pictures.of(study))
     assert 'data-part="pin"' in asyncio.run(pictures.of_template("motion"))
+    of_model(tmp_path, "held = [bytearray(10**8) for _ in range(10**4)]")
+    assert "No drawing: it needs too much memory" in asyncio.run(pictures.of(study))
     of_model(tmp_path, "time.sleep(1000)")
-    pictures.patience = 1.0
-    assert "No drawing: it takes over 1 s" in asyncio.run(pictures.of(study))
+    pictures.worker.limits = Limits(seconds=1.0)
+    assert "No drawing: it takes too long" in asyncio.run(pictures.of(study))
+    pictures.worker.limits = Limits()
+    assert "data-part=" in asyncio.run(pictures.of_template("spatial"))
 
 
 def test_a_study_with_mistakes_says_so(tmp_path):

@@ -99,11 +99,11 @@ def test_the_newest_value_wins(opened):
 def test_play_and_time_move_the_mechanism(opened):
     page, _ = opened
     page.get_by_role("button", name="Play").click()
-    wait_until(page, "document.querySelector('.row output').textContent > 't = 0.3'")
+    wait_until(page, "document.querySelector('.player output').textContent > 't = 0.3'")
     page.get_by_role("button", name="Pause").click()
     page.get_by_label("Time").focus()
     page.keyboard.press("End")
-    wait_until(page, "document.querySelector('.row output').textContent === 't = 2.00 s'")
+    wait_until(page, "document.querySelector('.player output').textContent === 't = 2.00 s'")
     assert page.locator("svg.curve line").get_attribute("transform") == "translate(420 0)"
 
 

@@ -1,7 +1,8 @@
 """The widget: its state, which the browser shares, and the answers to its sliders."""
 
+from dataclasses import asdict
 from functools import cached_property
-from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 import anywidget
@@ -9,20 +10,21 @@ import numpy as np
 import traitlets
 
 from dalembert.errors import DalembertError
+from dalembert.multibody import Trajectory
 from dalembert.parameters import Parameter
 from dalembert.report.digits import shown
-from dalembert.report.pictures.canvas import COLOURS, INK
-from dalembert.widget.film import film_of
+from dalembert.report.player import BROWSER, LOOK, Film, film_of
+from dalembert.report.sections.motion.mechanism import measured
 from dalembert.widget.sliders import Source
 
 MOST = 200
 """Measured points of a channel that are drawn."""
-SCRIPTS = ("drawing.js", "sliders.js")
+SCRIPTS = (BROWSER / "scene.js", BROWSER / "index.js", Path(__file__).with_name("sliders.js"))
 
 
 def script() -> str:
     """The JavaScript of the widget as one module."""
-    texts = [files("dalembert.widget").joinpath(name).read_text(encoding="utf-8") for name in SCRIPTS]
+    texts = [path.read_text(encoding="utf-8") for path in SCRIPTS]
     return "\n".join(line for text in texts for line in text.splitlines() if not line.startswith("import "))
 
 
@@ -35,7 +37,7 @@ class MechanismSliders(anywidget.AnyWidget):
     """
 
     _esm = script()
-    look = traitlets.Dict({"series": list(COLOURS), "ink": INK}).tag(sync=True)
+    look = traitlets.Dict(LOOK).tag(sync=True)
     parameters = traitlets.List().tag(sync=True)
     asked = traitlets.Dict({"number": 0, "values": {}}).tag(sync=True)
     """Number of a request, and the values of its sliders by name."""
@@ -65,14 +67,19 @@ class MechanismSliders(anywidget.AnyWidget):
         number = int(asked["number"])
         try:
             motion = self._source.at(self.values)
-            found: dict[str, Any] = {"film": film_of(motion), "curves": self._lines(motion), "message": ""}
+            found: dict[str, Any] = {"film": asdict(self._film(motion)), "curves": self._lines(motion), "message": ""}
         except DalembertError as error:
             found = {"message": str(error)}
         with self.hold_sync():
             for name, value in {**found, "answered": number}.items():
                 setattr(self, name, value)
 
-    def _lines(self, motion: Any) -> dict[str, Any]:
+    def _film(self, motion: Trajectory) -> Film:
+        """The motion, with measured positions of points."""
+        data, axes = self._source.data, "xyz"[: len(motion.system.AXES)]
+        return film_of(motion.drawing(), {} if data is None else measured(data.channels, data.values, axes))
+
+    def _lines(self, motion: Trajectory) -> dict[str, Any]:
         """Channels over time, with measured points: part of the duration, value."""
         if not self._source.channels:
             return {}

@@ -1,31 +1,22 @@
 // A mechanism with sliders for its parameters: the front end of an anywidget.
-import { Drawing, svgElement } from "./drawing.js";
+import { element, Player } from "./index.js";
+import { svgElement } from "./scene.js";
 
 const STEPS = 400; // of a slider
 const WIDTH = 420, HEIGHT = 90; // of a curve, in pixels
-const STYLE = `
+const LAYOUT = `
 .dalembert-sliders { display: flex; flex-wrap: wrap; gap: 8px 24px; font: 14px system-ui, sans-serif; max-width: 960px }
 .dalembert-sliders > .motion { flex: 3 1 360px; min-width: 0 }
 .dalembert-sliders > .values { flex: 2 1 240px; min-width: 0 }
-.dalembert-sliders svg { display: block; width: 100%; height: 300px; touch-action: pan-y }
-.dalembert-sliders svg[tabindex="0"] { touch-action: none; cursor: grab }
-.dalembert-sliders svg.curve { height: ${HEIGHT}px; touch-action: auto }
-.dalembert-sliders .row { display: flex; align-items: center; gap: 8px; margin: 4px 0 }
-.dalembert-sliders .row > input { flex: 1; min-width: 0 }
+.dalembert-sliders .curve { display: block; width: 100%; height: ${HEIGHT}px }
 .dalembert-sliders label { display: block; margin: 6px 0 }
 .dalembert-sliders label input { width: 100%; margin: 0 }
-.dalembert-sliders label .row { justify-content: space-between }
-.dalembert-sliders output { font-variant-numeric: tabular-nums; min-width: 6em; text-align: right }
+.dalembert-sliders .head { display: flex; justify-content: space-between; gap: 8px }
+.dalembert-sliders .head output { font-variant-numeric: tabular-nums }
 .dalembert-sliders :focus-visible { outline: 2px solid currentColor; outline-offset: 2px }
 .dalembert-sliders .name { font-size: 13px; margin-top: 6px }
 .dalembert-sliders [role=alert] { flex: 1 1 100% }
 `;
-
-function element(parent, tag, properties = {}) {
-  const one = Object.assign(document.createElement(tag), properties);
-  parent.append(one);
-  return one;
-}
 
 // Of a number as a person reads it: four digits.
 function read(value) {
@@ -49,36 +40,19 @@ function curve(parent, name, points, measured, colour, ink) {
 }
 
 function render({ model, el }) {
-  element(el, "style", { textContent: STYLE });
+  element(el, "style", { textContent: LAYOUT });
   const root = element(el, "div", { className: "dalembert-sliders" });
   const left = element(root, "div", { className: "motion" }), right = element(root, "div", { className: "values" });
-  const scene = svgElement(left, "svg", { role: "img", "aria-label": "The mechanism in motion" });
-  const row = element(left, "div", { className: "row" });
-  const play = element(row, "button", { type: "button" });
-  const time = element(row, "input", { type: "range", min: 0, step: 1, value: 0, ariaLabel: "Time" });
-  const clock = element(row, "output");
+  const motion = element(left, "div");
   const curves = element(left, "div");
   const alert = element(root, "div");
   alert.setAttribute("role", "alert");
   let cursors = [];
 
   const look = model.get("look");
-  const drawing = new Drawing(scene, look, (frame) => {
-    const times = drawing.film.times;
-    time.max = times.length - 1;
-    time.value = frame;
-    clock.textContent = `t = ${times[frame].toFixed(2)} s`;
-    time.setAttribute("aria-valuetext", clock.textContent);
-    play.textContent = drawing.playing ? "❚❚ Pause" : "▶ Play";
-    const share = frame / Math.max(times.length - 1, 1);
+  const player = new Player(motion, look, "The mechanism in motion", (share) => {
     for (const cursor of cursors) cursor.setAttribute("transform", `translate(${WIDTH * share} 0)`);
   });
-  play.onclick = () => (drawing.playing ? drawing.pause() : drawing.play());
-  time.oninput = () => {
-    const frame = Number(time.value); // before the pause, which shows the frame of the motion
-    drawing.pause();
-    drawing.seek(frame);
-  };
 
   // One request at a time: what changes meanwhile is asked for once, when the answer is there.
   const values = Object.fromEntries(model.get("parameters").map((one) => [one.name, one.value]));
@@ -96,7 +70,7 @@ function render({ model, el }) {
 
   for (const { name, unit, lower, upper } of model.get("parameters")) {
     const label = element(right, "label");
-    const head = element(label, "span", { className: "row" });
+    const head = element(label, "span", { className: "head" });
     element(head, "span", { textContent: unit ? `${name} (${unit})` : name });
     const output = element(head, "output", { textContent: read(values[name]) });
     const slider = element(label, "input", { type: "range", min: lower, max: upper, step: (upper - lower) / STEPS || 1 });
@@ -118,7 +92,7 @@ function render({ model, el }) {
       const colour = look.series[k % look.series.length];
       return curve(curves, `${name}: ${ranges[name].join(" to ")}`, points, measured[name] ?? [], colour, look.ink);
     });
-    if (film.positions) drawing.show(film);
+    if (film.positions) player.show(film, { plays: model.get("answered") > 0 });
     el.dataset.answered = model.get("answered");
   };
   const answer = () => {
@@ -133,7 +107,7 @@ function render({ model, el }) {
   draw();
   return () => {
     model.off("change:answered", answer);
-    drawing.close();
+    player.close();
   };
 }
 

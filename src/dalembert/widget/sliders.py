@@ -12,14 +12,13 @@ from dalembert.arguments import is_number, names_of
 from dalembert.errors import InputError, shown
 from dalembert.multibody import Trajectory, simulate
 from dalembert.parameters import Parameters
-from dalembert.report.charts.motion.playback import Playback
+from dalembert.report.player import frames
+from dalembert.studio.simulation.parts import last_time
 from dalembert.study import load
 from dalembert.study.study import Study
 
 if TYPE_CHECKING:
     from dalembert.data import Measurements
-
-FINE = 6001
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +47,7 @@ class Source:
     @property
     def times(self) -> np.ndarray:
         """Times of the frames, s."""
-        return Playback.of(np.linspace(0.0, self.end, FINE)).times
+        return frames(self.end)
 
     def at(self, values: Mapping[str, float]) -> Trajectory:
         """The motion at values by name; those that are not given are the starts, and all are kept within bounds."""
@@ -111,7 +110,9 @@ def _of_study(study: Study, end: float | None, channels: Sequence[str]) -> Sourc
         raise InputError(f"sliders: the model of {study.path.name} is no mechanism. Give a study of a mechanism")
     if study.file.solver is None:
         raise InputError(f"sliders: {study.path.name} has no table [solver]. Add one with at least its step")
-    last = _last(study) if end is None else _checked(end)
+    last = last_time(study) if end is None else _checked(end)
+    if last is None:
+        raise InputError(f"sliders: {study.path.name} has no last time. Give end in s")
     data = None if study.file.data is None else study.data()
     known = (data.channels if data else ()) or getattr(study.table, "channels", None) or ()
     names = names_of(channels, "sliders", "channels") or tuple(known)
@@ -120,17 +121,6 @@ def _of_study(study: Study, end: float | None, channels: Sequence[str]) -> Sourc
         return study.motion(last, vector, times)
 
     return Source(study.parameters, motion, last, names, data)
-
-
-def _last(study: Study) -> float:
-    """Last time of the study's task or data, s."""
-    times = getattr(study.table, "times", None)
-    last = getattr(study.table, "last", None) or (times[-1] if times else None)
-    if last is None and study.file.data is not None:
-        last = study.data().coordinate.values[-1]
-    if last is None:
-        raise InputError(f"sliders: {study.path.name} has no last time. Give end in s")
-    return float(last)
 
 
 def _of_function(

@@ -1,14 +1,10 @@
 """Values of parameters, written into the text of a study."""
 
-import re
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from typing import Any
 
 from dalembert.errors import InputError
-from dalembert.units import is_quantity, si
-
-NUMBER = re.compile(r"\s*[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*")
+from dalembert.studio.editor.entries import like, put
 
 
 def use_as_start(document: Any, values: Mapping[str, float]) -> None:
@@ -24,8 +20,7 @@ def use_as_start(document: Any, values: Mapping[str, float]) -> None:
     """
     for name, value in values.items():
         table = _table(document, name)
-        with _spaced(table):
-            table["start"] = written(value, table.get("start", table["lower"]))
+        put(document["parameters"], name, start=like(table.get("start", table["lower"]), value))
 
 
 def use_as_value(document: Any, name: str, value: float) -> None:
@@ -46,39 +41,8 @@ def use_as_value(document: Any, name: str, value: float) -> None:
     lower = 0.8 # rad
     upper = 0.8
     """
-    table = _table(document, name)
-    with _spaced(table):
-        for key in ("start", "deviation"):
-            table.pop(key, None)
-    for key in ("lower", "upper"):
-        table[key] = written(value, table[key])
-
-
-def written(value: float, like: object) -> float | str:
-    """Return a value (SI units) as another one is written: as a number, or with its unit.
-
-    Examples
-    --------
-    >>> written(4250.0, "1 kN/m"), written(0.7853981, "pi/4"), written(25.0, 20.0)
-    ('4.25 kN/m', 0.785398, 25.0)
-    """
-    number = float(f"{value:.6g}")
-    if not isinstance(like, str) or not is_quantity(like):
-        return number
-    unit = NUMBER.sub("", like, count=1)
-    text = f"{value / si(f'1 {unit}', None):.6g} {unit}"
-    return text if abs(si(text, None) - value) <= 1e-5 * abs(value) else number
-
-
-@contextmanager
-def _spaced(table: Any) -> Iterator[None]:
-    """Keep the space before the bracket of a table in one line, which keys that come or go would change."""
-    spaced = table.as_string().endswith(" }")
-    yield
-    while table.as_string().endswith("  }"):
-        table.value.body.pop()
-    if spaced and not table.as_string().endswith(" }"):
-        table.value.body[-1][1].trivia.trail = " "
+    bounds = {key: like(_table(document, name)[key], value) for key in ("lower", "upper")}
+    put(document["parameters"], name, **bounds, start=None, deviation=None)
 
 
 def _table(document: Any, name: str) -> Any:

@@ -13,9 +13,9 @@ from dalembert.studio.editor.draft import Draft
 from dalembert.studio.frame import button, complaints
 from dalembert.studio.panels.parameter_row import LOOKS, ParameterRow
 from dalembert.studio.room import Room
-from dalembert.studio.runs.player import Player
 from dalembert.studio.simulation.answers import Influences, Simulated, Source, influences, simulated
 from dalembert.studio.simulation.parts import names
+from dalembert.studio.simulation.player import Player
 from dalembert.studio.worker import WorkerError
 
 STILL = 0.3

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dalembert.errors import SolveError
+from dalembert.report.player import Film, film_of, frames
 from dalembert.report.sections.motion.mechanism import measured
 from dalembert.studio.simulation.curves import Curves, curves, on_page
-from dalembert.studio.simulation.film import Film, film, frames
 from dalembert.studio.simulation.parts import OVER_FREQUENCY, Part, part
 from dalembert.studio.worker import Kept
 from dalembert.study import load
@@ -182,7 +182,7 @@ def _film(own: Part, trajectory: "Trajectory", rows: np.ndarray) -> Film:
         joints={name: joint[rows] for name, joint in whole.joints.items()},
     )
     axes = "xyz"[: len(trajectory.system.AXES)]
-    return film(drawing, {} if own.data is None else measured(own.data.channels, own.data.values, axes))
+    return film_of(drawing, {} if own.data is None else measured(own.data.channels, own.data.values, axes))
 
 
 def _misfit(own: Part, response: np.ndarray) -> tuple[float, dict[str, float]]:

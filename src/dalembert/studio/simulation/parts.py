@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -93,9 +93,8 @@ def _measured(study: Study, name: str) -> Part:
 
 def _moving(study: Study) -> Part:
     """A mechanism without data: until the last time that the task names, with its channels."""
-    table = study.table
-    end = next((float(time) for time in _ends(table) if time), 0.0)
-    if not end > 0:
+    table, end = study.table, last_time(study)
+    if end is None:
         raise InputError(f"[{study.task}] names no time until which the motion lasts. Run the study to see its result.")
     points = [f"{point}.{axis}" for point in getattr(table, "points", ()) for axis in "xy"]
     channels = tuple(getattr(table, "channels", None) or points)
@@ -103,8 +102,12 @@ def _moving(study: Study) -> Part:
     return Part(study, model, None, end)
 
 
-def _ends(table: Any) -> list[Any]:
-    """Last times that a task's table may name."""
-    times = getattr(table, "times", None)
-    at = getattr(table, "at", None)
-    return [getattr(table, "last", None), times and times[-1], getattr(table, "end", None), None if at == {} else at]
+def last_time(study: Study) -> float | None:
+    """Return the last time of the motion that the task or the data name, in s; None if neither does."""
+    table, data = study.table, study.file.data
+    times, at = getattr(table, "times", None), getattr(table, "at", None)
+    ends = [getattr(table, "last", None), times and times[-1], getattr(table, "end", None), None if at == {} else at]
+    named = next((float(time) for time in ends if time), 0.0)
+    if not named and data is not None:
+        named = float(study.data().coordinate.values[-1])
+    return named if named > 0 else None

@@ -57,7 +57,7 @@ class Film:
     positions: str
 
 
-def film(drawing: "Drawing", measured: Mapping[str, np.ndarray]) -> Film:
+def film_of(drawing: "Drawing", measured: Mapping[str, np.ndarray]) -> Film:
     """Return a drawing at the times of :func:`frames` as a film, with measured positions (samples, 2 or 3)."""
     playback = Playback.of(np.asarray(drawing.times, dtype=float))
     lines = bodies_of(drawing.lines)

@@ -1,0 +1,32 @@
+"""The player of motions on a page."""
+
+from dataclasses import asdict
+
+from nicegui import ui
+
+from dalembert.report.player import BROWSER, LOOK, Film
+
+
+class Player(ui.element, component="player.js", esm={"dalembert-player": str(BROWSER)}):
+    """Plays films. A newer film continues where the older one was; it plays to its end after each change.
+
+    Parameters
+    ----------
+    label : str
+        For screen readers.
+
+    Notes
+    -----
+    It emits ``shown`` when it appears on the page, also again, and ``hidden`` when it disappears.
+    """
+
+    def __init__(self, label: str) -> None:
+        super().__init__()
+        self._props.update({"label": label, "look": LOOK})
+        self.number = 0
+
+    def show(self, film: Film, **times: float) -> None:
+        """Show a newer film; ``times`` tell a benchmark in the browser when it was asked for and computed."""
+        self.number += 1
+        self._props["film"] = {**asdict(film), "facts": {"number": self.number, **times}}
+        self.update()

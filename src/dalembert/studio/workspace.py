@@ -128,8 +128,8 @@ class Workspace:
         Raises
         ------
         InputError
-            If the study does not exist, if :func:`checked` refuses the name, if it ends in ``.py``, ``.pyc``, ``.so`` or
-            ``.toml``, and if the content has more than ``MOST_BYTES`` bytes.
+            If the study does not exist, if :func:`checked` refuses the name, if it ends in ``.py``, ``.pyc``, ``.so``
+            or ``.toml``, and if the content has more than ``MOST_BYTES`` bytes.
         """
         name = checked(name)
         if Path(name).suffix.lower() in (".py", ".pyc", ".so", ".toml"):

@@ -97,7 +97,7 @@ def test_from_an_empty_folder_to_an_identified_pendulum(chromium, start, root, r
     page.get_by_label("Use of column x").wait_for()
     look("4-data")
     with page.expect_file_chooser() as chooser:
-        page.locator(".q-uploader__input").first.click()
+        page.get_by_role("button", name="Add measured data").click()
     chooser.value.set_files(record)
     page.get_by_label("Use of column angle_deg").wait_for()
     look("5-uploaded")

@@ -11,7 +11,8 @@ from nicegui import ui
 
 from dalembert import __version__
 from dalembert.errors import DalembertError, told, unchanged
-from dalembert.report.look import LIGHT
+from dalembert.studio.colours import add_colours
+from dalembert.studio.corrections import add_corrections
 from dalembert.study.folder import RunFolder
 
 STATES = {
@@ -24,8 +25,9 @@ STATES = {
 """Colour of a state's badge; that of an error for the others."""
 LOOKS = """
 .border, .border-t { border-color: rgba(118, 129, 143, 0.45) }
-.cm-line.wrong { background: rgba(224, 49, 49, 0.28) !important }
-.cm-line.chosen { background: rgba(57, 135, 229, 0.16) !important }
+.cm-line.wrong { background: rgba(224, 49, 49, 0.06) !important; box-shadow: inset 3px 0 #e03131 }
+.body--dark .cm-line.wrong { background: rgba(224, 49, 49, 0.28) !important }
+.cm-line.chosen { background: rgba(57, 135, 229, 0.1) !important; box-shadow: inset 3px 0 #3987e5 }
 .disk-notice { background: rgba(240, 180, 41, 0.22) }
 .study-parts > .q-splitter__before { padding-right: 8px; overflow: hidden }
 .study-parts > .q-splitter__after { padding-left: 8px; gap: 0 }
@@ -71,17 +73,18 @@ def frame(title: str, *, wide: bool = False, most: str = "max-w-6xl") -> Iterato
     """
     ui.page_title(f"{title} · dalembert")
     ui.on_exception(_Once())
-    ui.colors(primary=LIGHT.series[0])
+    add_colours()
+    add_corrections()
     ui.add_css(LOOKS)
     width = "wide flex-nowrap gap-2 p-2" if wide else f"{most} mx-auto p-2 sm:p-4 gap-4"
     main = ui.column().classes(f"w-full {width}").props("role=main id=main")
     with ui.header().classes("items-center gap-x-6 gap-y-1 py-2").props("role=banner"):
-        ui.link("dalembert", "/").classes("text-white no-underline text-lg font-bold")
+        ui.link("dalembert", "/").classes("no-underline text-lg font-bold")
         with ui.row().classes("gap-4").props("role=navigation"):
             for name, path in WAYS:
-                ui.link(name, path).classes("text-white")
+                ui.link(name, path)
         ui.space()
-        ui.label(__version__).classes("text-xs opacity-80 max-sm:hidden")
+        ui.label(__version__).classes("text-xs max-sm:hidden")
     ui.skip_link("Skip to the content", target=main)  # after the header, which would move before it
     with main:
         ui.query(".nicegui-content").classes(replace="nicegui-content p-0" if wide else "nicegui-content")

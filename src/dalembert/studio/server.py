@@ -115,7 +115,9 @@ def application(root: Path) -> FastAPI:
         answer.headers["Referrer-Policy"] = "no-referrer"
         return answer
 
-    ui.run_with(app, title="dalembert", dark=None, show_welcome_message=False, reconnect_timeout=PATIENCE)
+    ui.run_with(
+        app, title="dalembert", dark=None, show_welcome_message=False, language="en-US", reconnect_timeout=PATIENCE
+    )
     pages.on_shutdown(lambda: pool.shutdown(cancel_futures=True))
     pages.on_shutdown(pictures.close)
     return app

@@ -7,6 +7,15 @@ from nicegui import events, ui
 from dalembert.studio.frame import complain
 from dalembert.studio.workspace import MOST_BYTES
 
+_HEADER = """
+<div class="row items-center no-wrap q-gutter-x-sm q-pa-xs">
+    <q-btn flat no-caps icon="upload_file" label="%s" class="col" align="left" @click="props.pickFiles" />
+    <q-spinner v-if="props.isUploading" size="sm" role="img" aria-label="Uploading" />
+    <span style="display: none"><q-uploader-add-trigger /></span>
+</div>
+"""
+"""A button, in place of Quasar's icon without a name."""
+
 
 def upload(label: str, kinds: str, uploaded: Callable[[events.UploadEventArguments], Awaitable[None]]) -> None:
     """Build a field that takes files of some kinds, such as ``".csv,.txt"``."""
@@ -27,3 +36,4 @@ def upload(label: str, kinds: str, uploaded: Callable[[events.UploadEventArgumen
     field = ui.upload(label=label, auto_upload=True, on_upload=uploaded, on_rejected=refuse, max_file_size=MOST_BYTES)
     field.on("failed", fail, args=[])
     field.props(f'accept="{kinds}" flat bordered').classes("w-full max-w-md")
+    field.add_slot("header", _HEADER % label)

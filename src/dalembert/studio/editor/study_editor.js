@@ -10,6 +10,7 @@ import * as CM from "nicegui-codemirror";
 
 const PATIENCE = 5000; // ms
 const HOVER = 300; // ms
+const HINT = "Tab indents. Press Escape, then Tab to leave the text. F1 explains the word at the cursor.";
 const TYPED = /[\w"'.[-]$/; // after which completions are asked for while typing
 
 const showHint = CM.StateEffect.define();
@@ -87,7 +88,7 @@ export default {
       return [
         ...Editor.methods.setupExtensions.call(this),
         hint,
-        CM.EditorView.contentAttributes.of({ "aria-label": this.label }),
+        CM.EditorView.contentAttributes.of({ "aria-label": this.label, "aria-description": HINT, tabindex: "0" }),
         CM.EditorView.updateListener.of((update) => this.sendText(update)),
         CM.EditorState.languageData.of(() => source),
         CM.hoverTooltip((view, position) => this.explain(view.state, position), { hoverTime: HOVER }),

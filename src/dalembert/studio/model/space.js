@@ -181,7 +181,7 @@ export default {
     label({ at, words, part, colour }) {
       const element = document.createElement(part ? "button" : "span");
       element.textContent = words;
-      Object.assign(element.style, { color: colour, font: "12px system-ui, sans-serif", pointerEvents: part ? "auto" : "none", padding: "1px 4px" });
+      Object.assign(element.style, { color: colour, font: "12px system-ui, sans-serif", pointerEvents: part ? "auto" : "none", padding: part ? "4px 6px" : "1px 4px", minWidth: "24px", minHeight: part ? "24px" : "" });
       if (part) {
         element.dataset.part = part;
         element.setAttribute("aria-label", part);

@@ -56,7 +56,7 @@ class Additions:
         with made, ui.menu().props("max-height=60vh"):
             for kind, meaning in addition.kinds.items():
                 with (
-                    ui.menu_item(on_click=partial(self._add, addition, kind)),
+                    ui.menu_item(on_click=partial(self._add, addition, kind)).props("role=menuitem"),
                     ui.column().classes("gap-0 max-w-sm py-1"),
                 ):
                     ui.label(kind).classes("font-medium")

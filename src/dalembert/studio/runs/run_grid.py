@@ -20,7 +20,7 @@ _STATE = """params => {
     const colours = { finished: 'positive', running: 'primary' };
     for (const state of ['paused', 'interrupted', 'killed']) colours[state] = 'warning';
     const cell = document.createElement('span'), dot = document.createElement('span');
-    dot.className = 'inline-block rounded-full mr-2 bg-' + (colours[params.value] ?? 'negative');
+    dot.className = 'dot inline-block rounded-full mr-2 bg-' + (colours[params.value] ?? 'negative');
     dot.style.cssText = 'width: 9px; height: 9px';
     dot.ariaHidden = true;
     cell.append(dot, params.value);

@@ -2,6 +2,7 @@
 
 import errno
 import os
+import re
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -58,8 +59,9 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     except BaseException as error:
         with suppress(OSError):
             temporary.unlink()
-        if isinstance(error, OSError) and error.errno in _STORAGE:
-            raise unwritable(path, error.strerror) from None
+        number = _number(error)
+        if number in _STORAGE:
+            raise unwritable(path, os.strerror(number)) from None
         raise
     _sync(path.parent)
 
@@ -125,6 +127,14 @@ def read_dataset(path: str | os.PathLike[str], *, form: str, expected: str) -> "
         found = dataset.attrs.get("format", f"no {form.split()[1]}")
         raise DataError(f"{path}: holds {found!r}; expected {form!r}, {expected}")
     return dataset
+
+
+def _number(error: BaseException) -> int:
+    """Number of the system's error, which HDF5 gives in its text alone where it closes a file; 0 if there is none."""
+    if isinstance(error, OSError) and error.errno is not None:
+        return error.errno
+    found = re.search(r"\berrno = (\d+)", str(error)) if isinstance(error, OSError | RuntimeError) else None
+    return int(found[1]) if found else 0
 
 
 def _sync(path: Path) -> None:

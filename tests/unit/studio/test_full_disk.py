@@ -76,3 +76,16 @@ def test_a_file_that_was_there_outlives_an_upload_without_room(workspace, full):
 def test_a_folder_that_may_not_be_made_is_a_sentence():
     error = PermissionError(errno.EACCES, "Permission denied", "/w/studies/mine")
     assert unchanged(error) == f"/w/studies/mine cannot be written or read: Permission denied; {DO}"
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        OSError(28, "Can't write data (file write failed: errno = 28, error message = 'No space left on device')"),
+        RuntimeError("Can't decrement id ref count (unable to close: errno = 28, error message = 'No space left')"),
+    ],
+)
+def test_the_words_of_hdf5_become_the_system_s(error, tmp_path):
+    sentence = r"^\S+result\.nc cannot be written: No space left on device; "
+    with pytest.raises(StorageError, match=sentence), files.replacing(tmp_path / "result.nc"):
+        raise error

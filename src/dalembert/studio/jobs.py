@@ -32,9 +32,21 @@ class Jobs:
         self._begin(folder, ["resume", str(folder)])
 
     def complaint(self, folder: Path) -> str:
-        """What a process said that ended before its run had a state; empty if there is nothing."""
+        """What a process said that ended with an error, or by which signal it ended; empty if there is nothing."""
         job = self._started.get(folder)
-        return "" if job is None or job.process.poll() in (None, 0) else job.said()
+        code = None if job is None else job.process.poll()
+        if job is None or code in (None, 0):
+            return ""
+        if code > 0:
+            return job.said().strip()
+        begun = RunFolder(folder).is_run
+        then = "What it computed is kept. Resume continues it." if begun else "Nothing was computed. Run it again."
+        return f"The process of this run ended {ending(code)}. {then}"
+
+    def is_started(self, folder: Path) -> bool:
+        """Whether a process that this studio started is at work in a folder."""
+        job = self._started.get(folder)
+        return job is not None and job.process.poll() is None
 
     def said(self, folder: Path) -> str:
         """What a process has said so far, such as that it compiles; empty if there is nothing."""
@@ -76,6 +88,15 @@ class Job:
         """The last line of its output."""
         self.output.seek(0)
         return "".join(self.output.read().strip().splitlines()[-1:])
+
+
+def ending(code: int) -> str:
+    """How a process ended, from its exit code.
+
+    >>> ending(-9), ending(3)
+    ('by the signal SIGKILL', 'with code 3')
+    """
+    return f"by the signal {signal.Signals(-code).name}" if code < 0 else f"with code {code}"
 
 
 def pause(folder: RunFolder) -> None:

@@ -1,9 +1,7 @@
 """The studio as a web application: its pages, the files of its runs, and where it listens."""
 
-import multiprocessing
 import secrets
 import socket
-from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +20,7 @@ from dalembert.studio.studies.new_page import new_page
 from dalembert.studio.studies.pictures import Pictures
 from dalembert.studio.studies.studies_page import studies_page
 from dalembert.studio.studies.study_page import study_page
+from dalembert.studio.worker import Worker
 from dalembert.studio.workspace import Workspace, checked
 
 PATIENCE = 30.0  # s that a browser may be out of reach, on a machine that runs are busy on
@@ -44,7 +43,7 @@ def application(root: Path) -> FastAPI:
     from nicegui import ui
 
     workspace, jobs, pictures = Workspace(root.resolve()), Jobs(), Pictures()
-    pool = ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn"))
+    worker = Worker()  # of the pages of runs
     app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
 
     listed = RunList(workspace.runs_folder)
@@ -65,8 +64,9 @@ def application(root: Path) -> FastAPI:
         try:
             checked(name)
         except InputError as error:
-            return PlainTextResponse(str(error), status_code=404)
-        return run_page(workspace, jobs, pool, name)
+            if name not in [folder.path.name for folder in workspace.runs()]:  # another program may have named it
+                return PlainTextResponse(str(error), status_code=404)
+        return run_page(workspace, jobs, worker, name)
 
     @ui.page("/continue/{name}")
     def go_on(name: str, code: str = "", number: int = 0) -> None:
@@ -118,7 +118,7 @@ def application(root: Path) -> FastAPI:
     ui.run_with(
         app, title="dalembert", dark=None, show_welcome_message=False, language="en-US", reconnect_timeout=PATIENCE
     )
-    pages.on_shutdown(lambda: pool.shutdown(cancel_futures=True))
+    pages.on_shutdown(worker.stop)
     pages.on_shutdown(pictures.close)
     return app
 

@@ -15,6 +15,7 @@ from threading import Thread
 from typing import Any, Concatenate, Literal, ParamSpec, TypeVar, cast
 
 from dalembert.errors import DalembertError, told
+from dalembert.studio.jobs import ending
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -205,9 +206,9 @@ class Worker:
         code = self._process.exitcode
         if self._ended:
             return self._ended
-        how = f"by the signal {signal.Signals(-code).name}" if code is not None and code < 0 else f"with code {code}"
+        how = "" if code is None else f" {ending(code)}"
         return (
-            f"The process that computes this study ended {how}. Check the Python functions and the compiled code that "
+            f"The process that computes this study ended{how}. Check the Python functions and the compiled code that "
             "the study names, and whether the machine has enough memory; the next change starts a new process."
         )
 

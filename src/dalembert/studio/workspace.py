@@ -61,7 +61,8 @@ class Workspace:
     def studies(self) -> list[str]:
         """All study files as ``"folder/file"``, without ``.toml``, by name."""
         found = sorted((self.root / "studies").glob("*/*.toml"))
-        return [f"{path.parent.name}/{path.stem}" for path in found if _is_study(path)]
+        shown = [path for path in found if not (path.name.startswith(".") or path.parent.name.startswith("."))]
+        return [f"{path.parent.name}/{path.stem}" for path in shown if _is_study(path)]
 
     def free(self, name: str) -> str:
         """The name itself, or with the next number with which no study is there."""

@@ -60,7 +60,7 @@ class DataGuide:
     def files(self) -> list[str]:
         """Names of the data files beside the study."""
         suffixes = tuple(suffix for form in known_formats().values() for suffix in form.suffixes)
-        found = (path.name for path in self.draft.path.parent.iterdir() if path.is_file())
+        found = (path.name for path in self.draft.path.parent.iterdir() if path.is_file() and path.name[0] != ".")
         named = (name for name in found if name.lower().removesuffix(".gz").endswith(suffixes))
         return sorted(name for name in named if name != SCHEMA)
 

@@ -2,9 +2,9 @@
 
 import asyncio
 import json
-from concurrent.futures import ProcessPoolExecutor
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 from urllib.parse import quote
 
 import plotly.graph_objects as go
@@ -18,22 +18,29 @@ from dalembert.studio.frame import STATES, badge, button, complaints, frame, rep
 from dalembert.studio.jobs import Jobs, pause, stop
 from dalembert.studio.runs.live import Live
 from dalembert.studio.runs.remaining import most_simulations
+from dalembert.studio.worker import Kept, Worker, WorkerError
 from dalembert.studio.workspace import Workspace
-from dalembert.study.folder import FINISHED, RESUMABLE, RUNNING, RunFolder
+from dalembert.study.folder import FINISHED, INPUT, KILLED, RESUMABLE, RUNNING, RunFolder
 from dalembert.study.listing import best
 from dalembert.study.runner import unknowns
 
 EVERY = 0.5  # s between two looks at the events
 FILES = {"report.html": "Report", "result.nc": "Result (NetCDF)", "study.toml": "Study", "events.jsonl": "Events"}
 """Files of a run that can be downloaded, and what they are called."""
-STARTING = "starting"
+STARTING, MISSING = "starting", "missing"
+SAYS = {
+    KILLED: "The process of this run ended in the middle: it was killed, or the machine stopped. What it computed is "
+    "kept. Resume continues it.",
+    MISSING: "There is no run of this name, or it has not begun. The page Runs lists all.",
+}
+"""What is said of a state that no process wrote."""
 
 
-def run_page(workspace: Workspace, jobs: Jobs, pool: ProcessPoolExecutor, name: str) -> None:
+def run_page(workspace: Workspace, jobs: Jobs, worker: Worker, name: str) -> None:
     """Watch a run, stop it or go on with it, and read its report."""
     folder = RunFolder(workspace.runs_folder / name)
     with frame(name):
-        page = _Page(folder, jobs, pool)
+        page = _Page(folder, jobs, worker)
         page.build()
         page.look()
         ui.timer(EVERY, page.look)
@@ -46,14 +53,14 @@ class _Page:
     ----------
     folder : RunFolder
     jobs : Jobs
-    pool : ProcessPoolExecutor
+    worker : Worker
         Where the best fit so far is computed.
     """
 
-    def __init__(self, folder: RunFolder, jobs: Jobs, pool: ProcessPoolExecutor) -> None:
-        self.folder, self.jobs, self.pool = folder, jobs, pool
+    def __init__(self, folder: RunFolder, jobs: Jobs, worker: Worker) -> None:
+        self.folder, self.jobs, self.worker = folder, jobs, worker
         self.live = Live(folder.events)
-        self.state, self.shown, self.drawn = "", 0, 0
+        self.state, self.complaint, self.shown, self.drawn = "", "", 0, 0
         self.fitted: list[float] = []
         self.fitting: asyncio.Task | None = None
         self.learning: asyncio.Task | None = None
@@ -79,7 +86,7 @@ class _Page:
 
     def look(self) -> None:
         """Bring the page up to what the run's folder says."""
-        state = self._state()
+        state, complaint = self._state(), self.jobs.complaint(self.folder.path)
         if self.learning is None and state == RUNNING:
             self.learning = asyncio.create_task(self._learn())
         if self.live.advance():
@@ -87,8 +94,8 @@ class _Page:
         if self.live.values != self.fitted and state == RUNNING and (self.fitting is None or self.fitting.done()):
             self.fitted = list(self.live.values)
             self.fitting = asyncio.create_task(self._show_fit(self.fitted))
-        if state != self.state:
-            self.state = state
+        if (state, complaint) != (self.state, self.complaint):
+            self.state, self.complaint = state, complaint
             self._show_state()
         if not self.live.count and state in (RUNNING, STARTING):
             self.message.set_text(self.jobs.said(self.folder.path))
@@ -98,7 +105,9 @@ class _Page:
     def _state(self) -> str:
         if self.folder.is_run:
             return str(self.folder.state()["state"])
-        return "input" if self.jobs.complaint(self.folder.path) else STARTING
+        if self.jobs.complaint(self.folder.path):
+            return INPUT
+        return STARTING if self.jobs.is_started(self.folder.path) else MISSING
 
     def _show_state(self) -> None:
         """The state itself, what can be done now, and what there is to read."""
@@ -110,7 +119,7 @@ class _Page:
         self.resume.set_visibility(state in RESUMABLE)
         self.bar.set_visibility(not ended)
         said = self.folder.state().get("message", "") if self.folder.is_run else ""
-        self.message.set_text(str(said or self.jobs.complaint(self.folder.path)) if ended else "")
+        self.message.set_text(str(said or self.complaint or SAYS.get(state, "")) if ended else "")
         self.files.clear()
         self.report.clear()
         self.findings.clear()
@@ -154,17 +163,16 @@ class _Page:
 
     async def _learn(self) -> None:
         """Ask another process for the names of the unknowns and the number of simulations, which take imports."""
-        loop = asyncio.get_running_loop()
-        with suppress(Exception):  # whatever a user's model raises, the run itself says it
-            self.live.name(await loop.run_in_executor(self.pool, _names, self.folder))
-            self.live.remaining.most = await loop.run_in_executor(self.pool, most_simulations, self.folder.path)
+        name = self.folder.path.name
+        with suppress(WorkerError):  # whatever a user's model raises, the run itself says it
+            self.live.name(await self.worker.ask(f"names of {name}", _names, self.folder) or ())
+            self.live.remaining.most = await self.worker.ask(f"effort of {name}", _most, self.folder.path)
 
     async def _show_fit(self, values: list[float]) -> None:
         """The best fit so far; a run whose model another process cannot make has none."""
-        loop = asyncio.get_running_loop()
         try:
-            figure = await loop.run_in_executor(self.pool, fit_so_far, self.folder.path, values)
-        except Exception:  # whatever a user's model raises, the run itself says it
+            figure = await self.worker.ask(f"fit of {self.folder.path.name}", _fit, self.folder.path, values)
+        except WorkerError:  # whatever a user's model raises, the run itself says it
             return
         if figure is not None:
             _draw(self.fit, "Best fit so far, and the data", on_any_page(go.Figure(figure)))
@@ -180,7 +188,15 @@ def _draw(place: ui.column, name: str, figure: go.Figure) -> None:
             plot(figure).classes("w-full").props(f'role=img aria-label="{name}"')
 
 
-def _names(folder: RunFolder) -> tuple[str, ...]:
+def _most(kept: Kept, run: Path) -> int | None:
+    return most_simulations(run)
+
+
+def _fit(kept: Kept, run: Path, values: list[float]) -> dict[str, Any] | None:
+    return fit_so_far(run, values)
+
+
+def _names(kept: Kept, folder: RunFolder) -> tuple[str, ...]:
     """Names of the unknowns; none of a run that has not begun."""
     try:
         return unknowns(folder.kept()) if folder.is_run else ()

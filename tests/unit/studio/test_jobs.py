@@ -3,12 +3,11 @@
 import os
 import signal
 import subprocess
-import tempfile
 
 import pytest
 
 from dalembert.errors import InputError
-from dalembert.studio.jobs import Job, Jobs, pause
+from dalembert.studio.jobs import Job, Jobs, _temporary, pause
 from dalembert.study.folder import PAUSED, RESUMABLE, RunFolder
 from support import says
 
@@ -28,28 +27,29 @@ def test_a_paused_run_says_so(tmp_path, monkeypatch):
         pause(folder)
 
 
-def test_a_process_that_was_killed_says_so(tmp_path, monkeypatch):
-    jobs, folder = Jobs(), RunFolder(tmp_path / "run")
-    monkeypatch.setattr(Jobs, "_begin", begin_with("kill -KILL $$"))
-    jobs.start(tmp_path / "study.toml", folder.path)
-    ended = "The process of this run ended by the signal SIGKILL. "
-    assert jobs.complaint(folder.path) == ended + "Nothing was computed. Run it again."
-    folder.path.mkdir()
+@pytest.fixture
+def ended():
+    """A function that makes the job of a folder, whose process does what a script says, and has ended."""
+    files = []
+
+    def ended(jobs, folder, script):
+        files.extend(_temporary() for _ in range(2))
+        process = subprocess.Popen(["sh", "-c", script], stderr=files[-2])
+        process.wait()
+        jobs._started[folder.path] = Job(process, *files[-2:])
+
+    yield ended
+    for file in files:
+        file.close()
+
+
+def test_a_process_that_was_killed_says_so(tmp_path, ended):
+    jobs, folder = Jobs(), RunFolder(tmp_path)
+    ended(jobs, folder, "kill -KILL $$")
+    begins = "The process of this run ended by the signal SIGKILL. "
+    assert jobs.complaint(folder.path) == begins + "Nothing was computed. Run it again."
     folder.set_state("running", process=1)
-    assert jobs.complaint(folder.path) == ended + "What it computed is kept. Resume continues it."
-    monkeypatch.setattr(Jobs, "_begin", begin_with("echo no such spring >&2; exit 2"))
-    jobs.resume(folder.path)
+    assert jobs.complaint(folder.path) == begins + "What it computed is kept. Resume continues it."
+    ended(jobs, folder, "echo no such spring >&2; exit 2")
     assert jobs.complaint(folder.path) == "no such spring"
     assert not jobs.is_started(folder.path)
-
-
-def begin_with(script):
-    """A start of a process that does what a script says, and has ended."""
-
-    def begin(jobs, folder, arguments):
-        log, output = tempfile.TemporaryFile("w+"), tempfile.TemporaryFile("w+")
-        process = subprocess.Popen(["sh", "-c", script], stderr=log, stdout=output)
-        process.wait()
-        jobs._started[folder] = Job(process, log, output)
-
-    return begin

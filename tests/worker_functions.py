@@ -54,3 +54,8 @@ def filling(kept: Kept) -> float:
 
 def unsendable(kept: Kept) -> object:
     return lambda: None
+
+
+def loaded(kept: Kept, names: list[str]) -> bool:
+    """Whether modules are imported already."""
+    return set(names) <= set(sys.modules)

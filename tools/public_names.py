@@ -17,6 +17,8 @@ SOURCES = Path(__file__).parents[1] / "src"
 PACKAGE = "dalembert.multibody"
 SPACE = f"{PACKAGE}.spatial"
 CHARTS = "dalembert.report.charts"
+LAZY = ("data", "forward", "report", "report.pictures", "study", "vibration")
+"""Other packages whose names are imported where they are first used."""
 FOLDERS = ("components", "integrators")
 IN_SPACE = f"{PACKAGE}.components.spatial."
 BASES_IN_SPACE = ("Body", "Joint", "Load")
@@ -153,7 +155,10 @@ def generated(sources: Path) -> dict[Path, str]:
         package / "multibody" / "__init__.pyi": STUB + stub(listed(sources, PACKAGE) | homes),
         package / "multibody" / "spatial.pyi": STUB + stub(listed(sources, SPACE, PACKAGE) | spatial_homes),
         package / "report" / "charts" / "__init__.pyi": STUB + stub(listed(sources, CHARTS)),
-        package / "vibration" / "__init__.pyi": STUB + stub(listed(sources, "dalembert.vibration")),
+        **{
+            package.joinpath(*name.split("."), "__init__.pyi"): STUB + stub(listed(sources, f"dalembert.{name}"))
+            for name in LAZY
+        },
     }
 
 

@@ -144,9 +144,10 @@ def check(
     from dalembert.errors import ModelError
     from dalembert.study import load, plan
     from dalembert.study.channels import channel_lines
-    from dalembert.study.duration import spoken, within
+    from dalembert.study.duration import within
     from dalembert.study.runner import looked
     from dalembert.study.sources import source_lines
+    from dalembert.study.spoken import spoken
     from dalembert.study.table import placed
 
     read = load(study)
@@ -208,10 +209,13 @@ def studio(
         raise InputError(
             "the studio needs NiceGUI, which is not installed; run: pip install 'dalembert[studio]'"
         ) from None
-    from dalembert.studio import serve
-
     if not folder.is_dir():
         raise InputError(f"there is no folder {folder}; make it, or name another")
+    from dalembert.studio.processes import prepare
+
+    prepare()  # while this process imports the pages
+    from dalembert.studio import serve
+
     serve(folder, host, port, token, browser)
 
 

@@ -13,11 +13,11 @@ import pytest
 
 import dalembert
 import public_names
-from dalembert import component_index, multibody
+from dalembert import component_index, data, forward, multibody, report, study
 from dalembert.multibody import spatial
 from dalembert.study.catalogue import ROLES, kinds_of
 
-LAZY = [dalembert, multibody, spatial]
+LAZY = [dalembert, data, forward, multibody, report, spatial, study]
 
 
 def loaded_by(code: str) -> set[str]:

@@ -1,23 +1,15 @@
 """Measured data in."""
 
-from dalembert.data.bands import Bands
-from dalembert.data.bands_file import read_bands
-from dalembert.data.columns import Columns
-from dalembert.data.derivative import Derivative, derivative
-from dalembert.data.format import Format, Request
-from dalembert.data.measurements import Measurements, merged
-from dalembert.data.readers import read, read_trials
+from dalembert.lazy import lazy_names
 
-__all__ = [
-    "Bands",
-    "Columns",
-    "Derivative",
-    "Format",
-    "Measurements",
-    "Request",
-    "derivative",
-    "merged",
-    "read",
-    "read_bands",
-    "read_trials",
-]
+_NAMES = {
+    "bands": "Bands",
+    "bands_file": "read_bands",
+    "columns": "Columns",
+    "derivatives": "Derivative derivative",
+    "format": "Format Request",
+    "measurements": "Measurements merged",
+    "readers": "read read_trials",
+}
+_HOMES = {name: f"{__name__}.{module}" for module, names in _NAMES.items() for name in names.split()}
+__getattr__, __dir__ = lazy_names(__name__, _HOMES)

@@ -1,48 +1,22 @@
 """The protocol that every model fulfils, models made of plain functions, and what sensors see of a model."""
 
-from dalembert.forward.checkpoint import Checkpoint
-from dalembert.forward.cluster import Executor, connected, takes_executor
-from dalembert.forward.complex_steps import check_derivatives
-from dalembert.forward.distributed import Distributed, on_cluster
-from dalembert.forward.ensemble import ensemble
-from dalembert.forward.model import Channel, Coordinate, ForwardModel
-from dalembert.forward.prefetch import prefetched
-from dalembert.forward.python_model import PythonModel
-from dalembert.forward.recorded import Recorded
-from dalembert.forward.refinement import Refinable, Refinement, error_factor, refined
-from dalembert.forward.responses import Responses
-from dalembert.forward.restart import Restartable, StateChart, begun_later, restartable, restarted
-from dalembert.forward.sensors import Sensor, Sensors
-from dalembert.forward.wrapped import clock, findings_at, starting
+from dalembert.lazy import lazy_names
 
-__all__ = [
-    "Channel",
-    "Checkpoint",
-    "Coordinate",
-    "Distributed",
-    "Executor",
-    "ForwardModel",
-    "PythonModel",
-    "Recorded",
-    "Refinable",
-    "Refinement",
-    "Responses",
-    "Restartable",
-    "Sensor",
-    "Sensors",
-    "StateChart",
-    "begun_later",
-    "check_derivatives",
-    "clock",
-    "connected",
-    "ensemble",
-    "error_factor",
-    "findings_at",
-    "on_cluster",
-    "prefetched",
-    "refined",
-    "restartable",
-    "restarted",
-    "starting",
-    "takes_executor",
-]
+_NAMES = {
+    "checkpoint": "Checkpoint",
+    "cluster": "Executor connected takes_executor",
+    "complex_steps": "check_derivatives",
+    "distributed": "Distributed on_cluster",
+    "ensembles": "ensemble",
+    "model": "Channel Coordinate ForwardModel",
+    "prefetch": "prefetched",
+    "python_model": "PythonModel",
+    "recorded": "Recorded",
+    "refinement": "Refinable Refinement error_factor refined",
+    "responses": "Responses",
+    "restart": "Restartable StateChart begun_later restartable restarted",
+    "sensors": "Sensor Sensors",
+    "wrapped": "clock findings_at starting",
+}
+_HOMES = {name: f"{__name__}.{module}" for module, names in _NAMES.items() for name in names.split()}
+__getattr__, __dir__ = lazy_names(__name__, _HOMES)

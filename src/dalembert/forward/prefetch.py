@@ -19,7 +19,7 @@ from threadpoolctl import ThreadpoolController
 from dalembert.errors import DalembertError, SolveError, told
 from dalembert.forward.cluster import packed
 from dalembert.forward.distributed import Answers, Distributed, bare, key_of, rebuilt
-from dalembert.forward.ensemble import ensemble
+from dalembert.forward.ensembles import ensemble
 from dalembert.forward.model import ForwardModel
 from dalembert.forward.recorded import Recorded
 from dalembert.forward.responses import Responses

@@ -1,11 +1,15 @@
 """Figures, one function each, and a report that opens without a network; for notebooks and run folders alike."""
 
-from dalembert.report import charts
-from dalembert.report.contents import figures
-from dalembert.report.look import dark
-from dalembert.report.page import report
-from dalembert.report.registry import sections_of
-from dalembert.report.section import Part
-from dalembert.report.table import Table, cell
+from dalembert.lazy import lazy_names
 
-__all__ = ["Part", "Table", "cell", "charts", "dark", "figures", "report", "sections_of"]
+_NAMES = {
+    "contents": "figures",
+    "look": "dark",
+    "page": "report",
+    "registry": "sections_of",
+    "section": "Part",
+    "table": "Table cell",
+}
+_HOMES = {name: f"{__name__}.{module}" for module, names in _NAMES.items() for name in names.split()}
+_MODULES = ("charts",)
+__getattr__, __dir__ = lazy_names(__name__, _HOMES, _MODULES)

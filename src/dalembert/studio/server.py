@@ -11,6 +11,7 @@ from fastapi.responses import FileResponse, PlainTextResponse, Response
 from dalembert.errors import InputError
 from dalembert.studio.guard import Guard
 from dalembert.studio.jobs import Jobs
+from dalembert.studio.processes import prepare
 from dalembert.studio.runs.compare_page import ADDRESS, compare_page, comparison_file
 from dalembert.studio.runs.continue_page import continue_page
 from dalembert.studio.runs.run_list import RunList
@@ -149,6 +150,7 @@ def serve(root: Path, host: str = "127.0.0.1", port: int = 8080, token: str = ""
     if host not in LOOPBACK and not token:
         token = secrets.token_urlsafe(24)
     listening = _listening(host, port)
+    prepare()
     port = listening.getsockname()[1]
     shown = "localhost" if host in ("0.0.0.0", "::") else host
     address = f"http://{f'[{shown}]' if ':' in shown else shown}:{port}/" + (f"?token={token}" if token else "")

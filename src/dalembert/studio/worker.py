@@ -16,6 +16,7 @@ from typing import Any, Concatenate, Literal, ParamSpec, TypeVar, cast
 
 from dalembert.errors import DalembertError, told
 from dalembert.studio.jobs import ending
+from dalembert.studio.processes import context
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -62,6 +63,10 @@ class Kept:
 
     _things: dict[str, tuple[Hashable, Any]] = field(default_factory=dict)
 
+    def drop(self, kind: str) -> None:
+        """Keep nothing of a kind."""
+        self._things.pop(kind, None)
+
     def newest(self, kind: str, source: Hashable, make: Callable[[], T]) -> T:
         """Return the thing made of a source, made anew if the last one of its kind was made of another source.
 
@@ -82,6 +87,11 @@ class Worker:
     ----------
     limits : Limits
 
+    Attributes
+    ----------
+    busy : str or None
+        Subject of the request that is answered now.
+
     Notes
     -----
     The process starts with :meth:`start`, and again with the first request after it has ended.
@@ -95,10 +105,11 @@ class Worker:
         self._connection: Connection | None = None
         self._ended = ""
         self._cause: Cause = "ended"
+        self.busy: str | None = None
         Thread(target=self._take_turns, daemon=True).start()  # the studio ends without waiting for it
 
     def start(self) -> None:
-        """Start the process, which takes a second or two, before anything is asked for."""
+        """Start the process before anything is asked for."""
         self._turns.put(self._running)
 
     async def ask(
@@ -131,9 +142,12 @@ class Worker:
             if not answer.set_running_or_notify_cancel():
                 return
             try:
+                self.busy = subject
                 answer.set_result(self._exchange(request) if self._newest.get(subject) is mine else None)
             except Exception as error:
                 answer.set_exception(error)
+            finally:
+                self.busy = None
 
         self._turns.put(turn)
         return await asyncio.wrap_future(answer)
@@ -167,10 +181,10 @@ class Worker:
     def _running(self) -> Connection:
         """Return the connection to the process, which is started if there is none."""
         if self._connection is None or self._process is None or not self._process.is_alive():
-            context = multiprocessing.get_context("spawn")
-            self._connection, theirs = context.Pipe()
+            begin = context()
+            self._connection, theirs = begin.Pipe()
             self._ended, self._cause = "", "ended"
-            self._process = context.Process(target=_serve, args=(theirs, self.limits.bytes), daemon=True)
+            self._process = begin.Process(target=_serve, args=(theirs, self.limits.bytes), daemon=True)
             self._process.start()
             theirs.close()
         return self._connection

@@ -11,9 +11,8 @@ from dalembert.errors import InputError, no_text, require_known
 from dalembert.files import free_path, replacing, write_text
 from dalembert.studio.studies.documents import document_of
 from dalembert.study import schema_file
+from dalembert.study.basics import LARGEST, task_names
 from dalembert.study.folder import RunFolder, find_runs
-from dalembert.study.loader import LARGEST
-from dalembert.study.tasks import TASKS
 
 NAME = re.compile(r"""(?![ .-])[^/\\:*?"<>|]{1,100}(?<![ .])""")
 """What a study, a file or a run may be called on every system. A dot first would hide it."""
@@ -179,4 +178,4 @@ def _is_study(path: Path) -> bool:
     document = document_of(path)
     if document is None:
         return path.name == "study.toml"
-    return path.name == "study.toml" or (bool(document.keys() & TASKS.keys()) and "model" in document)
+    return path.name == "study.toml" or (not document.keys().isdisjoint(task_names()) and "model" in document)

@@ -1,10 +1,15 @@
-"""Study files: read, checked, run in folders of their own."""
+"""Study files: read, checked, run in folders of their own; the names are imported where they are first used."""
 
-from dalembert.study.folder import RunFolder
-from dalembert.study.loader import load
-from dalembert.study.runner import report_run, resume_run, run_study
-from dalembert.study.schema import json_schema
-from dalembert.study.study import Study
-from dalembert.study.validation import plan
+from dalembert.lazy import lazy_names
 
-__all__ = ["RunFolder", "Study", "json_schema", "load", "plan", "report_run", "resume_run", "run_study"]
+_NAMES = {
+    "folder": "RunFolder",
+    "loader": "load",
+    "runner": "report_run resume_run run_study",
+    "schema": "json_schema",
+    "study": "Study",
+    "validation": "plan",
+}
+_HOMES = {name: f"{__name__}.{module}" for module, names in _NAMES.items() for name in names.split()}
+# Lists of runs and the studio read folders of runs, and need no models.
+__getattr__, __dir__ = lazy_names(__name__, _HOMES)

@@ -14,6 +14,7 @@ from dalembert.errors import SolveError
 from dalembert.findings import Finding
 from dalembert.forward import ForwardModel, Sensors
 from dalembert.forward.wrapped import Wrapped
+from dalembert.study.spoken import DAY, spoken
 
 ENOUGH = 0.3
 """Seconds of simulation that are extrapolated, at least, where the whole takes longer."""
@@ -26,8 +27,6 @@ STEPS = 100
 
 TOGETHER = 4
 """Simulations timed at once where a method runs them in batches, over all cores."""
-
-DAY = 86_400.0
 
 
 class StartFailed(SolveError):
@@ -172,22 +171,6 @@ def within(limit: float, sentences: Callable[[], Iterator[str]]) -> Iterator[str
         if isinstance(answer, BaseException):
             raise answer
         yield answer
-
-
-def spoken(seconds: float) -> str:
-    """A duration as people say it, to two digits.
-
-    >>> [spoken(value) for value in (2.345e-4, 0.1234, 41.7, 250.0, 7400.0)]
-    ['0.23 ms', '0.12 s', '42 s', '4.2 min', '2.1 h']
-    >>> [spoken(value) for value in (9e5, 1.33e9, 1e15)]
-    ['10 days', '42 years', '3.2e+07 years']
-    """
-    units = ((365.25 * DAY, " years"), (DAY, " days"), (3600.0, " h"), (60.0, " min"), (1.0, " s"))
-    for size, unit in units:
-        if seconds >= 2 * size:
-            number = seconds / size
-            return f"{number:.0f}{unit}" if 9.95 <= number < 1e4 else f"{number:.2g}{unit}"
-    return f"{seconds:.2g} s" if seconds >= 0.01 else f"{1e3 * seconds:.2g} ms"
 
 
 def _clocked(effort: Effort, share: float) -> tuple[float, float]:

@@ -8,14 +8,14 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from dalembert.errors import InputError, unwritable
 from dalembert.files import free_path, replacing, write_text
-from dalembert.forward.checkpoint import holds_results
 from dalembert.study.events import read_events
-from dalembert.study.loader import load
-from dalembert.study.study import Study
+
+if TYPE_CHECKING:
+    from dalembert.study.study import Study
 
 RUNNING = "running"
 FINISHED = "finished"
@@ -78,6 +78,8 @@ class RunFolder:
     @property
     def is_refused(self) -> bool:
         """Return True for a run with wrong input that computed nothing, so that it can be replaced without loss."""
+        from dalembert.forward.checkpoint import holds_results
+
         return self.is_run and self.state()["state"] == INPUT and not holds_results(self.checkpoint)
 
     def state(self) -> dict[str, Any]:
@@ -125,7 +127,7 @@ class RunFolder:
         now = datetime.now(UTC).isoformat(timespec="seconds")
         _write_json(self._state, {"state": state, "since": now, **details})
 
-    def keep(self, study: Study) -> None:
+    def keep(self, study: "Study") -> None:
         """Keep what runs: the study's bytes, its settings, its seed, and copies of the files that it names."""
         with replacing(self.study) as temporary:
             temporary.write_bytes(study.content)
@@ -155,7 +157,7 @@ class RunFolder:
         if not file.is_file() or sha256(file) != digest:
             raise self.damaged(file)
 
-    def kept(self) -> Study:
+    def kept(self) -> "Study":
         """The study as it ran, with the copies of its files.
 
         Raises
@@ -173,6 +175,8 @@ class RunFolder:
             raise self.damaged(self.inputs) from None
         for file, digest in digests.items():
             self.check(file, digest)
+        from dalembert.study.loader import load
+
         study = load(self.study, name=kept["name"], folder=Path(kept["folder"]), files=files)
         return study if kept["seed"] is None else study.with_seed(kept["seed"])
 
@@ -223,7 +227,7 @@ class RunFolder:
             return False
 
 
-def _origin(study: Study) -> str:
+def _origin(study: "Study") -> str:
     """Folder of a study, from which its functions are imported; for the study of a run that of its first run."""
     folder = RunFolder(study.path.parent.resolve())
     if folder.is_run and study.path.resolve() == folder.study:

@@ -1,12 +1,13 @@
 """The list of runs, with their states and best values."""
 
 from pathlib import Path
-
-from rich.table import Table
-from rich.text import Text
+from typing import TYPE_CHECKING
 
 from dalembert.study.events import last_progress
 from dalembert.study.folder import RunFolder, find_runs
+
+if TYPE_CHECKING:
+    from rich.table import Table
 
 COLUMNS = ("run", "task", "state", "since", "best", "findings")
 _STYLES = {"finished": "green", "running": "cyan", "failed": "red", "input": "red", "killed": "red", "damaged": "red"}
@@ -17,8 +18,11 @@ def rows(root: Path) -> list[dict[str, str]]:
     return [_row(folder) for folder in find_runs(root)]
 
 
-def table(found: list[dict[str, str]]) -> Table:
+def table(found: list[dict[str, str]]) -> "Table":
     """The rows as a table."""
+    from rich.table import Table
+    from rich.text import Text
+
     shown = Table(box=None, pad_edge=False)
     for heading in COLUMNS:
         shown.add_column(heading, overflow="fold")

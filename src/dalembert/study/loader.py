@@ -9,6 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from dalembert.errors import InputError, no_text, unknown
+from dalembert.study.basics import LARGEST
 from dalembert.study.context import Context
 from dalembert.study.schema import study_file, words_of
 from dalembert.study.sentences import mistakes
@@ -17,8 +18,6 @@ from dalembert.study.study import Study
 from dalembert.study.study_file import StudyFile
 from dalembert.study.table import placed
 from dalembert.study.tasks import TASKS
-
-LARGEST = 10_000_000  # bytes; a study of this size is some other file
 
 
 class StudyError(InputError):

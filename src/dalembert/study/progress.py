@@ -2,12 +2,13 @@
 
 from dataclasses import dataclass, field
 from time import monotonic
-from typing import Self
-
-from rich.console import Console
-from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from typing import TYPE_CHECKING, Self
 
 from dalembert.study.events import LOST, Event
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.progress import Progress
 
 _EVERY = 2.0  # s between plain lines
 
@@ -105,9 +106,9 @@ class Watch:
         Names of the unknowns, for the best values.
     """
 
-    console: Console
+    console: "Console"
     names: tuple[str, ...] = ()
-    _live: Progress | None = field(default=None, init=False)
+    _live: "Progress | None" = field(default=None, init=False)
     _next: float = field(default=0.0, init=False)
     _told: Told = field(init=False)
 
@@ -116,6 +117,8 @@ class Watch:
 
     def __enter__(self) -> Self:
         if self.console.is_terminal:
+            from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
             columns = SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
             self._live = Progress(*columns, console=self.console, transient=True)
             self._live.start()

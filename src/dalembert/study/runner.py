@@ -15,10 +15,11 @@ from dalembert.files import write_text
 from dalembert.findings import stored_findings
 from dalembert.forward import Checkpoint, Executor, connected
 from dalembert.kernels.preparation import observed
-from dalembert.study.duration import StartFailed, duration, spoken, timed, too_long
+from dalembert.study.duration import StartFailed, duration, timed, too_long
 from dalembert.study.events import LOST, Event, EventLog, plain
 from dalembert.study.folder import DAMAGED, FAILED, FINISHED, INPUT, INTERRUPTED, RUNNING, RunFolder, new_folder
 from dalembert.study.functions import users_code
+from dalembert.study.spoken import spoken
 from dalembert.study.study import Study
 from dalembert.study.tasks import TASKS, Outcome
 from dalembert.study.validation import plan

@@ -91,7 +91,7 @@ def test_a_study_is_read_again_only_if_it_changed(identification, monkeypatch):
     kept, values = Kept(), start(identification)
     simulated(kept, source(identification), "", values)
     with monkeypatch.context() as changed:
-        changed.setattr("dalembert.studio.simulation.answers.load", None)
+        changed.setattr("dalembert.study.loader.load", None)
         simulated(kept, source(identification), "", values)
         with pytest.raises(TypeError):
             simulated(kept, Source(identification, identification.read_text() + "\n"), "", values)

@@ -15,10 +15,8 @@ from dalembert.errors import DalembertError, InputError
 from dalembert.findings import Finding
 from dalembert.report.thin import thinned
 from dalembert.studio.data.choices import Choices, Key, guessed, table_of
+from dalembert.studio.editor.reading import study_of
 from dalembert.studio.worker import Kept
-from dalembert.study import Study, load
-from dalembert.study.channels import channel_units
-from dalembert.study.experiments import reads
 
 POINTS = 1000
 """Most points of a curve."""
@@ -115,7 +113,7 @@ def examine(kept: Kept, study: Path, text: str, file: str, choices: Choices | No
     DataError
         If the file cannot be read.
     """
-    channels = kept.newest("channels", text, lambda: _channels(study, text))
+    channels = kept.newest("channels", text, lambda: _channels(kept, study, text))
     marks = (AUTO, AUTO) if choices is None else (choices.separator, choices.decimal)
     path = study.parent / file
     stamp = (path.stat().st_mtime_ns, path.stat().st_size) if path.is_file() else None
@@ -158,19 +156,22 @@ def compare(kept: Kept, study: Path, text: str) -> tuple[Finding, ...]:
     return kept.newest("comparison", (study, text), lambda: tuple(_suspect(study, text)))
 
 
-def _channels(study: Path, text: str) -> dict[str, str]:
+def _channels(kept: Kept, study: Path, text: str) -> dict[str, str]:
     """Channels of the study's model with their units; none while the study has mistakes."""
+    from dalembert.study.channels import channel_units
+
     try:
-        return channel_units(_read(study, text))
+        return channel_units(study_of(kept, study, text))
     except DalembertError:
         return {}
 
 
 def _suspect(study: Path, text: str) -> Iterator[Finding]:
     from dalembert.inverse.experiments.suspect_offsets import first_findings
+    from dalembert.study.experiments import reads
 
     try:
-        one = _read(study, text)
+        one = study_of(Kept(), study, text)  # with other data than the text of the page
         data = one.data()
         if one.task != "identify" or len(data.coordinate.values) > FEW:
             return
@@ -182,11 +183,6 @@ def _suspect(study: Path, text: str) -> Iterator[Finding]:
         known = any(reads(name, [finding.values["channel"]]) for name in offsets)
         if finding.code != "suspect-offset" or not known:
             yield finding
-
-
-def _read(study: Path, text: str) -> Study:
-    """The study of a text."""
-    return load(study, name=study.stem, content=text.encode())
 
 
 def _table(choices: Choices, found: Preview) -> tuple[dict[str, Any], str]:

@@ -128,7 +128,7 @@ class DataGuide:
         if not self.file:
             return
         good = self.draft.good
-        text = self.draft.text if good is None else good.content.decode()
+        text = self.draft.text if good is None else good.text
         file, choices = self.file, self.choices
         try:
             given = self.draft.path, text, file, choices, self._before

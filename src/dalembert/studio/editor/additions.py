@@ -9,7 +9,7 @@ from dalembert.studio.editor.cursor import tolerant
 from dalembert.studio.editor.editing import with_table, with_value, without
 from dalembert.studio.editor.fields import KIND, child, fields_at, kinds_at, tables_of
 from dalembert.studio.editor.lines import Place
-from dalembert.study.tasks import TASKS
+from dalembert.study.basics import task_names
 
 _MECHANISM = {"body": "Body", "joint": "Joint", "load": "Force"}
 _STRUCTURE = {"mass": "Mass", "spring": "Spring", "force": "Force", "contact": "Contact"}
@@ -57,8 +57,8 @@ def additions(text: str) -> tuple[Addition, ...]:
     found = [Addition(label, ("model", key, 0), kinds_at(document, ("model", key, 0))) for key, label in parts.items()]
     found += [Addition(label, (key,), names="channel" if key == "sensors" else "") for key, label in _NAMED.items()]
     tables = {place[0]: meaning for place, meaning in tables_of(document).items() if len(place) == 1}
-    rest = {key: meaning for key, meaning in tables.items() if key not in (*TASKS, *_NAMED, *document)}
-    tasks = {str(key): meaning for key, meaning in tables.items() if key in TASKS and key not in document}
+    rest = {key: meaning for key, meaning in tables.items() if key not in (*task_names(), *_NAMED, *document)}
+    tasks = {str(key): meaning for key, meaning in tables.items() if key in task_names() and key not in document}
     return (*found, Addition(TASK, (), tasks), Addition("Table", (), {str(key): one for key, one in rest.items()}))
 
 
@@ -86,7 +86,7 @@ def added(text: str, addition: Addition, what: str) -> tuple[str, Place]:
     if not addition.kinds:
         return with_table(text, (*addition.place, what), _BEGINNING.get(str(addition.place[0]), {}))
     if not addition.place:
-        for task in document.keys() & TASKS.keys() if addition.label == TASK else ():
+        for task in document.keys() & set(task_names()) if addition.label == TASK else ():
             text = without(text, (task,))
         return with_table(text, (what,), {})
     values = {KIND: what}

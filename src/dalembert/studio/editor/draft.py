@@ -13,9 +13,9 @@ from dalembert.errors import InputError, no_text, require_known
 from dalembert.files import free_path, write_text
 from dalembert.studio.editor.history import History
 from dalembert.studio.editor.lines import Place
+from dalembert.studio.editor.outline import Outline
 from dalembert.studio.editor.reading import Mistake, Reading, mistake, read
-from dalembert.study.loader import LARGEST
-from dalembert.study.study import Study
+from dalembert.study.basics import LARGEST
 
 Topic = Literal["text", "study", "mistakes", "values", "selection", "disk"]
 Disk = Literal["same", "changed", "gone"]
@@ -40,7 +40,7 @@ class Draft:
     text : str
     reading : Reading
         What a text of it was as a study when it was last checked, see :meth:`check`.
-    good : Study or None
+    good : Outline or None
         The last study that had no mistakes.
     values : dict of str to float
         Current values of parameters in SI units, at first their start values.
@@ -57,7 +57,7 @@ class Draft:
         self.text = self._saved
         self._history = History(self.text)
         self.reading = Reading("")
-        self.good: Study | None = None
+        self.good: Outline | None = None
         self.values: dict[str, float] = {}
         self.selection: Place | None = None
         self.disk: Disk = "same"
@@ -69,7 +69,7 @@ class Draft:
         return f"{self.path.parent.name}/{self.path.stem}"
 
     @property
-    def study(self) -> Study | None:
+    def study(self) -> Outline | None:
         """The study that the text is; None if it has mistakes."""
         return self.reading.study
 
@@ -257,7 +257,7 @@ class Draft:
         if text is not None:
             self._show(text)
 
-    def _start_values(self, study: Study) -> None:
+    def _start_values(self, study: Outline) -> None:
         """Take new start values; values that were set stay while the parameter's start and bounds do."""
         before = {} if self.good is None else {item.name: item for item in self.good.parameters.declared}
         parameters, start = study.parameters, study.parameters.mapping(study.parameters.start)

@@ -3,12 +3,8 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from nicegui import run
-
-from dalembert.errors import DalembertError
 from dalembert.studio.editor.draft import Draft
 from dalembert.studio.editor.fields import fields_at
-from dalembert.study.study import Study
 
 Names = Mapping[str, tuple[str, ...]]
 
@@ -47,37 +43,20 @@ def names_in(document: Mapping[str, Any]) -> dict[str, tuple[str, ...]]:
     }
 
 
-def channels_of(study: Study) -> tuple[str, ...]:
-    """Return all channels of a study's mechanism; none of another model, or where it cannot be built."""
-    if not study.has_system:
-        return ()
-    from dalembert.multibody.observe import channel_names
-
-    try:
-        return tuple(channel_names(study.system()))
-    except DalembertError:
-        return ()
-
-
 class Channels:
-    """All channels of the last study of a draft that had no mistakes, found once for each study.
-
-    Attributes
-    ----------
-    known : dict
-        Those that were found last, as names of ``"channel"``.
-    """
+    """All channels of the last study of a draft that had no mistakes."""
 
     def __init__(self, draft: Draft) -> None:
-        self._draft, self._study = draft, None
-        self.known: dict[str, tuple[str, ...]] = {}
+        self._draft = draft
+
+    @property
+    def known(self) -> Names:
+        """The channels, as names of ``"channel"``."""
+        return {"channel": () if self._draft.good is None else self._draft.good.channels}
 
     async def __call__(self) -> Names:
-        """Return the channels, and find them in a thread before if the study is another one."""
-        study = self._draft.good
-        if study is not None and study is not self._study:
-            self._study, self.known = study, {"channel": await run.io_bound(channels_of, study) or ()}
-        return {"channel": (), **self.known}
+        """Return the channels."""
+        return self.known
 
 
 def _points(document: Mapping[str, Any], number: int, body: Mapping[str, Any]) -> Iterator[str]:

@@ -4,13 +4,15 @@ import re
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from dalembert.errors import DalembertError
 from dalembert.studio.editor.lines import Place, line_of
-from dalembert.study import load, plan
-from dalembert.study.loader import StudyError
-from dalembert.study.study import Study
+from dalembert.studio.editor.outline import Outline
+from dalembert.studio.worker import Kept
+
+if TYPE_CHECKING:
+    from dalembert.study import Study
 
 _PLACE = re.compile(r"\[{1,2}([\w.]+)\]{1,2}(?: '([^']+)')?(?:, (\w+))?")
 """Beginning of a sentence about a table and a key."""
@@ -41,7 +43,7 @@ class Reading:
     Parameters
     ----------
     text : str
-    study : Study, optional
+    study : Outline, optional
         None if there are mistakes.
     does : str
         What a run of the study does, as a sentence; empty if there are mistakes.
@@ -49,21 +51,58 @@ class Reading:
     """
 
     text: str
-    study: Study | None = None
+    study: Outline | None = None
     does: str = ""
     mistakes: tuple[Mistake, ...] = ()
 
 
 def read(path: Path, text: str) -> Reading:
     """Read a text as the study of a path, which is not written."""
+    return reading(Kept(), path, text)
+
+
+def reading(kept: Kept, path: Path, text: str) -> Reading:
+    """Read a text as :func:`read` does, in the process of the study's page, where the study is kept."""
+    from dalembert.study import plan
+    from dalembert.study.loader import StudyError
+
+    kept.drop("study")  # the user's functions, which its files do not name, may have changed too
     try:
-        study = load(path, name=path.stem, content=text.encode())
-        return Reading(text, study, f"It {plan(study)}.")
+        study = study_of(kept, path, text)
+        does = f"It {plan(study)}."
+        return Reading(text, Outline.of(study, text), does)
     except StudyError as error:
         return Reading(text, mistakes=tuple(mistake(text, *found) for found in error.mistakes))
     except DalembertError as error:
         sentence = str(error).replace(f"{path}: ", "").replace(f"{path}", path.name)
         return Reading(text, mistakes=(mistake(text, (), sentence),))
+
+
+def study_of(kept: Kept, path: Path, text: str) -> "Study":
+    """Return the study of a text, read once as long as the files that it names are the same.
+
+    Raises
+    ------
+    DalembertError
+        If the text has mistakes.
+    """
+    study, stamps = kept.newest("study", (path, text), lambda: _loaded(path, text))
+    if stamps != _stamps(study):
+        kept.drop("study")
+        study, _ = kept.newest("study", (path, text), lambda: _loaded(path, text))
+    return study
+
+
+def _loaded(path: Path, text: str) -> "tuple[Study, dict[Path, int]]":
+    """The study, and when its other files were changed."""
+    from dalembert.study import load
+
+    study = load(path, name=path.stem, content=text.encode())
+    return study, _stamps(study)
+
+
+def _stamps(study: "Study") -> dict[Path, int]:
+    return {file: file.stat().st_mtime_ns for file in study.files.values() if file.is_file()}
 
 
 def mistake(text: str, place: Place, sentence: str) -> Mistake:

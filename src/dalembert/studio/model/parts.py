@@ -1,17 +1,18 @@
 """Which table of a study's text each part of the drawing of its model comes from."""
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from dalembert.studio.editor.lines import Place, is_within
-from dalembert.study.experiments import measured_channels
-from dalembert.study.study import Study
+
+if TYPE_CHECKING:
+    from dalembert.study import Study
 
 STRUCTURE = {"mass": "body", "spring": "spring", "force": "force", "contact": "contact"}
 """Roles in the drawing of the tables of a structure."""
 
 
-def places_of(study: Study) -> dict[str, Place]:
+def places_of(study: "Study") -> dict[str, Place]:
     """Return the places of the tables of parts by their roles and names in the drawing: ``"body rod"``.
 
     The empty name is that of all other parts: those that a function, or a robot's file, describes.
@@ -45,13 +46,15 @@ def parts_at(places: Mapping[str, Place], place: Place | None) -> list[str]:
     return [name for name, table in places.items() if name and (is_within(place, table) or is_within(table, place))]
 
 
-def shown_channels(study: Study) -> list[str]:
+def shown_channels(study: "Study") -> list[str]:
     """Return the channels of the data, and those that the task names."""
+    from dalembert.study.experiments import measured_channels
+
     task = getattr(study.table, "channels", None) or ()
     return list(dict.fromkeys([*measured_channels(study.file), *(name for name in task if isinstance(name, str))]))
 
 
-def _channel_place(study: Study, channel: str) -> Place:
+def _channel_place(study: "Study", channel: str) -> Place:
     file = study.file
     if file.data is not None and channel in file.data.channels:
         return ("data",)

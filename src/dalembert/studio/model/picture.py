@@ -9,13 +9,13 @@ import numpy as np
 
 from dalembert.errors import DalembertError, ModelError, SolveError
 from dalembert.studio.editor.lines import Place
-from dalembert.studio.editor.reading import read
+from dalembert.studio.editor.reading import study_of
 from dalembert.studio.model.parts import places_of, shown_channels
 from dalembert.studio.worker import Kept
-from dalembert.study.study import Study
 
 if TYPE_CHECKING:
     from dalembert.multibody.sketch import Sketch
+    from dalembert.study import Study
 
 SIZE = (720, 460)
 MARGIN = 0.09
@@ -63,8 +63,9 @@ def model_picture(
     box : array, shape (2, 2), optional
         Corners of an earlier drawing, kept if the model fits into it: a drawing that follows a slider stands still.
     """
-    study = kept.newest("drawn study", (path, text), lambda: read(path, text).study)
-    if study is None:
+    try:
+        study = study_of(kept, path, text)
+    except DalembertError:
         return Picture(message="The text has mistakes. The drawing follows when they are corrected.")
     places = places_of(study)
     if study.file.model.forward is not None:
@@ -81,7 +82,7 @@ def model_picture(
     return _structure(system, places)
 
 
-def _mechanism(study: Study, system: Any, places: dict[str, Place], box: np.ndarray | None) -> Picture:
+def _mechanism(study: "Study", system: Any, places: dict[str, Place], box: np.ndarray | None) -> Picture:
     from dalembert.multibody.sketch import sketch
     from dalembert.report.pictures.canvas import Canvas
     from dalembert.report.pictures.mechanism import draw_mechanism
@@ -118,7 +119,7 @@ def _structure(system: Any, places: dict[str, Place]) -> Picture:
     )
 
 
-def _marks(study: Study, system: Any) -> list[str]:
+def _marks(study: "Study", system: Any) -> list[str]:
     """Points of bodies that a table names, and those whose channels are shown."""
     shown = {channel.rpartition(".")[0] for channel in shown_channels(study)}
     own = [f"{body.name}.{point}" for body in system.bodies for point in body.point_names]
@@ -126,7 +127,7 @@ def _marks(study: Study, system: Any) -> list[str]:
     return [point for point in own if point in shown or point in declared][:MOST_POINTS]
 
 
-def _channels(study: Study, drawn: "Sketch") -> dict[str, tuple[np.ndarray, list[str]]]:
+def _channels(study: "Study", drawn: "Sketch") -> dict[str, tuple[np.ndarray, list[str]]]:
     """Positions of points, joints and loads with shown channels, and these channels."""
     known = {name: ends.mean(axis=0) for name, ends in drawn.ends.items()}
     known |= {name: motion[0] for name, motion in drawn.drawing.joints.items()} | drawn.marks

@@ -64,7 +64,7 @@ class Additions:
 
     async def _ask(self, addition: Addition) -> None:
         """Ask for the name of a parameter, or for a channel."""
-        known = (await self.channels())["channel"] if addition.names == "channel" else ()
+        known = self.channels.known["channel"] if addition.names == "channel" else ()
         with ui.dialog() as dialog, ui.card().classes("w-80"):
             ui.label(_add(addition)).classes("text-lg font-bold")
             if known:

@@ -14,7 +14,6 @@ from dalembert.studio.frame import button, complaints
 from dalembert.studio.panels.parameter_row import LOOKS, ParameterRow
 from dalembert.studio.room import Room
 from dalembert.studio.simulation.answers import Influences, Simulated, Source, influences, simulated
-from dalembert.studio.simulation.parts import names
 from dalembert.studio.simulation.player import Player
 from dalembert.studio.worker import WorkerError
 
@@ -87,7 +86,7 @@ class Sliders:
         study = self._draft.study
         if study is None:
             return
-        choices = list(names(study))
+        choices = list(study.parts)
         self._choice.set_options(choices, value=self._choice.value if self._choice.value in choices else choices[0])
         self._choice.set_visibility(len(choices) > 1)
         if [_range(row.item) for row in self._rows.values()] != [_range(item) for item in study.parameters]:

@@ -5,14 +5,14 @@ from typing import Any
 
 import numpy as np
 
-from dalembert.inverse import ExperimentFit
 from dalembert.study.folder import RunFolder
-from dalembert.study.posing import posed
 
 
 def fit_so_far(run: Path, values: list[float]) -> dict[str, Any] | None:
     """The figure as Plotly's JSON holds it; None for a run without data, or of several experiments."""
+    from dalembert.inverse import ExperimentFit
     from dalembert.report.charts import responses
+    from dalembert.study.posing import posed
 
     study = RunFolder(run).kept()
     if study.task != "identify" or study.file.data is None:

@@ -5,10 +5,9 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
 
-from dalembert.study.duration import spoken
 from dalembert.study.events import Event
 from dalembert.study.folder import RunFolder
-from dalembert.study.tasks import TASKS
+from dalembert.study.spoken import spoken
 
 WINDOW = 200
 """Events that the speed is taken from."""
@@ -58,5 +57,7 @@ class Remaining:
 
 def most_simulations(run: Path) -> int | None:
     """Return how many simulations a run takes at most; None where its method decides on the way."""
+    from dalembert.study.tasks import TASKS
+
     study = RunFolder(run).kept()
     return TASKS[study.task].effort(study).most

@@ -22,7 +22,6 @@ from dalembert.studio.worker import Kept, Worker, WorkerError
 from dalembert.studio.workspace import Workspace
 from dalembert.study.folder import FINISHED, INPUT, KILLED, RESUMABLE, RUNNING, RunFolder
 from dalembert.study.listing import best
-from dalembert.study.runner import unknowns
 
 EVERY = 0.5  # s between two looks at the events
 FILES = {"report.html": "Report", "result.nc": "Result (NetCDF)", "study.toml": "Study", "events.jsonl": "Events"}
@@ -198,6 +197,8 @@ def _fit(kept: Kept, run: Path, values: list[float]) -> dict[str, Any] | None:
 
 def _names(kept: Kept, folder: RunFolder) -> tuple[str, ...]:
     """Names of the unknowns; none of a run that has not begun."""
+    from dalembert.study.runner import unknowns
+
     try:
         return unknowns(folder.kept()) if folder.is_run else ()
     except (InputError, OSError):

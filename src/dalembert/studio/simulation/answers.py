@@ -10,16 +10,15 @@ import numpy as np
 
 from dalembert.errors import SolveError
 from dalembert.report.player import Film, film_of, frames
-from dalembert.report.sections.motion.mechanism import measured
+from dalembert.studio.editor.reading import study_of
 from dalembert.studio.simulation.curves import Curves, curves, on_page
 from dalembert.studio.simulation.parts import OVER_FREQUENCY, Part, part
 from dalembert.studio.worker import Kept
-from dalembert.study import load
-from dalembert.study.study import Study
-from dalembert.study.tasks.frequency_response import curve_options, drawn_dofs
 
 if TYPE_CHECKING:
     from dalembert.multibody import Drawing, Trajectory
+    from dalembert.studio.editor.outline import Outline
+    from dalembert.study import Study
 
 
 @dataclass(frozen=True)
@@ -39,7 +38,7 @@ class Source:
     stamps: tuple[tuple[str, int], ...] = ()
 
     @classmethod
-    def of(cls, study: Study, path: Path, text: str) -> "Source":
+    def of(cls, study: "Outline | Study", path: Path, text: str) -> "Source":
         """The source of a study that was read from a text."""
         files = [file for file in study.files.values() if file.is_file()]
         return cls(path, text, tuple((str(file), file.stat().st_mtime_ns) for file in files))
@@ -131,12 +130,8 @@ def influences(kept: Kept, source: Source, name: str, values: Mapping[str, float
 
 
 def _part(kept: Kept, source: Source, name: str) -> Part:
-    study = kept.newest("study", source, lambda: _study(source))
+    study = study_of(kept, source.path, source.text)
     return kept.newest("part", (source, name), lambda: part(study, name))
-
-
-def _study(source: Source) -> Study:
-    return load(source.path, name=source.path.stem, content=source.text.encode())
 
 
 def _columns(own: Part) -> list[int]:
@@ -174,6 +169,8 @@ def _motion(own: Part, values: Mapping[str, float]) -> "tuple[np.ndarray | None,
 
 
 def _film(own: Part, trajectory: "Trajectory", rows: np.ndarray) -> Film:
+    from dalembert.report.sections.motion.mechanism import measured
+
     whole = trajectory.drawing()
     drawing: Drawing = replace(
         whole,
@@ -201,6 +198,7 @@ def _misfit(own: Part, response: np.ndarray) -> tuple[float, dict[str, float]]:
 def _followed(own: Part, values: Mapping[str, float], began: float) -> Simulated:
     """The curve of a structure over frequency."""
     from dalembert.report.charts import frequency_curve
+    from dalembert.study.tasks.frequency_response import curve_options, drawn_dofs
     from dalembert.vibration import frequency_response
 
     study, table = own.study, own.study.table

@@ -7,9 +7,7 @@ from typing import Any
 import numpy as np
 import plotly.graph_objects as go
 
-from dalembert.inverse import ExperimentFit
 from dalembert.report.charts.drawing import colour_of, draw
-from dalembert.report.charts.identification.responses import computed_line, residual_line, responses
 from dalembert.report.look import plain, themed
 from dalembert.report.quantities import by_quantity, common, labelled, quantity
 from dalembert.report.thin import thinned
@@ -52,6 +50,9 @@ def _group(part: Part, group: Sequence[str], response: np.ndarray, figures: bool
         assert part.model is not None
         lines = [thinned(part.model.coordinate.values, response[:, column]) for column in columns]
         return Curves(_numbered(lines, 1), _plain(part, group, lines) if figures else {})
+    from dalembert.inverse import ExperimentFit
+    from dalembert.report.charts.identification.responses import computed_line, residual_line, responses
+
     fit = ExperimentFit("", part.data, response, np.ones_like(response))
     lines = [line for column in columns for line in (computed_line(fit, column), residual_line(fit, column))]
     figure = responses(fit, group, title="").update_layout(height=HEIGHT) if figures else None

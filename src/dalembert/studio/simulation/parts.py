@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dalembert.errors import InputError, require_known
-from dalembert.forward import ForwardModel
-from dalembert.study.posing import posed
-from dalembert.study.study import Study
 
 if TYPE_CHECKING:
     from dalembert.data import Measurements
+    from dalembert.forward import ForwardModel
     from dalembert.multibody import Trajectory
+    from dalembert.study import Study
 
 POINTS = 401
 """Samples of channels that are compared with no data."""
@@ -38,8 +37,8 @@ class Part:
         Last time of the motion of a mechanism, s; 0 without a motion.
     """
 
-    study: Study
-    model: ForwardModel | None
+    study: "Study"
+    model: "ForwardModel | None"
     data: "Measurements | None"
     end: float
 
@@ -55,12 +54,12 @@ class Part:
         return self.study.motion(self.end, parameters.vector({name: values[name] for name in parameters.names}), times)
 
 
-def names(study: Study) -> tuple[str, ...]:
+def names(study: "Study") -> tuple[str, ...]:
     """Names of the parts; one that is empty where there are no experiments."""
     return tuple(table.name for table in study.file.experiments if study.task in FROM_DATA) or ("",)
 
 
-def part(study: Study, name: str) -> Part:
+def part(study: "Study", name: str) -> Part:
     """Return the part with a name.
 
     Raises
@@ -80,7 +79,9 @@ def part(study: Study, name: str) -> Part:
     raise InputError(f"There is nothing to simulate for [{study.task}]. Run the study to see its result.")
 
 
-def _measured(study: Study, name: str) -> Part:
+def _measured(study: "Study", name: str) -> Part:
+    from dalembert.study.posing import posed
+
     model, data = posed(study)
     if isinstance(model, list):
         found = {experiment.name: experiment for experiment in model}
@@ -91,7 +92,7 @@ def _measured(study: Study, name: str) -> Part:
     return Part(study, model, data, float(data.coordinate.values[-1]) if study.has_system else 0.0)
 
 
-def _moving(study: Study) -> Part:
+def _moving(study: "Study") -> Part:
     """A mechanism without data: until the last time that the task names, with its channels."""
     table, end = study.table, last_time(study)
     if end is None:

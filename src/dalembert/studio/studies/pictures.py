@@ -5,9 +5,8 @@ from dataclasses import dataclass, field
 from importlib.resources import as_file
 from pathlib import Path
 
-from dalembert.report.pictures import message_picture
+from dalembert.report.pictures.canvas import message_picture
 from dalembert.studio.worker import Cause, Kept, Limits, Worker, WorkerError
-from dalembert.study.picture import picture_or_message
 from dalembert.study.template import TEMPLATES
 
 PATIENCE = 60.0
@@ -60,6 +59,8 @@ class Pictures:
 
 
 def _draw(kept: Kept, path: Path) -> str:
+    from dalembert.study.picture import picture_or_message
+
     return picture_or_message(path)
 
 

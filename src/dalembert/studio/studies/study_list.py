@@ -6,7 +6,7 @@ from pathlib import Path
 from dalembert.studio.runs.last_runs import LastRun, last_runs
 from dalembert.studio.studies.documents import document_of
 from dalembert.studio.workspace import Workspace
-from dalembert.study.tasks import TASKS
+from dalembert.study.basics import task_names
 
 EXPECTED = "expected.toml"
 """File with the numbers that must come out of the studies of a folder: such studies are examples."""
@@ -79,7 +79,7 @@ def _entry(workspace: Workspace, name: str, runs: dict[tuple[Path, str], LastRun
     document = document_of(path) or {}
     about = document.get("study")
     about = about if isinstance(about, dict) else {}
-    task = next((key for key in document if key in TASKS), "")
+    task = next((key for key in document if key in task_names()), "")
     title, description = (" ".join(str(about.get(key, "")).split()) for key in ("title", "description"))
     last = runs.get((path.parent.resolve(), str(about.get("name") or path.stem)))
     return Entry(name, title, description, task, last)

@@ -3,23 +3,21 @@
 from functools import partial
 from urllib.parse import quote
 
-from nicegui import run, ui
+from nicegui import ui
 
 from dalembert.errors import InputError
 from dalembert.studio.editor.disk_notice import disk_notice
 from dalembert.studio.editor.draft import Draft
-from dalembert.studio.editor.reading import read
 from dalembert.studio.editor.text_editor import TextEditor
 from dalembert.studio.frame import button, complaints, frame, icon_button
 from dalembert.studio.jobs import Jobs
 from dalembert.studio.panels import data, forms, model, sliders
 from dalembert.studio.room import Room
 from dalembert.studio.splitter import splitter
+from dalembert.studio.studies.checking import Checking
 from dalembert.studio.worker import Worker
 from dalembert.studio.workspace import Workspace
-from dalembert.study import load
 
-AFTER = 0.4  # s after the last change until the text is checked
 PANELS = (
     ("model", "Model", "precision_manufacturing", model.show),
     ("forms", "Forms", "edit_note", forms.show),
@@ -48,8 +46,7 @@ def study_page(workspace: Workspace, jobs: Jobs, name: str) -> None:
             with right:
                 _panels(draft, room)
         with head:
-            _head(draft, room, editor)
-    _check_after_changes(draft)
+            _head(draft, room, editor, Checking(draft, room.worker))
 
 
 def _panels(draft: Draft, room: Room) -> None:
@@ -65,10 +62,10 @@ def _panels(draft: Draft, room: Room) -> None:
                 show(draft, room)
 
 
-def _head(draft: Draft, room: Room, editor: TextEditor) -> None:
+def _head(draft: Draft, room: Room, editor: TextEditor, checking: Checking) -> None:
     """Build the buttons, what the study does, and its mistakes."""
     with ui.row().classes("gap-2 items-center"):
-        start = button("Run", complaints()(lambda: _start(draft, room)), icon="play_arrow")
+        start = button("Run", lambda: _start(draft, room, checking), icon="play_arrow")
         save = button("Save", complaints()(lambda: _save(draft)), icon="save")
         undo, redo = icon_button("undo", "Undo", draft.undo), icon_button("redo", "Redo", draft.redo)
         verdict = ui.label("").props("role=status aria-live=polite")
@@ -100,36 +97,20 @@ def _head(draft: Draft, room: Room, editor: TextEditor) -> None:
     show_text()
 
 
-def _check_after_changes(draft: Draft) -> None:
-    """Check the text in a thread once it has not changed for a moment."""
-
-    async def check() -> None:
-        reading = await run.io_bound(read, draft.path, draft.text)
-        if reading is not None:  # or the studio is ending
-            draft.take(reading)
-
-    waiting = ui.timer(0.0, check, once=True)
-    place = ui.context.slot
-
-    def changed() -> None:
-        nonlocal waiting
-        waiting.cancel()
-        with place:
-            waiting = ui.timer(AFTER, check, once=True)
-
-    draft.follow("text", changed)
-
-
 def _save(draft: Draft) -> None:
     draft.save()
     ui.notify("Saved.", type="positive")
 
 
-def _start(draft: Draft, room: Room) -> None:
+async def _start(draft: Draft, room: Room, checking: Checking) -> None:
     """Save, run in a process of its own, and go to the run's page."""
-    _save(draft)
-    path = draft.path
-    folder = room.workspace.new_run(load(path).name if path.stem != "study" else path.parent.name)
-    folder.parent.mkdir(exist_ok=True)
-    room.jobs.start(path, folder)
-    ui.navigate.to(f"/run/{quote(folder.name)}")
+    if draft.reading.text != draft.text:
+        await checking.check()
+    with complaints():
+        _save(draft)
+        if draft.study is not None:
+            name = draft.study.name if draft.path.stem != "study" else draft.path.parent.name
+            folder = room.workspace.new_run(name)
+            folder.parent.mkdir(exist_ok=True)
+            room.jobs.start(draft.path, folder)
+            ui.navigate.to(f"/run/{quote(folder.name)}")

@@ -1,7 +1,8 @@
 """What a study file may say at a place."""
 
 from dalembert.studio.editor.fields import field_at, fields_at, kinds_at, tables_of
-from dalembert.studio.editor.names import channels_of, names_in
+from dalembert.studio.editor.names import names_in
+from dalembert.studio.editor.outline import channels_of
 from dalembert.study import load
 from dalembert.study.template import begin
 

@@ -1,0 +1,60 @@
+"""What a page knows of a study; the study itself stays in the process that reads it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from dalembert.errors import DalembertError
+from dalembert.parameters import Parameters
+
+if TYPE_CHECKING:
+    from dalembert.study.study import Study
+
+
+@dataclass(frozen=True)
+class Outline:
+    """A study without its model, which may be the user's code and take some time.
+
+    Parameters
+    ----------
+    text : str
+    name : str
+        Of its runs.
+    task : str
+    parameters : Parameters
+    parts : tuple of str
+        Names of what can be simulated; an empty one where there are no experiments.
+    channels : tuple of str
+        All channels of a mechanism; none of another model, or where it cannot be built.
+    files : mapping of str to Path
+        The other files that it names.
+    """
+
+    text: str
+    name: str
+    task: str
+    parameters: Parameters
+    parts: tuple[str, ...]
+    channels: tuple[str, ...]
+    files: Mapping[str, Path]
+
+    @classmethod
+    def of(cls, study: "Study", text: str) -> "Outline":
+        """The outline of a study that was read from a text."""
+        from dalembert.studio.simulation.parts import names
+
+        name = study.file.study.name or study.name
+        return cls(text, name, study.task, study.parameters, names(study), channels_of(study), study.files)
+
+
+def channels_of(study: "Study") -> tuple[str, ...]:
+    """Return all channels of a study's mechanism; none of another model, or where it cannot be built."""
+    if not study.has_system:
+        return ()
+    from dalembert.multibody.observe import channel_names
+
+    try:
+        return tuple(channel_names(study.system()))
+    except DalembertError:
+        return ()

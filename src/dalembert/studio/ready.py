@@ -1,0 +1,18 @@
+"""What a process needs to answer for a study, imported before the first study is opened."""
+
+import gc
+
+import dalembert.inverse
+import dalembert.multibody.sketch
+import dalembert.report.charts.identification.responses
+import dalembert.report.sections.motion.mechanism
+import dalembert.studio.data.examined
+import dalembert.studio.model.picture
+import dalembert.studio.simulation.answers
+import dalembert.study.picture
+import dalembert.study.posing
+import dalembert.study.runner
+import dalembert.study.validation  # noqa: F401
+
+gc.collect()
+gc.freeze()  # what is never looked at stays memory that the forked processes share

@@ -1,0 +1,57 @@
+"""Checks the text of a study in the study's process, which a user's function may hang or end."""
+
+import asyncio
+
+from nicegui import background_tasks, ui
+
+from dalembert.studio.editor.draft import Draft
+from dalembert.studio.editor.reading import Reading, mistake, reading
+from dalembert.studio.worker import Worker, WorkerError
+
+AFTER = 0.4
+"""Seconds after the last change of the text until it is checked."""
+PATIENCE = 3.0
+"""Seconds that a check waits for what was asked for an earlier text."""
+
+
+class Checking:
+    """Reads the text of a draft at first, and after changes.
+
+    Parameters
+    ----------
+    draft : Draft
+    worker : Worker
+    """
+
+    def __init__(self, draft: Draft, worker: Worker) -> None:
+        self._draft, self._worker = draft, worker
+        self._asked = 0
+        self._place = ui.context.slot
+        self._waiting: ui.timer | None = None
+        background_tasks.create(self.check())  # while the browser still loads the page
+        draft.follow("text", self._later)
+
+    async def check(self) -> None:
+        """Read the text now."""
+        text, before = self._draft.text, self._asked
+        self._asked += 1
+        request = asyncio.ensure_future(self._read(text))
+        try:
+            await asyncio.wait([request], timeout=PATIENCE)
+            if not request.done() and (before or self._worker.busy not in (None, "reading")):
+                self._worker.interrupt()  # it computes for a text that is no longer there
+            self._draft.take(await request or Reading(""))
+        finally:
+            self._asked -= 1
+
+    async def _read(self, text: str) -> Reading | None:
+        try:
+            return await self._worker.ask("reading", reading, self._draft.path, text)
+        except WorkerError as error:
+            return Reading(text, mistakes=(mistake(text, (), str(error)),))
+
+    def _later(self) -> None:
+        if self._waiting is not None:
+            self._waiting.cancel()
+        with self._place:
+            self._waiting = ui.timer(AFTER, self.check, once=True)

@@ -25,9 +25,10 @@ NAMES = (
     "robots",
     "startup",
     "sliders",
+    "studio",
 )
 
-PAGES = (*NAMES[:-5], "vibration-cost", *NAMES[-5:-3], "spatial-sensitivities", *NAMES[-3:])
+PAGES = (*NAMES[:-6], "vibration-cost", *NAMES[-6:-4], "spatial-sensitivities", *NAMES[-4:])
 """Results that the page shows, in its order."""
 
 

@@ -49,7 +49,7 @@ def main() -> list[dict[str, object]]:
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=ROOT) as studio:
             assert studio.stdout is not None
             address = re.findall(r"http://\S+", studio.stdout.readline())[0].rstrip("/")
-            browser = playwright.chromium.launch(executable_path=_program())
+            browser = playwright.chromium.launch(executable_path=chromium())
             page = browser.new_page(viewport={"width": 1440, "height": 900})
             page.goto(f"{address}/study/{STUDY}/identify")
             page.get_by_role("tab", name="Sliders").click()
@@ -86,7 +86,8 @@ def _row(name: str, times: np.ndarray) -> dict[str, object]:
     return {"part": name, "median, ms": float(np.median(times)), "95 %, ms": float(np.quantile(times, 0.95))}
 
 
-def _program() -> str:
+def chromium() -> str:
+    """The program of the browser."""
     found = os.environ.get("CHROMIUM") or next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
     if found is None:
         raise RuntimeError("Chromium is not installed. Install it, or name the program in CHROMIUM.")

@@ -59,3 +59,8 @@ def unsendable(kept: Kept) -> object:
 def loaded(kept: Kept, names: list[str]) -> bool:
     """Whether modules are imported already."""
     return set(names) <= set(sys.modules)
+
+
+def priority(kept: Kept) -> int:
+    """How far the process stands back."""
+    return os.nice(0)

@@ -44,7 +44,7 @@ def application(root: Path) -> FastAPI:
     from nicegui import ui
 
     workspace, jobs, pictures = Workspace(root.resolve()), Jobs(), Pictures()
-    worker = Worker()  # of the pages of runs
+    watcher = Worker(spares=True)  # of the pages of runs
     app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
 
     listed = RunList(workspace.runs_folder)
@@ -67,7 +67,7 @@ def application(root: Path) -> FastAPI:
         except InputError as error:
             if name not in [folder.path.name for folder in workspace.runs()]:  # another program may have named it
                 return PlainTextResponse(str(error), status_code=404)
-        return run_page(workspace, jobs, worker, name)
+        return run_page(workspace, jobs, watcher, name)
 
     @ui.page("/continue/{name}")
     def go_on(name: str, code: str = "", number: int = 0) -> None:
@@ -119,7 +119,7 @@ def application(root: Path) -> FastAPI:
     ui.run_with(
         app, title="dalembert", dark=None, show_welcome_message=False, language="en-US", reconnect_timeout=PATIENCE
     )
-    pages.on_shutdown(worker.stop)
+    pages.on_shutdown(watcher.stop)
     pages.on_shutdown(pictures.close)
     return app
 

@@ -86,6 +86,8 @@ class Worker:
     Parameters
     ----------
     limits : Limits
+    spares : bool
+        Whether the process leaves the processors to others that have work.
 
     Attributes
     ----------
@@ -97,8 +99,8 @@ class Worker:
     The process starts with :meth:`start`, and again with the first request after it has ended.
     """
 
-    def __init__(self, limits: Limits | None = None) -> None:
-        self.limits = Limits() if limits is None else limits
+    def __init__(self, limits: Limits | None = None, *, spares: bool = False) -> None:
+        self.limits, self.spares = Limits() if limits is None else limits, spares
         self._newest: dict[str, object] = {}
         self._turns: SimpleQueue[Callable[[], object] | None] = SimpleQueue()
         self._process: BaseProcess | None = None
@@ -184,7 +186,7 @@ class Worker:
             begin = context()
             self._connection, theirs = begin.Pipe()
             self._ended, self._cause = "", "ended"
-            self._process = begin.Process(target=_serve, args=(theirs, self.limits.bytes), daemon=True)
+            self._process = begin.Process(target=_serve, args=(theirs, self.limits.bytes, self.spares), daemon=True)
             self._process.start()
             theirs.close()
         return self._connection
@@ -235,11 +237,13 @@ def _memory() -> float:
         return 8e9
 
 
-def _serve(connection: Connection, most_bytes: int) -> None:
+def _serve(connection: Connection, most_bytes: int, spares: bool) -> None:
     """Answer requests until the studio or the memory ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in the terminal is the studio's, which ends this process
     Thread(target=_follow_parent, daemon=True).start()
     _limit_memory(most_bytes)
+    if spares and hasattr(os, "nice"):
+        os.nice(15)
     kept, outcome = Kept(), ANSWER
     while outcome != MEMORY:
         try:

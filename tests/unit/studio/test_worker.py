@@ -19,6 +19,7 @@ from worker_functions import (
     filling,
     hanging,
     leaving,
+    priority,
     process,
     refused,
     unsendable,
@@ -140,3 +141,12 @@ def test_a_closed_study_has_no_process():
         if worker._process is not None:
             worker._process.join(0.1)
     raise AssertionError(f"process {number} is still there")
+
+
+@pytest.mark.skipif(not hasattr(os, "nice"), reason="the system has no priorities of this kind")
+def test_a_process_beside_a_run_leaves_the_processors_to_it():
+    sparing = Worker(spares=True)
+    try:
+        assert run(lambda: sparing.ask("priority", priority)) > os.nice(0)
+    finally:
+        sparing.stop()

@@ -8,7 +8,7 @@ from typing import Any
 from urllib.parse import quote
 
 import plotly.graph_objects as go
-from nicegui import ui
+from nicegui import run, ui
 
 from dalembert.errors import InputError
 from dalembert.studio.runs.figures import bare, convergence, followed, on_any_page, plot, wandering
@@ -18,6 +18,7 @@ from dalembert.studio.frame import STATES, badge, button, complaints, frame, rep
 from dalembert.studio.jobs import Jobs, pause, stop
 from dalembert.studio.runs.live import Live
 from dalembert.studio.runs.remaining import most_simulations
+from dalembert.studio.sparing import Sparing
 from dalembert.studio.worker import Kept, Worker, WorkerError
 from dalembert.studio.workspace import Workspace
 from dalembert.study.folder import FINISHED, INPUT, KILLED, RESUMABLE, RUNNING, RunFolder
@@ -35,13 +36,13 @@ SAYS = {
 """What is said of a state that no process wrote."""
 
 
-def run_page(workspace: Workspace, jobs: Jobs, worker: Worker, name: str) -> None:
+def run_page(workspace: Workspace, jobs: Jobs, watcher: Worker, name: str) -> None:
     """Watch a run, stop it or go on with it, and read its report."""
     folder = RunFolder(workspace.runs_folder / name)
     with frame(name):
-        page = _Page(folder, jobs, worker)
+        page = _Page(folder, jobs, watcher)
         page.build()
-        page.look()
+        page.look_at_state()
         ui.timer(EVERY, page.look)
 
 
@@ -52,12 +53,13 @@ class _Page:
     ----------
     folder : RunFolder
     jobs : Jobs
-    worker : Worker
+    watcher : Worker
         Where the best fit so far is computed.
     """
 
-    def __init__(self, folder: RunFolder, jobs: Jobs, worker: Worker) -> None:
-        self.folder, self.jobs, self.worker = folder, jobs, worker
+    def __init__(self, folder: RunFolder, jobs: Jobs, watcher: Worker) -> None:
+        self.folder, self.jobs, self.watcher = folder, jobs, watcher
+        self.drawing, self.computing = Sparing(), Sparing()
         self.live = Live(folder.events)
         self.state, self.complaint, self.shown, self.drawn = "", "", 0, 0
         self.fitted: list[float] = []
@@ -83,16 +85,22 @@ class _Page:
         self.findings = ui.column().classes("w-full gap-2")
         self.report = ui.column().classes("w-full")
 
-    def look(self) -> None:
+    async def look(self) -> None:
         """Bring the page up to what the run's folder says."""
-        state, complaint = self._state(), self.jobs.complaint(self.folder.path)
-        if self.learning is None and state == RUNNING:
-            self.learning = asyncio.create_task(self._learn())
-        if self.live.advance():
+        if self.state != FINISHED and await run.io_bound(self.live.advance):  # then its report says it
             self._show_events()
-        if self.live.values != self.fitted and state == RUNNING and (self.fitting is None or self.fitting.done()):
+        self.look_at_state()
+        self._draw_curves()
+        if self.state == RUNNING and self.learning is None:
+            self.learning = asyncio.create_task(self._learn())
+        is_new = self.live.values and self.live.values != self.fitted
+        if self.state == RUNNING and is_new and self.computing.is_due and (self.fitting is None or self.fitting.done()):
             self.fitted = list(self.live.values)
             self.fitting = asyncio.create_task(self._show_fit(self.fitted))
+
+    def look_at_state(self) -> None:
+        """Show the state of the run, and what depends on it, if it has changed."""
+        state, complaint = self._state(), self.jobs.complaint(self.folder.path)
         if (state, complaint) != (self.state, self.complaint):
             self.state, self.complaint = state, complaint
             self._show_state()
@@ -149,6 +157,15 @@ class _Page:
         for event in list(self.live.recent)[len(self.live.recent) - new :]:
             self.log.push(json.dumps(event, ensure_ascii=False)[:400])
         self.shown = self.live.count
+
+    def _draw_curves(self) -> None:
+        """Draw the curves that have grown, those of a run that has ended at once."""
+        if self.state == FINISHED or (self.state == RUNNING and not self.drawing.is_due):
+            return
+        with self.drawing.work():
+            self._draw_grown()
+
+    def _draw_grown(self) -> None:
         points = self.live.convergence
         if len(points) > 1 and len(points) != self.drawn:
             self.drawn = len(points)
@@ -164,17 +181,16 @@ class _Page:
         """Ask another process for the names of the unknowns and the number of simulations, which take imports."""
         name = self.folder.path.name
         with suppress(WorkerError):  # whatever a user's model raises, the run itself says it
-            self.live.name(await self.worker.ask(f"names of {name}", _names, self.folder) or ())
-            self.live.remaining.most = await self.worker.ask(f"effort of {name}", _most, self.folder.path)
+            self.live.name(await self.watcher.ask(f"names {name}", _names, self.folder) or ())
+            self.live.remaining.most = await self.watcher.ask(f"most {name}", _most, self.folder.path)
 
     async def _show_fit(self, values: list[float]) -> None:
         """The best fit so far; a run whose model another process cannot make has none."""
-        try:
-            figure = await self.worker.ask(f"fit of {self.folder.path.name}", _fit, self.folder.path, values)
-        except WorkerError:  # whatever a user's model raises, the run itself says it
-            return
-        if figure is not None:
-            _draw(self.fit, "Best fit so far, and the data", on_any_page(go.Figure(figure)))
+        with suppress(WorkerError), self.computing.work():
+            subject = f"fit {self.folder.path.name}"
+            figure = await self.watcher.ask(subject, fit_so_far, self.folder.path, values)
+            if figure is not None:
+                _draw(self.fit, "Best fit so far, and the data", on_any_page(go.Figure(figure)))
 
 
 def _draw(place: ui.column, name: str, figure: go.Figure) -> None:
@@ -187,14 +203,6 @@ def _draw(place: ui.column, name: str, figure: go.Figure) -> None:
             plot(figure).classes("w-full").props(f'role=img aria-label="{name}"')
 
 
-def _most(kept: Kept, run: Path) -> int | None:
-    return most_simulations(run)
-
-
-def _fit(kept: Kept, run: Path, values: list[float]) -> dict[str, Any] | None:
-    return fit_so_far(run, values)
-
-
 def _names(kept: Kept, folder: RunFolder) -> tuple[str, ...]:
     """Names of the unknowns; none of a run that has not begun."""
     from dalembert.study.runner import unknowns
@@ -203,6 +211,10 @@ def _names(kept: Kept, folder: RunFolder) -> tuple[str, ...]:
         return unknowns(folder.kept()) if folder.is_run else ()
     except (InputError, OSError):
         return ()
+
+
+def _most(kept: Kept, run: Path) -> int | None:
+    return most_simulations(run)
 
 
 def _saved(folder: RunFolder, file: str) -> str:

@@ -33,7 +33,7 @@ class FormField:
         enter: Callable[[], object] | None = None,
     ) -> None:
         self.row, self._commit = row, commit
-        field, self._typed = row.field, ""
+        field, self._typed, self._shown = row.field, "", ""
         self._takes_any = field.shape != "choice"
         if field.shape == "switch":
             self.element: ui.input | ui.select = ui.select(["true", "false"], clearable=True)
@@ -69,8 +69,9 @@ class FormField:
         text = row.text if row.field.shape != "switch" or row.value is None else str(row.value).lower()
         if isinstance(self.element, ui.select) and text and text not in self.element.options:
             self.element.set_options([*self.element.options, text])
-        if (self.element.value or "") != text:
+        if text != self._shown and (self.element.value or "") != text:  # or the user is typing
             self.element.set_value(text or None if isinstance(self.element, ui.select) else text)
+        self._shown = text
         self.element.props["error"] = bool(row.mistakes)
         self.element.props["error-message"] = " ".join(row.mistakes)
 

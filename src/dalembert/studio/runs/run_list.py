@@ -1,7 +1,7 @@
 """All runs as rows of a table, read quickly: a run is read again only if its files have changed."""
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
@@ -47,7 +47,12 @@ class RunList:
                 known = stamp, {"id": str(stamp[0]), **row(RunFolder(self.root / name))}
             found[name] = known
         self._known = found
-        return sorted((row for _, row in found.values()), key=lambda row: (row["date"], row["run"]), reverse=True)
+        return self.known
+
+    @property
+    def known(self) -> list[Row]:
+        """The rows as they were read last."""
+        return _sorted(row for _, row in self._known.values())
 
     def _stamps(self) -> list[tuple[str, Stamp]]:
         """Names of the runs with the numbers of their folders, and when their files were changed."""
@@ -58,6 +63,11 @@ class RunList:
             return []
         stamps = ((name, (number, *_changes(f"{self.root}/{name}"))) for name, number in names)
         return [(name, stamp) for name, stamp in stamps if stamp[1]]
+
+
+def _sorted(rows: Iterable[Row]) -> list[Row]:
+    """The rows, the newest first."""
+    return sorted(rows, key=lambda row: (row["date"], row["run"]), reverse=True)
 
 
 def row(folder: RunFolder) -> Row:

@@ -1,5 +1,6 @@
 """The first page: all runs in a table, with what can be done to them."""
 
+import asyncio
 from collections.abc import Callable
 from functools import partial
 from urllib.parse import quote, urlencode
@@ -16,14 +17,16 @@ from dalembert.studio.workspace import Workspace
 from dalembert.study.folder import RESUMABLE
 
 EVERY = 2.0  # s between two looks at the folder
+PATIENCE = 1.0  # s that the page waits for its rows; later ones are shown when they are read
 HINT = "In the table: arrow keys move, Space selects, Enter opens, F2 renames or edits a note, Delete deletes."
 
 
 async def runs_page(workspace: Workspace, jobs: Jobs, listed: RunList) -> None:
     """Runs of the workspace."""
     with frame("Runs", most="max-w-screen-2xl"):
-        rows = await run.io_bound(listed.rows)
-        page = _Page(workspace, jobs, listed, rows or [])
+        reading = asyncio.ensure_future(run.io_bound(listed.rows))
+        await asyncio.wait([reading], timeout=PATIENCE)
+        page = _Page(workspace, jobs, listed, reading.result() if reading.done() else listed.known or None)
         page.build()
         ui.timer(EVERY, page.look)
 
@@ -31,13 +34,15 @@ async def runs_page(workspace: Workspace, jobs: Jobs, listed: RunList) -> None:
 class _Page:
     """The table of runs, and the actions on the selected ones."""
 
-    def __init__(self, workspace: Workspace, jobs: Jobs, listed: RunList, rows: list[Row]) -> None:
-        self.workspace, self.jobs, self.listed, self.rows = workspace, jobs, listed, rows
+    def __init__(self, workspace: Workspace, jobs: Jobs, listed: RunList, rows: list[Row] | None) -> None:
+        self.workspace, self.jobs, self.listed, self.rows = workspace, jobs, listed, rows or []
+        self.is_read = rows is not None
         self.selected: list[str] = []
         self.deleted: list[Deleted] = []
         self.actions: list[tuple[ui.button, Callable[[list[Row]], bool]]] = []
 
     def build(self) -> None:
+        self.reading = ui.spinner(size="lg").props('aria-label="The runs are read"')
         self.empty = ui.row().classes("items-center")
         with self.empty:
             ui.label("No runs yet. Create a study, or open one under Studies, and run it.")
@@ -78,8 +83,8 @@ class _Page:
     async def look(self) -> None:
         """Bring the table up to what the folder holds."""
         rows = await run.io_bound(self.listed.rows)
-        if rows is not None and rows != self.rows:  # None while the studio is ending
-            self.rows, old = rows, self.rows
+        if rows is not None and (rows != self.rows or not self.is_read):  # None while the studio is ending
+            self.rows, old, self.is_read = rows, self.rows, True
             self.grid.show(old, rows)
             self._show()
 
@@ -89,7 +94,8 @@ class _Page:
         self.selected = [name for name in self.selected if name in names]
         chosen = self._chosen()
         trash = trashed(self.workspace)
-        self.empty.set_visibility(not self.rows)
+        self.reading.set_visibility(not self.is_read)
+        self.empty.set_visibility(self.is_read and not self.rows)
         self.tools.set_visibility(bool(self.rows or trash))
         self.trash.set_visibility(bool(trash))
         self.trash.set_text(f"Trash ({len(trash)})")

@@ -130,3 +130,11 @@ def test_damaged_files(runs):
 def test_a_note_that_is_too_long_is_refused(runs):
     with pytest.raises(InputError, match=says("the note has more than 2000 characters; shorten it")):
         write_note(runs / "first", Note("x" * LONGEST, ("y",)))
+
+
+def test_the_rows_that_were_read_last_are_known_without_files(runs):
+    found = RunList(runs)
+    assert found.known == []
+    rows = found.rows()
+    (runs / "first" / "state.json").unlink()
+    assert found.known == rows

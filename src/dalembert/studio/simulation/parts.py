@@ -103,7 +103,7 @@ def _moving(study: "Study") -> Part:
     return Part(study, model, None, end)
 
 
-def last_time(study: Study) -> float | None:
+def last_time(study: "Study") -> float | None:
     """Return the last time of the motion that the task or the data name, in s; None if neither does."""
     table, data = study.table, study.file.data
     times, at = getattr(table, "times", None), getattr(table, "at", None)

@@ -125,7 +125,7 @@ class Sensors:
         stamps = along.values if times is None else samples_of(times, "Sensors", "times")
         own = [entry for name, sensor in sensors.items() for entry in _unknowns(model, name, sensor)]
         _refuse_twice(model, sensors)
-        own += [] if start is None else [_parameter(START, start, along.unit, 0.0)]
+        own += [] if start is None else [reading_parameter(START, start, along.unit, 0.0)]
         parameters = Parameters((*model.parameters.declared, *own))
         given = model, dict(sensors), parameters, Coordinate(along.name, along.unit, stamps), start
         vars(self).update(zip(self.__dataclass_fields__, given, strict=True))
@@ -285,7 +285,9 @@ def _unknowns(model: ForwardModel, name: str, sensor: Sensor) -> list[Parameter]
             "common; give the offsets by channel"
         )
     unit = {"delay": model.coordinate.unit, "lag": model.coordinate.unit, "gain": "", "offset": own[0]}
-    found = [_parameter(f"{name} {what}", bounds, unit[what], QUANTITIES[what]) for what, bounds in given.items()]
+    found = [
+        reading_parameter(f"{name} {what}", bounds, unit[what], QUANTITIES[what]) for what, bounds in given.items()
+    ]
     for item in found:
         if item.name == f"{name} lag" and item.lower < 0:
             raise InputError(f"Sensors: the lag of {name!r} may be {item.lower:g}; expected bounds of zero or more")
@@ -307,7 +309,8 @@ def _refuse_twice(model: ForwardModel, sensors: Mapping[str, Sensor]) -> None:
                 raise InputError(f"Sensors: the {what} of {channel.name!r} is given by {givers}; expected one")
 
 
-def _parameter(name: str, bounds: Bounds, unit: str, perfect: float) -> Parameter:
+def reading_parameter(name: str, bounds: Bounds, unit: str, perfect: float) -> Parameter:
+    """Return the parameter of a reading; its first guess is that of a perfect sensor where the bounds allow it."""
     (item,) = Parameters.of({name: replace(bounds, name=name) if isinstance(bounds, Parameter) else bounds}).declared
     usual = perfect if item.lower <= perfect <= item.upper else None
     return replace(item, unit=item.unit or unit, start=usual if item.start is None else item.start)

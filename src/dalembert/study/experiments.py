@@ -67,6 +67,10 @@ class ExperimentTable(DataTable):
         """Parameters of this experiment alone; the time at which its motion begins is one of them."""
         return (*self.own, *([START] if self.unknown_start else []))
 
+    def named(self, name: str) -> str:
+        """Name of a parameter in a fit of all experiments."""
+        return f"{self.name}.{name}" if name in self.alone else name
+
     def parameters(self, shared: Mapping[str, ParameterTable]) -> dict[str, ParameterTable]:
         """The parameters' tables as they are in this experiment."""
         given = self.own if isinstance(self.own, dict) else {}

@@ -1,13 +1,14 @@
 """The models and data that a study makes of its data, experiments and sensors."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dalembert.errors import DataError
 from dalembert.forward import ForwardModel, Sensor, Sensors
-from dalembert.forward.sensors import QUANTITIES, START
+from dalembert.forward.sensors import QUANTITIES, reading_parameter
 from dalembert.parameters import Parameter
 from dalembert.study.data_table import DataTable
 from dalembert.study.experiments import reads
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from dalembert.data import Measurements
     from dalembert.inverse import Experiment
 
+TIMES = ("delay", "lag")
+"""Of a sensor."""
 MOST_SAMPLES = 20_000
 """Samples of a motion between which sensors interpolate, at most; as many as steps if those are fewer."""
 
@@ -24,31 +27,38 @@ LATE = 10
 """Steps of a record before its first sample from which it must say where the motion begins."""
 
 
+def fitted_parameters(study: Study) -> dict[str, tuple[Parameter, ...]]:
+    """Parameters of the model, of sensors, and of single experiments, as a fit names them, by experiment.
+
+    Without experiments there is one entry with an empty name.
+    """
+    file = study.file
+    if not file.experiments:
+        return {"": (*study.parameters, *([] if file.data is None else _of_readings(study, file.data)))}
+    found = {}
+    for table in file.experiments:
+        items = (*study.variant(table).parameters, *_of_readings(study, table))
+        named = (replace(item, name=table.named(item.name)) for item in items)
+        found[table.name] = tuple(named)
+    return found
+
+
 def unknown_names(study: Study) -> tuple[str, ...]:
     """Names of the parameters of the model, of sensors, and of single experiments, in the order of the fit."""
-    file = study.file
-    if file.data is not None:
-        return (*study.parameters.names, *_of_readings(file, file.data))
-    names = {}
-    for table in file.experiments:
-        for name in (*study.parameters.names, *_of_readings(file, table)):
-            names[f"{table.name}.{name}" if name in table.alone else name] = None
-    return tuple(names)
+    return tuple(dict.fromkeys(item.name for items in fitted_parameters(study).values() for item in items))
 
 
-def _of_readings(file: Any, table: DataTable) -> list[str]:
-    """Names of the parameters of the sensors of some data, and of the time at which the motion begins."""
-    start = table.unknown_start
-    return [
-        *(
-            f"{channel} {what}"
-            for channel, sensor in file.sensors.items()
-            if reads(channel, table.channels)
-            for what in QUANTITIES
-            if (bounds := getattr(sensor, what)) is not None and bounds[0] < bounds[1]
-        ),
-        *([START] if start is not None and not start.is_fixed else []),
+def _of_readings(study: Study, table: DataTable) -> list[Parameter]:
+    """Parameters of the sensors of some data, and of the time at which the motion begins."""
+    found = [
+        reading_parameter(f"{channel} {what}", bounds, "s" if what in TIMES and study.has_system else "", usual)
+        for channel, sensor in study.file.sensors.items()
+        if reads(channel, table.channels)
+        for what, usual in QUANTITIES.items()
+        if (bounds := getattr(sensor.sensor, what)) is not None and bounds[0] < bounds[1]
     ]
+    start = table.unknown_start
+    return found if start is None or start.is_fixed else [*found, start]
 
 
 def posed(study: Study) -> "tuple[ForwardModel | list[Experiment], Measurements | None]":

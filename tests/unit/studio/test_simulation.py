@@ -8,7 +8,7 @@ import pytest
 
 from dalembert.errors import InputError
 from dalembert.studio.simulation.answers import Source, influences, simulated
-from dalembert.studio.simulation.parts import names, part
+from dalembert.studio.simulation.parts import parameters_of, part
 from dalembert.studio.worker import Kept
 from dalembert.study import load
 from dalembert.study.posing import posed
@@ -111,10 +111,25 @@ def test_a_curve_over_frequency_is_drawn(tmp_path):
 
 def test_experiments_are_simulated_one_by_one():
     study = load(Path("studies/friction-from-curve/identify.toml"))
-    assert names(study) == ("low", "high")
+    assert tuple(parameters_of(study)) == ("low", "high")
     assert part(study, "high").study.file.constants != part(study, "low").study.file.constants
     with pytest.raises(InputError, match="unknown experiment 'middle'"):
         part(study, "middle")
+
+
+def test_values_of_experiments_and_sensors_act(tmp_path):
+    path = begin("identify", tmp_path / "mine")
+    table = path.read_text().replace("[data]", '[[experiments]]\nname = "trial"\nown = ["angle"]')
+    path.write_text(table + "[sensors.rod]\ndelay = [0, 0.1]\nat_rest = true\n")
+    values = {"drag": 0.2, "angle": 0.0, "trial.angle": -0.7, "rod delay": 0.05}
+    found, ((experiment,), _) = simulated(Kept(), source(path), "trial", values), posed(load(path))
+    expected = experiment.model.evaluate(np.array([[0.2, -0.7, 0.05]])).only()[0] - experiment.data.values
+    assert found.residuals == pytest.approx({
+        name: np.sqrt(np.mean(expected[:, column] ** 2)) for column, name in enumerate(experiment.data.channels)
+    })  # fmt: skip
+    assert set(influences(Kept(), source(path), "trial", values).effects) == {"drag", "trial.angle", "rod delay"}
+    start = np.frombuffer(b64decode(found.film.positions), "<f4").reshape(len(found.film.times), -1, 2)[0, 1]
+    assert start == pytest.approx([0.8 * np.cos(0.7), -0.8 * np.sin(0.7)], abs=1e-6)
 
 
 def test_a_task_without_a_simulation_says_so():

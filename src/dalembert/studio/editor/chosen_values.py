@@ -1,14 +1,43 @@
 """Values of parameters, written into the text of a study."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from dalembert.errors import InputError
-from dalembert.studio.editor.entries import like, put
+from dalembert.forward.sensors import QUANTITIES, START
+from dalembert.studio.editor.entries import like, put, table_at
+
+
+@dataclass(frozen=True)
+class _Home:
+    """Where a study describes a parameter: a table that has it as a key.
+
+    Parameters
+    ----------
+    table : mapping
+    key : str
+    usual : mapping
+        Numbers that it has if the table does not give them.
+    """
+
+    table: Any
+    key: str
+    usual: Mapping[str, Any]
+
+    def like(self, name: str, value: float) -> str | float:
+        """The value with the unit of the number that it replaces, or of a bound."""
+        given = {**self.usual, **table_at(self.table, self.key)}
+        return like(given.get(name, given["lower"]), value, given)
 
 
 def use_as_start(document: Any, values: Mapping[str, float]) -> None:
-    """Write values by name (SI units) as first guesses of parameters.
+    """Write values by name (SI units) as first guesses of parameters; those of sensors have none, and are left out.
+
+    Raises
+    ------
+    InputError
+        If all are parameters of sensors.
 
     Examples
     --------
@@ -18,9 +47,14 @@ def use_as_start(document: Any, values: Mapping[str, float]) -> None:
     >>> print(tomlkit.dumps(document).splitlines()[1])
     k = { lower = "1 kN/m", upper = "9 kN/m", start = "4.25 kN/m" } # of the spring
     """
-    for name, value in values.items():
-        table = _table(document, name)
-        put(document["parameters"], name, start=like(table.get("start", table["lower"]), value))
+    sensors = [name for name in values if _sensor(document, name)]
+    if values and len(sensors) == len(values):
+        raise InputError(
+            f"{sensors[0]} has no first guess: [sensors] gives bounds only. Choose 'Use as value', or reset it."
+        )
+    for name in values.keys() - sensors:
+        value, home = values[name], _home(document, name)
+        put(home.table, home.key, start=home.like("start", value))
 
 
 def use_as_value(document: Any, name: str, value: float) -> None:
@@ -40,13 +74,53 @@ def use_as_value(document: Any, name: str, value: float) -> None:
     [parameters.angle]
     lower = 0.8 # rad
     upper = 0.8
+    >>> document = tomlkit.parse('[sensors."AB.end.x"]\\ndelay = [0, "50 ms"]\\n')
+    >>> use_as_value(document, "AB.end.x delay", 0.012)
+    >>> print(tomlkit.dumps(document).splitlines()[1])
+    delay = ["12 ms", "12 ms"]
     """
-    bounds = {key: like(_table(document, name)[key], value) for key in ("lower", "upper")}
-    put(document["parameters"], name, **bounds, start=None, deviation=None)
+    sensor = _sensor(document, name)
+    if sensor is not None:
+        what = name.rpartition(" ")[2]
+        lower, upper = sensor[what]
+        sensor[what] = [like(lower, value, {"upper": upper})] * 2
+        return
+    home = _home(document, name)
+    if home.key == "start":  # a time that is known
+        home.table["start"] = home.like("lower", value)
+        return
+    bound = home.like("lower", value)
+    put(home.table, home.key, lower=bound, upper=bound, start=bound if "start" in home.usual else None, deviation=None)
 
 
-def _table(document: Any, name: str) -> Any:
-    try:
-        return document["parameters"][name]
-    except KeyError:
-        raise InputError(f"There is no parameter {name!r} in [parameters]. Add it there.") from None
+def _home(document: Any, name: str) -> _Home:
+    """Where a parameter of the study, or of one experiment, is described."""
+    shared = table_at(document, "parameters")
+    if name in shared:
+        return _Home(document["parameters"], name, {})
+    if name == START and "data" in document:
+        return _Home(document["data"], "start", {})
+    for table in document.get("experiments", ()):
+        experiment = f"{table.get('name')}."
+        if name == experiment + START:
+            return _Home(table, "start", {})
+        own = name.removeprefix(experiment)
+        if own in table.get("own", ()) and own in shared:
+            if not hasattr(table["own"], "items"):
+                _tabulate(table)
+            return _Home(table["own"], own, shared[own])
+    raise InputError(f"{name!r} is not described by a table of the study. Change the text where its value comes from.")
+
+
+def _tabulate(table: Any) -> None:
+    """Make a table of a list of own parameters."""
+    names = list(table["own"])
+    table["own"] = {}
+    for name in names:
+        put(table["own"], name)
+
+
+def _sensor(document: Any, name: str) -> Any:
+    """The table of the sensor that a parameter belongs to; None for another parameter."""
+    sensor, _, what = name.rpartition(" ")
+    return document["sensors"][sensor] if what in QUANTITIES and sensor in table_at(document, "sensors") else None

@@ -11,6 +11,7 @@ from tomlkit.exceptions import TOMLKitError
 
 from dalembert.errors import InputError, no_text, require_known
 from dalembert.files import free_path, write_text
+from dalembert.parameters import Parameters
 from dalembert.studio.editor.history import History
 from dalembert.studio.editor.lines import Place
 from dalembert.studio.editor.outline import Outline
@@ -43,7 +44,10 @@ class Draft:
     good : Outline or None
         The last study that had no mistakes.
     values : dict of str to float
-        Current values of parameters in SI units, at first their start values.
+        Current values of parameters in SI units, at first their start values; those of a single experiment and those of
+        sensors have the names of a fit: ``"trial.angle"`` and ``"AB.end.x delay"``.
+    starts : dict of str to float
+        First guesses of the same parameters.
     selection : tuple of str or int, or None
         A place in the file, such as ``("model", "body", 0)``.
     disk : "same", "changed" or "gone"
@@ -59,6 +63,7 @@ class Draft:
         self.reading = Reading("")
         self.good: Outline | None = None
         self.values: dict[str, float] = {}
+        self.starts: dict[str, float] = {}
         self.selection: Place | None = None
         self.disk: Disk = "same"
         self._found: tuple[Mistake, ...] = ()
@@ -259,11 +264,10 @@ class Draft:
 
     def _start_values(self, study: Outline) -> None:
         """Take new start values; values that were set stay while the parameter's start and bounds do."""
-        before = {} if self.good is None else {item.name: item for item in self.good.parameters.declared}
-        parameters, start = study.parameters, study.parameters.mapping(study.parameters.start)
-        kept = {item.name for item in parameters.declared if before.get(item.name) == item}
-        values = {item.name: float(start[item.name]) for item in parameters.declared}
-        values |= {name: value for name, value in self.values.items() if name in kept}
+        parameters, known = _parameters(study), () if self.good is None else _parameters(self.good).declared
+        kept = {item.name for item in parameters.declared if item in known}
+        self.starts = {name: float(value) for name, value in parameters.mapping(parameters.start).items()}
+        values = self.starts | {name: value for name, value in self.values.items() if name in kept}
         if values != self.values:
             self.values = values
             self._tell("values")
@@ -293,6 +297,12 @@ class Draft:
     def _tell(self, topic: Topic) -> None:
         for callback in tuple(self._followers.get(topic, ())):
             callback()
+
+
+def _parameters(study: Outline) -> Parameters:
+    """Parameters of a study, of its sensors, and of single experiments."""
+    items = (*study.parameters.declared, *(item for own in study.parts.values() for item in own))
+    return Parameters(tuple({item.name: item for item in items}.values()))
 
 
 def _stamp(path: Path) -> tuple[int, int]:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from dalembert.errors import DalembertError
-from dalembert.parameters import Parameters
+from dalembert.parameters import Parameter, Parameters
 
 if TYPE_CHECKING:
     from dalembert.study.study import Study
@@ -23,8 +23,9 @@ class Outline:
         Of its runs.
     task : str
     parameters : Parameters
-    parts : tuple of str
-        Names of what can be simulated; an empty one where there are no experiments.
+    parts : mapping of str to tuple of Parameter
+        What can be simulated: an experiment, or one with an empty name where there are none. Each has the parameters
+        that act on it, those of sensors too.
     channels : tuple of str
         All channels of a mechanism; none of another model, or where it cannot be built.
     files : mapping of str to Path
@@ -35,17 +36,17 @@ class Outline:
     name: str
     task: str
     parameters: Parameters
-    parts: tuple[str, ...]
+    parts: Mapping[str, tuple[Parameter, ...]]
     channels: tuple[str, ...]
     files: Mapping[str, Path]
 
     @classmethod
     def of(cls, study: "Study", text: str) -> "Outline":
         """The outline of a study that was read from a text."""
-        from dalembert.studio.simulation.parts import names
+        from dalembert.studio.simulation.parts import parameters_of
 
         name = study.file.study.name or study.name
-        return cls(text, name, study.task, study.parameters, names(study), channels_of(study), study.files)
+        return cls(text, name, study.task, study.parameters, parameters_of(study), channels_of(study), study.files)
 
 
 def channels_of(study: "Study") -> tuple[str, ...]:

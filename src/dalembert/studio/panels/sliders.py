@@ -55,7 +55,8 @@ class Sliders:
         with ui.row().classes("w-full items-center gap-2"):
             self._start = button("Use as start", complaints()(self._use_as_start), icon="flag")
             self._reset = button("Reset", self._reset_values, icon="restart_alt", colour="grey-8")
-            self._choice = ui.select([""], value="", label="Experiment", on_change=self._ask).props("dense outlined")
+            self._choice = ui.select([""], value="", label="Experiment", on_change=self._take_choice)
+            self._choice.props("dense outlined")
             self._told = ui.label("").classes("break-words text-sm grow basis-60").props("role=status")
             self._busy = ui.row().classes("items-center gap-2")
             with self._busy:
@@ -76,11 +77,14 @@ class Sliders:
     @property
     def _changed(self) -> dict[str, float]:
         """Values that are not first guesses, by name."""
-        study = self._draft.good
-        if study is None:
-            return {}
-        start = study.parameters.mapping(study.parameters.start)
-        return {name: value for name, value in self._draft.values.items() if value != start.get(name)}
+        starts = self._draft.starts
+        return {name: value for name, value in self._draft.values.items() if value != starts[name]}
+
+    @property
+    def _items(self) -> tuple[Parameter, ...]:
+        """Parameters that have sliders: those that act on what is shown."""
+        study = self._draft.study
+        return () if study is None else study.parts.get(self._choice.value, ())
 
     def _take_study(self) -> None:
         study = self._draft.study
@@ -89,14 +93,17 @@ class Sliders:
         choices = list(study.parts)
         self._choice.set_options(choices, value=self._choice.value if self._choice.value in choices else choices[0])
         self._choice.set_visibility(len(choices) > 1)
-        if [_range(row.item) for row in self._rows.values()] != [_range(item) for item in study.parameters]:
+        self._take_choice()
+
+    def _take_choice(self) -> None:
+        if self._draft.study is None:
+            return
+        if [_range(row.item) for row in self._rows.values()] != [_range(item) for item in self._items]:
             self._build_rows()
         self._at_start = None
         self._take_values()
 
     def _build_rows(self) -> None:
-        study = self._draft.study
-        assert study is not None
         self._parameters.clear()
         with self._parameters:
             self._rows = {
@@ -110,22 +117,20 @@ class Sliders:
                         "Use as value": complaints()(partial(self._use_as_value, item.name)),
                     },
                 )
-                for item in study.parameters
+                for item in self._items
             }
             if not self._rows:
                 ui.label("The study has no parameters. Add one to [parameters] to get its slider.")
 
     def _take_values(self) -> None:
-        for name, row in self._rows.items():
-            row.show(self._draft.values[name])
+        for name in self._rows.keys() & self._draft.values.keys():
+            self._rows[name].show(self._draft.values[name])
         for one in (self._start, self._reset):
             one.set_enabled(bool(self._changed))
         self._ask()
 
     def _reset_value(self, name: str) -> None:
-        study = self._draft.good
-        if study is not None:
-            self._draft.set_value(name, study.parameters.mapping(study.parameters.start)[name])
+        self._draft.set_value(name, self._draft.starts[name])
 
     def _reset_values(self) -> None:
         for name in self._changed:

@@ -1,5 +1,6 @@
 """The best fit so far beside the data, computed in a process of its own while the run goes on in another."""
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -9,30 +10,47 @@ from dalembert.studio.worker import Kept
 from dalembert.study.folder import RunFolder
 
 if TYPE_CHECKING:
-    from dalembert.data import Measurements
-    from dalembert.forward import ForwardModel
+    from dalembert.study import Study
 
 
-def fit_so_far(kept: Kept, run: Path, values: list[float]) -> dict[str, Any] | None:
-    """The figure as Plotly's JSON holds it; None for a run without data, or of several experiments."""
+@dataclass(frozen=True)
+class FitSoFar:
+    """The fit to one experiment.
+
+    Parameters
+    ----------
+    experiments : tuple of str
+        Names of all; one that is empty for a single record.
+    figure : dict
+        As Plotly's JSON holds it.
+    """
+
+    experiments: tuple[str, ...]
+    figure: dict[str, Any]
+
+
+def fit_so_far(kept: Kept, run: Path, values: list[float], experiment: str = "") -> FitSoFar | None:
+    """Return the fit to an experiment, the first if that is not known; None for a run that fits no channels of data."""
     from dalembert.inverse import ExperimentFit
     from dalembert.report.charts import responses
+    from dalembert.studio.simulation.answers import response_at
+    from dalembert.studio.simulation.parts import parameters_of, part
 
-    found = kept.newest("fit", run, lambda: _compared(run))
-    if found is None or len(values) != len(found[0].parameters):
+    study, names = kept.newest("study of run", run, lambda: _fitted(run))
+    if not names or len(values) != len(names):
         return None
-    model, data = found
-    names = [channel.name for channel in model.channels]
-    own = model.evaluate(np.array(values)[None]).only()[0][:, [names.index(channel) for channel in data.channels]]
-    return responses(ExperimentFit("", data, own, np.ones_like(own)), title="").to_plotly_json()
+    experiments = tuple(parameters_of(study))
+    name = experiment if experiment in experiments else experiments[0]
+    own = kept.newest("part of run", (run, name), lambda: part(study, name))
+    assert own.data is not None
+    found = response_at(own, dict(zip(names, values, strict=True)))
+    fit = ExperimentFit("", own.data, found, np.ones_like(found))
+    return FitSoFar(experiments, responses(fit, title="").to_plotly_json())
 
 
-def _compared(run: Path) -> "tuple[ForwardModel, Measurements] | None":
-    """Model and data of a run; None without one of each."""
-    from dalembert.study.posing import posed
+def _fitted(run: Path) -> "tuple[Study, tuple[str, ...]]":
+    """The study of a run, and the names of its unknowns; none if it fits no channels of data."""
+    from dalembert.study.posing import unknown_names
 
     study = RunFolder(run).kept()
-    if study.task != "identify" or study.file.data is None:
-        return None
-    model, data = posed(study)
-    return None if isinstance(model, list) or data is None else (model, data)
+    return study, tuple(unknown_names(study)) if study.task == "identify" else ()

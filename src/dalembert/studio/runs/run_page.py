@@ -78,6 +78,8 @@ class _Page:
         self.message = ui.label("").classes("whitespace-pre-wrap break-words")
         self.live_part = ui.column().classes("w-full gap-4")
         with self.live_part:
+            self.choice = ui.select([""], value="", label="Experiment", on_change=self._fit_again)
+            self.choice.props("dense outlined").set_visibility(False)
             self.fit, self.curve, self.paths = (ui.column().classes("w-full") for _ in range(3))
             with ui.expansion("Events", icon="list").classes("w-full"):
                 self.log = ui.log(max_lines=200).classes("w-full h-64")
@@ -184,13 +186,22 @@ class _Page:
             self.live.name(await self.watcher.ask(f"names {name}", _names, self.folder) or ())
             self.live.remaining.most = await self.watcher.ask(f"most {name}", _most, self.folder.path)
 
+    def _fit_again(self) -> None:
+        """Show the fit to another experiment at the next look."""
+        self.fitted = []
+
     async def _show_fit(self, values: list[float]) -> None:
         """The best fit so far; a run whose model another process cannot make has none."""
         with suppress(WorkerError), self.computing.work():
             subject = f"fit {self.folder.path.name}"
-            figure = await self.watcher.ask(subject, fit_so_far, self.folder.path, values)
-            if figure is not None:
-                _draw(self.fit, "Best fit so far, and the data", on_any_page(go.Figure(figure)))
+            found = await self.watcher.ask(subject, fit_so_far, self.folder.path, values, self.choice.value)
+            if found is None:
+                return
+            if not self.choice.value:
+                self.choice.set_options(list(found.experiments), value=found.experiments[0])
+                self.choice.set_visibility(len(found.experiments) > 1)
+                self.fitted = values  # which are shown
+            _draw(self.fit, "Best fit so far, and the data", on_any_page(go.Figure(found.figure)))
 
 
 def _draw(place: ui.column, name: str, figure: go.Figure) -> None:

@@ -100,7 +100,7 @@ def simulated(
     if own.model is None and own.study.task == OVER_FREQUENCY:
         return _followed(own, values, began)
     if not own.end:
-        response, moving = _response(own, values), None
+        response, moving = response_at(own, values), None
     else:
         response, moving = _motion(own, values)
     seconds = perf_counter() - began
@@ -125,7 +125,7 @@ def influences(kept: Kept, source: Source, name: str, values: Mapping[str, float
     ranges = np.ptp(response[:, columns], axis=0)
     ranges = np.where(ranges > 0, ranges, np.maximum(np.abs(response[:, columns]).max(axis=0), 1e-300))
     sizes = np.sqrt(np.mean(jacobian[:, columns] ** 2, axis=0)) * np.array(spans) / ranges[:, None]
-    effects = dict(zip(parameters.names, np.nan_to_num(sizes).T.tolist(), strict=True))
+    effects = dict(zip(map(own.named, parameters.names), np.nan_to_num(sizes).T.tolist(), strict=True))
     return Influences(tuple(channels[column] for column in columns), effects)
 
 
@@ -141,8 +141,8 @@ def _columns(own: Part) -> list[int]:
     return [channels.index(name) for name in (channels if own.data is None else own.data.channels)]
 
 
-def _response(own: Part, values: Mapping[str, float]) -> np.ndarray:
-    """The channels that are shown, (samples, channels)."""
+def response_at(own: Part, values: Mapping[str, float]) -> np.ndarray:
+    """Return the channels that are shown, (samples, channels), at values of parameters by name."""
     assert own.model is not None
     found = own.model.evaluate(own.vector(values)[None])
     if found.failures[0] is not None:
@@ -160,7 +160,7 @@ def _motion(own: Part, values: Mapping[str, float]) -> "tuple[np.ndarray | None,
     model, shown = own.model, frames(own.end)
     if not isinstance(model, TimeResponse):
         trajectory = own.motion(values, shown)
-        return None if model is None else _response(own, values), (trajectory, np.arange(len(shown)))
+        return None if model is None else response_at(own, values), (trajectory, np.arange(len(shown)))
     times = np.union1d(shown, model.times)
     trajectory = own.motion(values, times)
     names = [channel.name for channel in model.channels]

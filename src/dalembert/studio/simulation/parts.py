@@ -1,12 +1,13 @@
 """What of a study is simulated at values of its parameters: its only data, an experiment, or what the task names."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dalembert.errors import InputError, require_known
+from dalembert.parameters import Parameter, Parameters
 
 if TYPE_CHECKING:
     from dalembert.data import Measurements
@@ -35,28 +36,37 @@ class Part:
         What the channels are compared with.
     end : float
         Last time of the motion of a mechanism, s; 0 without a motion.
+    named : function
+        Returns the name of a parameter of the model among those of all experiments.
     """
 
     study: "Study"
     model: "ForwardModel | None"
     data: "Measurements | None"
     end: float
+    named: Callable[[str], str] = str
 
-    def vector(self, values: Mapping[str, float]) -> np.ndarray:
-        """Parameters of the model (parameters,): values by name, first guesses of those that are not named."""
-        parameters = self.study.parameters if self.model is None else self.model.parameters
-        given = zip(parameters.names, parameters.start.tolist(), strict=True)
-        return np.array([values.get(name, start) for name, start in given])
+    @property
+    def parameters(self) -> Parameters:
+        """Parameters of the model, by their own names."""
+        return self.study.parameters if self.model is None else self.model.parameters
+
+    def vector(self, values: Mapping[str, float], parameters: Parameters | None = None) -> np.ndarray:
+        """Parameters (parameters,), the model's if not given: values by name, first guesses of those not named."""
+        own = self.parameters if parameters is None else parameters
+        given = zip(own.names, own.start.tolist(), strict=True)
+        return np.array([values.get(self.named(name), start) for name, start in given])
 
     def motion(self, values: Mapping[str, float], times: np.ndarray) -> "Trajectory":
         """The motion of the mechanism at some times (s)."""
-        parameters = self.study.parameters
-        return self.study.motion(self.end, parameters.vector({name: values[name] for name in parameters.names}), times)
+        return self.study.motion(self.end, self.vector(values, self.study.parameters), times)
 
 
-def names(study: "Study") -> tuple[str, ...]:
-    """Names of the parts; one that is empty where there are no experiments."""
-    return tuple(table.name for table in study.file.experiments if study.task in FROM_DATA) or ("",)
+def parameters_of(study: "Study") -> dict[str, tuple[Parameter, ...]]:
+    """Return the parameters that can be moved, by the names of the parts: one that is empty without experiments."""
+    from dalembert.study.posing import fitted_parameters
+
+    return fitted_parameters(study) if study.task in FROM_DATA else {"": tuple(study.parameters)}
 
 
 def part(study: "Study", name: str) -> Part:
@@ -82,14 +92,16 @@ def part(study: "Study", name: str) -> Part:
 def _measured(study: "Study", name: str) -> Part:
     from dalembert.study.posing import posed
 
+    named: Callable[[str], str] = str
     model, data = posed(study)
     if isinstance(model, list):
         found = {experiment.name: experiment for experiment in model}
         require_known("experiment", name, found)
         table = next(table for table in study.file.experiments if table.name == name)
+        named = table.named
         study, model, data = study.variant(table), found[name].model, found[name].data
     assert data is not None
-    return Part(study, model, data, float(data.coordinate.values[-1]) if study.has_system else 0.0)
+    return Part(study, model, data, float(data.coordinate.values[-1]) if study.has_system else 0.0, named)
 
 
 def _moving(study: "Study") -> Part:

@@ -62,6 +62,6 @@ def test_a_study_is_read_again_when_its_data_changed(study: Path) -> None:
 def test_an_outline_says_what_the_page_shows(study: Path) -> None:
     outline = reading(Kept(), study, study.read_text()).study
     assert outline is not None
-    assert (outline.name, outline.task, outline.parts) == ("pendulum", "identify", ("",))
+    assert (outline.name, outline.task, list(outline.parts)) == ("pendulum", "identify", [""])
     assert "rod.end.x" in outline.channels
     assert isinstance(reading(Kept(), study, "[model"), Reading)

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from dalembert.errors import InputError
-from dalembert.forward.sensors import QUANTITIES, START
 from dalembert.studio.editor.entries import like, put, table_at
 
 
@@ -95,6 +94,8 @@ def use_as_value(document: Any, name: str, value: float) -> None:
 
 def _home(document: Any, name: str) -> _Home:
     """Where a parameter of the study, or of one experiment, is described."""
+    from dalembert.forward.sensors import START
+
     shared = table_at(document, "parameters")
     if name in shared:
         return _Home(document["parameters"], name, {})
@@ -122,5 +123,7 @@ def _tabulate(table: Any) -> None:
 
 def _sensor(document: Any, name: str) -> Any:
     """The table of the sensor that a parameter belongs to; None for another parameter."""
+    from dalembert.forward.sensors import QUANTITIES
+
     sensor, _, what = name.rpartition(" ")
     return document["sensors"][sensor] if what in QUANTITIES and sensor in table_at(document, "sensors") else None

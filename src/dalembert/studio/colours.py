@@ -26,16 +26,23 @@ _LINES = "\n".join(
     for light, dark in zip(LIGHT.series, DARK.series, strict=True)
     for use in ("stroke", "fill")
 )
-_FOCUSED = ":is(a, button, summary, [tabindex='0'], input[type=range]):focus-visible"
+_FOCUSED = ":is(a, button, summary, [tabindex='0'], [role=tab], [role=menuitem], input[type=range]):focus-visible"
 RULES = f"""
 .nicegui-link {{ color: {FILLS["primary"]} }}
 .body--dark .nicegui-link {{ color: {TEXTS["primary"]} }}
 .q-header .nicegui-link {{ color: white }}
 {_ON_DARK}
 .body--dark .q-field {{ --q-primary: {TEXTS["primary"]}; --q-negative: {TEXTS["negative"]} }}
-{_FOCUSED} {{ outline: 2px solid {FILLS["primary"]}; outline-offset: 2px }}
-.body--dark {_FOCUSED} {{ outline-color: {TEXTS["primary"]} }}
-.q-header :is(a, button):focus-visible {{ outline-color: white }}
+body {{ --focus: {FILLS["primary"]}; --ground: white }}
+body.body--dark {{ --focus: {TEXTS["primary"]}; --ground: #121212 }}
+.q-header {{ --focus: white; --ground: {FILLS["primary"]} }}
+{_FOCUSED} {{ outline: 2px solid var(--focus); outline-offset: 2px }}
+[role=tab]:focus-visible {{ outline-offset: -2px }}
+.no-outline:focus-visible {{ box-shadow: 0 0 0 2px var(--ground), 0 0 0 4px var(--focus) }}
+@media (prefers-reduced-motion: reduce) {{
+    * {{ transition-duration: 1ms !important; scroll-behavior: auto !important }}
+}}
+.cm-editor.cm-focused {{ outline: 2px solid var(--focus) !important }}
 .js-plotly-plot .main-svg :is(.cartesianlayer, .infolayer) text {{ fill: currentColor !important }}
 .q-dialog .q-card {{ z-index: 1 }}
 .model-drawing text {{ fill: currentColor }}

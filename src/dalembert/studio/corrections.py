@@ -1,4 +1,4 @@
-"""What NiceGUI's elements lack for screen readers."""
+"""What NiceGUI's elements lack for screen readers and keyboards."""
 
 from nicegui import ui
 
@@ -9,6 +9,15 @@ addEventListener("DOMContentLoaded", () => {
         // Entries of a menu are children of the list: what is between may not take the focus.
         for (const one of document.querySelectorAll("[role=listbox] > [tabindex]")) one.removeAttribute("tabindex");
     };
+    addEventListener("keydown", (event) => {
+        const entries = [...(event.target.closest?.("[role=menu]")?.querySelectorAll("[role=menuitem]") ?? [])];
+        const at = entries.indexOf(document.activeElement), last = entries.length - 1;
+        const below = at < last ? at + 1 : 0, above = at > 0 ? at - 1 : last;
+        const next = { ArrowDown: below, ArrowUp: above, Home: 0, End: last }[event.key];
+        if (next === undefined || last < 0) return;
+        event.preventDefault();
+        entries[next].focus();
+    });
     new MutationObserver(correct).observe(document.body, { childList: true, subtree: true });
 });
 </script>

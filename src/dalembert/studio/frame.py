@@ -53,6 +53,7 @@ LOOKS = """
     .study-parts > .q-splitter__before { height: 45vh }
     .study-parts > .q-splitter__separator { display: none }
 }
+[role=main] > div:empty:not([role]):not([aria-live]) { display: none }
 .study-hint { max-width: 28rem; padding: 6px 10px; font-size: 13px; white-space: normal }
 .cm-tooltip.cm-completionInfo { max-width: 22rem; padding: 6px 10px; font-size: 13px }
 .cm-completionDetail { font-style: normal !important; opacity: 0.8 }
@@ -157,7 +158,7 @@ def report_of(folder: RunFolder, height: str) -> None:
 
 def button(text: str, on_click: Callable[[], object], *, icon: str, colour: str = "primary") -> ui.button:
     """A button in the studio's look."""
-    return ui.button(text, on_click=on_click, icon=icon, color=colour).props("no-caps unelevated")
+    return ui.button(text, on_click=on_click, icon=icon, color=colour).props("no-caps no-wrap unelevated")
 
 
 def icon_button(icon: str, label: str, on_click: Callable[[], object]) -> ui.button:

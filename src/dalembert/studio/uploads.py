@@ -35,5 +35,5 @@ def upload(label: str, kinds: str, uploaded: Callable[[events.UploadEventArgumen
 
     field = ui.upload(label=label, auto_upload=True, on_upload=uploaded, on_rejected=refuse, max_file_size=MOST_BYTES)
     field.on("failed", fail, args=[])
-    field.props(f'accept="{kinds}" flat bordered').classes("w-full max-w-md")
+    field.props(f'accept="{kinds}" flat bordered color=transparent text-color=primary').classes("w-full max-w-md")
     field.add_slot("header", _HEADER % label)

@@ -76,7 +76,7 @@ class Told:
 
     @property
     def _found(self) -> str:
-        return f"best {self._best:.4g} · {self._listed(self._values)}"
+        return " · ".join(filter(None, (f"best {self._best:.4g}", self._listed(self._values))))
 
     def _listed(self, values: list[float]) -> str:
         return ", ".join(f"{name} = {value:.6g}" for name, value in zip(self.names, values, strict=False))

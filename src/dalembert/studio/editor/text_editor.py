@@ -13,6 +13,11 @@ _LINE = """() => {
     const state = getElement(%d).editor.state;
     emit(state.doc.lineAt(state.selection.main.head).number);
 }"""
+_DARK = """
+    const dark = matchMedia("(prefers-color-scheme: dark)");
+    dark.onchange = () => emitEvent("dark", dark.matches);
+    return dark.matches;
+"""
 _MOVE = """
     const view = getElement(%d).editor;
     if (%d <= view.state.doc.lines) view.dispatch({selection: {anchor: view.state.doc.line(%d).to}});
@@ -49,8 +54,12 @@ class TextEditor:
             ui.run_javascript(_MOVE % (self.element.id, line, line))
 
     async def _adapt(self) -> None:
-        if await ui.run_javascript("matchMedia('(prefers-color-scheme: dark)').matches"):
-            self.element.set_theme("vscodeDark")
+        """Take the colours of the system, also when they change."""
+        ui.on("dark", lambda event: self._colour(bool(event.args)))
+        self._colour(await ui.run_javascript(_DARK))
+
+    def _colour(self, dark: bool) -> None:
+        self.element.set_theme("vscodeDark" if dark else "vscodeLight")
 
     def _typed(self) -> None:
         self.draft.set_text(self.element.value or "", typed=True)

@@ -152,6 +152,20 @@ export default {
       arrow.cone.userData.part = undefined;
       return [arrow, thick];
     },
+    // Move names down that would cover others.
+    spread() {
+      const names = [...this.words.domElement.children].filter((one) => one.style.display !== "none");
+      for (const one of names) one.style.translate = "";
+      const taken = [];
+      const boxes = names.map((one) => [one, one.getBoundingClientRect()]).sort((a, b) => a[1].top - b[1].top);
+      for (const [one, { left, right, top, height }] of boxes) {
+        let at = top;
+        for (const other of taken)
+          if (left < other.right && other.left < right && at < other.bottom && other.top < at + height) at = other.bottom;
+        if (at > top) one.style.translate = `0 ${at - top}px`;
+        taken.push({ left, right, top: at, bottom: at + height });
+      }
+    },
     // The floor, the axes, and the direction of gravity.
     surround() {
       const span = Math.max(this.high.x - this.low.x, this.high.y - this.low.y, 0.3 * this.size);
@@ -274,6 +288,7 @@ export default {
         this.lamp.position.copy(this.camera.position);
         this.renderer.render(this.world, this.camera);
         this.words.render(this.world, this.camera);
+        this.spread();
       });
     },
   },

@@ -74,6 +74,33 @@ def test_fifty_edits_in_two_tabs_lose_nothing(chromium, open_study):
     assert chromium.complaints == []
 
 
+def test_fifty_edits_at_once_lose_nothing_silently(chromium, open_study):
+    file, tabs = open_study("at_once", 2)
+    begun = file.read_text()
+    for number in range(0, 50, 2):
+        edits = [f"# edit {number}", f"# edit {number + 1}"]
+        for tab, edit in zip(tabs, edits, strict=True):
+            write_at_start(tab, edit)
+        for tab in tabs:
+            tab.keyboard.press("Control+s")
+        for tab, edit in zip(tabs, edits, strict=True):
+            wait_until(tab, f"{TEXT}.includes({CHANGED!r}) || !{TEXT}.includes('Save •')")
+            if tab.get_by_role("button", name="Reload").is_visible():
+                assert tab.evaluate(shown(edit))
+                click(tab, "Reload")
+                wait_until(tab, f"!{TEXT}.includes('Save •') && !{shown(edit)}")
+                write_at_start(tab, edit)
+                tab.keyboard.press("Control+s")
+                wait_until(tab, f"!{TEXT}.includes('Save •') && {shown(edit)}")
+        text = file.read_text()
+        lines = text.removesuffix(begun).splitlines()
+        assert text.endswith(begun)
+        assert sorted(lines) == sorted(f"# edit {one}" for one in range(number + 2))
+        for tab in tabs:
+            wait_until(tab, f"{shown(edits[0])} && {shown(edits[1])}")
+    assert chromium.complaints == []
+
+
 def test_edits_at_once_are_kept_by_choice(open_study):
     file, (first, second) = open_study("both", 2)
     write_at_start(first, "# first")

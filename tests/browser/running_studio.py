@@ -19,8 +19,16 @@ ALIVE = "document.querySelector('[role=main]') && window.socket?.connected && wi
 def running_studio(root: Path) -> Iterator[str]:
     """The address of a studio for a folder."""
     studio, address = start_studio(root)
-    with studio:
+    with studio, ended(studio):
         yield address
+
+
+@contextmanager
+def ended(studio: subprocess.Popen) -> Iterator[None]:
+    """End a studio after a block, whatever happens in it."""
+    try:
+        yield
+    finally:
         studio.terminate()
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page
 
-from browser.running_studio import opener, start_studio
+from browser.running_studio import ended, opener, start_studio
 from browser.visitor import wait_until
 from dalembert.study.template import begin
 
@@ -38,9 +38,8 @@ def small(tmp_path):
     if subprocess.run([*before, "true"], capture_output=True, check=False).returncode:
         pytest.skip("this system does not let a process mount a disk of its own")
     process, address = start_studio(tmp_path, before=before)
-    with process:
+    with process, ended(process):
         yield address, Path(f"/proc/{process.pid}/root{tmp_path}")
-        process.terminate()
 
 
 def fill(root: Path) -> Path:
@@ -121,7 +120,7 @@ def test_a_read_only_folder_loses_nothing(chromium, tmp_path):
     if subprocess.run(tried, cwd=tmp_path, capture_output=True, check=False).returncode == 0:
         pytest.skip("this system does not let go of root's right to write everywhere")
     process, address = start_studio(tmp_path, before=before_it)
-    with process:
+    with process, ended(process):
         visit = opener(chromium, address)
         page = visit("/study/mine/mine")
         wait_until(page, f"{TEXT}.includes('Valid.')")
@@ -137,6 +136,5 @@ def test_a_read_only_folder_loses_nothing(chromium, tmp_path):
         study.parent.chmod(0o755)
         click(page, "Save")
         wait_until(page, f"{TEXT}.includes('Saved.')")
-        process.terminate()
     assert study.read_text() == f"# mine\n{before}"
     assert chromium.complaints == []

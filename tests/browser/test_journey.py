@@ -50,7 +50,11 @@ def start(chromium: Visitor, root):
     with running_studio(root) as address:
         page = opener(chromium, address)("/", height=1000)
         clicks: list[str] = []
-        page.expose_function("clicked", clicks.append)
+
+        def clicked(text: str) -> None:
+            clicks.append(text)
+
+        page.expose_function("clicked", clicked)
         page.add_init_script(COUNTED)
         page.reload()
         wait_until(page, "window.did_handshake")

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page
 
-from browser.running_studio import opener, start_studio
+from browser.running_studio import ended, opener, start_studio
 from browser.visitor import wait_until
 from dalembert.study.template import begin
 
@@ -44,9 +44,8 @@ over = { rate = { count = 800 } }
 def studio(tmp_path):
     """A studio as its process and its address."""
     process, address = start_studio(tmp_path)
-    with process:
+    with process, ended(process):
         yield process, address
-        process.terminate()
 
 
 def children(process: int) -> list[int]:
@@ -103,9 +102,8 @@ def test_a_run_outlives_a_studio_that_is_killed(chromium, studio, tmp_path):
     process.wait()
     wait_until(page, f"{TEXT}.includes('Connection lost.')")
     again, _ = start_studio(tmp_path, address.rpartition(":")[2])
-    with again:
+    with again, ended(again):
         wait_until(page, f"{TEXT}.includes('finished')")
-        again.terminate()
     assert not [one for one in own if Path(f"/proc/{one}").exists()]
 
 

@@ -27,6 +27,8 @@ from benchmarks.sliders import STUDY, chromium
 from benchmarks.startup import QUIET, ROOT, _loop
 
 RUNS, STUDIES, REPEATS = 1000, 300, 5
+SETTLED = 8.0
+"""Seconds in which the studio has started."""
 VIEW = {"width": 1440, "height": 900}
 STUDY_PAGE = {"its text": ".cm-content .cm-line", "checked": "text=Valid.", "drawn": ".model-drawing svg"}
 RUN_PAGE = {"its state": "[role=status]", "its report": "iframe"}
@@ -96,6 +98,7 @@ def _of_lists(root: Path, browser: Browser) -> Iterator[dict[str, object]]:
     """Many runs and many studies."""
     _copies(root)
     with _studio(root) as studio:
+        time.sleep(SETTLED)
         for name, path, shown in ((f"{RUNS} runs", "/", TABLE), (f"{STUDIES} studies", "/studies", CARDS)):
             profile = browser.new_context(viewport=VIEW)
             yield from _rows(f"{name}, first opening", [studio.open(profile, path, shown)])
@@ -143,14 +146,14 @@ def _copies(root: Path) -> None:
 
 
 def _processor_time(session: int) -> float:
-    """Processor seconds of the processes of a session."""
+    """Processor seconds of the processes of a session, with those that have ended."""
     ticks = 0
     for process in Path("/proc").glob("[0-9]*"):
         try:
             fields = (process / "stat").read_text().rpartition(")")[2].split()
         except OSError:  # it has ended
             continue
-        ticks += sum(map(int, fields[11:13])) if int(fields[3]) == session else 0
+        ticks += sum(map(int, fields[11:15])) if int(fields[3]) == session else 0
     return ticks / os.sysconf("SC_CLK_TCK")
 
 

@@ -23,7 +23,7 @@ rate = {{ lower = 0.01, upper = 10.0, start = 1.0, unit = "1/s" }}
 forward = "model.py:model"
 arguments = {{ wait = {wait} }}
 [sweep]
-at = 0.5
+at = 1.0
 channels = ["x"]
 over = {{ rate = {{ count = 3 }} }}
 """

@@ -1,6 +1,10 @@
 """What a process needs to answer for a study, imported before the first study is opened."""
 
+# ruff: noqa: F401
+
 import gc
+
+import typer  # each process imports the program that was started
 
 import dalembert.inverse
 import dalembert.multibody.sketch
@@ -12,7 +16,7 @@ import dalembert.studio.simulation.answers
 import dalembert.study.picture
 import dalembert.study.posing
 import dalembert.study.runner
-import dalembert.study.validation  # noqa: F401
+import dalembert.study.validation
 
 gc.collect()
 gc.freeze()  # what is never looked at stays memory that the forked processes share

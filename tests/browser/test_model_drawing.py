@@ -148,3 +148,18 @@ def test_the_drawing_is_enlarged_and_fits_again(visit):
     wait_until(page, f"{view} !== '{whole}'")
     page.locator("[aria-label='Show all of the drawing']").click()
     wait_until(page, f"{view} === '{whole}'")
+
+
+def test_a_part_that_is_not_drawn_is_a_link_to_its_table(visit):
+    page = visit("response")
+    line_of(page, "[[model.force]]").click()
+    page.keyboard.press("Home")
+    page.keyboard.insert_text('[[model.force]]\ndof = "m"\namplitude = "2 N"\nharmonic = 3\n\n')
+    link = page.get_by_role("button", name="force m (2)")
+    link.focus()
+    page.keyboard.press("Enter")
+    wait_until(page, f"{CURSOR} === '[[model.force]]'")
+    wait_until(page, "document.querySelector('.model-part').getAttribute('aria-pressed') === 'true'")
+    line_of(page, "[[model.contact]]").click()
+    wait_until(page, "document.querySelector('.model-part').getAttribute('aria-pressed') === 'false'")
+    assert chosen(page) == ["slider"]

@@ -1,6 +1,6 @@
 """A mechanism in one pose: its drawing, and the points that its joints and loads hold on to."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from dalembert.kernels.preparation import prepare
 from dalembert.multibody.assemble import assembled
+from dalembert.multibody.components.joint import BaseJoint
 from dalembert.multibody.components.points import Ground, Point
 from dalembert.multibody.drawing import Drawing, draw
 from dalembert.multibody.lowered import Lowered
@@ -15,8 +16,10 @@ from dalembert.multibody.lowering import lower
 from dalembert.multibody.observe import observer
 from dalembert.multibody.system import Mechanism
 
-SIDES = ("a", "b", "at")
-"""Fields of joints and loads that hold on to a point."""
+SIDES = ("a", "b", "at", "joint")
+"""Fields of joints and loads that hold on to a point, or act on a joint."""
+FORCES = ("force", "force_in_space")
+"""Kinds of loads that push along a known direction."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,12 +35,15 @@ class Sketch:
         Positions in m of the points that a joint or a load acts on, by its name.
     marks : mapping of str to array, shape (2 or 3,)
         Positions in m of further points of bodies, by ``"body.point"``.
+    forces : mapping of str to array, shape (2 or 3,)
+        Forces in N along the fixed axes, by the names of their loads: amplitudes of those that change over time.
     """
 
     system: Mechanism
     drawing: Drawing
     ends: dict[str, np.ndarray]
     marks: dict[str, np.ndarray] = field(default_factory=dict)
+    forces: dict[str, np.ndarray] = field(default_factory=dict)
 
     @property
     def positions(self) -> np.ndarray:
@@ -72,7 +78,8 @@ def sketch(system: Mechanism, points: int = 8, *, marks: Sequence[str] = (), ass
     lowered = assembled(system, placed=placed) if assemble else placed
     x = np.real(lowered.x)[None]
     located = dict(zip(marks, _positions(system, lowered, x, list(marks)), strict=True))
-    return Sketch(system, draw(system, lowered, np.zeros(1), x, points), _ends(system, lowered, x), located)
+    drawing = draw(system, lowered, np.zeros(1), x, points)
+    return Sketch(system, drawing, _ends(system, lowered, x), located, _forces(system, lowered, x, drawing))
 
 
 def is_grounded(component: Any) -> bool:
@@ -81,27 +88,59 @@ def is_grounded(component: Any) -> bool:
     return any(isinstance(side, Ground) or _fixed(side) is not None for side in sides)
 
 
+def size_of(course: Any) -> float:
+    """Return a number, or what a function of time is multiplied with; 1 where that is not one number."""
+    for name in ("value", "amplitude"):
+        course = getattr(course, name, course)
+    return float(np.real(course)) if np.isscalar(course) else 1.0
+
+
 def _ends(system: Mechanism, lowered: Lowered, x: np.ndarray) -> dict[str, np.ndarray]:
-    """Positions of the points that joints and loads act on."""
+    """Positions of the points that joints and loads act on; of a joint that they act on, the middle of its points."""
     parts = {part.name: _sides(part) for part in (*system.joints, *system.loads)}
     held = list(dict.fromkeys(str(side) for sides in parts.values() for side in sides if isinstance(side, Point)))
     known = dict(zip(held, _positions(system, lowered, x, held), strict=True))
-    found = {}
+    found: dict[str, np.ndarray] = {}
     for name, sides in parts.items():
-        own = [known[str(side)] if isinstance(side, Point) else _fixed(side) for side in sides]
+        own = [_end(side, known, found) for side in sides]
         own = [position for position in own if position is not None]
         if own:
             found[name] = np.array(own)
     return found
 
 
+def _end(side: Any, points: Mapping[str, np.ndarray], joints: Mapping[str, np.ndarray]) -> np.ndarray | None:
+    if isinstance(side, BaseJoint):
+        return joints[side.name].mean(axis=0) if side.name in joints else None
+    return points[str(side)] if isinstance(side, Point) else _fixed(side)
+
+
 def _sides(component: Any) -> list[Any]:
     return [side for name in SIDES if (side := getattr(component, name, None)) is not None]
 
 
+def _forces(system: Mechanism, lowered: Lowered, x: np.ndarray, drawing: Drawing) -> dict[str, np.ndarray]:
+    """Forces along the fixed axes."""
+    found = {}
+    for load in system.loads:
+        if load.kind.name in FORCES:
+            size = np.array([size_of(getattr(load, axis)) for axis in system.AXES])
+            follows = getattr(load, "follower", False) and isinstance(load.at, Point)
+            found[load.name] = _axes(system, lowered, x, drawing, load.at) @ size if follows else size
+    return found
+
+
+def _axes(system: Mechanism, lowered: Lowered, x: np.ndarray, drawing: Drawing, point: Point) -> np.ndarray:
+    """Axes of a point of a body in the fixed axes, as columns."""
+    if point.body.name in drawing.axes:
+        return drawing.axes[point.body.name][0, 1:].T @ np.real(point.body.marker(point.name).axes)
+    angle = _read(system, lowered, x, [f"{point}.angle"])[0]
+    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+
 def _fixed(side: Any) -> np.ndarray | None:
     """Position of a point of the ground."""
-    if isinstance(side, Point) or not (hasattr(side, "x") or hasattr(side, "position")):
+    if isinstance(side, Point | BaseJoint) or not (hasattr(side, "x") or hasattr(side, "position")):
         return None
     return np.real(np.array(side.position if hasattr(side, "position") else (side.x, side.y))).astype(float)
 
@@ -109,9 +148,14 @@ def _fixed(side: Any) -> np.ndarray | None:
 def _positions(system: Mechanism, lowered: Lowered, x: np.ndarray, points: list[str]) -> np.ndarray:
     """Positions of points of bodies, (points, 2 or 3)."""
     axes = system.AXES
-    if not points:
-        return np.zeros((0, len(axes)))
-    read = observer(system, lowered, [f"{point}.{axis}" for point in points for axis in axes])
+    return _read(system, lowered, x, [f"{point}.{axis}" for point in points for axis in axes]).reshape(-1, len(axes))
+
+
+def _read(system: Mechanism, lowered: Lowered, x: np.ndarray, channels: list[str]) -> np.ndarray:
+    """Channels of the mechanism at rest, (channels,)."""
+    if not channels:
+        return np.zeros(0)
+    read = observer(system, lowered, channels)
     prepare(read.kernels(lowered, False))
     still = np.zeros_like(x)
-    return read.read(lowered, lowered.real, (x, still, still), np.zeros(1)).reshape(len(points), len(axes))
+    return read.read(lowered, lowered.real, (x, still, still), np.zeros(1)).ravel()

@@ -39,8 +39,8 @@ LOOKS = """
 .body--dark .model-space { --ground: #121212 }
 .model-space button, .model-space span { text-shadow: 0 0 2px var(--ground), 0 0 3px var(--ground) }
 .model-space button { background: none; border: 0; border-radius: 4px; cursor: pointer }
-.model-space button.chosen { outline: 2px solid #3987e5 }
-.model-space button.wrong { outline: 2px solid #e03131 }
+.model-space button.chosen, .model-part.chosen { outline: 2px solid #3987e5 }
+.model-space button.wrong, .model-part.wrong { outline: 2px solid #e03131 }
 .model-space:focus-visible, .model-space button:focus-visible { outline: 2px solid #3987e5; outline-offset: -2px }
 .model-drawing g[data-part] { cursor: pointer; outline: none }
 .model-drawing g.chosen { filter: drop-shadow(0 0 2px #3987e5) drop-shadow(0 0 4px #3987e5) }

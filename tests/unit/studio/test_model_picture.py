@@ -12,6 +12,7 @@ from dalembert.studio.worker import Kept
 from dalembert.study.template import templates
 
 IDENTIFY = templates()["identify"].text
+SWING = IDENTIFY.partition("[data]")[0] + "[simulate]\nend = 1.0\n"
 LOOP = """
 [parameters]
 wire = { lower = 1, upper = 5, start = 2 }
@@ -73,6 +74,7 @@ def test_each_part_is_drawn_and_has_its_table(draw):
         "channel rod.end.x",
         "gravity gravity",
         "joint pin",
+        "measured rod.end",
         "point rod.end",
     ]
     assert picture.places["joint pin"] == ("model", "joint", 0)
@@ -83,16 +85,29 @@ def test_each_part_is_drawn_and_has_its_table(draw):
 
 
 def test_the_pose_is_that_of_the_values(draw):
-    level, hanging = (draw(IDENTIFY, "identify", angle=angle).box for angle in (0.0, -np.pi / 3))
+    level, hanging = (draw(SWING, "identify", angle=angle).box for angle in (0.0, -np.pi / 3))
     length = 0.8
     assert np.ptp(level, axis=0)[0] == pytest.approx(1.18 * length)
     assert np.ptp(hanging, axis=0) == pytest.approx(length * (np.array([0.5, 3**0.5 / 2]) + 0.18 * 3**0.5 / 2))
 
 
 def test_a_drawing_that_moves_stands_still(draw):
-    first = draw(IDENTIFY, "identify", angle=-0.7)
-    assert draw(IDENTIFY, "identify", first.box, angle=-0.75).box is first.box
-    assert draw(IDENTIFY, "identify", first.box, angle=-1.0).box is not first.box
+    first = draw(SWING, "identify", angle=-0.7)
+    assert draw(SWING, "identify", first.box, angle=-0.75).box is first.box
+    assert draw(SWING, "identify", first.box, angle=-1.0).box is not first.box
+
+
+def test_measured_positions_are_drawn_near_the_model(draw):
+    picture = draw(IDENTIFY, "identify")
+    ((_, commands),) = re.findall(
+        r'data-part="(rod.end)"[^>]*><title>[^<]*</title><path d="([^"]*)"[^>]*stroke-width="1"', picture.svg
+    )
+    assert commands.count("M") == 2 * 81  # two strokes a sample
+    assert picture.places["measured rod.end"] == ("data",)
+    assert np.ptp(picture.box, axis=0)[0] > 1.18 * 0.8
+    wrong = draw(IDENTIFY.replace("[data]", '[data]\nunits = { x = "km", y = "km" }'), "identify")
+    assert "measured rod.end" not in parts(wrong.svg)
+    assert wrong.message == "Measured positions of rod.end are far from the model and not drawn. Check their unit."
 
 
 def test_parts_of_structures_have_their_tables(draw):

@@ -1,15 +1,19 @@
 """The picture of a mechanism in the plane or in space."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
+from dalembert.multibody.components.joint import BaseJoint
 from dalembert.multibody.sketch import Sketch, is_grounded
 from dalembert.report.charts.motion.outlines import NAMED_BODIES
 from dalembert.report.pictures.canvas import COLOURS, INK, SIZE, Canvas, between, moved
 from dalembert.report.pictures.projection import Projection
 
 MOST_TRIANGLES = 1500
+TURNING = ("torque", "motor", "servo")
+"""Kinds of loads that are drawn as a turn."""
 NEAR = 4.0
 """Distance in pixels below which two ends of a joint count as one."""
 
@@ -59,6 +63,14 @@ def _bodies(canvas: Canvas, view: Projection, sketch: Sketch) -> None:
                 _line(canvas, view, drawing.lines[name][0], colours[name])
 
 
+def draw_measured(canvas: Canvas, view: Projection, measured: Mapping[str, np.ndarray]) -> None:
+    """Draw crosses at measured positions (samples, 2 or 3) of points."""
+    for name, positions in measured.items():
+        arms = np.array([(-3, -3), (3, 3), (np.nan, np.nan), (-3, 3), (3, -3), (np.nan, np.nan)])
+        with canvas.part(name, "measured"):
+            canvas.stroke((canvas.at(view(positions))[:, None] + arms).reshape(-1, 2), INK, 1)
+
+
 def _line(canvas: Canvas, view: Projection, points: np.ndarray, colour: str) -> None:
     pixels = canvas.at(view(points))
     if float(np.ptp(pixels, axis=0).max()) < NEAR:
@@ -81,7 +93,7 @@ def _surface(canvas: Canvas, view: Projection, corners: np.ndarray, triangles: n
 def _joint(canvas: Canvas, view: Projection, joint: Any, sketch: Sketch) -> None:
     ends = canvas.at(view(sketch.ends[joint.name])) if joint.name in sketch.ends else None
     drawn = sketch.drawing.joints.get(joint.name)
-    centre = canvas.at(view(drawn[:1]))[0] if drawn is not None else ends[-1] if ends is not None else None
+    centre = canvas.at(view(drawn[:1]))[0] if drawn is not None else _centre(joint, ends) if ends is not None else None
     if centre is None:
         return
     with canvas.part(joint.name, "joint"):
@@ -92,39 +104,43 @@ def _joint(canvas: Canvas, view: Projection, joint: Any, sketch: Sketch) -> None
         canvas.circle(centre, 4, "#fffffe", INK)
 
 
+def _centre(joint: Any, ends: np.ndarray) -> np.ndarray:
+    """Where a joint without a position is drawn: at its second side, and a coupling between its joints."""
+    return ends.mean(axis=0) if isinstance(joint.a, BaseJoint) else ends[-1]
+
+
 def _load(canvas: Canvas, view: Projection, load: Any, sketch: Sketch) -> None:
     if load.name not in sketch.ends:
         return
     ends = canvas.at(view(sketch.ends[load.name]))
     with canvas.part(load.name, "load"):
-        if len(ends) == 2:
-            canvas.spring(*ends)
-        elif load.kind.name in ("torque", "motor", "servo"):
+        if hasattr(load, "joint"):
+            canvas.circle(ends[0], 9, "none", COLOURS[1])
+        elif turns(load):
             turn = np.linspace(-0.4, 4.2, 24)
             arc = ends[0] + 13 * np.column_stack([np.cos(turn), np.sin(turn)])
             canvas.stroke(arc[:-2], COLOURS[1], 2)
             canvas.arrow(arc[-3], arc[-3] + 3 * (arc[-1] - arc[-3]), COLOURS[1])
-        elif (along := _pull(view, load)) is not None:
+        elif len(ends) == 2:
+            canvas.spring(*ends)
+        elif (along := _pull(view, sketch, load.name)) is not None:
             canvas.arrow(ends[0] - 44 * along, ends[0], COLOURS[3])
         else:
             canvas.circle(ends[0], 3, COLOURS[1])
 
 
-def _pull(view: Projection, load: Any) -> np.ndarray | None:
+def turns(load: Any) -> bool:
+    """Return True for a torque or a drive."""
+    return load.kind.name.removesuffix("_in_space") in TURNING
+
+
+def _pull(view: Projection, sketch: Sketch, load: str) -> np.ndarray | None:
     """Direction of a force in pixels; None for other loads, and for one without a direction in the picture."""
-    if load.kind.name != "force" or getattr(load, "follower", False):
+    if load not in sketch.forces:
         return None
-    size = np.array([size_of(getattr(load, axis)) for axis in "xyz"[: view.axes.shape[1]]])
-    along = view(size[None])[0] * (1, -1)
+    along = view(sketch.forces[load][None])[0] * (1, -1)
     length = float(np.linalg.norm(along))
-    return along / length if length > 0 else None
-
-
-def size_of(course: Any) -> float:
-    """Return a number, or what a function of time is multiplied with; 1 where that is not one number."""
-    for name in ("value", "amplitude"):
-        course = getattr(course, name, course)
-    return float(np.real(course)) if np.isscalar(course) else 1.0
+    return along / length if length > 1e-9 * float(np.linalg.norm(sketch.forces[load])) else None
 
 
 def _gravity(canvas: Canvas, view: Projection, sketch: Sketch) -> None:

@@ -1,6 +1,7 @@
 """The picture of a structure: its mesh with forces and contacts, or its masses and springs."""
 
-from collections.abc import Iterable
+from collections.abc import Container, Iterable, Sequence
+from typing import Any
 
 import numpy as np
 from scipy.sparse import issparse
@@ -9,7 +10,7 @@ from dalembert.report.charts.frequency.body import edges
 from dalembert.report.look import LIGHT
 from dalembert.report.pictures.canvas import COLOURS, INK, SIZE, Canvas, between, moved
 from dalembert.report.pictures.projection import Projection
-from dalembert.vibration import FrictionContact, HarmonicForce, VibrationSystem
+from dalembert.vibration import FrictionContact, VibrationSystem
 
 MOST_MASSES = 12
 """Of a structure that is drawn as masses and springs."""
@@ -21,11 +22,17 @@ AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
 def structure_picture(
-    system: VibrationSystem, label: str, size: tuple[int, int] = SIZE, *, choosable: bool = False
+    system: VibrationSystem,
+    label: str,
+    size: tuple[int, int] = SIZE,
+    *,
+    choosable: bool = False,
+    channels: Sequence[str] = (),
 ) -> str | None:
     """Return the SVG picture of a structure; None where neither its nodes nor few masses are known.
 
-    Each part is a group ``<g class="ROLE" data-part="NAME">``; roles are body, spring, force and contact.
+    Each part is a group ``<g class="ROLE" data-part="NAME">``; roles are body, spring, force, contact and
+    channel.
 
     Parameters
     ----------
@@ -36,16 +43,39 @@ def structure_picture(
         Pixels.
     choosable : bool
         Whether the parts are buttons.
+    channels : sequence of str
+        Degrees of freedom or nodes that are observed; they are marked.
     """
     nodes = system.structure.nodes
     if nodes is not None and len(nodes.names):
-        return _mesh(system, label, size, choosable)
+        return _mesh(system, label, size, choosable, channels)
     masses = list(dict.fromkeys(name.rpartition(".")[0] for name in system.structure.dofs.names))
-    return _chain(system, masses, label, size, choosable) if len(masses) <= MOST_MASSES else None
+    return _chain(system, masses, label, size, choosable, channels) if len(masses) <= MOST_MASSES else None
 
 
-def _mesh(system: VibrationSystem, label: str, size: tuple[int, int], choosable: bool) -> str:
-    """Faces and edges of the structure; arrows of forces; contacts at their nodes."""
+def node_of(name: str, known: Container[str]) -> str | None:
+    """Return the node of a degree of freedom, a node, or a channel such as ``"tip.x harmonic 1"``; None if not known.
+
+    >>> node_of("tip.x harmonic 1", ["tip"]), node_of("tip", ["tip"]), node_of("end.x", ["tip"])
+    ('tip', 'tip', None)
+    """
+    dof = name.partition(" ")[0]
+    return next((node for node in (dof, dof.rpartition(".")[0]) if node in known), None)
+
+
+def ends_of(element: Any, known: Container[str]) -> list[str]:
+    """Return the nodes that an element acts on."""
+    ends = [getattr(element, "first", None), getattr(element, "second", None), *getattr(element, "dofs", ())]
+    return [node for end in ends if end is not None and (node := node_of(end, known)) is not None]
+
+
+def role_of(element: Any) -> str:
+    """Return the role of an element in the drawing."""
+    return "contact" if isinstance(element, FrictionContact) else "spring"
+
+
+def _mesh(system: VibrationSystem, label: str, size: tuple[int, int], choosable: bool, channels: Sequence[str]) -> str:
+    """Faces and edges of the structure; arrows of forces; contacts and springs at their nodes; observed nodes."""
     nodes = system.structure.nodes
     assert nodes is not None
     view, places = Projection.of(3), nodes.places
@@ -59,9 +89,16 @@ def _mesh(system: VibrationSystem, label: str, size: tuple[int, int], choosable:
             _faces(canvas, view, places, faces)
     known = set(nodes.names)
     for element in system.elements:
-        if isinstance(element, FrictionContact) and element.first in known:
-            with canvas.part(element.name, "contact"):
-                canvas.circle(pixels[nodes.rows([element.first])[0]], 2.5, COLOURS[1])
+        ends = ends_of(element, known)
+        if ends:
+            at = pixels[nodes.rows(ends)]
+            with canvas.part(element.name, role_of(element)):
+                canvas.stroke(at, COLOURS[1], 2)
+                canvas.circle(at[0], 2.5, COLOURS[1])
+    for channel in channels:
+        if (node := node_of(channel, known)) is not None:
+            with canvas.part(channel, "channel"):
+                canvas.circle(pixels[nodes.rows([node])[0]], 8, "none", COLOURS[1])
     for force in system.forces:
         node, _, axis = force.dof.rpartition(".")
         if node in known and axis in AXES:
@@ -95,7 +132,14 @@ def _one_way(corners: np.ndarray) -> np.ndarray:
     return corners if float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))) >= 0 else corners[::-1]
 
 
-def _chain(system: VibrationSystem, masses: list[str], label: str, size: tuple[int, int], choosable: bool) -> str:
+def _chain(
+    system: VibrationSystem,
+    masses: list[str],
+    label: str,
+    size: tuple[int, int],
+    choosable: bool,
+    channels: Sequence[str],
+) -> str:
     """Masses in a row, springs between them and to the ground, forces on them and contacts below them."""
     zoom = 1.8 if len(masses) < 3 else 1.2
     width, height = (round(pixels / zoom) for pixels in size)
@@ -109,19 +153,23 @@ def _chain(system: VibrationSystem, masses: list[str], label: str, size: tuple[i
             other = None if second is None else at[second]
             _spring(canvas, at[first], other, box, pitch, first == masses[0])
     for element in system.elements:
-        ends = [getattr(element, end, None) for end in ("first", "second")]
-        own = [_node(end, masses) for end in ends if end is not None]
-        with canvas.part(element.name, "contact"):
-            _element(canvas, [at[name] for name in own if name in at], isinstance(element, FrictionContact), box)
+        own = [at[name] for name in ends_of(element, masses)]
+        if own:
+            with canvas.part(element.name, role_of(element)):
+                _element(canvas, own[:2], isinstance(element, FrictionContact), box)
     for name, centre in at.items():
         with canvas.part(name, "body"):
             wide = max(box, 3.3 * len(name) + 3)
             corners = np.array([(-wide, -box), (wide, -box), (wide, box), (-wide, box)])
             canvas.polygons([centre + corners], between(COLOURS[0], "#ffffff", 0.55), COLOURS[0], 1.5)
             canvas.text(moved(centre, 0, 4), name, LIGHT.ink)
-    for dof in dict.fromkeys(force.dof for force in system.forces if isinstance(force, HarmonicForce)):
-        centre = at.get(_node(dof, masses))
-        if centre is not None:
+    for channel in channels:
+        if (node := node_of(channel, masses)) is not None:
+            with canvas.part(channel, "channel"):
+                canvas.circle(moved(at[node], 0, -box), 5, "none", COLOURS[1])
+    for dof in dict.fromkeys(force.dof for force in system.forces):
+        if (node := node_of(dof, masses)) is not None:
+            centre = at[node]
             with canvas.part(dof, "force"):
                 canvas.arrow(moved(centre, box + 4, -box / 2), moved(centre, box + 34, -box / 2), COLOURS[3])
     return canvas.svg(label)
@@ -179,7 +227,3 @@ def _connections(system: VibrationSystem, masses: list[str]) -> Iterable[tuple[s
         for column in range(row + 1, len(masses)):
             if dense[np.ix_(rows, [k for k, owner in enumerate(owners) if owner == column])].any():
                 yield own, masses[column]
-
-
-def _node(dof: str, masses: list[str]) -> str:
-    return dof if dof in masses else dof.rpartition(".")[0]

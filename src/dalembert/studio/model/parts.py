@@ -1,6 +1,6 @@
 """Which table of a study's text each part of the drawing of its model comes from."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any
 
 from dalembert.studio.editor.lines import Place, is_within
@@ -22,10 +22,16 @@ def places_of(study: "Study") -> dict[str, Place]:
     found: dict[str, Place] = {"": ("model", other), "gravity gravity": ("model", "gravity")}
     for table in ("body", "joint", "load"):
         found |= {f"{table} {part.name}": ("model", table, number) for number, part in enumerate(getattr(model, table))}
+    found |= {f"sensor {name}": ("sensors", name) for name in study.file.sensors}
+    found |= {f"input {name}": ("inputs", name) for name in study.file.inputs}
     for table, role in STRUCTURE.items():
-        for number, part in reversed(list(enumerate(getattr(model, table)))):
-            found |= {f"{role} {name}": ("model", table, number) for name in _names(table, part)}
-    return found | {f"channel {channel}": _channel_place(study, channel) for channel in shown_channels(study)}
+        for number, part in enumerate(getattr(model, table)):
+            names = [f"{role} {name}" for name in _names(table, part)]
+            free = [name for name in names if name not in found] or [f"{names[0]} ({number + 1})"]
+            found |= dict.fromkeys(free, ("model", table, number))
+    channels = shown_channels(study)
+    found |= {f"measured {name.rpartition('.')[0]}": _channel_place(study, name) for name in channels}
+    return found | {f"channel {channel}": _channel_place(study, channel) for channel in channels}
 
 
 def place_of(places: Mapping[str, Place], part: str) -> Place:
@@ -46,12 +52,32 @@ def parts_at(places: Mapping[str, Place], place: Place | None) -> list[str]:
     return [name for name, table in places.items() if name and (is_within(place, table) or is_within(table, place))]
 
 
+def absent_parts(places: Mapping[str, Place], drawn: Collection[str]) -> list[str]:
+    """Return parts of the model that have tables and are not drawn; one of those that share a table.
+
+    Examples
+    --------
+    >>> places = {"body rod": ("model", "body", 0), "load stop": ("model", "load", 0), "gravity gravity": ("model",)}
+    >>> absent_parts(places, ["body rod"])
+    ['load stop']
+    """
+    shown = {place for part, place in places.items() if part in drawn and not part.startswith("channel ")}
+    found = {
+        part if part.startswith("channel ") else place: part
+        for part, place in reversed([*places.items()])
+        if part not in ("", "gravity gravity") and part not in drawn and place not in shown
+        if not part.startswith("measured ")
+    }
+    return [part for part in places if part in found.values()]
+
+
 def shown_channels(study: "Study") -> list[str]:
-    """Return the channels of the data, and those that the task names."""
+    """Return the channels of the data, and those that the task names or observes."""
     from dalembert.study.experiments import measured_channels
 
-    task = getattr(study.table, "channels", None) or ()
-    return list(dict.fromkeys([*measured_channels(study.file), *(name for name in task if isinstance(name, str))]))
+    table = study.table
+    named = [*(getattr(table, "channels", None) or ()), *(getattr(table, "observe", None) or ())]
+    return list(dict.fromkeys([*measured_channels(study.file), *(name for name in named if isinstance(name, str))]))
 
 
 def _channel_place(study: "Study", channel: str) -> Place:
@@ -61,7 +87,7 @@ def _channel_place(study: "Study", channel: str) -> Place:
     for number, table in enumerate(file.experiments):
         if channel in table.channels:
             return ("experiments", number)
-    return (study.task, "channels")
+    return (study.task, "channels" if channel in (getattr(study.table, "channels", None) or ()) else "observe")
 
 
 def _names(table: str, part: Any) -> list[str]:

@@ -1,7 +1,9 @@
 """The drawing of a study's model, computed in the process of the study's page."""
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from html import unescape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +12,8 @@ import numpy as np
 from dalembert.errors import DalembertError, ModelError, SolveError
 from dalembert.studio.editor.lines import Place
 from dalembert.studio.editor.reading import study_of
-from dalembert.studio.model.parts import places_of, shown_channels
+from dalembert.studio.model.measured import Positions, measured_positions, near_positions
+from dalembert.studio.model.parts import absent_parts, places_of, shown_channels
 from dalembert.studio.worker import Kept
 
 if TYPE_CHECKING:
@@ -39,6 +42,8 @@ class Picture:
         Places in the text by the parts of the drawing, as :func:`~dalembert.studio.model.parts.places_of` gives them.
     box : array, shape (2, 2), optional
         Corners of what is drawn, m.
+    absent : tuple of str
+        Parts of the model that have tables and no shape.
     message : str
         What to know about the drawing.
     mistake : str
@@ -49,6 +54,7 @@ class Picture:
     scene: dict[str, Any] | None = None
     places: dict[str, Place] = field(default_factory=dict)
     box: np.ndarray | None = None
+    absent: tuple[str, ...] = ()
     message: str = ""
     mistake: str = ""
 
@@ -77,15 +83,18 @@ def model_picture(
         system = unreduced(study)(**parameters.mapping([values[name] for name in parameters.names]))
     except DalembertError as error:
         return Picture(places=places, message="The model cannot be built.", mistake=str(error))
-    if study.has_system:
-        return _mechanism(study, system, places, box)
-    return _structure(system, places)
+    if not study.has_system:
+        return _structure(study, system, places)
+    positions = kept.newest("measured positions", (path, text), lambda: measured_positions(study, system.AXES))
+    return _mechanism(study, system, places, positions, box)
 
 
-def _mechanism(study: "Study", system: Any, places: dict[str, Place], box: np.ndarray | None) -> Picture:
+def _mechanism(
+    study: "Study", system: Any, places: dict[str, Place], measured: Positions, box: np.ndarray | None
+) -> Picture:
     from dalembert.multibody.sketch import sketch
     from dalembert.report.pictures.canvas import Canvas
-    from dalembert.report.pictures.mechanism import draw_mechanism
+    from dalembert.report.pictures.mechanism import draw_measured, draw_mechanism
     from dalembert.report.pictures.names import draw_names
     from dalembert.report.pictures.projection import Projection
     from dalembert.studio.model.scene import mechanism_scene
@@ -96,27 +105,40 @@ def _mechanism(study: "Study", system: Any, places: dict[str, Place], box: np.nd
     except (ModelError, SolveError) as error:
         drawn = sketch(system, marks=marks, assemble=False)
         message, mistake = "Drawn as placed: the mechanism cannot be assembled.", str(error)
+    near, far = near_positions(measured, drawn.positions)
+    if far and not message:
+        message = f"Measured positions of {', '.join(far)} are far from the model and not drawn. Check their unit."
     view = Projection.of(len(system.AXES))
-    corners = _box(view(drawn.positions), box)
+    corners = _box(view(np.concatenate([drawn.positions, *near.values()])), box)
     canvas = Canvas(corners[0], corners[1], SIZE, choosable=True)
+    draw_measured(canvas, view, near)
     draw_mechanism(canvas, view, drawn)
     channels = _channels(study, drawn)
     draw_names(canvas, view, drawn, channels)
-    scene = None if view.flat else mechanism_scene(drawn, channels)
-    return Picture(canvas.svg("Drawing of the mechanism"), scene, places, corners, message, mistake)
+    svg, scene = canvas.svg("Drawing of the mechanism"), None if view.flat else mechanism_scene(drawn, channels, near)
+    seen = [name for _, own in channels.values() for name in own]
+    return Picture(svg, scene, places, corners, _absent(places, svg, scene, seen), message, mistake)
 
 
-def _structure(system: Any, places: dict[str, Place]) -> Picture:
+def _structure(study: "Study", system: Any, places: dict[str, Place]) -> Picture:
     from dalembert.report.pictures.structure import structure_picture
     from dalembert.studio.model.scene import structure_scene
 
-    svg = structure_picture(system, "Drawing of the structure", SIZE, choosable=True)
-    return Picture(
-        svg or "",
-        structure_scene(system),
-        places,
-        message="" if svg else "The structure has no nodes with positions to draw.",
-    )
+    channels = shown_channels(study)
+    svg = structure_picture(system, "Drawing of the structure", SIZE, choosable=True, channels=channels) or ""
+    scene = structure_scene(system, channels)
+    message = "" if svg else "The structure has no nodes with positions to draw."
+    return Picture(svg, scene, places, absent=_absent(places, svg, scene), message=message)
+
+
+def _absent(
+    places: Mapping[str, Place], svg: str, scene: Mapping[str, Any] | None, channels: Iterable[str] = ()
+) -> tuple[str, ...]:
+    """Parts that have tables and no shape in one of the drawings; channels that share a mark are there."""
+    drawn = {f"{role} {unescape(name)}" for role, name in re.findall(r'<g class="(\w+)" data-part="([^"]*)"', svg)}
+    if scene is not None:
+        drawn &= {shape["part"] for shape in scene["shapes"]}
+    return tuple(absent_parts(places, drawn | {f"channel {name}" for name in channels}))
 
 
 def _marks(study: "Study", system: Any) -> list[str]:

@@ -1,6 +1,6 @@
 """A model in space as a browser draws it in three dimensions: shapes of its parts, and names."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -8,7 +8,8 @@ import numpy as np
 from dalembert.report.charts.frequency.body import edges, triangles
 from dalembert.report.charts.motion.outlines import unfolded
 from dalembert.report.pictures.canvas import COLOURS, INK
-from dalembert.report.pictures.mechanism import size_of
+from dalembert.report.pictures.mechanism import turns
+from dalembert.report.pictures.structure import ends_of, node_of, role_of
 
 if TYPE_CHECKING:
     from dalembert.multibody.sketch import Sketch
@@ -20,8 +21,10 @@ AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 MOST_NAMES = 24
 
 
-def mechanism_scene(sketch: "Sketch", channels: Mapping[str, tuple[np.ndarray, list[str]]]) -> Scene:
-    """Return a mechanism: bodies as surfaces or lines, joints, loads, gravity, points with channels."""
+def mechanism_scene(
+    sketch: "Sketch", channels: Mapping[str, tuple[np.ndarray, list[str]]], measured: Mapping[str, np.ndarray]
+) -> Scene:
+    """Return a mechanism: bodies as surfaces or lines, joints, loads, gravity, points with channels, measured ones."""
     from dalembert.multibody.components.points import Point
     from dalembert.multibody.sketch import is_grounded
 
@@ -47,22 +50,21 @@ def mechanism_scene(sketch: "Sketch", channels: Mapping[str, tuple[np.ndarray, l
         names.append(_name(part, own.mean(axis=0)))
     for load in sketch.system.loads:
         if load.name in sketch.ends:
-            shapes.append(_load(load, sketch.ends[load.name]))
+            shapes.append(_load(load, sketch))
             names.append(_name(f"load {load.name}", sketch.ends[load.name].mean(axis=0)))
     for owner, (position, own) in channels.items():
         outputs = ", ".join(channel.rpartition(".")[2] for channel in own)
         shapes.append(_shape("ring", f"channel {own[0]}", position[None], COLOURS[1]))
         names.append(_name(f"channel {own[0]}", position, f"{owner}: {outputs}", COLOURS[1]))
     shapes += [_shape("point", f"point {name}", position[None], INK) for name, position in sketch.marks.items()]
+    shapes += [_shape("points", f"measured {name}", positions, INK) for name, positions in measured.items()]
     pull = np.real(np.array(sketch.system.gravity, dtype=complex))
-    scene = _scene(shapes, names, sketch.positions)
+    scene = _scene(shapes, names, np.concatenate([sketch.positions, *measured.values()]))
     return scene | ({"gravity": (pull / np.linalg.norm(pull)).tolist()} if pull.any() else {})
 
 
-def structure_scene(system: "VibrationSystem") -> Scene | None:
-    """Return a structure with a mesh, its forces and contacts; None without positions of nodes."""
-    from dalembert.vibration import FrictionContact
-
+def structure_scene(system: "VibrationSystem", channels: Sequence[str] = ()) -> Scene | None:
+    """Return a structure with a mesh, its forces, contacts and nodes with channels; None without positions of nodes."""
     nodes = system.structure.nodes
     if nodes is None or not len(nodes.names):
         return None
@@ -73,10 +75,16 @@ def structure_scene(system: "VibrationSystem") -> Scene | None:
         shapes.append(_mesh("body structure", places, triangles(nodes.faces), COLOURS[0]))
         shapes.append(_shape("edges", "body structure", places[edges(places, nodes.faces)].reshape(-1, 3), INK))
     for element in system.elements:
-        if isinstance(element, FrictionContact) and element.first in known:
-            at = places[nodes.rows([element.first])]
-            shapes.append(_shape("ball", f"contact {element.name}", at, COLOURS[1]))
-            names.append(_name(f"contact {element.name}", at[0]))
+        ends, part = ends_of(element, known), f"{role_of(element)} {element.name}"
+        if ends:
+            at = places[nodes.rows(ends)]
+            shapes.append(_shape("ball", part, at[:1], COLOURS[1]))
+            shapes += [_shape("dashes", part, at[:2], COLOURS[1])] * (len(at) > 1)
+            names.append(_name(part, at[0]))
+    for channel in channels:
+        if (node := node_of(channel, known)) is not None:
+            shapes.append(_shape("ring", f"channel {channel}", places[nodes.rows([node])], COLOURS[1]))
+            names.append(_name(f"channel {channel}", places[nodes.rows([node])][0], channel, COLOURS[1]))
     for force in system.forces:
         node, _, axis = force.dof.rpartition(".")
         if node in known and axis in AXES:
@@ -86,13 +94,15 @@ def structure_scene(system: "VibrationSystem") -> Scene | None:
     return _scene(shapes, names, places)
 
 
-def _load(load: Any, ends: np.ndarray) -> dict[str, Any]:
-    part = f"load {load.name}"
+def _load(load: Any, sketch: "Sketch") -> dict[str, Any]:
+    part, ends = f"load {load.name}", sketch.ends[load.name]
+    if hasattr(load, "joint") or turns(load):
+        return _shape("ring", part, ends[:1], COLOURS[1])
     if len(ends) == 2 and np.ptp(ends, axis=0).max() > 0:
         return _shape("spring", part, ends, COLOURS[2])
-    size = np.array([size_of(getattr(load, axis, 0.0)) for axis in "xyz"])
-    if load.kind.name.endswith("force") and size.any() and not getattr(load, "follower", False):
-        return _shape("arrow", part, ends[:1], COLOURS[3]) | {"along": (size / np.linalg.norm(size)).tolist()}
+    force = sketch.forces.get(load.name, np.zeros(3))
+    if force.any():
+        return _shape("arrow", part, ends[:1], COLOURS[3]) | {"along": (force / np.linalg.norm(force)).tolist()}
     return _shape("ball", part, ends[:1], COLOURS[2])
 
 

@@ -1,5 +1,7 @@
 """The model drawn beside its text, at the current values of the parameters."""
 
+from dataclasses import replace
+
 from nicegui import ui
 
 from dalembert.studio.editor.draft import Draft
@@ -33,6 +35,7 @@ class _Panel:
     def __init__(self, draft: Draft, room: Room) -> None:
         self.draft, self.room = draft, room
         self.picture = Picture()
+        self.links: dict[str, ui.button] = {}
         self.flat = False  # whether the browser cannot draw in three dimensions
         with ui.column().classes("w-full h-full gap-1 flex-nowrap"):
             with ui.row().classes("w-full items-center gap-1 flex-nowrap"):
@@ -42,6 +45,7 @@ class _Panel:
                 icon_button("fit_screen", "Show all of the drawing", self._fit)
             self.drawing = ModelDrawing(self._choose).classes("w-full grow min-h-0")
             self.space = ModelSpace(self._choose, self._stay_flat).classes("w-full grow min-h-0")
+            self.others = ui.row().classes("w-full items-center gap-1").props('role=group aria-label="Not drawn"')
         self.space.set_visibility(False)
         draw = Latest(self._draw)
         draft.follow("study", draw)
@@ -83,8 +87,23 @@ class _Panel:
             self.drawing.draw(picture.svg)
             if picture.scene is not None:
                 self.space.draw(picture.scene)
+            self._list()
             self._place()
         self._mark()
+
+    def _list(self) -> None:
+        """List the parts that are not drawn, as buttons that select their tables."""
+        if list(self.links) == list(self.picture.absent):
+            return
+        self.others.clear()
+        with self.others:
+            if self.picture.absent:
+                ui.label("Not drawn:").classes("text-sm")
+            self.links = {name: self._link(name) for name in self.picture.absent}
+
+    def _link(self, part: str) -> ui.button:
+        link = ui.button(part, on_click=lambda: self._choose(part), color=None)
+        return link.props('flat dense no-caps padding="0 6px"').classes("model-part underline text-sm")
 
     def _place(self) -> None:
         for one in (self.drawing, self.space):
@@ -96,7 +115,12 @@ class _Panel:
 
     def _mark(self) -> None:
         wrong = [part for mistake in self.draft.mistakes for part in self._parts_of(mistake)]
-        self.view.mark(parts_at(self.places, self.draft.selection), wrong)
+        chosen = parts_at(self.places, self.draft.selection)
+        self.view.mark(chosen, wrong)
+        for part, link in self.links.items():
+            link.props(f"aria-pressed={str(part in chosen).lower()}")
+            marks = {"chosen": part in chosen, "wrong": part in wrong}
+            link.classes(" ".join(mark for mark, has in marks.items() if has), remove="chosen wrong")
 
     def _parts_of(self, mistake: Mistake) -> list[str]:
         """The parts that a mistake is about, by its place or by the names in its sentence."""
@@ -107,5 +131,5 @@ class _Panel:
         self.draft.select(None if part is None else place_of(self.places, part))
 
     def _fit(self) -> None:
-        self.picture = Picture(self.picture.svg, self.picture.scene, self.places)
+        self.picture = replace(self.picture, box=None)
         self.view.fit()

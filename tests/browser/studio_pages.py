@@ -87,7 +87,7 @@ def _then(*steps: Callable[[Page], object]) -> Callable[[Page], None]:
 
 def _press(name: str) -> Callable[[Page], None]:
     """Press a button."""
-    return lambda page: page.get_by_role("button", name=name, exact=True).first.click()
+    return lambda page: page.get_by_role("button", name=name, exact=True).first.press("Enter")
 
 
 def _select_run(page: Page) -> None:

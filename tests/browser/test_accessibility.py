@@ -45,6 +45,7 @@ def empty(tmp_path_factory) -> Iterator[str]:
 
 def violations(page: Page, address: str, shown: Shown) -> list[str]:
     """What is wrong with a page, and where."""
+    page.set_viewport_size({"width": 1280, "height": 800})
     page.goto(address + shown.path, wait_until="domcontentloaded")
     if shown.name not in FILES:
         wait_until(page, ALIVE)
@@ -63,6 +64,25 @@ def violations(page: Page, address: str, shown: Shown) -> list[str]:
 @pytest.mark.parametrize("shown", PAGES, ids=lambda shown: shown.name)
 def test_no_page_violates_the_guidelines(page, address, shown):
     assert violations(page, address, shown) == []
+
+
+OUT_OF_SIGHT = """() => {
+    const found = [...document.querySelectorAll('h1, [role=heading], a, button, label, input, [role=tab], [role=status]')];
+    const scrolls = (one) => one.closest('.ag-root, .cm-editor, .q-tabs, .overflow-x-auto, svg, .model-space');
+    const wide = found.filter((one) => one.getBoundingClientRect().right > innerWidth + 1 && !scrolls(one));
+    return [document.documentElement.scrollWidth > innerWidth && 'the page', ...wide.map((one) => one.outerHTML)];
+}"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [(640, 400), (768, 1024), (1024, 768)], ids=["200 %", "768", "1024"])
+@pytest.mark.parametrize("shown", [one for one in PAGES if one.name not in FILES], ids=lambda shown: shown.name)
+def test_nothing_is_cut_off_at_200_percent_and_on_tablets(page, address, shown, size):
+    page.set_viewport_size(dict(zip(("width", "height"), size, strict=True)))
+    page.goto(address + shown.path, wait_until="domcontentloaded")
+    wait_until(page, ALIVE)
+    shown.show(page)
+    assert [one for one in page.evaluate(OUT_OF_SIGHT) if one] == []
 
 
 @pytest.mark.parametrize("shown", [one for one in PAGES if one.name in QUICK], ids=lambda shown: shown.name)

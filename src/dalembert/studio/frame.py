@@ -52,6 +52,7 @@ LOOKS = """
     .study-parts > .q-splitter__panel { width: 100% !important; padding: 0 }
     .study-parts > .q-splitter__before { height: 45vh }
     .study-parts > .q-splitter__separator { display: none }
+    .model-space { min-height: max(50vh, 320px) }
 }
 [role=main] > div:empty:not([role]):not([aria-live]) { display: none }
 .study-hint { max-width: 28rem; padding: 6px 10px; font-size: 13px; white-space: normal }

@@ -46,6 +46,7 @@ body.body--dark {{ --focus: {TEXTS["primary"]}; --ground: #121212 }}
 .js-plotly-plot .main-svg :is(.cartesianlayer, .infolayer) text {{ fill: currentColor !important }}
 .q-dialog .q-card {{ z-index: 1 }}
 .model-drawing text {{ fill: currentColor; paint-order: stroke; stroke: var(--ground); stroke-width: 3px }}
+.model-space button {{ color: inherit !important }}
 .cm-editor .cm-activeLine {{ background: rgba(118, 129, 143, 0.06) }}
 .cm-editor .cm-lineNumbers .cm-gutterElement {{ color: #6b6b6b }}
 .body--dark .cm-editor .cm-lineNumbers .cm-gutterElement {{ color: #a0a0a0 }}

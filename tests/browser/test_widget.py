@@ -19,15 +19,16 @@ const state = %s, listeners = {}, own = {};
 const model = {
   get: (name) => state[name],
   set: (name, value) => { state[name] = own[name] = value; },
-  on: (name, listener) => { listeners[name] = listener; },
+  on: (name, listener) => { (listeners[name] ??= []).push(listener); },
   off: () => {},
   save_changes: async () => {
     window.requests = (window.requests ?? 0) + 1;
     Object.assign(state, await window.answer(own.asked));
-    listeners["change:answered"]();
+    for (const listener of listeners["change:answered"]) listener();
   },
 };
 const { default: widget } = await import(URL.createObjectURL(new Blob([%s], { type: "text/javascript" })));
+Object.assign(window, { widget, model });
 widget.render({ model, el: document.getElementById("cell") });
 </script></body>
 """
@@ -119,3 +120,20 @@ def _fail(values):
     from dalembert.errors import ModelError
 
     raise ModelError("It is too long. Choose another.")
+
+
+def test_the_widget_works_in_a_shadow_tree(opened):
+    """As marimo shows it: styles of the page do not reach it."""
+    page, widget = opened
+    page.evaluate("""() => {
+        const host = document.body.appendChild(document.createElement('div'));
+        host.id = 'host';
+        window.shadow = host.attachShadow({ mode: 'open' }).appendChild(document.createElement('div'));
+        window.widget.render({ model: window.model, el: window.shadow });
+    }""")
+    wait_until(page, "window.shadow.querySelector('[data-part=rod]')?.getAttribute('d')")
+    slider = page.locator("#host").get_by_label("length in m")
+    slider.focus()
+    page.keyboard.press("Home")
+    wait_until(page, "Number(window.shadow.dataset.answered) >= 1")
+    assert widget.values == {"length": 0.5}

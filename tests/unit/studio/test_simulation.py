@@ -117,6 +117,24 @@ def test_experiments_are_simulated_one_by_one():
         part(study, "middle")
 
 
+def test_a_frequency_curve_has_residuals_a_misfit_and_effects():
+    path = Path("studies/friction-from-curve/identify.toml")
+    values, study = start(path), load(path)
+    kept = Kept()
+    found = simulated(kept, source(path), "low", values, figures=True)
+    (experiment, _), _ = posed(study)
+    computed = experiment.model.evaluate(np.array([[values[name] for name in study.parameters.names]])).only()[0]
+    residual = computed - experiment.data.values
+    assert found.residuals == pytest.approx({"block.x harmonic 1": np.sqrt(np.mean(residual**2))})
+    assert found.misfit == pytest.approx(np.sum((residual / experiment.data.deviations) ** 2))
+    names = [trace["name"] for trace in found.curves[0].figure["data"]]
+    assert any("measured" in name for name in names)
+    assert len(names) == 3  # measured, computed, residual
+    effects = influences(kept, source(path), "low", values).effects
+    assert set(effects) == {"mu", "N0", "k_t"}
+    assert all(effect > 0 for (effect,) in effects.values())
+
+
 def test_values_of_experiments_and_sensors_act(tmp_path):
     path = begin("identify", tmp_path / "mine")
     table = path.read_text().replace("[data]", '[[experiments]]\nname = "trial"\nown = ["angle"]')

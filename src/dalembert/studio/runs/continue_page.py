@@ -6,9 +6,9 @@ import tomlkit
 from nicegui import ui
 
 from dalembert.errors import InputError
+from dalembert.studio.frame import button, complaints, frame
 from dalembert.studio.runs.advice import Change, changes_of, start_from_best
 from dalembert.studio.runs.differences import differences, show_differences
-from dalembert.studio.frame import button, complaints, frame
 from dalembert.studio.runs.run_changes import continued, study_name, study_text
 from dalembert.studio.workspace import Workspace
 from dalembert.study.folder import RunFolder

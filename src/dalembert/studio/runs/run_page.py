@@ -4,18 +4,17 @@ import asyncio
 import json
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
 from urllib.parse import quote
 
 import plotly.graph_objects as go
 from nicegui import run, ui
 
 from dalembert.errors import InputError
+from dalembert.studio.frame import STATES, badge, button, complaints, frame, report_of
+from dalembert.studio.jobs import Jobs, pause, stop
 from dalembert.studio.runs.figures import bare, convergence, followed, on_any_page, plot, wandering
 from dalembert.studio.runs.findings_list import findings_list
 from dalembert.studio.runs.fit_so_far import fit_so_far
-from dalembert.studio.frame import STATES, badge, button, complaints, frame, report_of
-from dalembert.studio.jobs import Jobs, pause, stop
 from dalembert.studio.runs.live import Live
 from dalembert.studio.runs.remaining import most_simulations
 from dalembert.studio.sparing import Sparing

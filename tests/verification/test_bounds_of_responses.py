@@ -132,6 +132,7 @@ def test_published_tables(record_evidence, case: tuple[str, dict[str, da.Propaga
     assert bands.runs <= 250
 
 
+@pytest.mark.slow
 def test_a_surrogate_agrees_with_direct_optimisation(record_evidence, case) -> None:
     name, found = case
     direct, surrogate = found["optimise"], found["chebyshev"]

@@ -71,6 +71,7 @@ def test_the_mechanisms_above_have_all_kinds(space):
     systems = [make() for make in (SPACE if space else PLANE).values()]
     known = {type(part) for system in systems for parts in LISTS.values() for part in getattr(system, parts)}
     kinds = {kind for role in LISTS for kind in kinds_of(role, space=space)}
+    kinds = {kind for kind in kinds if kind.__module__.startswith("dalembert.")}  # other tests define some
     assert {kind.__name__ for kind in kinds - known} <= {"RigidBarBetween"}  # which makes a RigidBar
 
 

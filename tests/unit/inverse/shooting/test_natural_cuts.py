@@ -55,7 +55,9 @@ def record(builder, channels, times, noise=2e-3, missing=()):
     return model, data
 
 
-@pytest.mark.parametrize("missing", [(), (20, *range(70, 90))], ids=["whole", "missing"])
+@pytest.mark.parametrize(
+    "missing", [pytest.param((), marks=pytest.mark.slow), (20, *range(70, 90))], ids=["whole", "missing"]
+)
 @pytest.mark.parametrize("times", [pytest.param(EVEN, marks=pytest.mark.slow), UNEVEN], ids=["even", "uneven"])
 @pytest.mark.parametrize(
     ("builder", "channels"),

@@ -1,20 +1,16 @@
 """Forms, completions and explanations beside the text of a study, with the mouse and the keyboard."""
 
-import re
-import subprocess
-import sys
 import tomllib
-from pathlib import Path
 
 import pytest
 from playwright.sync_api import expect
 
+from browser.running_studio import running_studio
 from browser.visitor import PATIENCE, wait_until
 from dalembert.study.template import begin
 
 pytestmark = pytest.mark.slow
 expect.set_options(timeout=PATIENCE)
-COMMAND = Path(sys.executable).with_name("dalembert")
 ALIVE = "document.querySelector('.cm-content') && window.socket?.connected && window.did_handshake"
 
 
@@ -25,12 +21,8 @@ def root(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def address(root):
-    """Where the studio answers."""
-    command = [COMMAND, "studio", root, "--port", "0", "--no-browser"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as studio:
-        found = re.search(r"http://\S+", studio.stdout.readline())
-        yield found[0].rstrip("/")
-        studio.terminate()
+    with running_studio(root) as found:
+        yield found
 
 
 @pytest.fixture

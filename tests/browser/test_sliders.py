@@ -1,19 +1,16 @@
 """The sliders of a study: the picture follows the values, which can be written into the study."""
 
 import re
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
 from playwright.sync_api import Locator, Page
 
+from browser.running_studio import running_studio
 from browser.visitor import wait_until
 from dalembert.study import load
 from dalembert.study.template import begin
 
 pytestmark = pytest.mark.slow
-COMMAND = Path(sys.executable).with_name("dalembert")
 TEXT = "(document.body?.innerText ?? '')"
 NUMBER = "Number(document.querySelector('.player')?.dataset.number ?? 0)"
 BODY = "document.querySelector('.player-body').getAttribute('d')"
@@ -61,11 +58,8 @@ def root(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def address(root):
-    command = [COMMAND, "studio", root, "--port", "0", "--no-browser"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as studio:
-        found = re.search(r"http://\S+", studio.stdout.readline())
-        yield found[0].rstrip("/")
-        studio.terminate()
+    with running_studio(root) as found:
+        yield found
 
 
 @pytest.fixture

@@ -3,16 +3,15 @@
 import re
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
+from browser.running_studio import COMMAND, running_studio
 from browser.visitor import wait_until
 from dalembert.study.template import begin
 
 pytestmark = pytest.mark.slow
-COMMAND = Path(sys.executable).with_name("dalembert")
 STUDIES = Path(__file__).parents[2] / "studies"
 DRAWN = "[...document.querySelectorAll('img')].every(image => image.complete && image.naturalWidth > 0)"
 
@@ -29,10 +28,8 @@ def root(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def address(root):
-    command = [COMMAND, "studio", root, "--port", "0", "--no-browser"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as studio:
-        yield re.search(r"http://\S+", studio.stdout.readline())[0].rstrip("/")
-        studio.terminate()
+    with running_studio(root) as found:
+        yield found
 
 
 def open_studies(chromium, address, **device):

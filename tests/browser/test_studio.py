@@ -4,19 +4,17 @@ import json
 import os
 import re
 import subprocess
-import sys
 import urllib.error
 import urllib.request
-from pathlib import Path
 
 import pytest
 from playwright.sync_api import Locator, Page
 
+from browser.running_studio import COMMAND, running_studio
 from browser.visitor import move_focus, wait_until
 from dalembert.study.template import begin
 
 pytestmark = pytest.mark.slow
-COMMAND = Path(sys.executable).with_name("dalembert")
 TEXT = "(document.body?.innerText ?? '')"
 
 
@@ -27,12 +25,8 @@ def root(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def address(root):
-    """Where the studio answers."""
-    command = [COMMAND, "studio", root, "--port", "0", "--no-browser"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as studio:
-        found = re.search(r"http://\S+", studio.stdout.readline())
-        yield found[0].rstrip("/")
-        studio.terminate()
+    with running_studio(root) as found:
+        yield found
 
 
 @pytest.fixture(scope="module")

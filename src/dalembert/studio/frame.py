@@ -108,8 +108,9 @@ class _Once:
         self._shown: set[str] = set()
 
     def __call__(self, error: Exception) -> None:
-        if told(error) not in self._shown:
-            self._shown.add(told(error))
+        sentence = told(error)
+        if sentence not in self._shown:
+            self._shown.add(sentence)
             complain(error)
 
 

@@ -13,7 +13,8 @@ from dalembert.study.template import begin
 
 pytestmark = pytest.mark.slow
 STUDIES = Path(__file__).parents[2] / "studies"
-DRAWN = "[...document.querySelectorAll('img')].every(image => image.complete && image.naturalWidth > 0)"
+DRAWN = """(images => images.length === 11 && images.every(image => image.complete && image.naturalWidth > 0))(
+    [...document.querySelectorAll('img')])"""
 
 
 @pytest.fixture(scope="module")

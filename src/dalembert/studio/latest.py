@@ -1,5 +1,6 @@
 """Work that is only worth doing for the newest state."""
 
+import asyncio
 from collections.abc import Awaitable, Callable
 
 from nicegui import background_tasks
@@ -12,14 +13,16 @@ class Latest:
     ----------
     work : coroutine function
         Reads the newest state when it begins.
+    pause : float
+        Seconds without a request after which it begins.
 
     Examples
     --------
     ``draft.follow("study", Latest(redraw))`` redraws after changes, and skips those that came too fast.
     """
 
-    def __init__(self, work: Callable[[], Awaitable[object]]) -> None:
-        self._work, self._asked, self._busy = work, False, False
+    def __init__(self, work: Callable[[], Awaitable[object]], pause: float = 0.0) -> None:
+        self._work, self._pause, self._asked, self._busy = work, pause, False, False
 
     def __call__(self) -> None:
         """Ask for a turn."""
@@ -32,6 +35,9 @@ class Latest:
         try:
             while self._asked:
                 self._asked = False
-                await self._work()
+                if self._pause > 0:
+                    await asyncio.sleep(self._pause)
+                if not self._asked:
+                    await self._work()
         finally:
             self._busy = False

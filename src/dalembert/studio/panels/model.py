@@ -15,6 +15,8 @@ from dalembert.studio.model.picture import Picture, model_picture
 from dalembert.studio.room import Room
 from dalembert.studio.worker import WorkerError
 
+STILL = 0.3
+"""Seconds without a change of values after which the model is drawn at them."""
 LAST = "The text has mistakes. The drawing shows the last valid text."
 
 
@@ -47,9 +49,8 @@ class _Panel:
             self.space = ModelSpace(self._choose, self._stay_flat).classes("w-full grow min-h-0")
             self.others = ui.row().classes("w-full items-center gap-1").props('role=group aria-label="Not drawn"')
         self.space.set_visibility(False)
-        draw = Latest(self._draw)
-        draft.follow("study", draw)
-        draft.follow("values", draw)
+        draft.follow("study", Latest(self._draw))
+        draft.follow("values", Latest(self._draw, STILL))  # by sliders, which another panel shows: theirs comes first
         draft.follow("selection", self._mark)
         draft.follow("mistakes", self._mark)
 

@@ -9,7 +9,8 @@ from dalembert.errors import InputError
 from dalembert.studio.frame import button, complaints, frame
 from dalembert.studio.runs.advice import Change, changes_of, start_from_best
 from dalembert.studio.runs.differences import differences, show_differences
-from dalembert.studio.runs.run_changes import continued, study_name, study_text
+from dalembert.studio.runs.run_changes import continued, study_text
+from dalembert.studio.runs.run_list import study_name
 from dalembert.studio.workspace import Workspace
 from dalembert.study.folder import RunFolder
 
@@ -55,7 +56,7 @@ class _Page:
         self.workspace, self.folder, self.old, self.change = workspace, folder, old, change
         state = folder.state()
         self.best: dict[str, float] = (state.get("best") or {}).get("values") or {}
-        self.name = workspace.free(study_name(folder))
+        self.name = workspace.free(study_name(folder, folder.state()) or folder.path.name)
 
     def build(self) -> None:
         if self.change is not None:

@@ -143,12 +143,6 @@ def renamed_files(text: str, places: dict[str, str]) -> str:
     return tomlkit.dumps(document)
 
 
-def study_name(folder: RunFolder) -> str:
-    """Return the name of a run's study; that of the run if the study is in ``study.toml``, as all new ones are."""
-    name = str(folder.state().get("study") or "study")
-    return folder.path.name if name == "study" else name
-
-
 def study_text(folder: RunFolder) -> TOMLDocument:
     """Return the study of a run as a document that can be changed."""
     try:

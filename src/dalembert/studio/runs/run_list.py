@@ -1,5 +1,6 @@
 """All runs as rows of a table, read quickly: a run is read again only if its files have changed."""
 
+import json
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -77,7 +78,7 @@ def row(folder: RunFolder) -> Row:
     note = read_note(folder.path)
     return {
         "run": folder.path.name,
-        "study": str(state.get("study", "")),
+        "study": study_name(folder, state),
         "title": str(state.get("title", "")),
         "task": str(state.get("task", "")),
         "state": str(state["state"]),
@@ -92,6 +93,17 @@ def row(folder: RunFolder) -> Row:
         "tags": ", ".join(note.tags),
         "note": note.text,
     }
+
+
+def study_name(folder: RunFolder, state: Mapping[str, Any]) -> str:
+    """Return the name of a run's study: that of its folder if the file is ``study.toml``, as all new ones are."""
+    name = str(state.get("study", ""))
+    if name != "study":
+        return name
+    try:
+        return Path(json.loads(folder.inputs.read_text(encoding="utf-8"))["folder"]).name or name
+    except (OSError, ValueError, TypeError, KeyError):
+        return name
 
 
 def values_text(best: Mapping[str, Any]) -> str:

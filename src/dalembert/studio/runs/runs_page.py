@@ -9,9 +9,9 @@ from nicegui import run, ui
 
 from dalembert.studio.frame import button, complaints, frame
 from dalembert.studio.jobs import Jobs
-from dalembert.studio.runs.run_changes import Deleted, delete, empty_trash, rename, restore, study_name, trashed
+from dalembert.studio.runs.run_changes import Deleted, delete, empty_trash, rename, restore, trashed
 from dalembert.studio.runs.run_grid import RunGrid
-from dalembert.studio.runs.run_list import Row, RunList
+from dalembert.studio.runs.run_list import Row, RunList, study_name
 from dalembert.studio.runs.run_note import Note, read_note, tags_of, write_note
 from dalembert.studio.workspace import Workspace
 from dalembert.study.folder import RESUMABLE
@@ -177,7 +177,7 @@ class _Page:
 
     def _rerun(self, name: str) -> str:
         old = self.workspace.run(name)
-        folder = self.workspace.new_run(study_name(old))
+        folder = self.workspace.new_run(study_name(old, old.state()) or name)
         self.jobs.rerun(old.path, folder)
         return folder.name
 

@@ -67,6 +67,14 @@ def test_a_row(runs):
     }
 
 
+@pytest.mark.parametrize(("kept", "name"), [('{"folder": "/bench/rocker"}', "rocker"), ("{}", "study"), ("", "study")])
+def test_a_study_in_the_file_study_has_the_name_of_its_folder(runs, kept, name):
+    write(runs / "first", {**STATE, "study": "study"})
+    (runs / "first" / "inputs.json").write_text(kept)
+    (row,) = RunList(runs).rows()
+    assert row["study"] == name
+
+
 def test_the_newest_run_is_first(runs):
     write(runs / "newer", STATE | {"since": "2026-01-03T00:00:00+00:00"})
     write(runs / "older", STATE | {"since": "2025-01-03T00:00:00+00:00"})

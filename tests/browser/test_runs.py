@@ -126,8 +126,10 @@ def test_notes_and_tags_are_kept_beside_the_run(page, root):
         page.keyboard.type(text)
         page.keyboard.press("Enter")
         wait_until(page, f"{TEXT}.includes('{text}')")
-    kept = json.loads((root / "runs" / "stopped" / "note.json").read_text())
-    assert kept == {"note": "after the oil change", "tags": ["rig 2", "cold"]}
+    note = root / "runs" / "stopped" / "note.json"
+    while "cold" not in note.read_text():  # the page shows it before it is written
+        page.wait_for_timeout(50)
+    assert json.loads(note.read_text()) == {"note": "after the oil change", "tags": ["rig 2", "cold"]}
 
 
 def test_deleted_runs_are_in_the_trash(page, root):

@@ -1,6 +1,6 @@
 """The table of runs: a grid that sorts, filters and searches, and follows the runs' folder."""
 
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from typing import Any
 
 from nicegui import ui
@@ -67,7 +67,7 @@ _PRESSED = f"""params => {{
     const editing = params.api.getEditingCells().length || params.event.target.matches('input');
     if (editing || !params.data || !['Enter', 'Delete'].includes(params.event.key)) return;
     if (params.event.key === 'Enter' && params.column.colId !== 'run') return;
-    emitEvent('{PRESSED}', {{ key: params.event.key, run: params.data.run }});
+    emitEvent('{PRESSED}', {{ key: params.event.key, id: params.data.id }});
 }}"""
 _CHANGED = f"""params => {{
     const changed = {{ run: params.data.run, field: params.column.colId, value: params.newValue ?? '' }};
@@ -86,7 +86,7 @@ class RunGrid:
     on_select : callable
         Called with the names of the selected runs.
     on_key : callable
-        Called with ``"Enter"`` or ``"Delete"`` and the run of the focused cell.
+        Called with ``"Enter"`` or ``"Delete"`` and the ``id`` of the focused row, whose run may just have been renamed.
     on_change : callable
         Called with a run, ``"run"``, ``"tags"`` or ``"note"``, and the text that the user entered there.
     """
@@ -95,7 +95,7 @@ class RunGrid:
         self,
         rows: list[Row],
         on_select: Callable[[list[str]], object],
-        on_key: Callable[[str, str], object],
+        on_key: Callable[[str, str], Awaitable[object]],
         on_change: Callable[[str, str, str], object],
     ) -> None:
         self.box = ui.element("div").classes("w-full").style(_height(rows))
@@ -103,7 +103,7 @@ class RunGrid:
             self.grid = ui.aggrid(_options(rows), auto_size_columns=False)
         self.grid.classes("w-full h-full").props('aria-label="Runs"')
         ui.on(SELECTED, lambda event: on_select(list(event.args)))
-        ui.on(PRESSED, lambda event: on_key(event.args["key"], event.args["run"]))
+        ui.on(PRESSED, lambda event: on_key(event.args["key"], event.args["id"]))
         ui.on(CHANGED, lambda event: on_change(event.args["run"], event.args["field"], str(event.args["value"])))
 
     def show(self, old: list[Row], new: list[Row]) -> None:

@@ -116,8 +116,12 @@ class _Page:
         self.selected = names
         self._show()
 
-    def press(self, key: str, name: str) -> None:
-        """Do what a key in the table means."""
+    async def press(self, key: str, number: str) -> None:
+        """Do what a key in the row with a number means."""
+        await self.look()
+        name = next((row["run"] for row in self.rows if row["id"] == number), None)
+        if name is None:
+            return
         if key == "Enter":
             ui.navigate.to(f"/run/{quote(name)}")
         else:

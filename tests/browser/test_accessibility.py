@@ -74,7 +74,10 @@ def test_no_page_violates_the_guidelines_or_is_cut_off(page, address, shown):
     assert violations(page, address, shown) == []
     for width, height in SIZES if shown.name not in FILES else ():
         page.set_viewport_size({"width": width, "height": height})
-        page.wait_for_timeout(200)  # until everything has moved
+        for _ in range(20):  # figures follow the window after a while
+            page.wait_for_timeout(200)
+            if not any(page.evaluate(OUT_OF_SIGHT)):
+                break
         assert [one for one in page.evaluate(OUT_OF_SIGHT) if one] == [], width
 
 

@@ -3,6 +3,7 @@
 import json
 import shutil
 import tomllib
+from collections.abc import Callable
 
 import pytest
 from playwright.sync_api import Page
@@ -71,6 +72,14 @@ def page(root, visit):
     return page
 
 
+def wait_for_files(page: Page, written: Callable[[], bool]) -> None:
+    """Wait until files are as the page, which shows what is entered at once."""
+    for _ in range(200):
+        if written():
+            return
+        page.wait_for_timeout(50)
+
+
 def choose(page: Page, name: str) -> None:
     """Select the row of a run."""
     page.locator(".ag-row", has_text=name).locator("input[type=checkbox]").first.click()
@@ -106,6 +115,7 @@ def test_a_run_is_described_renamed_deleted_and_restored_by_keyboard(page, root)
     page.keyboard.type("worn bearing")
     page.keyboard.press("Enter")
     wait_until(page, f"{NAMES}.includes('worn bearing')")
+    wait_for_files(page, lambda: not (root / "runs" / "doubtful").exists())
     assert sorted(path.name for path in (root / "runs").iterdir()) == ["pendulum", "stopped", "worn bearing"]
     page.keyboard.press("Delete")
     wait_until(page, f"!{NAMES}.includes('worn bearing') && {TEXT}.includes('worn bearing is deleted.')")
@@ -127,8 +137,7 @@ def test_notes_and_tags_are_kept_beside_the_run(page, root):
         page.keyboard.press("Enter")
         wait_until(page, f"{TEXT}.includes('{text}')")
     note = root / "runs" / "stopped" / "note.json"
-    while "cold" not in note.read_text():  # the page shows it before it is written
-        page.wait_for_timeout(50)
+    wait_for_files(page, lambda: "cold" in note.read_text())
     assert json.loads(note.read_text()) == {"note": "after the oil change", "tags": ["rig 2", "cold"]}
 
 

@@ -50,8 +50,8 @@ _NAMES = {
         Bands Measurements derivative merged read read_bands read_trials
     """,
     "inverse": """
-        BandFit Designs Experiment Fit GlobalSurrogate MultipleShooting Nested ParameterSet Prediction Profiles
-        ShootingState design identifiability identify identify_bands identify_set predict profile
+        BandFit Designs Experiment Fit GlobalSurrogate MultipleShooting Nested ParameterSet Population Prediction
+        Profiles ShootingState design identifiability identify identify_bands identify_set population predict profile
     """,
     "multibody": """
         System Point TimeResponse Trajectory WorkPrecision simulate equilibrium modes work_precision

@@ -58,6 +58,7 @@ from dalembert.inverse import GlobalSurrogate as GlobalSurrogate
 from dalembert.inverse import MultipleShooting as MultipleShooting
 from dalembert.inverse import Nested as Nested
 from dalembert.inverse import ParameterSet as ParameterSet
+from dalembert.inverse import Population as Population
 from dalembert.inverse import Prediction as Prediction
 from dalembert.inverse import Profiles as Profiles
 from dalembert.inverse import ShootingState as ShootingState
@@ -66,6 +67,7 @@ from dalembert.inverse import identifiability as identifiability
 from dalembert.inverse import identify as identify
 from dalembert.inverse import identify_bands as identify_bands
 from dalembert.inverse import identify_set as identify_set
+from dalembert.inverse import population as population
 from dalembert.inverse import predict as predict
 from dalembert.inverse import profile as profile
 from dalembert.multibody import AncfBeam as AncfBeam

@@ -35,6 +35,8 @@ from dalembert.inverse.sets.parameter_set import ParameterSet
 from dalembert.inverse.shooting.nodes import Nodes
 from dalembert.inverse.shooting.segments import ShootingState
 from dalembert.inverse.shooting.shooting import MultipleShooting
+from dalembert.inverse.specimens.estimate import population
+from dalembert.inverse.specimens.population import Population
 
 __all__ = [
     "BandFit",
@@ -54,6 +56,7 @@ __all__ = [
     "NoiseProcess",
     "ParameterSet",
     "Paved",
+    "Population",
     "Prediction",
     "Profile",
     "Profiled",
@@ -71,6 +74,7 @@ __all__ = [
     "identify",
     "identify_bands",
     "identify_set",
+    "population",
     "predict",
     "profile",
 ]

@@ -33,6 +33,7 @@ _NAMES = {
     "identification.residual_bands": "residual_bands",
     "identification.responses": "responses",
     "identification.search": "convergence starts",
+    "identification.specimens": "specimens",
     "identification.torques": "torques",
     "motion.diagnostics": "energies newton violations",
     "motion.mechanism": "mechanism",

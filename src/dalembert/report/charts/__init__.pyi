@@ -38,6 +38,7 @@ from dalembert.report.charts.identification.residual_bands import residual_bands
 from dalembert.report.charts.identification.responses import responses as responses
 from dalembert.report.charts.identification.search import convergence as convergence
 from dalembert.report.charts.identification.search import starts as starts
+from dalembert.report.charts.identification.specimens import specimens as specimens
 from dalembert.report.charts.identification.torques import torques as torques
 from dalembert.report.charts.motion.diagnostics import energies as energies
 from dalembert.report.charts.motion.diagnostics import newton as newton

@@ -1,0 +1,1 @@
+"""Parameters that vary from one specimen to the next."""

@@ -67,6 +67,7 @@ AREAS = {
             "Least squares: NIST regressions",
             "Response sensitivity",
             "Sensitivities",
+            "Several specimens",
             "Statistics of estimates",
         ),
     ),

@@ -66,6 +66,7 @@ def test_equally_exact_specimens_have_the_covariance_of_their_values_less_that_o
     np.testing.assert_allclose(found.mean, values.mean(axis=0), rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_95_percent_intervals_hold_mean_spread_and_new_specimen(record_evidence):
     """500 repetitions of 8 specimens of unequal exactness."""
     repetitions, spread, deviations = 500, 0.4, np.linspace(0.1, 0.5, 8)
@@ -103,7 +104,7 @@ def _data(times, rates):
     }
 
 
-def test_separate_fits_and_one_fit_with_own_parameters_agree():
+def test_separate_fits_and_one_fit_with_local_parameters_agree():
     times = np.linspace(0.0, 2.0, 41)
     rates = 1.0 + 0.1 * np.random.default_rng(5).standard_normal(7)
     data = _data(times, rates)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy
-from scipy.optimize import brentq
+from scipy.optimize import root_scalar
 from scipy.special import chdtrc, chdtri
 
 import dalembert
@@ -19,6 +19,8 @@ from dalembert.inverse.specimens.restricted_likelihood import Likelihood, Spread
 
 FEW = 6
 """Specimens from which a spread is known to about a third of itself, 1/√(2 (m − 1))."""
+NOTHING = 1e-6
+"""A spread that is rounding, over the deviation of the specimens' values."""
 WIDEST = 100.0
 """Largest upper end of a spread that is looked for, over the deviation of the specimens' values."""
 
@@ -57,8 +59,8 @@ def population(
     Parameters
     ----------
     fits : mapping of str to Fit, or Fit
-        The fit of each specimen, by its name. Or one fit of several experiments, one a specimen, in which the
-        parameters that vary are the experiments' own ones; others are shared.
+        The fit of each specimen, by its name. Or one fit of several experiments, one for each specimen, in which the
+        parameters that vary are local; others are shared.
     parameters : sequence of str, optional
         The parameters that vary; all that the specimens have if not given.
     correlated : bool
@@ -118,6 +120,7 @@ def estimated(estimates: Estimates, *, correlated: bool = False, level: float = 
     mean, known = likelihood.mean(between)
     adjusted, deviations = likelihood.adjusted(between)
     spread = np.sqrt(np.diag(between))
+    spread[spread < NOTHING] = 0.0
     ends = [_interval(likelihood, form, unknowns, number, best, level) for number in range(k)]
     lower, upper = np.array(ends).T * scale
     new = [new_specimen(values[:, number], variances[:, number], level) for number in range(k)]
@@ -174,7 +177,7 @@ def _interval(
 
 
 def _root(function: Callable[[float], float], first: float, second: float) -> float:
-    return float(brentq(function, first, second, xtol=1e-5, rtol=1e-5))
+    return float(root_scalar(function, bracket=(first, second), method="brentq", xtol=1e-5).root)
 
 
 def _alone(values: np.ndarray, variances: np.ndarray) -> float:
@@ -224,7 +227,7 @@ def _of_fits(fits: Mapping[str, Fit], chosen: tuple[str, ...] | None) -> Estimat
 
 
 def _of_experiments(fit: Fit, chosen: tuple[str, ...] | None) -> Estimates:
-    """Estimates of the own parameters of the experiments of one fit, with their covariance through shared ones."""
+    """Estimates of the local parameters of one fit, with their covariance through shared ones."""
     specimens = [part.name for part in fit.parts]
     known = fit.parameters.names
     own = [{name.removeprefix(f"{one}.") for name in known if name.startswith(f"{one}.")} for one in specimens]
@@ -232,11 +235,11 @@ def _of_experiments(fit: Fit, chosen: tuple[str, ...] | None) -> Estimates:
     names = chosen or tuple(dict.fromkeys(name.partition(".")[2] for name in known if name.partition(".")[2] in common))
     if not names:
         raise InputError(
-            "population: the experiments of the fit have no parameters of their own in common. List those that vary "
-            "as own parameters of each experiment."
+            "population: the experiments of the fit have no local parameter in common. Declare those that vary as "
+            "local, with own of each experiment."
         )
     for name in names:
-        require_known("own parameter of all experiments", name, common, "population")
+        require_known("local parameter", name, common, "population")
     places = [known.index(f"{one}.{name}") for one in specimens for name in names]
     values = fit.values[places].reshape(len(specimens), len(names))
     items = {item.name: item for item in fit.parameters}

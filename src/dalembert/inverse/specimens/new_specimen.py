@@ -10,7 +10,7 @@ coverage performance of 95 % confidence and prediction intervals (2017).
 """
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.optimize import root_scalar
 from scipy.special import ndtr
 
 from dalembert.inverse.specimens.restricted_likelihood import Likelihood
@@ -39,8 +39,10 @@ def new_specimen(values: np.ndarray, variances: np.ndarray, level: float) -> tup
     weights = np.exp(heights - heights.max()) * np.gradient(SPREADS)
     weights /= weights.sum()
 
-    def more(at: float, part: float) -> float:
-        return float(weights @ ndtr((at - means) / deviations)) - part
+    def quantile(part: float) -> float:
+        def more(at: float) -> float:
+            return float(weights @ ndtr((at - means) / deviations)) - part
 
-    lower, upper = (brentq(more, -FARTHEST, FARTHEST, args=((1 + side * level) / 2,)) for side in (-1, 1))
-    return centre + scale * float(lower), centre + scale * float(upper)
+        return centre + scale * float(root_scalar(more, bracket=(-FARTHEST, FARTHEST), method="brentq").root)
+
+    return quantile((1 - level) / 2), quantile((1 + level) / 2)

@@ -114,7 +114,7 @@ class SpreadForm:
     def slopes(self, unknowns: np.ndarray) -> np.ndarray:
         """Return ∂Ω/∂u by the complex step, shape (unknowns, parameters, parameters)."""
         steps = unknowns + 1j * STEP * np.eye(self.unknowns)
-        return np.stack([self.matrix(step).imag for step in steps]) / STEP
+        return np.imag([self.matrix(step) for step in steps]) / STEP
 
 
 def most_likely(likelihood: Likelihood, form: SpreadForm) -> tuple[np.ndarray, float]:

@@ -68,6 +68,7 @@ AREAS = {
             "Response sensitivity",
             "Sensitivities",
             "Several specimens",
+            "Sobol indices",
             "Statistics of estimates",
         ),
     ),

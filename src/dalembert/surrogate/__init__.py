@@ -4,8 +4,20 @@ from dalembert.surrogate.adaptive import Adaptive
 from dalembert.surrogate.bounds import PolynomialBounds, bounds
 from dalembert.surrogate.fit import fit
 from dalembert.surrogate.polynomial import ChebyshevPolynomial
+from dalembert.surrogate.sobol import SobolIndices, sobol_indices
 from dalembert.surrogate.surrogate import Surrogate
 from dalembert.surrogate.tensor import Tensor
 from dalembert.surrogate.total_degree import TotalDegree
 
-__all__ = ["Adaptive", "ChebyshevPolynomial", "PolynomialBounds", "Surrogate", "Tensor", "TotalDegree", "bounds", "fit"]
+__all__ = [
+    "Adaptive",
+    "ChebyshevPolynomial",
+    "PolynomialBounds",
+    "SobolIndices",
+    "Surrogate",
+    "Tensor",
+    "TotalDegree",
+    "bounds",
+    "fit",
+    "sobol_indices",
+]

@@ -24,7 +24,7 @@ def population(told: Population, asked: Asked) -> list[Section]:
         "specimens": counted(len(told.specimens)),
     }
     headline = Headline(title="Several specimens", verdict="estimated", facts=facts, findings=told.findings)
-    how = f"The line is the mean. The band contains the value of a new specimen with {level}. Bars are two standard deviations."
+    how = f"The line is the mean. The band contains a new specimen with {level}. Bars are two standard deviations."
     plots = [Plot(f"specimens-{k}", charts.specimens(told, name), how) for k, name in enumerate(told.names, 1)]
     blocks = (
         _means(told, named, level),

@@ -76,9 +76,9 @@ def sobol_indices(surrogate: Surrogate) -> SobolIndices:
     variance, error = squares[of_all].sum(axis=0), np.asarray(surrogate.error, dtype=float)
     first, total = alone.T @ squares, active.T @ squares
     mean = coefficients[~of_all].sum(axis=0)
-    ends = (_ends(part, variance, error) for part in (first, total))
+    first_ends, total_ends = (_ends(part, variance, error) for part in (first, total))
     with np.errstate(invalid="ignore", divide="ignore"):
-        return SobolIndices(mean, variance, first / variance, total / variance, *ends, error)
+        return SobolIndices(mean, variance, first / variance, total / variance, first_ends, total_ends, error)
 
 
 def in_legendre(polynomial: ChebyshevPolynomial) -> tuple[np.ndarray, np.ndarray]:

@@ -59,7 +59,7 @@ _NAMES = {
     """,
     "export": "export_vtk",
     "uncertainty": """
-        Comparison Propagation compare propagate
+        Comparison Propagation SensitivityIndices compare global_sensitivity propagate
         Chebyshev LatinHypercube MonteCarlo Optimise Scan Taylor Vertex
     """,
     "vibration": """

@@ -9,6 +9,9 @@ from numpy.polynomial.legendre import leggauss, legvander
 from dalembert.surrogate.polynomial import ChebyshevPolynomial
 from dalembert.surrogate.surrogate import Surrogate
 
+NOTHING = 1e-12
+"""A standard deviation that is rounding, over the mean."""
+
 
 @dataclass(frozen=True, eq=False)
 class SobolIndices:
@@ -32,6 +35,19 @@ class SobolIndices:
     first_ends: np.ndarray
     total_ends: np.ndarray
     error: np.ndarray
+
+    def summed(self, groups: np.ndarray) -> "SobolIndices":
+        """Return indices of groups of outputs: parts of the variances, summed over the outputs of each group.
+
+        Parameters
+        ----------
+        groups : array of int, shape (outputs,)
+            Number of the group of each output, from 0.
+        """
+        member = groups[:, None] == np.arange(groups.max(initial=-1) + 1)
+        first, total = (np.nan_to_num(part) * self.variance @ member for part in (self.first, self.total))
+        # The error of a group is a norm too: the root of the sum of squares.
+        return _indices(self.mean @ member, self.variance @ member, first, total, np.sqrt(self.error**2 @ member))
 
     @property
     def uncertainty(self) -> np.ndarray:
@@ -73,9 +89,16 @@ def sobol_indices(surrogate: Surrogate) -> SobolIndices:
     squares, active = coefficients**2, exponents > 0
     of_all = active.any(axis=1)
     alone = active & (active.sum(axis=1) == 1)[:, None]
-    variance, error = squares[of_all].sum(axis=0), np.asarray(surrogate.error, dtype=float)
-    first, total = alone.T @ squares, active.T @ squares
     mean = coefficients[~of_all].sum(axis=0)
+    squares[:, squares[of_all].sum(axis=0) <= (NOTHING * mean) ** 2] = 0.0
+    first, total = alone.T @ squares, active.T @ squares
+    return _indices(mean, squares[of_all].sum(axis=0), first, total, np.asarray(surrogate.error, dtype=float))
+
+
+def _indices(
+    mean: np.ndarray, variance: np.ndarray, first: np.ndarray, total: np.ndarray, error: np.ndarray
+) -> SobolIndices:
+    """Indices from parts of the variance, shape (d, outputs)."""
     first_ends, total_ends = (_ends(part, variance, error) for part in (first, total))
     with np.errstate(invalid="ignore", divide="ignore"):
         return SobolIndices(mean, variance, first / variance, total / variance, first_ends, total_ends, error)

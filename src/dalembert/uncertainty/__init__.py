@@ -8,6 +8,8 @@ from dalembert.uncertainty.optimise import Optimise
 from dalembert.uncertainty.propagate import propagate
 from dalembert.uncertainty.propagation import Propagation
 from dalembert.uncertainty.samplings import LatinHypercube, MonteCarlo, Sampling, Scan, Vertex
+from dalembert.uncertainty.sensitivity_indices import SensitivityIndices
+from dalembert.uncertainty.sobol import global_sensitivity
 from dalembert.uncertainty.taylor import Taylor
 
 __all__ = [
@@ -24,10 +26,12 @@ __all__ = [
     "Row",
     "Sampling",
     "Scan",
+    "SensitivityIndices",
     "Taylor",
     "Vertex",
     "as_record",
     "compare",
+    "global_sensitivity",
     "methods_by_name",
     "propagate",
 ]

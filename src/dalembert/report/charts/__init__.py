@@ -5,6 +5,7 @@ from dalembert.lazy import lazy_names
 _NAMES = {
     "bounds.bands": "bands",
     "bounds.methods": "differences methods",
+    "bounds.shares": "shares",
     "frequency.backbone": "backbone",
     "frequency.contacts": "contact_shares contact_states dissipation",
     "frequency.curve_family": "curve_family",

@@ -1,0 +1,62 @@
+"""The result of a global sensitivity analysis."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+
+from dalembert.findings import Finding
+from dalembert.forward.stored_coordinate import StoredCoordinate
+from dalembert.results import Result, fact_lines, text_table
+from dalembert.stored_fields import Labels, Over, StoredBox, Table
+
+
+@dataclass(frozen=True, eq=False)
+class SensitivityIndices(Result):
+    """Sobol indices of a response, as :func:`global_sensitivity` returns them.
+
+    Parameters
+    ----------
+    coordinate : Coordinate
+    channels, units : tuple of str
+    box : Box
+        The intervals over which the parameters are uniform and independent.
+    mean, deviations : array, shape (samples, channels)
+        Of the response over the box.
+    first, total : array, shape (samples, channels, parameters)
+        First-order and total indices at each sample; NaN where the response does not vary.
+    whole_first, whole_total : array, shape (channels, parameters)
+        Indices of the whole channel: parts of the variance summed over the samples.
+    uncertainty : array, shape (channels,)
+        Largest error of an index of the whole channel that the error of the surrogate allows.
+    runs : int
+    provenance : mapping
+    findings : tuple of Finding
+    """
+
+    FORMAT: ClassVar[str] = "dalembert sensitivity indices 1"
+
+    coordinate: StoredCoordinate
+    channels: Annotated[tuple[str, ...], Labels("channel")]
+    units: Annotated[tuple[str, ...], Labels("channel", name="unit")]
+    box: StoredBox
+    mean: Table
+    deviations: Table
+    first: Annotated[np.ndarray, Over("sample", "channel", "parameter")]
+    total: Annotated[np.ndarray, Over("sample", "channel", "parameter")]
+    whole_first: Annotated[np.ndarray, Over("channel", "parameter")]
+    whole_total: Annotated[np.ndarray, Over("channel", "parameter")]
+    uncertainty: Annotated[np.ndarray, Over("channel")]
+    runs: int
+    provenance: Mapping[str, Any]
+    findings: tuple[Finding, ...] = ()
+
+    def summary(self) -> str:
+        """Return a table of the indices of whole channels, then the effort."""
+        rows = [("channel", "parameter", "first-order index", "total index", "± at most")]
+        for c, channel in enumerate(self.channels):
+            for p, name in enumerate(self.box.names):
+                indices = f"{self.whole_first[c, p]:.4f}", f"{self.whole_total[c, p]:.4f}"
+                rows.append((channel if p == 0 else "", name, *indices, f"{self.uncertainty[c]:.1g}"))
+        return "\n".join([*text_table(rows), "", *fact_lines(runs=self.runs), *map(str, self.findings)])

@@ -1,0 +1,86 @@
+"""Sobol indices of models: sums over samples, what is refused, and the report."""
+
+import numpy as np
+import pytest
+from inline_snapshot import snapshot
+
+import dalembert as da
+from dalembert.surrogate import Tensor
+
+TIMES = np.linspace(0.0, 2.0, 9)
+BOX = {"gain": (0.5, 1.5), "rate": (0.5, 2.0), "idle": (0.0, 1.0)}
+MODEL = da.PythonModel(
+    lambda gain, rate, idle: np.stack([gain * np.exp(-rate * TIMES), gain * TIMES + 0 * idle], axis=1),
+    dict.fromkeys(BOX, (0.0, 3.0)),
+    ["x", "y"],
+    TIMES,
+)
+
+
+@pytest.fixture(scope="module")
+def found():
+    return da.global_sensitivity(MODEL, BOX)
+
+
+def test_indices_over_time_and_of_whole_channels(found):
+    np.testing.assert_allclose(found.first[0, 0], [1.0, 0.0, 0.0], atol=1e-9)  # at first only the gain acts
+    assert np.isnan(found.first[0, 1]).all()  # at first y is 0
+    np.testing.assert_allclose(found.whole_first[1], [1.0, 0.0, 0.0], atol=1e-9)
+    variances = found.deviations[:, 0] ** 2
+    np.testing.assert_allclose(found.whole_total[0], variances @ found.total[:, 0] / variances.sum(), rtol=1e-9)
+    assert np.all(found.whole_total[0] >= found.whole_first[0] - 1e-12)
+    assert found.whole_total[0, 2] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_total_index_of_a_product_is_that_of_its_moments(found):
+    """Var(g h) of independent factors: V_g = μ_h² v_g, V_h = μ_g² v_h, interaction v_g v_h."""
+    low, high = BOX["rate"]
+
+    def moment(factor):
+        """Mean of exp(−factor · rate · t) · t."""
+        ends = np.exp(-factor * low * TIMES) - np.exp(-factor * high * TIMES)
+        return ends[1:] / (factor * (high - low))
+
+    mean, square = moment(1) / TIMES[1:], moment(2) / TIMES[1:]
+    of_rate, of_gain = square - mean**2, 1 / 12
+    whole = mean**2 * of_gain + of_rate + of_gain * of_rate
+    np.testing.assert_allclose(found.first[1:, 0, 0], mean**2 * of_gain / whole, atol=1e-4)
+    np.testing.assert_allclose(found.total[1:, 0, 1], (of_rate + of_gain * of_rate) / whole, atol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        ({"tolerance": 2.0}, snapshot("global_sensitivity: tolerance is 2.0; expected a number between 0 and 1")),
+        (
+            {"intervals": {"gain": (0.5, 1.5)}},
+            snapshot(
+                "intervals: none is given for parameter 'rate'; expected an interval, or a number if it is known exactly, for each of gain, rate, idle"
+            ),
+        ),
+    ],
+    ids=["tolerance", "intervals"],
+)
+def test_what_is_refused(options, sentence):
+    with pytest.raises(da.InputError) as refused:
+        da.global_sensitivity(MODEL, **{"intervals": BOX, **options})
+    assert str(refused.value) == sentence
+
+
+def test_a_surrogate_that_is_too_coarse_is_refused():
+    step = da.PythonModel(lambda at: np.tanh(40 * (at - TIMES)), {"at": (0.0, 2.0)}, ["x"], TIMES)
+    with pytest.raises(
+        da.SolveError, match=r"leaves the indices of channel 'x' uncertain by .* Improve the surrogate \("
+    ):
+        da.global_sensitivity(step, {"at": (0.0, 2.0)}, Tensor(3))
+
+
+def test_it_is_stored_and_reported(found, tmp_path):
+    found.save(tmp_path / "indices.nc")
+    again = da.SensitivityIndices.load(tmp_path / "indices.nc")
+    assert again.summary() == found.summary()
+    found.report(tmp_path / "report.html")
+    text = (tmp_path / "report.html").read_text(encoding="utf-8")
+    for words in ("Global sensitivity", "Sobol indices", "first-order index", "gain"):
+        assert words in text
+    assert list(found.figures()) == ["shares-1", "shares-2"]

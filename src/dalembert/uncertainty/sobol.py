@@ -6,7 +6,7 @@ from dalembert.arguments import check_model, check_whole, is_number
 from dalembert.errors import InputError, SolveError, shown
 from dalembert.forward import ForwardModel
 from dalembert.forward.provenance import provenance
-from dalembert.surrogate import Adaptive, SobolIndices, fit, sobol_indices
+from dalembert.surrogate import Adaptive, SobolIndices, Surrogate, fit, sobol_indices
 from dalembert.surrogate.scheme import Scheme
 from dalembert.uncertainty.propagate import Intervals, box_of
 from dalembert.uncertainty.runs import Runs
@@ -82,7 +82,7 @@ def global_sensitivity(
     found = sobol_indices(surrogate)
     whole = found.summed(np.tile(np.arange(channels), samples))
     names = tuple(channel.name for channel in model.channels)
-    _demand(whole, names, tolerance, surrogate.ended or scheme.more(2 * surrogate.order))
+    _demand(whole, names, tolerance, _improvement(surrogate))
     shape = samples, channels, len(box.names)
     return SensitivityIndices(
         coordinate=model.coordinate,
@@ -101,6 +101,14 @@ def global_sensitivity(
             model, scheme, seed=seed, tolerance=tolerance, intervals={n: [i.lower, i.upper] for n, i in box.items()}
         ),
     )
+
+
+def _improvement(surrogate: Surrogate) -> str:
+    """What gives a better surrogate."""
+    scheme = surrogate.scheme
+    if isinstance(scheme, Adaptive) and not surrogate.ended:  # it ended at its tolerance
+        return f"allow less error by Adaptive(tolerance=...), now {scheme.tolerance:g}"
+    return surrogate.ended or scheme.more(2 * surrogate.order)
 
 
 def _demand(whole: SobolIndices, names: tuple[str, ...], tolerance: float, more: str) -> None:

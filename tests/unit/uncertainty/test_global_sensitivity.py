@@ -5,7 +5,7 @@ import pytest
 from inline_snapshot import snapshot
 
 import dalembert as da
-from dalembert.surrogate import Tensor
+from dalembert.surrogate import Adaptive, Tensor
 
 TIMES = np.linspace(0.0, 2.0, 9)
 BOX = {"gain": (0.5, 1.5), "rate": (0.5, 2.0), "idle": (0.0, 1.0)}
@@ -73,6 +73,11 @@ def test_a_surrogate_that_is_too_coarse_is_refused():
         da.SolveError, match=r"leaves the indices of channel 'x' uncertain by .* Improve the surrogate \("
     ):
         da.global_sensitivity(step, {"at": (0.0, 2.0)}, Tensor(3))
+
+
+def test_a_scheme_that_ended_at_its_tolerance_is_to_have_a_smaller_one():
+    with pytest.raises(da.SolveError, match=r"allow less error by Adaptive\(tolerance=\.\.\.\), now 0\.2"):
+        da.global_sensitivity(MODEL, BOX, Adaptive(0.2), tolerance=1e-6)
 
 
 def test_it_is_stored_and_reported(found, tmp_path):

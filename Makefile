@@ -18,7 +18,10 @@ PYTHON ?= $(firstword $(foreach candidate,$(CANDIDATES),\
 	$(shell $(candidate) -c "$(USABLE)" >/dev/null 2>&1 && echo $(candidate))))
 
 BIN := .venv/bin
-PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
+# Python compiles what is imported; compiling all that is installed takes as long as unpacking it.
+PIP := $(BIN)/python -m pip
+QUIETLY := --quiet --disable-pip-version-check --constraint constraints.txt
+INSTALL := $(PIP) install --no-compile $(QUIETLY)
 
 BENCH_PIP := .venv-bench/bin/python -m pip install --quiet --disable-pip-version-check --constraint .venv-bench/constraints.txt
 
@@ -53,11 +56,11 @@ checks: .venv/test.stamp
 	$(BIN)/lint-imports
 
 # Compiled once, on all cores: tests that begin together would compile the same things twice.
-kernels: .venv/test.stamp
+kernels: .venv/core.stamp
 	$(BIN)/dalembert compile
 
-# At once, since the checks use one core.
-checked: .venv/test.stamp
+# At once, since the checks and what they need beyond the package use one core.
+checked: .venv/core.stamp
 	$(MAKE) --jobs=2 checks kernels
 
 test: checked
@@ -81,7 +84,7 @@ docs: .venv/docs.stamp
 
 # The wheel contains all kernels as one object file, so that its users compile nothing.
 wheel: .venv/core.stamp
-	DALEMBERT_KERNELS=1 $(PIP:install=wheel) --no-build-isolation --no-deps --wheel-dir dist .
+	DALEMBERT_KERNELS=1 $(PIP) wheel $(QUIETLY) --no-build-isolation --no-deps --wheel-dir dist .
 	@ls dist/*.whl
 
 bench: .venv-bench/stamp
@@ -101,8 +104,8 @@ clean:
 
 # One stamp an environment; it is made anew when the dependencies change.
 .venv/core.stamp: .venv/bin/python pyproject.toml constraints.txt
-	$(PIP) hatchling editables
-	$(PIP) --no-build-isolation --editable .
+	$(INSTALL) hatchling editables
+	$(INSTALL) --no-build-isolation --editable .
 	@touch $@
 
 # The benchmarks use a separate environment, because their peers need other versions of some packages.
@@ -114,7 +117,6 @@ clean:
 	$(BENCH_PIP) --no-build-isolation --editable ".[bench]"
 	@touch $@
 
-.venv/%.stamp: .venv/bin/python pyproject.toml constraints.txt
-	$(PIP) hatchling editables
-	$(PIP) --no-build-isolation --editable ".[$*]"
+.venv/%.stamp: .venv/core.stamp
+	$(INSTALL) --no-build-isolation --editable ".[$*]"
 	@touch $@

@@ -24,7 +24,9 @@ from free_oscillations import TIMES as OSCILLATING
 from frequency_cases import FREQUENCY_CASES
 from inertial_cases import INERTIAL_CASES
 from report_case import Case
+from sensitivity_cases import SENSITIVITY_CASES
 from small_models import DECAY, LINE, TIMES, banded, measured
+from specimen_cases import SPECIMEN_CASES
 from stepped_models import TIMES as STEPPED_TIMES
 from stepped_models import Stepped, decay_in_steps, exact, failing, growing_in_steps, quick_in_steps, slow_in_steps
 
@@ -907,4 +909,6 @@ CASES: dict[str, Case] = {
     ),
     **FREQUENCY_CASES,
     **INERTIAL_CASES,
+    **SENSITIVITY_CASES,
+    **SPECIMEN_CASES,
 }

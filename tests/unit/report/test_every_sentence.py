@@ -30,6 +30,7 @@ SOURCES = [
     *(f"inverse/misfit/{name}.py" for name in ("delays", "halves", "model_misfit")),
     *(f"inverse/bands/{name}.py" for name in ("band_fit", "outcome")),
     "inverse/sets/outcome.py",
+    "inverse/specimens/estimate.py",
     *(f"inverse/assessment/{name}.py" for name in ("designs", "prediction", "profiles", "walk")),
     *(f"optimize/{name}.py" for name in ("least_squares", "response_sensitivity", "swarm")),
     *(f"uncertainty/{name}.py" for name in ("chebyshev", "comparison", "optimise", "propagate", "taylor")),

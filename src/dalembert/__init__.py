@@ -50,8 +50,10 @@ _NAMES = {
         Bands Measurements derivative merged read read_bands read_trials
     """,
     "inverse": """
-        BandFit Designs Experiment Fit GlobalSurrogate MultipleShooting Nested ParameterSet Population Prediction
-        Profiles ShootingState design identifiability identify identify_bands identify_set population predict profile
+        AutoregressiveNoise BandFit ConstantNoise Designs Experiment Fit GlobalSurrogate KnownNoise
+        Likelihood MixedNoise MultipleShooting Nested NoiseModel OrnsteinUhlenbeckNoise ParameterSet
+        Population Prediction Profiles ProportionalNoise ShootingState design identifiability identify
+        identify_bands identify_set likelihood population predict profile
     """,
     "multibody": """
         System Point TimeResponse Trajectory WorkPrecision simulate equilibrium modes work_precision

@@ -30,6 +30,10 @@ from dalembert.inverse.experiments.validation import Validation
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.identify import identify
 from dalembert.inverse.least_squares.estimate import Identifiability
+from dalembert.inverse.likelihood.likelihood import Likelihood, likelihood
+from dalembert.inverse.noise.correlated import AutoregressiveNoise, OrnsteinUhlenbeckNoise
+from dalembert.inverse.noise.deviations import ConstantNoise, KnownNoise, MixedNoise, ProportionalNoise
+from dalembert.inverse.noise.noise_model import NoiseModel
 from dalembert.inverse.sets.identify_set import identify_set
 from dalembert.inverse.sets.parameter_set import ParameterSet
 from dalembert.inverse.shooting.nodes import Nodes
@@ -39,8 +43,10 @@ from dalembert.inverse.specimens.estimate import population
 from dalembert.inverse.specimens.population import Population
 
 __all__ = [
+    "AutoregressiveNoise",
     "BandFit",
     "Checked",
+    "ConstantNoise",
     "CorrelatedResiduals",
     "Designs",
     "Event",
@@ -50,10 +56,15 @@ __all__ = [
     "Fit",
     "GlobalSurrogate",
     "Identifiability",
+    "KnownNoise",
+    "Likelihood",
+    "MixedNoise",
     "MultipleShooting",
     "Nested",
     "Nodes",
+    "NoiseModel",
     "NoiseProcess",
+    "OrnsteinUhlenbeckNoise",
     "ParameterSet",
     "Paved",
     "Population",
@@ -61,6 +72,7 @@ __all__ = [
     "Profile",
     "Profiled",
     "Profiles",
+    "ProportionalNoise",
     "Sampled",
     "Screened",
     "ShootingState",
@@ -74,6 +86,7 @@ __all__ = [
     "identify",
     "identify_bands",
     "identify_set",
+    "likelihood",
     "population",
     "predict",
     "profile",

@@ -16,9 +16,10 @@ from dalembert.inverse.correlation.correlation import correlation
 from dalembert.inverse.correlation.findings import correlation_findings
 from dalembert.inverse.events import Finished, OnEvent
 from dalembert.inverse.experiments.coverage import with_coverage
-from dalembert.inverse.experiments.experiment import Experiment, Part
-from dalembert.inverse.experiments.experiments import JointModel, begun, joint, joint_weights, placed
+from dalembert.inverse.experiments.experiment import Experiment
+from dalembert.inverse.experiments.experiments import JointModel, begun, placed
 from dalembert.inverse.experiments.explained import explained_findings
+from dalembert.inverse.experiments.joined import joined
 from dalembert.inverse.experiments.smoothed import noise_findings, smooth_noise
 from dalembert.inverse.experiments.suspect_units import unit_findings
 from dalembert.inverse.experiments.validation import HeldOut, split
@@ -31,7 +32,6 @@ from dalembert.inverse.least_squares.roughness import roughness_findings
 from dalembert.inverse.misfit.misfit import misfit_conclusions
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.loss import loss_of
-from dalembert.inverse.problem.matching import check_kinds
 from dalembert.inverse.problem.noise import noise_floor
 from dalembert.inverse.problem.problem import Linearisation, Problem, pose
 from dalembert.inverse.shooting.growth import growth_findings
@@ -167,7 +167,7 @@ def identify(
     if horizon is not None:
         require_known("horizon", str(horizon), HORIZONS)
     require_known("spread", str(spread), SPREADS)
-    model, data, weights, parts = _joined(begun(placed(model, executor), start), data, weights)
+    model, data, weights, parts = joined("identify", begun(placed(model, executor), start), data, weights)
     given = data.deviations is not None and weights is None
     smooth = None if shooting is None or given or weights is not None else smooth_noise(data, parts)
     journal = Journal(len(data.coordinate.values), on_event)
@@ -323,26 +323,6 @@ def _estimated(
     if best.spread is not None:
         return estimate_of(best.spread, scale, noise), correlated
     return estimate(slopes, scale, noise), correlated
-
-
-def _joined(
-    model: ForwardModel | Sequence[Experiment],
-    data: Measurements | None,
-    weights: ArrayLike | Mapping[str, ArrayLike] | None,
-) -> tuple[ForwardModel, Measurements, ArrayLike | None, tuple[Part, ...]]:
-    """Model, data and weights, with several experiments the joint ones, and where each experiment stands in them."""
-    if isinstance(model, Sequence):
-        if data is not None:
-            raise InputError("identify: experiments have their own data; leave out the second argument")
-        together, measured = joint(model)
-        together.parameters.check_some("identify")
-        return together, measured, joint_weights(together, weights), together.parts  # pyright: ignore[reportArgumentType]
-    if data is None:
-        raise InputError("identify: no data were given; expected identify(model, data), or identify([Experiment(...)])")
-    if isinstance(weights, Mapping):
-        raise InputError("weights by name are for several experiments; expected an array (channels,)")
-    check_kinds("identify", model, data)
-    return model, data, weights, ()
 
 
 def _check_shooting(method: Squares | Method, validation: object) -> None:

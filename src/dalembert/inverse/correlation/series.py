@@ -54,8 +54,8 @@ class Series:
         return float(self.along[-1] - self.along[0])
 
 
-def series_of(problem: Problem, weights: np.ndarray | None = None) -> Iterator[Series]:
-    """Yield the series of each channel that has at least two fitted values.
+def series_of(problem: Problem, weights: np.ndarray | None = None, *, fewest: int = 2) -> Iterator[Series]:
+    """Yield the series of each channel that has at least ``fewest`` fitted values.
 
     ``weights`` (samples, channels) replace those of the problem: only values of positive weight are part of a series.
     """
@@ -65,7 +65,7 @@ def series_of(problem: Problem, weights: np.ndarray | None = None) -> Iterator[S
         unit = track.data.coordinate.unit
         for column, channel in zip(track.columns, track.data.channels, strict=True):
             kept = weights[track.rows, column] > 0
-            if np.count_nonzero(kept) > 1:
+            if np.count_nonzero(kept) >= fewest:
                 along, rows = track.times[kept], track.rows[kept] * len(names) + column
                 grid, step = even_grid(along)
                 yield Series(names[column], rows, along, grid, step, unit, track.name, channel)
@@ -77,6 +77,8 @@ def even_grid(along: np.ndarray) -> tuple[np.ndarray | None, float]:
     >>> even_grid(np.array([0.0, 0.1, 0.2, 0.5]))[0].tolist(), even_grid(np.array([0.0, 1.0, 2.4]))[0]
     ([0, 1, 2, 5], None)
     """
+    if len(along) < 2:
+        return np.zeros(len(along), dtype=int), 0.0
     intervals = np.diff(along)
     step = float(np.median(intervals))
     counts = np.rint(intervals / step)

@@ -186,8 +186,12 @@ def _posed(alone: Problem, work: Work[Item], model: ForwardModel, item: Item) ->
     work(replace(alone, model=model), item)
 
 
-def pose(model: ForwardModel, data: Measurements, weights: ArrayLike | None, journal: Journal) -> Problem:
+def pose(
+    model: ForwardModel, data: Measurements, weights: ArrayLike | None, journal: Journal, *, noise_known: bool = False
+) -> Problem:
     """The problem of explaining data by a model, after checking that they fit together.
+
+    ``noise_known`` means that priors may be given, although the data have neither deviations nor weights.
 
     Raises
     ------
@@ -197,7 +201,7 @@ def pose(model: ForwardModel, data: Measurements, weights: ArrayLike | None, jou
     InputError
         For weights of another shape, or negative; for priors beside data of unknown noise.
     """
-    check_priors(model.parameters, known=weights is not None or data.deviations is not None)
+    check_priors(model.parameters, known=noise_known or weights is not None or data.deviations is not None)
     columns = columns_of(model, data)
     check_finite(data)
     check_samples(model, data)

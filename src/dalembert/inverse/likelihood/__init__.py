@@ -1,0 +1,1 @@
+"""The likelihood of measurements, with a model and a model of their noise."""

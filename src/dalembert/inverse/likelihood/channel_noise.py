@@ -1,0 +1,101 @@
+"""The noise of one channel of one experiment, in place: its values, and the parameters that describe it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from dalembert.inverse.correlation.series import Series
+from dalembert.inverse.noise.noise_model import NoiseModel
+from dalembert.inverse.noise.whitening import Whitening
+
+HALF_LOG_2_PI = 0.5 * np.log(2 * np.pi)
+STEP = 1e-30
+"""Complex step of derivatives with respect to noise parameters."""
+
+
+@dataclass(frozen=True, eq=False)
+class ChannelNoise:
+    """Noise of one series of residuals.
+
+    Parameters
+    ----------
+    series : Series
+    model : NoiseModel
+    given : array, shape (values,)
+        Known deviations of the data, W^-½.
+    names : mapping of str to str
+        Full name of each noise parameter by its name within the model.
+    whitening : Whitening or None
+    """
+
+    series: Series
+    model: NoiseModel
+    given: np.ndarray
+    names: Mapping[str, str]
+    whitening: Whitening | None
+
+    def values(self, known: Mapping[str, Any]) -> dict[str, np.ndarray]:
+        """Return the values of this channel's parameters out of those of all, by their names within the model."""
+        return {bare: np.asarray(known[full]) for bare, full in self.names.items()}
+
+    def standardised(
+        self, residual: np.ndarray, response: np.ndarray, values: Mapping[str, np.ndarray]
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return whitened residuals, and the logarithms of the deviations of each value after those before it.
+
+        Both have the shape (values,) of the residual and the response; complex parameters give complex results.
+        """
+        sizes = self.model.deviations(response, self.given, values)
+        if self.whitening is None:
+            return residual / sizes, np.log(sizes)
+        matrix = self.whitening.matrix(values)
+        return matrix @ (residual / sizes), np.log(sizes) - np.log(matrix.diagonal())
+
+    def log_densities(self, residual: np.ndarray, response: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Return the log density of each value after those before it, all of shape (batch, values).
+
+        ``values`` are of shape (batch, 1) each. NaN where a sample failed or a deviation is 0.
+        """
+        with np.errstate(divide="ignore", invalid="ignore"):
+            if self.whitening is None:
+                white, logs = self.standardised(residual, response, values)
+            else:
+                rows = [
+                    self.standardised(own, there, {name: value[k, 0] for name, value in values.items()})
+                    for k, (own, there) in enumerate(zip(residual, response, strict=True))
+                ]
+                white, logs = (np.array(part).reshape(residual.shape) for part in zip(*rows, strict=True))
+            return -0.5 * white**2 - logs - HALF_LOG_2_PI
+
+    def expansion(
+        self, residual: np.ndarray, response: np.ndarray, jacobian: np.ndarray, values: Mapping[str, np.ndarray]
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, tuple[np.ndarray, np.ndarray]]]:
+        """Return whitened residuals w and log deviations l (values,), and their derivatives.
+
+        These are ∂w and ∂l (values, parameters) with respect to the model's parameters, from the ``jacobian`` of the
+        response; and, by name, ∂w and ∂l (values,) with respect to those of the noise.
+        """
+        sizes = self.model.deviations(response, self.given, values)
+        logarithmic = self.model.slopes(response, self.given, values) / sizes
+        white, logs = self.standardised(residual, response, values)
+        rows = ((1 - residual * logarithmic) / sizes)[:, None] * jacobian
+        if self.whitening is not None:
+            rows = self.whitening.matrix(values) @ rows
+        noise = {}
+        for bare, full in self.names.items():
+            moved = {**values, bare: values[bare] + 1j * STEP}
+            noise[full] = tuple(np.imag(part) / STEP for part in self.standardised(residual, response, moved))
+        return white, logs, rows, logarithmic[:, None] * jacobian, noise
+
+    def simulated(
+        self, response: np.ndarray, values: Mapping[str, np.ndarray], random: np.random.Generator
+    ) -> np.ndarray:
+        """Return simulated noise (values,) at a response (values,)."""
+        from scipy.sparse.linalg import splu
+
+        noise = random.standard_normal(len(response))
+        if self.whitening is not None and len(noise):
+            noise = splu(self.whitening.matrix(values).tocsc(), permc_spec="NATURAL").solve(noise)
+        return noise * self.model.deviations(response, self.given, values)

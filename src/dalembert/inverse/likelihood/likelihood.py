@@ -1,0 +1,227 @@
+"""The likelihood of a model's parameters and of the noise of the data."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from dalembert.data import Measurements
+from dalembert.forward import Executor, ForwardModel, takes_executor
+from dalembert.inverse.experiments.experiment import Experiment
+from dalembert.inverse.experiments.experiments import placed
+from dalembert.inverse.experiments.joined import joined
+from dalembert.inverse.likelihood.channel_noise import ChannelNoise
+from dalembert.inverse.likelihood.expansion import Expansion, expanded
+from dalembert.inverse.likelihood.placing import Noise, channel_noises, noise_parameters
+from dalembert.inverse.problem.journal import Journal
+from dalembert.inverse.problem.problem import Problem, pose
+from dalembert.parameters import Parameters
+
+
+class Places(NamedTuple):
+    """Where values stand: names of experiment (empty for a single one) and channel, and row, shape (values,) each.
+
+    Rows are those of the data; with several experiments those of the joint data, see :class:`Fit`.
+    """
+
+    experiment: np.ndarray
+    channel: np.ndarray
+    row: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Likelihood:
+    """Log-likelihood log p(data | parameters) of normally distributed noise, and its derivatives.
+
+    Parameters
+    ----------
+    problem : Problem
+        Model or joint experiments, and data; values of weight 0 do not count.
+    noise : NoiseModel or mapping of str to NoiseModel
+        As it was given.
+    parameters : Parameters
+        Those of the model, then those of the noise, ``"noise.CHANNEL.NAME"``. Positive ones are searched by their
+        logarithm. Priors are no part of the likelihood.
+    channels : tuple of ChannelNoise
+        The noise of each channel of each experiment.
+
+    Notes
+    -----
+    log p = −½ Σ w_i² − Σ log s_i − n/2 log 2π, where w_i = (m_i − y_i)/s_i, with the mean m_i and the standard
+    deviation s_i of value i after those before it in its channel. Independent noise has m_i = ŷ_i, the response.
+    """
+
+    problem: Problem
+    noise: Noise
+    parameters: Parameters
+    channels: tuple[ChannelNoise, ...]
+
+    @cached_property
+    def noise_parameters(self) -> Parameters:
+        """Parameters of the noise alone."""
+        mine = set(self.problem.model.parameters.names)
+        known = {full for channel in self.channels for full in channel.names.values()}
+        fixed = tuple(item for item in self.parameters.fixed if item.name in known)
+        return Parameters(tuple(item for item in self.parameters if item.name not in mine), fixed)
+
+    @cached_property
+    def places(self) -> Places:
+        """Where each value of :meth:`pointwise` and :meth:`whitened` stands."""
+        width = len(self.problem.data.channels)
+        rows = [channel.series.rows // width for channel in self.channels]
+        experiments = [
+            np.full(len(own), channel.series.experiment) for own, channel in zip(rows, self.channels, strict=True)
+        ]
+        names = [np.full(len(own), channel.series.channel) for own, channel in zip(rows, self.channels, strict=True)]
+        return Places(np.concatenate(experiments), np.concatenate(names), np.concatenate(rows))
+
+    def evaluate(self, vectors: ArrayLike) -> np.ndarray:
+        """Return the log-likelihood (batch,) at vectors (batch, parameters); −inf where a simulation failed."""
+        found = np.sum(self.pointwise(vectors), axis=1)
+        return np.where(np.isnan(found), -np.inf, found)
+
+    def pointwise(self, vectors: ArrayLike) -> np.ndarray:
+        """Return the log density of each value after those before it in its channel, shape (batch, values).
+
+        NaN where a simulation failed.
+        """
+        batch, responses = self._simulated(vectors)
+        residuals = self.problem.misfit(responses).reshape(len(batch), -1)
+        flat, known = responses.reshape(len(batch), -1), self._known(batch)
+        found = [
+            channel.log_densities(
+                residuals[:, channel.series.rows], flat[:, channel.series.rows], channel.values(known)
+            )
+            for channel in self.channels
+        ]
+        return np.concatenate(found, axis=1)
+
+    def linearise(self, vector: ArrayLike) -> tuple[float, np.ndarray]:
+        """Return the log-likelihood and its exact gradient (parameters,).
+
+        Raises
+        ------
+        SolveError
+            If the simulation fails.
+        """
+        found = self.expansion(vector)
+        return found.value, found.gradient
+
+    def expansion(self, vector: ArrayLike) -> Expansion:
+        """Return the log-likelihood with the whitened residuals and their derivatives.
+
+        Raises
+        ------
+        SolveError
+            If the simulation fails.
+        """
+        vector = self.parameters.real_vector(vector)  # pyright: ignore[reportArgumentType]
+        at = self.problem.linearise(vector[: self._split])
+        return expanded(self.problem, self.channels, self.parameters, at, vector)
+
+    def whitened(self, vector: ArrayLike) -> np.ndarray:
+        """Return standardised, whitened residuals (values,): independent and normal, N(0, 1), if all is right.
+
+        NaN where the simulation failed.
+        """
+        batch, responses = self._simulated(vector)
+        residual, response = self.problem.misfit(responses[0]).ravel(), responses[0].ravel()
+        known = self.parameters.arguments(batch[0])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.concatenate(
+                [
+                    channel.standardised(
+                        residual[channel.series.rows], response[channel.series.rows], channel.values(known)
+                    )[0]
+                    for channel in self.channels
+                ]
+            )
+
+    def replicas(self, vectors: ArrayLike, seed: int) -> np.ndarray:
+        """Return responses with simulated noise (batch, samples, channels); NaN where no value is compared."""
+        batch, responses = self._simulated(vectors)
+        random = np.random.default_rng(seed)
+        found = np.full((len(batch), responses[0].size), np.nan)
+        for row, vector, response in zip(found, batch, responses.reshape(len(batch), -1), strict=True):
+            known = self.parameters.arguments(vector)
+            for channel in self.channels:
+                places = channel.series.rows
+                row[places] = response[places] + channel.simulated(response[places], channel.values(known), random)
+        return found.reshape(responses.shape)
+
+    @property
+    def _split(self) -> int:
+        """Number of the model's parameters."""
+        return len(self.problem.model.parameters)
+
+    def _simulated(self, vectors: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+        batch = self.parameters.batch(vectors)
+        return batch, self.problem.responses(batch[:, : self._split])
+
+    def _known(self, batch: np.ndarray) -> Mapping[str, np.ndarray]:
+        """Values of all parameters by name, shape (batch, 1) each."""
+        named = self.parameters.arguments(batch.T[:, :, None])
+        return {name: np.broadcast_to(value, (len(batch), 1)) for name, value in named.items()}
+
+
+@takes_executor
+def likelihood(
+    model: ForwardModel | Sequence[Experiment],
+    data: Measurements | None = None,
+    *,
+    noise: Noise | None = None,
+    weights: ArrayLike | Mapping[str, ArrayLike] | None = None,
+    executor: Executor = None,
+) -> Likelihood:
+    """Likelihood of a model, or of several experiments, for data with noise.
+
+    Parameters
+    ----------
+    model : ForwardModel or sequence of Experiment
+    data : Measurements, optional
+        Left out with experiments, which have their own.
+    noise : NoiseModel, its name, or mapping of channel to NoiseModel, optional
+        :class:`KnownNoise` if the data have deviations or weights are given, else :class:`ConstantNoise`. A mapping
+        names channels, with several experiments also ``"NAME.channel"``.
+    weights : array, shape (channels,) or (samples, channels), or mapping of experiments to such arrays, optional
+        1/variance of the values, in place of the data's deviations.
+    executor : str or distributed.Client, optional
+        Where batches are computed.
+
+    Returns
+    -------
+    Likelihood
+
+    Raises
+    ------
+    DataError
+        For data that do not fit the model.
+    InputError
+        For an unknown channel, a noise model that the samples do not allow, known noise that is not known.
+
+    Examples
+    --------
+    >>> from dalembert.forward import PythonModel
+    >>> times = np.linspace(0.0, 1.0, 5)
+    >>> line = PythonModel(lambda slope: slope * times, {"slope": (0.0, 3.0)}, ["x"], times)
+    >>> found = likelihood(line, Measurements.of(times, {"x": 2 * times}))
+    >>> found.parameters.names
+    ('slope', 'noise.x.deviation')
+    >>> np.allclose(found.evaluate([[2.0, 0.1]]), -5 * np.log(0.1 * np.sqrt(2 * np.pi)))
+    True
+    """
+    whole, measured, given, _ = joined("likelihood", placed(model, executor), data, weights)
+    problem = pose(whole, measured, given, Journal(len(measured.coordinate.values)), noise_known=True)
+    return likelihood_of(problem, noise, weighted=weights is not None)
+
+
+def likelihood_of(problem: Problem, noise: Noise | None, *, weighted: bool = False) -> Likelihood:
+    """Return the likelihood of a problem; ``weighted`` means that its weights are 1/variance."""
+    known = weighted or problem.data.deviations is not None
+    channels, given = channel_noises(problem, noise, known=known)
+    own, model = noise_parameters(problem, channels), problem.model.parameters
+    parameters = Parameters((*model.items, *own.items), (*model.fixed, *own.fixed))
+    return Likelihood(problem, given, parameters, channels)

@@ -1,0 +1,128 @@
+"""Which noise model describes which channel, and the parameters of all of them."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TypeAlias
+
+import numpy as np
+
+from dalembert.errors import InputError, require_known, shown, unknown
+from dalembert.inverse.correlation.series import Series, series_of
+from dalembert.inverse.likelihood.channel_noise import ChannelNoise
+from dalembert.inverse.noise.correlated import AutoregressiveNoise, OrnsteinUhlenbeckNoise
+from dalembert.inverse.noise.deviations import ConstantNoise, KnownNoise, MixedNoise, ProportionalNoise
+from dalembert.inverse.noise.noise_model import Extent, NoiseModel
+from dalembert.inverse.problem.problem import Problem
+from dalembert.parameters import Parameter, Parameters
+
+Noise: TypeAlias = NoiseModel | str | Mapping[str, NoiseModel | str]
+"""One noise model for all channels, or one for each by name."""
+
+MODELS: dict[str, type[NoiseModel]] = {
+    kind.name: kind
+    for kind in (KnownNoise, ConstantNoise, ProportionalNoise, MixedNoise, AutoregressiveNoise, OrnsteinUhlenbeckNoise)
+}
+
+
+def noise_model(given: object) -> NoiseModel:
+    """Return a noise model, from itself or from its name with its defaults.
+
+    Raises
+    ------
+    InputError
+    """
+    if isinstance(given, str):
+        require_known("noise model", given, MODELS, "noise")
+        return MODELS[given]()
+    if not isinstance(given, NoiseModel):
+        hint = f"; write {given.__name__}()" if isinstance(given, type) else ""
+        raise InputError(
+            f"noise is {shown(given)}; expected a noise model such as ConstantNoise(), its name, or a mapping from "
+            f"channels to such models{hint}"
+        )
+    return given
+
+
+def channel_noises(
+    problem: Problem, given: Noise | None, *, known: bool
+) -> tuple[tuple[ChannelNoise, ...], NoiseModel | Mapping[str, NoiseModel]]:
+    """Return the noise of each channel with compared values, and the models by which it was chosen.
+
+    ``known`` means that the weights of the problem are 1/variance.
+
+    Raises
+    ------
+    InputError
+        For a channel that there is not, known noise that is not known, and what :meth:`NoiseModel.whitening` refuses.
+    """
+    usual = KnownNoise() if known else ConstantNoise()
+    series = list(series_of(problem, fewest=1))
+    if isinstance(given, Mapping):
+        names = [name for own in series for name in (own.name, own.channel)]
+        for name in given:
+            if name not in names:
+                raise InputError(unknown("channel", str(name), dict.fromkeys(names), "noise"))
+        chosen = {str(name): noise_model(one) for name, one in given.items()}
+        pick = {own: chosen.get(own.name, chosen.get(own.channel, usual)) for own in series}
+    else:
+        chosen = usual if given is None else noise_model(given)
+        pick = dict.fromkeys(series, chosen)
+    return tuple(_channel_noise(problem, own, model, known=known) for own, model in pick.items()), chosen
+
+
+def _channel_noise(problem: Problem, series: Series, model: NoiseModel, *, known: bool) -> ChannelNoise:
+    if isinstance(model, KnownNoise) and not known:
+        raise InputError(
+            f"noise of channel {series.name!r}: KnownNoise was given, but the data have no deviations; give them, or "
+            "take ConstantNoise()"
+        )
+    base = f"noise.{series.name if model.local else series.channel}"
+    names = {item.name: f"{base}.{item.name}" for item in model.parameters(_extent(problem, series))}
+    weights = problem.weights.ravel()[series.rows]
+    return ChannelNoise(series, model, weights**-0.5, names, model.whitening(series))
+
+
+def noise_parameters(problem: Problem, channels: tuple[ChannelNoise, ...]) -> Parameters:
+    """Return the parameters of the noise of all channels; those of the same name are one, if they are alike.
+
+    Raises
+    ------
+    InputError
+        For channels of one name with different noise models.
+    """
+    found: dict[str, tuple[NoiseModel, Extent, str]] = {}
+    for channel in channels:
+        extent = _extent(problem, channel.series)
+        for bare, full in channel.names.items():
+            model, before, _ = found.get(full, (channel.model, extent, bare))
+            if model != channel.model:
+                raise InputError(
+                    f"noise of channel {channel.series.channel!r}: experiments share its parameters, but have "
+                    "different noise models; give all the same, or models with local=True"
+                )
+            found[full] = model, _joint(before, extent), bare
+    return Parameters(tuple(_named(name, *entry) for name, entry in found.items()))
+
+
+def _named(name: str, model: NoiseModel, extent: Extent, bare: str) -> Parameter:
+    return replace(next(item for item in model.parameters(extent) if item.name == bare), name=name)
+
+
+def _joint(first: Extent, second: Extent) -> Extent:
+    return replace(
+        first,
+        size=max(first.size, second.size),
+        step=min(first.step, second.step),
+        length=max(first.length, second.length),
+    )
+
+
+def _extent(problem: Problem, series: Series) -> Extent:
+    data = problem.data
+    values = data.continuous.ravel()[series.rows]
+    size = float(np.std(values)) or float(np.max(np.abs(values))) or 1.0
+    names = [channel.name for channel in problem.model.channels]
+    unit = problem.model.channels[names.index(series.name)].unit
+    intervals = np.diff(series.along)
+    step = float(np.min(intervals)) if len(intervals) else 1.0
+    return Extent(size, unit, step, max(series.length, step), series.unit)

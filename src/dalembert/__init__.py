@@ -12,6 +12,7 @@ __version__ = "0.1.0"
 _MODULES = (
     "errors",
     "parameters",
+    "priors",
     "intervals",
     "findings",
     "elementary",
@@ -33,6 +34,7 @@ _MODULES = (
 _NAMES = {
     "errors": "DalembertError InputError ModelError SolveError ClusterError DataError StorageError",
     "parameters": "Parameter Parameters",
+    "priors": "CorrelatedNormal HalfNormal LogNormal LogUniform Normal Uniform",
     "intervals": "Box Interval",
     "findings": "Finding",
     "elementary": "absolute atan2 hypot norm",

@@ -10,6 +10,7 @@ from dalembert import inverse as inverse
 from dalembert import multibody as multibody
 from dalembert import optimize as optimize
 from dalembert import parameters as parameters
+from dalembert import priors as priors
 from dalembert import report as report
 from dalembert import signals as signals
 from dalembert import structure as structure
@@ -129,6 +130,12 @@ from dalembert.optimize import ParticleSwarm as ParticleSwarm
 from dalembert.optimize import ResponseSensitivity as ResponseSensitivity
 from dalembert.parameters import Parameter as Parameter
 from dalembert.parameters import Parameters as Parameters
+from dalembert.priors import CorrelatedNormal as CorrelatedNormal
+from dalembert.priors import HalfNormal as HalfNormal
+from dalembert.priors import LogNormal as LogNormal
+from dalembert.priors import LogUniform as LogUniform
+from dalembert.priors import Normal as Normal
+from dalembert.priors import Uniform as Uniform
 from dalembert.structure import Dofs as Dofs
 from dalembert.structure import EigenModes as EigenModes
 from dalembert.structure import Material as Material

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from dalembert.arguments import is_real
 from dalembert.errors import InputError, repeated, shown, unknown
+from dalembert.priors import AnyPrior, CorrelatedNormal, Normal, Prior, Uniform, prior_of
 
 
 @dataclass(frozen=True)
@@ -33,7 +34,11 @@ class Parameter:
         where both bounds are positive and more than a decade apart.
     deviation : float, optional
         What is known before any data: the standard deviation of the true value around ``start``. It enters an
-        identification as one more measurement; the data then need deviations too.
+        identification as one more measurement; the data then need deviations too. Short for a normal ``prior``
+        around ``start``.
+    prior : Normal, LogNormal, HalfNormal, Uniform, LogUniform or CorrelatedNormal, optional
+        What is known before any data, truncated by the bounds; uniform within them if not given. A mapping with its
+        ``kind`` and its arguments is accepted, too.
     """
 
     name: str
@@ -44,10 +49,13 @@ class Parameter:
     start: float | None = None
     log: bool | None = None
     deviation: float | None = None
+    prior: AnyPrior | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str):
             raise InputError(f"parameter: name is {shown(self.name)}; expected a text")
+        if isinstance(self.prior, Mapping):  # as files hold it
+            object.__setattr__(self, "prior", prior_of(self.prior))
         for mistake in self._mistakes():
             raise InputError(f"parameter {self.name!r}: {mistake}")
 
@@ -82,6 +90,34 @@ class Parameter:
                 f"its logarithm is to be searched, but its lower bound is {self.lower}; expected a positive one; raise "
                 "the bound or leave log out"
             )
+
+        yield from self._prior_mistakes()
+
+    def _prior_mistakes(self) -> Iterator[str]:
+        if self.prior is None:
+            return
+        if not isinstance(self.prior, AnyPrior):
+            yield f"prior is {shown(self.prior)}; expected a prior such as Normal(mean, deviation)"
+        elif self.deviation is not None:
+            yield "it has a deviation and a prior, which both say what is known of it; leave one of them out"
+        elif self.is_fixed:
+            yield f"both bounds are {self.lower}, so it is fixed and has no prior; leave the prior out"
+        elif isinstance(self.prior, CorrelatedNormal) and self.name not in self.prior.names:
+            yield f"its prior is that of {', '.join(self.prior.names)}; expected its name among them"
+        elif mistake := self.distribution.mistake_within(self.lower, self.upper):
+            yield mistake
+
+    @property
+    def distribution(self) -> Prior:
+        """Prior distribution of it alone: as declared, else uniform within the bounds."""
+        if isinstance(self.prior, CorrelatedNormal):
+            return self.prior.marginal(self.name)
+        if self.prior is not None:
+            return self.prior
+        if self.deviation is not None:
+            start = (self.lower + self.upper) / 2 if self.start is None else self.start
+            return Normal(float(start), float(self.deviation))
+        return Uniform(float(self.lower), float(self.upper))
 
     @property
     def is_fixed(self) -> bool:
@@ -135,6 +171,20 @@ class Parameters:
         object.__setattr__(self, "items", tuple(item for item in self.items if not item.is_fixed))
         if several := repeated(item.name for item in self.declared):
             raise InputError(f"parameter names must differ; repeated: {', '.join(several)}")
+        for item in self.items:
+            self._check_joint(item)
+
+    def _check_joint(self, item: Parameter) -> None:
+        """Refuse a prior of several parameters that not all of them have."""
+        if not isinstance(item.prior, CorrelatedNormal):
+            return
+        others = {one.name for one in self.items if one.prior == item.prior}
+        for name in item.prior.names:
+            if name not in others:
+                raise InputError(
+                    f"parameter {item.name!r}: its prior is that of {', '.join(item.prior.names)}, but {name!r} has "
+                    "another one or none. Give all of them the same prior"
+                )
 
     @classmethod
     def of(

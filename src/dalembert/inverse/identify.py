@@ -131,7 +131,9 @@ def identify(
 
     Notes
     -----
-    A parameter with a ``deviation`` is known before the data: ((p − start)/deviation)² is added to what is made least.
+    Normal, log-normal, half-normal and correlated normal priors of parameters (``prior``, or ``deviation``) are squares
+    that are added to what is made least; uniform ones add nothing. The fit then is the maximum of the posterior
+    density, with a log-normal prior that of the logarithm.
 
     Parameters whose bounds are positive and more than a decade apart are searched by their logarithm
     (``Parameter.log`` overrules). A failed simulation is infinitely bad, and never ends the run.

@@ -1,15 +1,18 @@
 """The tables of parameters and constants of a study file."""
 
 import keyword
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from pydantic import Field, ValidationInfo
 
 from dalembert.errors import InputError
-from dalembert.parameters import Parameter
+from dalembert.parameters import Parameter, Parameters
 from dalembert.study.context import Context
 from dalembert.study.expressions import RESERVED, Expression
 from dalembert.study.numbers import read_number
+from dalembert.study.priors import CorrelationTable, PriorTable, prior
 from dalembert.study.table import StudyTable, problem
 from dalembert.units import is_quantity, is_si, symbol
 
@@ -17,7 +20,7 @@ _NUMBERS = ("lower", "upper", "start", "scale", "deviation")
 
 
 class ParameterTable(StudyTable):
-    """A number that a task varies: its bounds, and optionally a first guess, a typical size, a unit, a prior deviation.
+    """A number that a task varies: its bounds, and optionally a first guess, a typical size, a unit, a prior.
 
     Bounds are numbers in SI units, or have their unit with them: ``lower = "100 MPa"``.
     """
@@ -36,6 +39,9 @@ class ParameterTable(StudyTable):
     )
     deviation: float | str | None = Field(
         None, description="prior: standard deviation of the true value around start, known before the measurement"
+    )
+    prior: PriorTable | None = Field(
+        None, description="distribution of the true value, known before the measurement; uniform if not given"
     )
 
     def _wrong(self) -> list[str]:
@@ -68,13 +74,28 @@ class ParameterTable(StudyTable):
     def number(self, key: str) -> float | None:
         """Value of a key in SI units."""
         given = getattr(self, key)
-        number = None if given is None else read_number(given, self.symbol)
+        return None if given is None else self._quantity(given)
+
+    def _quantity(self, given: Any) -> float:
+        number = read_number(given, self.symbol)
         assert not isinstance(number, Expression)  # no names are offered to it
         return number
 
     def parameter(self, name: str) -> Parameter:
         """The parameter."""
-        return Parameter(name, unit=self.symbol or "", log=self.log, **{key: self.number(key) for key in _NUMBERS})  # type: ignore[arg-type]
+        numbers: dict[str, Any] = {key: self.number(key) for key in _NUMBERS}
+        known = self.prior and prior(self.prior, (numbers["lower"], numbers["upper"]), self._quantity)
+        return Parameter(name, unit=self.symbol or "", log=self.log, prior=known, **numbers)
+
+
+def parameters_of(tables: Mapping[str, ParameterTable], correlations: Sequence[CorrelationTable]) -> Parameters:
+    """The parameters of a study file, with the correlations of their priors."""
+    items = {name: table.parameter(name) for name, table in tables.items()}
+    for one in correlations:
+        joint = one.joined([items[name] for name in one.parameters])
+        for name in one.parameters:
+            items[name] = replace(items[name], deviation=None, prior=joint)
+    return Parameters(tuple(items.values()))
 
 
 class OwnParameterTable(StudyTable):
@@ -84,6 +105,7 @@ class OwnParameterTable(StudyTable):
     upper: float | str | None = Field(None, description="upper bound in this experiment")
     start: float | str | None = Field(None, description="first guess in this experiment")
     deviation: float | str | None = Field(None, description="prior standard deviation in this experiment")
+    prior: PriorTable | None = Field(None, description="prior distribution in this experiment")
 
     def over(self, shared: ParameterTable) -> ParameterTable:
         """The parameter's table with these keys in place of its."""

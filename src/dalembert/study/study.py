@@ -17,7 +17,7 @@ from dalembert.study.builder import FunctionBuilder, SystemBuilder
 from dalembert.study.data_table import DataTable
 from dalembert.study.experiments import ExperimentTable, measured_channels
 from dalembert.study.inputs import MeasuredInput
-from dalembert.study.parameters import ParameterTable
+from dalembert.study.parameters import ParameterTable, parameters_of
 from dalembert.study.structure_builder import StructureBuilder
 from dalembert.study.study_file import StudyFile
 from dalembert.study.table import StudyTable, placed
@@ -119,7 +119,7 @@ class Study(Displayed):
 
     @cached_property
     def parameters(self) -> Parameters:
-        return Parameters(tuple(table.parameter(name) for name, table in self.file.parameters.items()))
+        return parameters_of(self.file.parameters, self.file.prior_correlations)
 
     @property
     def settings(self) -> dict[str, Any]:

@@ -5,11 +5,13 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import AfterValidator, BeforeValidator, Field, PlainValidator, WithJsonSchema
 
+from dalembert.errors import InputError
 from dalembert.study.data_table import BandsTable, DataTable
 from dalembert.study.experiments import ExperimentTable, SensorTable, expanded, wrong_experiments
 from dalembert.study.inputs import InputTable, wrong_inputs
 from dalembert.study.model_table import ModelTable
-from dalembert.study.parameters import ParameterTable, check_names, read_constants
+from dalembert.study.parameters import ParameterTable, check_names, parameters_of, read_constants
+from dalembert.study.priors import CorrelationTable
 from dalembert.study.table import Name, StudyTable, problem
 
 
@@ -37,6 +39,7 @@ class StudyFile(StudyTable):
     parameters: Annotated[dict[str, ParameterTable], BeforeValidator(check_names)] = Field(
         {}, description="numbers that a task varies, by name"
     )
+    prior_correlations: list[CorrelationTable] = Field([], description="of normal priors of several parameters")
     model: ModelTable
     solver: Any = None
     harmonic_balance: Any = None
@@ -60,6 +63,7 @@ class StudyFile(StudyTable):
             )
         (name,) = self.tasks
         return [
+            *_wrong_correlations(self),
             *wrong_experiments(self),
             *wrong_inputs(self),
             *_wrong_settings(self),
@@ -76,6 +80,18 @@ class StudyFile(StudyTable):
     def tasks(self) -> Mapping[str, StudyTable]:
         """The tables of tasks that the file has, by name; exactly one once it is checked."""
         return {name: table for name in self.known_tasks if (table := getattr(self, name, None)) is not None}
+
+
+def _wrong_correlations(file: StudyFile) -> list[str]:
+    """Sentences about correlations of priors that cannot be."""
+    wrong = [sentence for table in file.prior_correlations for sentence in table.wrong(file.parameters)]
+    if wrong:
+        return wrong
+    try:
+        parameters_of(file.parameters, file.prior_correlations)
+    except InputError as error:
+        return [f"[[prior_correlations]]: {error}"]
+    return []
 
 
 def _wrong_settings(file: StudyFile) -> list[str]:

@@ -78,7 +78,7 @@ def design(
     ends = [float(along.values[-1])] if horizons is None else [float(end) for end in horizons]
     counts = [_samples(along.values, end, along.unit) for end in ends]
     slopes = linearised(model, vector)[1][:, columns] * parameters.scale / noise[:, None]
-    prior = prior_slopes(parameters, parameters.scale)
+    prior = prior_slopes(parameters, vector, parameters.scale)
     rows = []
     for chosen in sets:
         places = [names.index(name) for name in chosen]

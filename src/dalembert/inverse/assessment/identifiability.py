@@ -76,7 +76,8 @@ def identifiability(
         _, columns, noise = noise_of(model, 1.0 if deviations is None else deviations, "identifiability")
         weights = np.ones((len(model.coordinate.values), len(columns)))
     slopes = (np.sqrt(weights) / noise)[:, :, None] * linearised(model, vector)[1][:, columns] * parameters.scale
-    rows = [slopes.reshape(-1, len(vector))] + ([prior_slopes(parameters, parameters.scale)] if known else [])
+    prior = [prior_slopes(parameters, vector, parameters.scale)] if known else []
+    rows = [slopes.reshape(-1, len(vector)), *prior]
     told = estimate(np.concatenate(rows), parameters.scale, 1.0 if known else np.nan)
     findings = tuple(foreseen(parameters, told, noise_known=known))
     return Identifiability(told.singular_values, told.directions, findings, told.deviations, told.correlation)

@@ -1,4 +1,4 @@
-"""What is known of parameters before any data: a standard deviation around the first guess."""
+"""What is known of parameters before any data, as residuals that least squares can use."""
 
 from collections.abc import Iterator
 
@@ -8,45 +8,70 @@ from dalembert.errors import InputError, listed
 from dalembert.findings import Finding
 from dalembert.inverse.problem.combinations import moved, separated
 from dalembert.parameters import Parameters
+from dalembert.priors import CorrelatedNormal, SquarePrior
 
 ALONE = 0.9
 """Part of a prior's variance that is left with the data, from which the prior alone is said to have decided."""
 
 
 def priors(parameters: Parameters) -> np.ndarray:
-    """Numbers of the parameters that have a prior."""
-    return np.array([k for k, item in enumerate(parameters) if item.deviation is not None], dtype=int)
+    """Numbers of the parameters whose prior is a square; a uniform one adds nothing to a fit."""
+    return np.array([k for k, item in enumerate(parameters) if isinstance(item.distribution, SquarePrior)], dtype=int)
 
 
 def prior_deviations(parameters: Parameters) -> np.ndarray:
     """Standard deviations of the priors, one for each of :func:`priors`."""
-    return np.array([item.deviation for item in parameters if item.deviation is not None], dtype=float)
+    known = [item.distribution for item in parameters]
+    return np.array([prior.spread for prior in known if isinstance(prior, SquarePrior)], dtype=float)
 
 
 def prior_residual(parameters: Parameters, vectors: np.ndarray) -> np.ndarray:
-    """(p − start)/deviation of each prior: (..., priors) at parameter vectors (..., parameters)."""
+    """Residuals of the priors: (..., priors) at parameter vectors (..., parameters).
+
+    Those of correlated parameters are whitened by the Cholesky factor of their covariance.
+    """
     known = priors(parameters)
-    return (vectors[..., known] - parameters.start[known]) / prior_deviations(parameters)
+    found = np.zeros((*vectors.shape[:-1], len(known)))
+    for row, k in enumerate(known):
+        prior = parameters.items[k].distribution
+        if isinstance(prior, SquarePrior):
+            found[..., row] = prior.residual(vectors[..., k])
+    for joint, columns in joint_priors(parameters):
+        found[..., np.searchsorted(known, columns)] = (vectors[..., columns] - joint.mean) @ joint.whitening().T
+    return found
 
 
-def prior_slopes(parameters: Parameters, unit: np.ndarray) -> np.ndarray:
-    """Jacobian of :func:`prior_residual` with respect to p/unit, (priors, parameters)."""
+def prior_slopes(parameters: Parameters, vector: np.ndarray, unit: np.ndarray) -> np.ndarray:
+    """Jacobian of :func:`prior_residual` with respect to p/unit at a vector (parameters,), (priors, parameters)."""
     known = priors(parameters)
     rows = np.zeros((len(known), len(parameters)))
-    rows[np.arange(len(known)), known] = unit[known] / prior_deviations(parameters)
+    for row, k in enumerate(known):
+        prior = parameters.items[k].distribution
+        if isinstance(prior, SquarePrior):
+            rows[row, k] = unit[k] * prior.residual_slope(vector[k])
+    for joint, columns in joint_priors(parameters):
+        rows[np.ix_(np.searchsorted(known, columns), columns)] = joint.whitening() * unit[columns]
     return rows
 
 
+def joint_priors(parameters: Parameters) -> Iterator[tuple[CorrelatedNormal, np.ndarray]]:
+    """Yield the priors of several parameters, each with the numbers of its parameters."""
+    joints = dict.fromkeys(item.prior for item in parameters if isinstance(item.prior, CorrelatedNormal))
+    for joint in joints:
+        yield joint, np.array([parameters.names.index(name) for name in joint.names])
+
+
 def check_priors(parameters: Parameters, known: bool) -> None:
-    """Refuse priors beside data of unknown noise: which of the two to trust more would not be known.
+    """Refuse priors with data of unknown noise: which of the two to trust more would not be known.
 
     Raises
     ------
     InputError
     """
     for k in () if known else priors(parameters)[:1]:
+        what = "its deviation" if parameters.items[k].prior is None else parameters.items[k].distribution.name
         raise InputError(
-            f"parameter {parameters.names[k]!r} has a prior (its deviation), but the noise level of the data is not "
+            f"parameter {parameters.names[k]!r} has a prior ({what}), but the noise level of the data is not "
             "known; give the data's deviations, or weights that are 1/variance"
         )
 

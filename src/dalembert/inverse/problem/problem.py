@@ -22,7 +22,7 @@ from dalembert.inverse.problem.matching import (
     columns_of,
     weights_of,
 )
-from dalembert.inverse.problem.prior import check_priors, prior_residual, prior_slopes
+from dalembert.inverse.problem.prior import check_priors, prior_residual, prior_slopes, priors
 from dalembert.inverse.problem.search_coordinates import SearchCoordinates
 from dalembert.inverse.problem.simulated import failing_at, simulated
 
@@ -42,7 +42,7 @@ Work: TypeAlias = Callable[["Problem", Item], object]
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """Fitness g(p) = Σ W (R(p) − data)² over samples and channels, + Σ ((p − start)/deviation)² over priors.
+    """Fitness g(p) = Σ W (R(p) − data)² over samples and channels, + the squared residuals of priors.
 
     Values that are missing have W = 0; differences of wrapping channels count modulo a turn.
 
@@ -80,7 +80,7 @@ class Problem:
     @property
     def priors(self) -> int:
         """Number of parameters of which something is known before the data."""
-        return sum(item.deviation is not None for item in self.model.parameters)
+        return len(priors(self.model.parameters))
 
     def prefetched(self, work: Work[Item], items: Sequence[Item]) -> Generator[Item, None, None]:
         """Yield the items in their order; where the model is on a cluster, answers for work on each come first.
@@ -164,7 +164,7 @@ class Problem:
         """
         unit = self.search.slope(at.vector) if unit is None else unit
         rows = (self.weighted(at.jacobian, at.response) * unit).reshape(-1, len(at.vector))
-        return np.concatenate([rows, prior_slopes(self.model.parameters, unit)]) if self.priors else rows
+        return np.concatenate([rows, prior_slopes(self.model.parameters, at.vector, unit)]) if self.priors else rows
 
     def weighted(self, table: np.ndarray, response: np.ndarray) -> np.ndarray:
         """Changes (samples, channels, ...) of a response (samples, channels) as changes of the residuals."""

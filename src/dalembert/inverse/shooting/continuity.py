@@ -337,7 +337,7 @@ class Chain:
         if problem.priors:
             own = len(problem.model.parameters)
             rows = np.zeros((problem.priors, number + 1))
-            rows[:, :own] = prior_slopes(problem.model.parameters, unit[:own])
+            rows[:, :own] = prior_slopes(problem.model.parameters, at.vector[:own], unit[:own])
             rows[:, number] = prior_residual(problem.model.parameters, at.vector[:own])
             parts.append(rows)
         return np.concatenate(parts)

@@ -1,0 +1,77 @@
+"""Priors in a fit by least squares: the maximum of the posterior density."""
+
+import numpy as np
+import pytest
+from inline_snapshot import snapshot
+
+from dalembert.data import Measurements
+from dalembert.errors import InputError
+from dalembert.forward import PythonModel
+from dalembert.inverse import identify
+from dalembert.inverse.problem.prior import prior_residual, prior_slopes
+from dalembert.parameters import Parameter, Parameters
+from dalembert.priors import AnyPrior, CorrelatedNormal, HalfNormal, LogNormal, Normal, Uniform
+
+TIMES = np.linspace(0.0, 1.0, 6)
+DESIGN = np.stack([TIMES, 1 - TIMES], axis=1)
+SIGMA = 0.1
+JOINT = CorrelatedNormal(("a", "b"), (1.2, 0.8), ((0.04, -0.015), (-0.015, 0.01)))
+
+
+def line(**priors: AnyPrior | None) -> PythonModel:
+    box = {name: Parameter(name, 0.01, 3.0, prior=priors.get(name)) for name in ("a", "b")}
+    return PythonModel(lambda a, b: a * TIMES + b * (1 - TIMES), box, ["x"], TIMES)
+
+
+def data() -> Measurements:
+    return Measurements.of(TIMES, {"x": DESIGN @ [1.5, 0.6]}, deviations=SIGMA)
+
+
+@pytest.mark.parametrize(
+    ("priors", "mean", "covariance"),
+    [
+        ({"a": JOINT, "b": JOINT}, JOINT.mean, JOINT.covariance),
+        ({"a": Normal(1.0, 0.05), "b": Normal(0.5, 0.2)}, (1.0, 0.5), ((0.0025, 0.0), (0.0, 0.04))),
+        ({"a": HalfNormal(0.3), "b": HalfNormal(0.2)}, (0.0, 0.0), ((0.09, 0.0), (0.0, 0.04))),
+    ],
+)
+def test_a_fit_with_normal_priors_is_the_closed_form(priors: dict, mean: tuple, covariance: tuple) -> None:
+    fit = identify(line(**priors), data())
+    information = DESIGN.T @ DESIGN / SIGMA**2 + np.linalg.inv(covariance)
+    expected = np.linalg.solve(
+        information, DESIGN.T @ data().values[:, 0] / SIGMA**2 + np.linalg.solve(covariance, mean)
+    )
+    np.testing.assert_allclose(fit.values, expected, rtol=1e-6)  # the search ends there
+    np.testing.assert_allclose(fit.deviations, np.sqrt(np.diag(np.linalg.inv(information))), rtol=1e-6)
+
+
+def test_a_log_normal_prior_gives_the_mode_of_the_logarithm() -> None:
+    model = PythonModel(lambda a: a * TIMES, {"a": Parameter("a", 0.01, 3.0, prior=LogNormal(1.0, 0.02))}, ["x"], TIMES)
+    fit = identify(model, Measurements.of(TIMES, {"x": 1.5 * TIMES}, deviations=SIGMA))
+    a = np.linspace(1.0, 1.5, 500_001)
+    misfit = np.sum(TIMES**2) * (a - 1.5) ** 2 / SIGMA**2 + (np.log(a) / 0.02) ** 2
+    np.testing.assert_allclose(fit.values, [a[np.argmin(misfit)]], atol=2e-6)
+
+
+def test_a_uniform_prior_changes_nothing() -> None:
+    plain, uniform = identify(line(), data()), identify(line(a=Uniform(0.0, 4.0)), data())
+    assert plain.values.tolist() == uniform.values.tolist()
+    assert plain.degrees_of_freedom == uniform.degrees_of_freedom
+
+
+def test_slopes_of_prior_residuals_are_those_of_differences() -> None:
+    joint = CorrelatedNormal(("d", "a"), (1.2, 0.8), ((0.04, -0.015), (-0.015, 0.01)))
+    known = {"a": joint, "b": LogNormal(1.0, 0.2), "c": None, "d": joint, "e": Normal(1.0, 0.1)}
+    parameters = Parameters(tuple(Parameter(name, 0.01, 3.0, prior=prior) for name, prior in known.items()))
+    vector, unit, step = np.array([0.9, 1.1, 1.3, 0.7, 1.0]), np.array([1.0, 2.0, 3.0, 4.0, 5.0]), 1e-6
+    moved = vector + step * np.eye(5), vector - step * np.eye(5)
+    differences = (prior_residual(parameters, moved[0]) - prior_residual(parameters, moved[1])).T / (2 * step)
+    np.testing.assert_allclose(prior_slopes(parameters, vector, unit), differences * unit, atol=1e-7)
+
+
+def test_priors_need_known_noise() -> None:
+    with pytest.raises(InputError) as error:
+        identify(line(a=LogNormal(1.0, 0.1)), Measurements.of(TIMES, {"x": TIMES}))
+    assert str(error.value) == snapshot(
+        "parameter 'a' has a prior (log-normal), but the noise level of the data is not known; give the data's deviations, or weights that are 1/variance"
+    )

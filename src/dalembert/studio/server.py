@@ -1,11 +1,14 @@
 """The studio as a web application: its pages, the files of its runs, and where it listens."""
 
+import asyncio
 import secrets
 import socket
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from fastapi import FastAPI, Query
+from fastapi.middleware.gzip import GZipMiddleware
 from fastapi.responses import FileResponse, PlainTextResponse, Response
 
 from dalembert.errors import InputError
@@ -32,13 +35,15 @@ POLICY = (
 """Nothing is loaded from elsewhere; NiceGUI's pages build their scripts inline."""
 
 
-def application(root: Path) -> FastAPI:
+def application(root: Path, *, far: bool = False) -> FastAPI:
     """The studio's pages for a folder.
 
     Parameters
     ----------
     root : Path
         Studies lie in ``studies/``, runs in ``runs/``.
+    far : bool
+        Compress what is sent, for browsers on other machines. On this one, compression takes longer than it saves.
     """
     from nicegui import app as pages
     from nicegui import ui
@@ -117,8 +122,15 @@ def application(root: Path) -> FastAPI:
         return answer
 
     ui.run_with(
-        app, title="dalembert", dark=None, show_welcome_message=False, language="en-US", reconnect_timeout=PATIENCE
+        app,
+        title="dalembert",
+        dark=None,
+        show_welcome_message=False,
+        language="en-US",
+        reconnect_timeout=PATIENCE,
+        gzip_middleware_factory=GZipMiddleware if far else None,
     )
+    pages.on_startup(partial(asyncio.to_thread, listed.rows))  # the first page of runs finds them read
     pages.on_shutdown(watcher.stop)
     pages.on_shutdown(pictures.close)
     return app
@@ -159,7 +171,8 @@ def serve(root: Path, host: str = "127.0.0.1", port: int = 8080, token: str = ""
         import webbrowser
 
         webbrowser.open(address)
-    config = uvicorn.Config(Guard(application(root), token), log_level="warning", ws_max_size=16_000_000)
+    pages = application(root, far=host not in LOOPBACK)
+    config = uvicorn.Config(Guard(pages, token), log_level="warning", ws_max_size=16_000_000)
     uvicorn.Server(config).run(sockets=[listening])
 
 

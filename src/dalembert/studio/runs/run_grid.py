@@ -8,6 +8,8 @@ from nicegui import ui
 from dalembert.studio.runs.run_list import Row
 
 SELECTED, PRESSED, CHANGED = "runs-selected", "runs-pressed", "runs-changed"
+FIRST = 30
+"""Rows that are sent with the page: more than a window shows. The others follow."""
 _LINK = """params => {
     const link = document.createElement('a');
     link.href = '/run/' + encodeURIComponent(params.data.run);
@@ -54,6 +56,8 @@ _COLUMNS: tuple[dict[str, Any], ...] = (
         "field": "date",
         "headerName": "Date (UTC)",
         "width": 150,
+        "initialSort": "desc",
+        "sortingOrder": ["desc", "asc"],
         ":valueFormatter": "params => params.value.slice(0, 16)",
     },
     {"field": "tags", "width": 95, "headerTooltip": "Press F2 to edit, commas between tags", **_EDITABLE},
@@ -82,7 +86,8 @@ class RunGrid:
     Parameters
     ----------
     rows : list
-        From :class:`~dalembert.studio.runs.run_list.RunList`.
+        From :class:`~dalembert.studio.runs.run_list.RunList`, the newest first. The table begins with the first ones,
+        so that the page is small; :meth:`show` adds the others.
     on_select : callable
         Called with the names of the selected runs.
     on_key : callable
@@ -98,25 +103,27 @@ class RunGrid:
         on_key: Callable[[str, str], Awaitable[object]],
         on_change: Callable[[str, str, str], object],
     ) -> None:
+        self.shown = rows[:FIRST]
         self.box = ui.element("div").classes("w-full").style(_height(rows))
         with self.box:
-            self.grid = ui.aggrid(_options(rows), auto_size_columns=False)
+            self.grid = ui.aggrid(_options(self.shown), auto_size_columns=False)
         self.grid.classes("w-full h-full").props('aria-label="Runs"')
         ui.on(SELECTED, lambda event: on_select(list(event.args)))
         ui.on(PRESSED, lambda event: on_key(event.args["key"], event.args["id"]))
         ui.on(CHANGED, lambda event: on_change(event.args["run"], event.args["field"], str(event.args["value"])))
 
-    def show(self, old: list[Row], new: list[Row]) -> None:
-        """Bring the table from old rows to new ones; filters, selection and place stay."""
-        before, after = {row["id"]: row for row in old}, {row["id"]: row for row in new}
+    def show(self, rows: list[Row]) -> None:
+        """Bring the table to these rows; filters, selection and place stay."""
+        before, after = {row["id"]: row for row in self.shown}, {row["id"]: row for row in rows}
         changes = {
             "add": [row for key, row in after.items() if key not in before],
-            "addIndex": 0,
             "update": [row for key, row in after.items() if key in before and row != before[key]],
             "remove": [row for key, row in before.items() if key not in after],
         }
-        self.grid.run_grid_method("applyTransaction", changes)
-        self.box.style(_height(new))  # a style of the grid would make it anew
+        self.shown = rows
+        if any(changes.values()):
+            self.grid.run_grid_method("applyTransaction", changes)
+            self.box.style(_height(rows))  # a style of the grid would make it anew
 
     def search(self, text: str) -> None:
         """Show the rows with all words of a text in any column."""
@@ -126,12 +133,18 @@ class RunGrid:
 def _options(rows: list[Row]) -> dict[str, Any]:
     return {
         "columnDefs": list(_COLUMNS),
-        "defaultColDef": {"filter": True, "resizable": True, ":suppressKeyboardEvent": _KEYS},
+        "defaultColDef": {
+            "filter": True,
+            "resizable": True,
+            "sortingOrder": ["asc", "desc"],
+            ":suppressKeyboardEvent": _KEYS,
+        },
         "rowData": rows,
         ":getRowId": "params => params.data.id",
         "rowSelection": {"mode": "multiRow", "selectAll": "filtered"},
         "selectionColumnDef": {"width": 46},
         "ensureDomOrder": True,
+        "rowBuffer": 2,
         ":tabToNextCell": "() => false",  # Tab leaves the table, arrow keys move in it
         ":tabToNextHeader": "() => false",
         "tooltipShowDelay": 300,

@@ -83,9 +83,11 @@ class _Page:
     async def look(self) -> None:
         """Bring the table up to what the folder holds."""
         rows = await run.io_bound(self.listed.rows)
-        if rows is not None and (rows != self.rows or not self.is_read):  # None while the studio is ending
-            self.rows, old, self.is_read = rows, self.rows, True
-            self.grid.show(old, rows)
+        if rows is None:  # the studio is ending
+            return
+        self.grid.show(rows)
+        if rows != self.rows or not self.is_read:
+            self.rows, self.is_read = rows, True
             self._show()
 
     def _show(self) -> None:

@@ -123,6 +123,8 @@ SLIDERS = f"({CURVES} && document.querySelector('.parameter-row'))"
 COLUMNS = f"({CURVES} && document.querySelector('[aria-label^=\"Use of column\"]'))"
 FORM = "document.querySelector('[role=tabpanel] [role=heading]')"
 PLANAR, SPATIAL, VIBRATION = (f"/study/{name}/{name}" for name in ("identify", "spatial", "response"))
+NO_DRAWING = f"{TEXT}.includes('The drawing appears when they are corrected.')"
+NO_SLIDERS = f"{TEXT}.includes('The study has no parameters.')"
 VALID = f"{TEXT}.includes('Valid.')"
 PAGES = (
     Shown("runs", "/", "document.querySelector('.ag-row')"),
@@ -147,9 +149,9 @@ PAGES = (
     Shown("spatial-data", SPATIAL, VALID, _tab("Data", VALID)),
     Shown("vibration-model", VIBRATION, DRAWN),
     Shown("vibration-forms", VIBRATION, FORM, _then(_tab("Forms", VALID), _choose_line("mass"))),
-    Shown("vibration-sliders", VIBRATION, CURVES, _tab("Sliders", VALID)),
+    Shown("vibration-sliders", VIBRATION, f"{CURVES} && {NO_SLIDERS}", _tab("Sliders", VALID)),
     Shown("vibration-data", VIBRATION, VALID, _tab("Data", VALID)),
-    Shown("mistakes", "/study/wrong/wrong", "document.querySelector('.cm-line.wrong')"),
+    Shown("mistakes", "/study/wrong/wrong", f"document.querySelector('.cm-line.wrong') && {NO_DRAWING}"),
     Shown(
         "mistake-form",
         "/study/wrong/wrong",

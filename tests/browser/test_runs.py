@@ -52,6 +52,8 @@ def root(workspace, kept):
     for name in ("runs", "studies"):
         shutil.rmtree(folder / name, ignore_errors=True)
         shutil.copytree(kept / name, folder / name)
+    inputs = folder / "runs" / "pendulum" / "inputs.json"
+    inputs.write_text(inputs.read_text().replace(str(kept), str(folder)))
     finding = {"code": "correlated-residuals", "severity": "warning", "message": "The residuals <b>are</b> correlated."}
     made = {"doubtful": {"findings": [finding]}, "stopped": {"state": "interrupted", "best": {}, "seconds": 1.0}}
     for name, differs in made.items():
@@ -163,6 +165,17 @@ def test_a_run_is_repeated(page, root):
         json.loads((root / "runs" / name / "state.json").read_text())["best"] for name in ("pendulum", "pendulum-2")
     ]
     assert best[0] == best[1]
+
+
+def test_the_page_of_a_run_leads_on(page, root):
+    page.get_by_role("link", name="pendulum", exact=True).click()
+    page.get_by_role("button", name="Run again").click()
+    wait_until(page, f"location.pathname === '/run/pendulum-2' && {TEXT}.includes('finished')")
+    page.get_by_role("button", name="Continue as a new study").click()
+    wait_until(page, f"location.pathname === '/continue/pendulum-2' && {TEXT}.includes('start = 0.19')")
+    page.go_back()
+    page.get_by_role("button", name="Open the study").click()
+    wait_until(page, f"location.pathname === '/study/pendulum/pendulum' && {TEXT}.includes('Valid.')")
 
 
 def test_a_run_is_continued_from_its_values(page, root):

@@ -131,7 +131,7 @@ def test_values_are_typed_reset_and_written_into_the_study(sliders, root):
     page.get_by_role("menuitem", name="Reset").click()
     wait_until(page, "document.querySelector('[aria-label=\"Value of drag\"]').value === '0.1'")
     value(page, "drag").fill("0.3")
-    value(page, "angle").fill("-0.5")
+    value(page, "angle").fill("-30")  # in the unit of the study
     wait_until(page, f"{NUMBER} > {number + 2}")
     page.get_by_role("button", name="Use as start").press("Enter")
     wait_until(page, "document.querySelector('.cm-content').innerText.includes('start = 0.3, unit')")
@@ -141,7 +141,7 @@ def test_values_are_typed_reset_and_written_into_the_study(sliders, root):
     wait_until(page, f"{TEXT}.includes('Saved.')")
     text = path.read_text()
     assert text.endswith("# the end\n")
-    assert 'angle = { lower = "-28.6479 deg", upper = "-28.6479 deg" }' in text
+    assert 'angle = { lower = "-30 deg", upper = "-30 deg" }' in text
     assert [item.start for item in load(path).parameters] == [0.3]
 
 

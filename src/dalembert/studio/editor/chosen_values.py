@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from dalembert.errors import InputError
-from dalembert.studio.editor.entries import like, put, table_at
+from dalembert.studio.editor.entries import like, put, table_at, unit_among
 
 
 @dataclass(frozen=True)
@@ -26,8 +26,26 @@ class _Home:
 
     def like(self, name: str, value: float) -> str | float:
         """The value with the unit of the number that it replaces, or of a bound."""
-        given = {**self.usual, **table_at(self.table, self.key)}
+        given = self.given
         return like(given.get(name, given["lower"]), value, given)
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """All numbers of the parameter."""
+        return {**self.usual, **table_at(self.table, self.key)}
+
+
+def unit_in(document: Any, name: str) -> tuple[str, float]:
+    """Return the unit in which a study writes a parameter, and its size in SI units; ``("", 1.0)`` for plain numbers.
+
+    >>> unit_in({"parameters": {"k": {"lower": 0, "upper": "9 kN/m"}, "c": {"lower": 0, "upper": 1}}}, "k")
+    ('kN/m', 1000.0)
+    """
+    sensor = _sensor(document, name)
+    try:
+        return unit_among(sensor[name.rpartition(" ")[2]] if sensor else _home(document, name).given.values())
+    except InputError:
+        return "", 1.0
 
 
 def use_as_start(document: Any, values: Mapping[str, float]) -> None:

@@ -1,7 +1,7 @@
 """Entries of a study's document as a user would write them: with units, in the same style, comments kept."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import tomlkit
@@ -49,6 +49,19 @@ def units_of(given: object) -> str:
     return _NUMBER.sub("", given).strip()
 
 
+def unit_among(entries: Iterable[object]) -> tuple[str, float]:
+    """Return the first unit that entries have, and its size in SI units; ``("", 1.0)`` if none has one.
+
+    A unit whose zero is another one, such as that of a temperature, is left out.
+
+    >>> unit_among([0.5, "2 ms"]), unit_among([0.5])
+    (('ms', 0.001), ('', 1.0))
+    """
+    unit = next(filter(None, map(units_of, entries)), "")
+    zero, one = (number_of(f"{size} {unit}") for size in (0, 1)) if unit else (None, None)
+    return (unit, one) if zero == 0 and one else ("", 1.0)
+
+
 def like(given: object, number: float, table: Mapping[str, Any] | None = None) -> str | float:
     """Return a number in SI units as an entry with the unit of another one.
 
@@ -65,13 +78,8 @@ def like(given: object, number: float, table: Mapping[str, Any] | None = None) -
     >>> like("1 ms", 0.0005), like(0.001, 0.0005), like(0, 1.0, {"lower": 0, "upper": "90 deg"})
     ('0.5 ms', 0.0005, '57.2958 deg')
     """
-    texts = [given, *(table or {}).values()]
-    unit = next(filter(None, map(units_of, texts)), "")
-    if unit:
-        zero, one = (number_of(f"{size} {unit}") for size in (0, 1))
-        if zero == 0 and one:
-            return f"{number / one:.{DIGITS}g} {unit}"
-    return float(f"{number:.{DIGITS}g}")
+    unit, size = unit_among([given, *(table or {}).values()])
+    return f"{number / size:.{DIGITS}g} {unit}" if unit else float(f"{number:.{DIGITS}g}")
 
 
 def put(parent: Any, name: str | int, **entries: Any) -> None:

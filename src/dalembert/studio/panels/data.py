@@ -19,8 +19,8 @@ from dalembert.studio.runs.figures import bare
 from dalembert.studio.uploads import upload
 
 KINDS = ".csv,.txt,.dat,.tsv,.asc,.log,.gz,.json,.parquet,.pq,.mat,.uff,.unv,.uf,.bunv,.nc,.nc4,.cdf"
-SEPARATORS = {"auto": "found from the lines", ",": "comma", ";": "semicolon", "\t": "tab", " ": "blanks"}
-DECIMALS = {"auto": "found from the lines", ".": "point", ",": "comma"}
+SEPARATORS = {"auto": "detected", ",": "comma", ";": "semicolon", "\t": "tab", " ": "blanks"}
+DECIMALS = {"auto": "detected", ".": "point", ",": "comma"}
 FIRST, ZERO, AT = "first", "zero", "at"
 LOOKS = {"error": ("error", "negative"), "warning": ("warning", "warning"), "note": ("info", "primary")}
 """Icon and colour by severity."""

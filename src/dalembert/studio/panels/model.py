@@ -18,6 +18,7 @@ from dalembert.studio.worker import WorkerError
 STILL = 0.3
 """Seconds without a change of values after which the model is drawn at them."""
 LAST = "The text has mistakes. The drawing shows the last valid text."
+NONE = "The text has mistakes. The drawing appears when they are corrected."
 
 
 def show(draft: Draft, room: Room) -> None:
@@ -68,7 +69,7 @@ class _Panel:
         draft = self.draft
         self._mark()
         if draft.study is None:
-            self.told.set_text(LAST if self.picture.svg else "")
+            self.told.set_text(LAST if self.picture.svg else NONE if draft.mistakes else "")
             return
         try:
             ask, values = self.room.worker.ask, dict(draft.values)

@@ -8,6 +8,7 @@ from nicegui import events, ui
 
 from dalembert.parameters import Parameter
 from dalembert.report.charts.drawing import colour_of
+from dalembert.studio.editor.entries import DIGITS
 from dalembert.studio.travel import STEPS, Travel
 
 THROTTLE = 0.02  # s between two values of a slider that is dragged
@@ -54,6 +55,8 @@ class ParameterRow:
         Called with a value that the user chose.
     kept : mapping of str to function
         What can be done with the value, by its text in the menu.
+    unit : tuple of (str, float)
+        In which the value is shown, and its size in SI units.
     """
 
     def __init__(
@@ -62,8 +65,9 @@ class ParameterRow:
         value: float,
         chosen: Callable[[float], None],
         kept: Mapping[str, Callable[[], object]],
+        unit: tuple[str, float],
     ) -> None:
-        self.item, self._travel, self._chosen, self._value = item, Travel(item), chosen, value
+        self.item, self.unit, self._travel, self._chosen, self._value = item, unit, Travel(item), chosen, value
         with ui.element("div").classes("parameter-row").props(f'role=group aria-label="{escape(item.name)}"'):
             ui.label(item.name).classes("font-bold break-words")
             self._build_way()
@@ -78,12 +82,12 @@ class ParameterRow:
         """Show a value that was set elsewhere."""
         if value != self._value:
             self._value = value
-            self._number.set_value(value)
+            self._number.set_value(self._shown(value))
             self.settle()
 
     def settle(self) -> None:
         """Bring the slider to its value."""
-        text = f"{self._value:.6g} {self.item.unit}".rstrip()
+        text = f"{self._shown(self._value):.6g} {self.unit[0]}".rstrip()
         self._way.place(self._travel.position(self._value), text)
 
     def show_effects(self, channels: tuple[str, ...], effects: list[float], largest: float) -> None:
@@ -98,33 +102,39 @@ class ParameterRow:
             self._way = Way().props(f'max={STEPS} aria-label="{escape(item.name)}"')
             self._way.on("moved", self._moved, throttle=THROTTLE)
             with ui.element("div").classes("bounds").props("aria-hidden=true"):
-                ui.label(f"{item.lower:.6g}")
-                ui.label(f"{item.upper:.6g}")
+                ui.label(f"{self._shown(item.lower):.6g}")
+                ui.label(f"{self._shown(item.upper):.6g}")
 
     def _build_number(self) -> None:
         item = self.item
-        bounds = f"{item.lower:.6g} to {item.upper:.6g}"
+        bounds = f"{self._shown(item.lower):.6g} to {self._shown(item.upper):.6g}"
         checks = {f"Enter {bounds}": self._is_within}
-        self._number = ui.number(value=self._value, format="%.6g", validation=checks, on_change=self._typed)
-        self._number.props(f'dense outlined debounce=300 hide-bottom-space suffix="{escape(item.unit)}"')
+        self._number = ui.number(
+            value=self._shown(self._value), format="%.6g", validation=checks, on_change=self._typed
+        )
+        self._number.props(f'dense outlined debounce=300 hide-bottom-space suffix="{escape(self.unit[0])}"')
         self._number.props(f'step=any aria-label="Value of {escape(item.name)}"')
 
     def _moved(self, event: events.GenericEventArguments) -> None:
         value = self._travel.value(float(event.args))
         if value != self._value:
             self._value = value
-            self._number.set_value(value)
+            self._number.set_value(self._shown(value))
             self._chosen(value)
 
     def _typed(self) -> None:
-        value = self._number.value
-        if value is not None and self._is_within(value) and value != self._value:
-            self._value = float(value)
+        shown = self._number.value
+        if shown is not None and self._is_within(shown) and shown != self._shown(self._value):
+            self._value = min(max(shown * self.unit[1], self.item.lower), self.item.upper)
             self.settle()
             self._chosen(self._value)
 
-    def _is_within(self, value: Any) -> bool:
-        return value is not None and self.item.lower <= value <= self.item.upper
+    def _is_within(self, shown: Any) -> bool:
+        return shown is not None and self._shown(self.item.lower) <= shown <= self._shown(self.item.upper)
+
+    def _shown(self, value: float) -> float:
+        """A value (SI) in the unit of the row, with the digits that a user can read."""
+        return float(f"{value / self.unit[1]:.{DIGITS}g}")
 
 
 def _bar(channel: str, effect: float, share: float, colour: str) -> str:

@@ -2,13 +2,14 @@
 
 import asyncio
 import time
+import tomllib
 from functools import partial
 from typing import Any
 
 from nicegui import background_tasks, ui
 
 from dalembert.parameters import Parameter
-from dalembert.studio.editor.chosen_values import use_as_start, use_as_value
+from dalembert.studio.editor.chosen_values import unit_in, use_as_start, use_as_value
 from dalembert.studio.editor.draft import Draft
 from dalembert.studio.frame import button, complaints
 from dalembert.studio.panels.parameter_row import LOOKS, ParameterRow
@@ -41,6 +42,7 @@ class Sliders:
     def __init__(self, draft: Draft, room: Room) -> None:
         self._draft, self._room = draft, room
         self._rows: dict[str, ParameterRow] = {}
+        self._built: list[object] | None = None
         self._plots: list[ui.plotly] = []
         self._drawn: tuple[Source, str] | None = None
         self._at_start: float | None = None
@@ -98,12 +100,20 @@ class Sliders:
     def _take_choice(self) -> None:
         if self._draft.study is None:
             return
-        if [_range(row.item) for row in self._rows.values()] != [_range(item) for item in self._items]:
-            self._build_rows()
+        units = self._units()
+        if self._built != (built := [(_range(item), units[item.name]) for item in self._items]):
+            self._built = built
+            self._build_rows(units)
         self._at_start = None
         self._take_values()
 
-    def _build_rows(self) -> None:
+    def _units(self) -> dict[str, tuple[str, float]]:
+        """The units in which the study writes the parameters, and their sizes."""
+        document = tomllib.loads(self._draft.reading.text)
+        written = {item.name: unit_in(document, item.name) for item in self._items}
+        return {item.name: written[item.name] if written[item.name][0] else (item.unit, 1.0) for item in self._items}
+
+    def _build_rows(self, units: dict[str, tuple[str, float]]) -> None:
         self._parameters.clear()
         with self._parameters:
             self._rows = {
@@ -116,6 +126,7 @@ class Sliders:
                         "Use as start": complaints()(partial(self._use_as_start, item.name)),
                         "Use as value": complaints()(partial(self._use_as_value, item.name)),
                     },
+                    units[item.name],
                 )
                 for item in self._items
             }
@@ -245,7 +256,11 @@ class Sliders:
             start = "" if self._at_start is None else f" (at the start values {self._at_start:.4g})"
             facts.append(f"Misfit {found.misfit:.4g}{start}")
         facts += [f"rms residual of {name} {size:.3g}" for name, size in list(found.residuals.items())[:4]]
-        return " · ".join([*facts, f"simulated in {1000 * found.seconds:.0f} ms"])
+        return " · ".join([*facts, f"simulated in {_duration(found.seconds)}"])
+
+
+def _duration(seconds: float) -> str:
+    return f"{1000 * seconds:.0f} ms" if seconds < 1 else f"{seconds:.1f} s"
 
 
 def _range(item: Parameter) -> tuple[object, ...]:

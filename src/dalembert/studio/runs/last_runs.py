@@ -1,9 +1,11 @@
-"""The last run of each study."""
+"""The last run of each study, and the study of a run."""
 
 import json
 from dataclasses import dataclass
 from pathlib import Path
 
+from dalembert.studio.studies.documents import name_in
+from dalembert.studio.workspace import Workspace
 from dalembert.study.folder import RunFolder
 from dalembert.study.listing import since
 
@@ -40,6 +42,19 @@ def last_runs(root: Path) -> dict[tuple[Path, str], LastRun]:
         if key not in newest or newest[key][0] < changed:
             newest[key] = changed, path.parent
     return {key: _last(RunFolder(path)) for key, (_, path) in newest.items()}
+
+
+def study_of(workspace: Workspace, folder: RunFolder) -> str | None:
+    """Return the study of a run, as :meth:`Workspace.studies` lists it; None if it is not there any more."""
+    try:
+        kept = json.loads(folder.inputs.read_text(encoding="utf-8"))
+        place, name = Path(kept["folder"]), str(kept["name"])
+    except (OSError, ValueError, TypeError, KeyError):
+        return None
+    if place.parent != workspace.root / "studies":
+        return None
+    found = sorted(path for path in place.glob("*.toml") if name_in(path) == name)
+    return f"{place.name}/{found[0].stem}" if found else None
 
 
 def _last(folder: RunFolder) -> LastRun:

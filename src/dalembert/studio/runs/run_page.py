@@ -12,9 +12,11 @@ from nicegui import run, ui
 from dalembert.errors import InputError
 from dalembert.studio.frame import STATES, badge, button, complaints, frame, report_of
 from dalembert.studio.jobs import Jobs, pause, stop
+from dalembert.studio.runs.again import run_again
 from dalembert.studio.runs.figures import bare, convergence, followed, on_any_page, plot, wandering
 from dalembert.studio.runs.findings_list import findings_list
 from dalembert.studio.runs.fit_so_far import fit_so_far
+from dalembert.studio.runs.last_runs import study_of
 from dalembert.studio.runs.live import Live
 from dalembert.studio.runs.remaining import most_simulations
 from dalembert.studio.sparing import Sparing
@@ -39,7 +41,7 @@ def run_page(workspace: Workspace, jobs: Jobs, watcher: Worker, name: str) -> No
     """Watch a run, stop it or go on with it, and read its report."""
     folder = RunFolder(workspace.runs_folder / name)
     with frame(name):
-        page = _Page(folder, jobs, watcher)
+        page = _Page(workspace, folder, jobs, watcher)
         page.build()
         page.look_at_state()
         ui.timer(EVERY, page.look)
@@ -50,14 +52,15 @@ class _Page:
 
     Parameters
     ----------
+    workspace : Workspace
     folder : RunFolder
     jobs : Jobs
     watcher : Worker
         Where the best fit so far is computed.
     """
 
-    def __init__(self, folder: RunFolder, jobs: Jobs, watcher: Worker) -> None:
-        self.folder, self.jobs, self.watcher = folder, jobs, watcher
+    def __init__(self, workspace: Workspace, folder: RunFolder, jobs: Jobs, watcher: Worker) -> None:
+        self.workspace, self.folder, self.jobs, self.watcher = workspace, folder, jobs, watcher
         self.drawing, self.computing = Sparing(), Sparing()
         self.live = Live(folder.events)
         self.state, self.complaint, self.shown, self.drawn = "", "", 0, 0
@@ -74,6 +77,9 @@ class _Page:
             self.pause = button("Pause", complaints()(lambda: pause(self.folder)), icon="pause")
             self.stop = button("Stop", complaints()(lambda: stop(self.folder)), icon="stop", colour="negative")
             self.resume = button("Resume", complaints()(lambda: self.jobs.resume(self.folder.path)), icon="play_arrow")
+            self.study = button("Open the study", self._open_study, icon="edit_note").props("flat")
+            self.again = button("Run again", complaints()(self._run_again), icon="replay").props("flat")
+            self.next = button("Continue as a new study", self._continue, icon="note_add").props("flat")
         self.message = ui.label("").classes("whitespace-pre-wrap break-words")
         self.live_part = ui.column().classes("w-full gap-4")
         with self.live_part:
@@ -85,6 +91,15 @@ class _Page:
         self.files = ui.row().classes("gap-4")
         self.findings = ui.column().classes("w-full gap-2")
         self.report = ui.column().classes("w-full")
+
+    def _open_study(self) -> None:
+        ui.navigate.to(f"/study/{quote(study_of(self.workspace, self.folder) or '')}")
+
+    def _run_again(self) -> None:
+        ui.navigate.to(f"/run/{quote(run_again(self.workspace, self.jobs, self.folder.path.name))}")
+
+    def _continue(self) -> None:
+        ui.navigate.to(f"/continue/{quote(self.folder.path.name)}")
 
     async def look(self) -> None:
         """Bring the page up to what the run's folder says."""
@@ -125,6 +140,9 @@ class _Page:
         self.stop.set_visibility(state == RUNNING)
         self.pause.set_visibility(state == RUNNING)
         self.resume.set_visibility(state in RESUMABLE)
+        self.study.set_visibility(study_of(self.workspace, self.folder) is not None)
+        for one in (self.again, self.next):
+            one.set_visibility(ended and self.folder.is_run)
         self.bar.set_visibility(not ended)
         said = self.folder.state().get("message", "") if self.folder.is_run else ""
         self.message.set_text(str(said or self.complaint or SAYS.get(state, "")) if ended else "")

@@ -9,9 +9,10 @@ from nicegui import run, ui
 
 from dalembert.studio.frame import button, complaints, frame
 from dalembert.studio.jobs import Jobs
+from dalembert.studio.runs.again import run_again
 from dalembert.studio.runs.run_changes import Deleted, delete, empty_trash, rename, restore, trashed
 from dalembert.studio.runs.run_grid import RunGrid
-from dalembert.studio.runs.run_list import Row, RunList, study_name
+from dalembert.studio.runs.run_list import Row, RunList
 from dalembert.studio.runs.run_note import Note, read_note, tags_of, write_note
 from dalembert.studio.workspace import Workspace
 from dalembert.study.folder import RESUMABLE
@@ -175,17 +176,11 @@ class _Page:
 
     async def rerun(self) -> None:
         """Run the studies of the selected runs again."""
-        started = [self._rerun(name) for name in self.selected]
+        started = [run_again(self.workspace, self.jobs, name) for name in self.selected]
         if len(started) == 1:
             ui.navigate.to(f"/run/{quote(started[0])}")
         else:
             ui.notify(f"{len(started)} runs started.", type="positive")
-
-    def _rerun(self, name: str) -> str:
-        old = self.workspace.run(name)
-        folder = self.workspace.new_run(study_name(old, old.state()) or name)
-        self.jobs.rerun(old.path, folder)
-        return folder.name
 
     def resume(self) -> None:
         for row in filter(lambda row: row["state"] in RESUMABLE, self._chosen()):

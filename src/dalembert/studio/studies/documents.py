@@ -18,6 +18,12 @@ def document_of(path: Path) -> dict[str, Any] | None:
     return _read(path, about.st_mtime_ns, about.st_size)
 
 
+def name_in(path: Path) -> str:
+    """Return the name that the study in a file has in its runs."""
+    about = (document_of(path) or {}).get("study")
+    return str((about.get("name") if isinstance(about, dict) else "") or path.stem)
+
+
 @lru_cache(KEPT)
 def _read(path: Path, changed: int, size: int) -> dict[str, Any] | None:
     """The content of a file as it was at its last change."""

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from dalembert.studio.runs.last_runs import LastRun, last_runs
-from dalembert.studio.studies.documents import document_of
+from dalembert.studio.studies.documents import document_of, name_in
 from dalembert.studio.workspace import Workspace
 from dalembert.study.basics import task_names
 
@@ -81,7 +81,7 @@ def _entry(workspace: Workspace, name: str, runs: dict[tuple[Path, str], LastRun
     about = about if isinstance(about, dict) else {}
     task = next((key for key in document if key in task_names()), "")
     title, description = (" ".join(str(about.get(key, "")).split()) for key in ("title", "description"))
-    last = runs.get((path.parent.resolve(), str(about.get("name") or path.stem)))
+    last = runs.get((path.parent.resolve(), name_in(path)))
     return Entry(name, title, description, task, last)
 
 

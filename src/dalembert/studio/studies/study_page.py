@@ -38,7 +38,7 @@ def study_page(workspace: Workspace, jobs: Jobs, name: str) -> None:
     room = Room(workspace, jobs, Worker())
     room.worker.start()
     ui.context.client.on_delete(room.worker.stop)
-    with frame(name, wide=True):
+    with frame(name.removesuffix("/study"), wide=True):
         head = ui.column().classes("w-full gap-1")
         with splitter("Width of the text") as (left, right):
             with left:

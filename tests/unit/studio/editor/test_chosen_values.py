@@ -1,12 +1,14 @@
 """Values of sliders in the text of a study: of its parameters, of sensors, and of single experiments."""
 
+import math
 import re
+import tomllib
 
 import pytest
 import tomlkit
 
 from dalembert.errors import InputError
-from dalembert.studio.editor.chosen_values import use_as_start, use_as_value
+from dalembert.studio.editor.chosen_values import unit_in, use_as_start, use_as_value
 from dalembert.studio.simulation.parts import parameters_of
 from dalembert.study import load
 from dalembert.study.template import begin
@@ -85,6 +87,17 @@ def test_bounds_of_a_fixed_parameter_are_equal_whatever_their_units(tmp_path):
     assert 'lower = -1.0, upper = "' in path.read_text()
     found = changed(path, use_as_value, "angle", -0.5)
     assert [item.name for item in found[""]] == ["drag"]
+
+
+def test_values_are_shown_in_the_units_of_the_study(path):
+    document = tomllib.loads(path.read_text())
+    names = ("drag", "angle", "first.angle", "second.angle", "rod delay", "first.start time", "mass")
+    units = {name: unit_in(document, name)[0] for name in names}
+    assert units == {
+        "drag": "", "angle": "deg", "first.angle": "deg", "second.angle": "deg", "rod delay": "ms",
+        "first.start time": "ms", "mass": "",
+    }  # fmt: skip
+    assert unit_in(document, "second.angle")[1] == pytest.approx(math.pi / 180)
 
 
 def test_what_has_no_place_in_the_study_says_so(path):

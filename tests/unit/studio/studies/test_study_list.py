@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from dalembert.studio.runs.last_runs import LastRun, last_runs
+from dalembert.studio.runs.last_runs import LastRun, last_runs, study_of
 from dalembert.studio.studies.study_list import study_folders
 from dalembert.studio.workspace import Workspace
+from dalembert.study.folder import RunFolder
 from dalembert.study.template import begin
 
 STUDIES = Path(__file__).parents[4] / "studies"
@@ -76,3 +77,17 @@ def test_a_file_is_read_again_after_a_change(workspace):
     path.write_text(path.read_text().replace("Parameters from a measured motion", "Another title"))
     (changed,) = [folder for folder in study_folders(workspace) if not folder.example]
     assert (own.title, changed.title) == ("Parameters from a measured motion", "Another title")
+
+
+def test_a_run_knows_its_study_while_it_is_there(workspace):
+    mine, duffing = (workspace.root / "studies" / name for name in ("mine", "duffing"))
+    for name, folder, study in (
+        ("one", mine, "study"), ("two", duffing, "duffing"), ("gone", mine, "former"), ("far", Path("/bench"), "study")
+    ):  # fmt: skip
+        add_run(workspace.root, name, folder, study)
+    found = {
+        name: study_of(workspace, RunFolder(workspace.root / "runs" / name)) for name in ("one", "gone", "far", "no")
+    }
+    assert found == {"one": "mine/study", "gone": None, "far": None, "no": None}
+    (mine / "study.toml").write_text('[study]\nname = "renamed"\n')
+    assert study_of(workspace, RunFolder(workspace.root / "runs" / "one")) is None

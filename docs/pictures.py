@@ -50,16 +50,18 @@ def records(browser: Visitor, first: Path, final: Path) -> None:
 
 
 def studio(browser: Visitor, workspace: Path) -> None:
+    """A study with its sliders."""
     command = [Path(sys.executable).with_name("dalembert"), "studio", workspace, "--port", "0", "--no-browser"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as serving:
         address = re.search(r"http://\S+", serving.stdout.readline())[0].rstrip("/")
-        page = browser.page(**DEVICE)
+        page = browser.page(width=1280)
+        page.emulate_media(reduced_motion="reduce")  # the mechanism stays at its first position
         page.goto(f"{address}/new")
+        page.get_by_label("Name (optional)").fill("pendulum")
         page.locator("button", has_text="measured motion").first.click()
-        wait_until(page, "document.querySelectorAll('.js-plotly-plot .trace').length === 2")
-        drawing = "document.querySelector('.js-plotly-plot')"
-        wait_until(page, f"{drawing}.querySelector('.main-svg').clientHeight <= {drawing}.clientHeight")
-        take(page, "studio", 0, page.evaluate("document.documentElement.scrollHeight"))
+        page.get_by_role("tab", name="Sliders").click()
+        wait_until(page, "document.querySelector('.effect')?.checkVisibility()")
+        page.screenshot(path=HERE / "pictures" / "studio.png")
         serving.terminate()
 
 

@@ -42,7 +42,7 @@ class Sliders:
     def __init__(self, draft: Draft, room: Room) -> None:
         self._draft, self._room = draft, room
         self._rows: dict[str, ParameterRow] = {}
-        self._built: list[object] | None = None
+        self._built: object = None
         self._plots: list[ui.plotly] = []
         self._drawn: tuple[Source, str] | None = None
         self._at_start: float | None = None

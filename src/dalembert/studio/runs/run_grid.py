@@ -42,7 +42,7 @@ _COLUMNS: tuple[dict[str, Any], ...] = (
     {"field": "run", "width": 150, ":cellRenderer": _LINK, "editable": True, "headerTooltip": "Press F2 to rename"},
     {"field": "study", "width": 105},
     {"field": "task", "width": 110, "tooltipField": "task"},
-    {"field": "state", "width": 110, ":cellRenderer": _STATE},
+    {"field": "state", "width": 126, ":cellRenderer": _STATE},
     {
         "field": "findings",
         "width": 125,

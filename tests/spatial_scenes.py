@@ -352,6 +352,8 @@ SCENES: dict[str, Scene] = {
     ),
     "screw": (jointed(sp.ScrewJoint), {"axis": AXIS, "lead": 0.8, "offset": 0.05}),
     "screw to ground": (grounded(sp.ScrewJoint), {"axis": AXIS, "lead": 0.8, "offset": 0.05}),
+    "screw of short lead": (jointed(sp.ScrewJoint), {"axis": AXIS, "lead": 0.01, "offset": 0.05}),
+    "screw of short lead to ground": (grounded(sp.ScrewJoint), {"axis": AXIS, "lead": 0.01, "offset": 0.003}),
     "angle limit": (stopped(sp.AngleLimit, grounded(sp.RevoluteJoint)), STOP | {"stiffness": 4.0}),
     "angle limit between": (stopped(sp.AngleLimit, jointed(sp.RevoluteJoint)), STOP | {"stiffness": 0.6}),
     "displacement limit": (stopped(sp.DisplacementLimit, grounded(sp.PrismaticJoint)), STOP),

@@ -70,14 +70,30 @@ def assembled(system: Mechanism, perturbed: bool = False, placed: Lowered | None
             lowered, **{name: getattr(lowered, name).astype(complex) for name in ("frames", "rates", "x", "v")}
         )
     free = _free(system)
+    start = lowered.x
     if system.stated.coordinates:
         lowered = _posed(system, lowered, model, free, begin)
     frames, x = _close(system.carriers, lowered, model, free)
+    _refuse_misalignment(system, lowered, start, x)
     lowered = replace(lowered, frames=frames, x=x)
     lowered = begin_at_rest(lowered) if rests else lowered
     if system.stated.rates:
         return replace(lowered, v=_moving(system, lowered, begin))
     return replace(lowered, v=initial_velocities(system.carriers, lowered, model))
+
+
+def _refuse_misalignment(system: Mechanism, lowered: Lowered, placed: np.ndarray, closed: np.ndarray) -> None:
+    """Raise where a joint is closed in another position than the one that is meant, such as with opposite axes."""
+    for joint in system.joints:
+        kind, row = lowered.structure.rows[joint.name]
+        index, integers = lowered.structure.index[kind][row], lowered.structure.meta[kind][row]
+        numbers, before, after = (np.real(own) for own in (lowered.data[kind][row], placed[index], closed[index]))
+        problem = joint.misaligned(kind, numbers, integers, before, after)
+        if problem:
+            raise ModelError(
+                f"the mechanism cannot be assembled from this placement: joint {joint.name!r} closes where {problem}. "
+                "Place the bodies nearer to the closed position, or orient the markers alike"
+            )
 
 
 def _posed(system: Mechanism, lowered: Lowered, model: Model, free: np.ndarray, begin: float) -> Lowered:

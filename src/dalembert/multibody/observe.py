@@ -149,13 +149,19 @@ def channel_units(system: Mechanism) -> dict[str, str]:
         for component in (*system.joints, *system.loads)
         for entry, unit in component.kind.outputs
     }
+    of_parts = {
+        f"{joint.name}.{part}.{entry}": unit
+        for joint in system.joints
+        for part, kind in joint.parts.items()
+        for entry, unit in kind.outputs
+    }
     of_points = {
         f"{body.name}.{point}.{entry}": unit
         for body in system.bodies
         for point in body.point_names
         for entry, unit in body.point_outputs
     }
-    return {**of_points, **of_components, **units}
+    return {**of_points, **of_components, **of_parts, **units}
 
 
 def channel_names(system: Mechanism) -> tuple[str, ...]:

@@ -11,9 +11,11 @@ import numpy as np
 
 from dalembert.arguments import names_of
 from dalembert.contents import Contents
+from dalembert.errors import require_known
 from dalembert.files import write_contents
 from dalembert.findings import Finding
 from dalembert.kernels.preparation import prepare
+from dalembert.multibody.components.joint import BaseJoint
 from dalembert.multibody.drawing import Drawing, draw
 from dalembert.multibody.evaluate import energies, energy_kernels, violations
 from dalembert.multibody.integrators.integrator import Integrator
@@ -104,11 +106,31 @@ class Trajectory(Displayed):
         """Force (N) and torque (N m) of a joint on its second side at its point, in the fixed axes.
 
         In the plane the force along x and y and the torque, (samples, 3); in space three components of each,
-        (samples, 6).
+        (samples, 6). Those of a coupling in space act on side b of its second joint, along or about the axis of that
+        joint.
+
+        Raises
+        ------
+        InputError
+            For an unknown joint.
         """
+        joints = {own.name: own for own in self.system.joints}
+        require_known("joint", joint, joints, "Trajectory.reactions")
         axes = self.system.AXES
+        if joints[joint].coupled is not None:
+            return self._coupling_reactions(joint, *joints[joint].coupled)
         torques = ["torque"] if len(axes) == 2 else [f"torque_{axis}" for axis in axes]
         return self.channels([f"{joint}.{name}" for name in (*(f"force_{axis}" for axis in axes), *torques)])
+
+    def _coupling_reactions(self, coupling: str, joint: BaseJoint, output: str) -> np.ndarray:
+        """Force and torque (samples, 6) of a coupling on side b of a joint, at its point."""
+        kind, row = self.lowered.structure.rows[joint.name]
+        index, integers = self.lowered.structure.index[kind][row], self.lowered.structure.meta[kind][row]
+        numbers = np.real(self.lowered.data[kind][row])
+        directions = joint.axis_directions(numbers, integers, np.real(self.states.x[:, index]))
+        own = self.channels([f"{coupling}.{output}"]) * directions
+        still = np.zeros_like(own)
+        return np.hstack([still, own] if output.startswith("torque") else [own, still])
 
     @property
     def energies(self) -> dict[str, np.ndarray]:

@@ -11,6 +11,8 @@ from dalembert.multibody.kernels.elementary import exponential, logarithm, tanh
 #: times pin radius, or friction coefficient), the rate at which tanh(rate / slip) turns its sign, and how much larger
 #: the force is at low rates, with the rate and the exponent of its decrease.
 NUMBERS = ("viscous", "coulomb", "per_reaction", "slip", "stribeck", "stribeck_rate", "stribeck_exponent")
+TORQUE, FORCE = (("torque", "N*m"),), (("force", "N"),)
+"""Outputs of friction: what it exerts on b."""
 TINY = 1e-18  # keeps |reaction| differentiable where the reaction vanishes, N^2, and the power of a rate of zero
 
 

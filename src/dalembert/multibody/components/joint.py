@@ -52,9 +52,32 @@ class BaseJoint(Checked):
         """How the joint smooths Coulomb friction; None without it. The finding ``slip-rate`` judges it."""
         return None
 
+    @property
+    def coupled(self) -> "tuple[BaseJoint, str] | None":
+        """Joint on whose second side a coupling acts about or along its axis, and the output; None for other joints."""
+        return None
+
+    def axis_directions(self, numbers: np.ndarray, integers: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """Directions of the axis in the fixed axes, (frames, 3), from its numbers and unknowns (frames, width)."""
+        raise NotImplementedError
+
+    @property
+    def parts(self) -> dict[str, Kind]:
+        """Kinds of parts with separate channels, by the end of their names: ``pin.friction`` has ``torque``."""
+        return {}
+
     def position(self, kind: Kind, numbers: np.ndarray, integers: np.ndarray, x: np.ndarray) -> np.ndarray | None:
         """Where to draw the joint, (frames, 2 or 3), from its unknowns (frames, width); None for none."""
         return None
+
+    def misaligned(
+        self, kind: Kind, numbers: np.ndarray, integers: np.ndarray, placed: np.ndarray, closed: np.ndarray
+    ) -> str:
+        """Say how the joint is closed in another position than the one that is meant, or return an empty string.
+
+        ``placed`` and ``closed`` are its unknowns (width,) before assembly and after it.
+        """
+        return ""
 
     @property
     def stated_coordinates(self) -> tuple[str, ...]:

@@ -111,6 +111,64 @@ def test_a_screw_counts_its_turns_and_couples_force_and_torque() -> None:
     np.testing.assert_allclose(torque, -force / pitch, rtol=1e-9)
 
 
+@pytest.mark.parametrize("turns", [-7.4, -0.4, -0.2, 0.3, 0.45, 3.2])
+def test_a_screw_closes_at_the_nearest_turn_of_its_thread(turns: float) -> None:
+    """A nut that cannot turn: a displacement of ``turns`` leads becomes the nearest whole number of them."""
+    lead = 0.02
+    system = sp.SpatialSystem(gravity=STILL, driving=["nut.rotation_z"])
+    nut = system.add(sp.RigidBody("nut", DISC, (0.0, 0.0, turns * lead)))
+    system.add(sp.ScrewJoint("thread", system.ground.point(STILL), nut.point("origin"), lead, offset=0.0))
+    placed = mb.simulate(system, 0.01, mb.RungeKutta4(step=1e-2)).channels(["thread.displacement", "thread.angle"])[0]
+    np.testing.assert_allclose(placed, [round(turns) * lead, 2 * np.pi * round(turns)], atol=1e-12)
+
+
+@pytest.mark.parametrize("angle", [0.3, 1.7, -2.9])
+def test_a_prescribed_angle_is_met_from_any_placement(angle: float) -> None:
+    system = sp.SpatialSystem(gravity=STILL)
+    disc = system.add(sp.RigidBody("disc", DISC, orientation=sp.Orientation.by_angles("z", [angle])))
+    system.add(sp.RevoluteJoint("pin", system.ground.point(STILL), disc.point("origin")))
+    system.add(sp.PrescribedMotion("motion", system.ground.point(STILL), disc.point("origin"), "angle", 0.1))
+    assert mb.simulate(system, 0.01, "auto").channels(["pin.angle"])[0, 0] == pytest.approx(0.1, abs=1e-12)
+
+
+def test_reactions_of_a_rack_move_the_rack() -> None:
+    """Forces of slide and teeth on the rack: m (a - g). The torque of the teeth on the pinion turns it."""
+    system = sp.SpatialSystem()
+    tilted = sp.Orientation.by_angles("x", [0.4])
+    pinion = system.add(sp.RigidBody("pinion", DISC, angular_velocity=(0.0, 0.0, 2.0)))
+    rack = system.add(sp.RigidBody("rack", WHEEL, (0.0, 0.1, 0.0), tilted))
+    bearing = system.add(sp.RevoluteJoint("bearing", system.ground, pinion.point("origin")))
+    place = system.ground.point((0.0, 0.1, 0.0), tilted)
+    slide = system.add(sp.PrismaticJoint("slide", place, rack.point("origin")))
+    system.add(sp.RackJoint("teeth", bearing, slide, radius=0.1))
+    motion = mb.simulate(system, 0.3, mb.RadauIIA(tolerance=1e-10))
+    acceleration = motion.channels([f"rack.origin.a{axis}" for axis in "xyz"]) - [0.0, 0.0, -9.81]
+    teeth = motion.reactions("teeth")
+    assert teeth.shape == (len(motion.times), 6)
+    np.testing.assert_allclose(teeth[:, :3] + motion.reactions("slide")[:, :3], 1.0 * acceleration, atol=1e-9)
+    np.testing.assert_allclose(teeth[:, 3:], 0.0, atol=1e-12)
+    direction = np.array([0.0, -np.sin(0.4), np.cos(0.4)])
+    np.testing.assert_allclose(teeth[:, :3], motion.channels(["teeth.force_b"]) * direction, atol=1e-12)
+
+
+def test_reactions_of_a_gear_on_a_carrier_that_turns() -> None:
+    """About the axis of its joint, which turns with its side a."""
+    system = sp.SpatialSystem(gravity=STILL)
+    arm = system.add(sp.RigidBody("arm", DISC, points={"pin": (0.5, 0.0, 0.0)}, angular_velocity=(0.0, 0.0, 3.0)))
+    moon = system.add(sp.RigidBody("moon", WHEEL, arm.point("pin")))
+    frame = system.add(sp.RevoluteJoint("frame", system.ground, arm.point("origin")))
+    pin = system.add(sp.RevoluteJoint("pin", arm.point("pin"), moon.point("origin"), axis=(1.0, 0.0, 0.0)))
+    system.add(sp.GearJoint("gear", frame, pin, ratio=-2.0))
+    system.add(sp.Torque("drive", arm.point("origin"), z=0.4))
+    motion = mb.simulate(system, 0.4, mb.RadauIIA(tolerance=1e-10))
+    torque, angle = motion.channels(["gear.torque_b", "frame.angle"]).T
+    assert np.abs(torque).min() > 1e-3
+    directions = np.column_stack([np.cos(angle), np.sin(angle), 0.0 * angle])
+    np.testing.assert_allclose(motion.reactions("gear")[:, 3:], torque[:, None] * directions, atol=1e-12)
+    with pytest.raises(InputError, match=r"unknown joint 'gaer' in Trajectory.reactions.*'gear'"):
+        motion.reactions("gaer")
+
+
 def pendulum(angle: float, **limits) -> sp.SpatialSystem:
     system = sp.SpatialSystem(gravity=STILL)
     turned = sp.Orientation.by_angles("z", [angle])

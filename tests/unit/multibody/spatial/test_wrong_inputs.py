@@ -154,6 +154,35 @@ def test_a_mechanism_that_cannot_be_assembled() -> None:
         simulate(system, 0.1)
 
 
+def test_joints_that_close_with_other_axes() -> None:
+    """Conditions of orthogonality hold for opposite and for exchanged axes, too."""
+    turned = Orientation.by_angles("yxz", [1.7, 0.3, 0.5])
+    for kind, message in (
+        (
+            FixedJoint,
+            snapshot(
+                "the mechanism cannot be assembled from this placement: joint 'joint' closes where axis 1 of b is at 90 deg to axis 1 of a, and has to be parallel to it. Place the bodies nearer to the closed position, or orient the markers alike"
+            ),
+        ),
+        (
+            RevoluteJoint,
+            snapshot(
+                "the mechanism cannot be assembled from this placement: joint 'joint' closes where axis 3 of b is at 180 deg to axis 3 of a, and has to be parallel to it. Place the bodies nearer to the closed position, or orient the markers alike"
+            ),
+        ),
+    ):
+        system, body, _ = pair(orientation=turned)
+        system.add(kind("joint", system.ground.point((0.0, 0.0, 0.0)), body.point("origin")))
+        with refused(ModelError, message):
+            simulate(system, 0.01)
+
+
+def test_a_hinge_may_be_placed_with_opposite_axes() -> None:
+    system, body, _ = pair(orientation=Orientation.by_angles("x", [np.pi]))
+    system.add(RevoluteJoint("hinge", system.ground.point((0.0, 0.0, 0.0)), body.point("origin")))
+    np.testing.assert_allclose(simulate(system, 0.01, "auto").channels(["hinge.angle"])[0], 0.0, atol=1e-12)
+
+
 def test_a_rod_of_no_length() -> None:
     system, body, _ = pair()
     system.add(DistanceJoint("rod", system.ground.point((0.0, 0.0, 0.0)), body.point("origin")))

@@ -20,6 +20,7 @@ from dalembert.multibody.components.planar.pairs import (
     twist_pair,
 )
 from dalembert.multibody.kernels.elementary import root, sin_cos
+from dalembert.multibody.kernels.kind import Kind
 
 
 @inlined
@@ -93,9 +94,15 @@ def _friction_energy(x, v, p, m, inputs):
     return 0.0 * rate, 0.0 * rate, -rate * force
 
 
+@inlined
+def _observe_friction(x, v, a, p, m, inputs, out):
+    out[0] = -_resistance(x, v, p, m)[3]
+
+
 PRISMATIC_FRICTION = pair_kind(
     "prismatic_friction", ("axis_angle", *friction.NUMBERS),
-    reactions=2, residual=_friction_residual, energy=_friction_energy, dissipates=True,
+    reactions=2, residual=_friction_residual, energy=_friction_energy, outputs=friction.FORCE,
+    observe=_observe_friction, dissipates=True,
 )  # fmt: skip
 
 
@@ -149,6 +156,10 @@ class PrismaticJoint(Joint):
             return None
         return Smoothing("sliding_velocity", "slip_velocity", self.slip_velocity, "m/s")
 
+    @property
+    def parts(self) -> dict[str, Kind]:
+        return {"friction": PRISMATIC_FRICTION} if friction.coefficients(self) else {}
+
     def lower(self, lowering: Lowering) -> None:
         pair = lowering.pair(self.a, self.b, self.name)
         self._oriented()
@@ -156,4 +167,4 @@ class PrismaticJoint(Joint):
         if friction.coefficients(self):
             law = friction.law(self, self.friction_coefficient or 0.0, self.slip_velocity, self.stribeck_velocity)
             numbers = [*pair.data, self.angle, *law]
-            lowering.add(PRISMATIC_FRICTION, index, numbers, pair.integers)
+            lowering.add(PRISMATIC_FRICTION, index, numbers, pair.integers, f"{self.name}.friction")

@@ -15,6 +15,7 @@ from dalembert.multibody.components.planar.joint import Joint, joint_kind, obser
 from dalembert.multibody.components.planar.markers import GROUND, RIGID
 from dalembert.multibody.components.planar.pairs import pair_kind, push_pair, relative_spin, separation, twist_pair
 from dalembert.multibody.kernels.elementary import root
+from dalembert.multibody.kernels.kind import Kind
 
 
 @inlined
@@ -76,9 +77,15 @@ def _friction_energy(x, v, p, m, inputs):
     return 0.0 * rate, 0.0 * rate, -rate * _resistance(x, rate, p)
 
 
+@inlined
+def _observe_friction(x, v, a, p, m, inputs, out):
+    out[0] = -_resistance(x, relative_spin(x, v, m), p)
+
+
 REVOLUTE_FRICTION = pair_kind(
     "revolute_friction", friction.NUMBERS,
-    reactions=2, residual=_friction_residual, energy=_friction_energy, dissipates=True,
+    reactions=2, residual=_friction_residual, energy=_friction_energy, outputs=friction.TORQUE,
+    observe=_observe_friction, dissipates=True,
 )  # fmt: skip
 
 
@@ -146,6 +153,10 @@ class RevoluteJoint(Joint):
         return Smoothing("rate", "slip_rate", self.slip_rate, "rad/s") if friction.rubs(self) else None
 
     @property
+    def parts(self) -> dict[str, Kind]:
+        return {"friction": REVOLUTE_FRICTION} if friction.coefficients(self) else {}
+
+    @property
     def stated_coordinates(self) -> tuple[str, ...]:
         return ("angle",)
 
@@ -161,4 +172,4 @@ class RevoluteJoint(Joint):
             self._oriented("a rigid body where a joint has friction")
             lever = (self.friction_coefficient or 0.0) * (self.pin_radius or 0.0)
             law = friction.law(self, lever, self.slip_rate, self.stribeck_rate)
-            lowering.add(REVOLUTE_FRICTION, index, [*pair.data, *law], pair.integers)
+            lowering.add(REVOLUTE_FRICTION, index, [*pair.data, *law], pair.integers, f"{self.name}.friction")

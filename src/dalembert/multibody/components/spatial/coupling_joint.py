@@ -90,6 +90,11 @@ class Coupling(Joint):
         of_a, of_b = self.coordinates
         return COUPLINGS[of_a.coordinate, of_b.coordinate]
 
+    @property
+    def coupled(self) -> tuple[Joint, str]:
+        own = self.coordinates[1]
+        return own.joint, f"{CHANNELS[own.coordinate][2][0]}_b"
+
     def _couple(self, lowering: SpatialLowering, ratio: Number, offset: Number | None) -> None:
         (i, at_a), (j, at_b) = map(lowering.coordinate, self.coordinates)
         if offset is None:

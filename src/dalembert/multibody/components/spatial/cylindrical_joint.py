@@ -31,6 +31,7 @@ class CylindricalJoint(Joint):
     axis: Vector = (0.0, 0.0, 1.0)
 
     kind = KIND
+    aligned = (3,)
 
     def lower(self, lowering: SpatialLowering) -> None:
         self._oriented()

@@ -24,6 +24,7 @@ class FixedJoint(Joint):
     """
 
     kind = KIND
+    aligned = (1, 2, 3)
 
     def lower(self, lowering: SpatialLowering) -> None:
         self._oriented()

@@ -115,7 +115,12 @@ def friction_kind(name: str, home: str, multipliers: int, load: tuple[int, ...],
         power = -rate(x, v, p, m) * resistance(x, v, p, m)
         return 0.0 * power, 0.0 * power, power
 
+    @inlined
+    def observe(x, v, a, p, m, inputs, out):
+        """What friction exerts on b, about the axis or along it."""
+        out[0] = -resistance(x, v, p, m)
+
     return pair_kind(
         name, home, friction.NUMBERS, reactions=multipliers, residual=residual, energy=energy,
-        dissipates=True,
+        outputs=friction.TORQUE if turns else friction.FORCE, observe=observe, dissipates=True,
     )  # fmt: skip

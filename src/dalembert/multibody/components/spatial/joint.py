@@ -167,6 +167,9 @@ class Joint(BaseJoint):
 
     kind: ClassVar[Kind]
 
+    aligned: ClassVar[tuple[int, ...]] = ()
+    """Axes of both markers, by number, that the conditions make parallel or opposite, and that have to be parallel."""
+
     @property
     def turned(self) -> tuple[np.ndarray, np.ndarray]:
         """Rotations (3, 3) from the axes of both markers to those of the joint."""
@@ -210,3 +213,28 @@ class Joint(BaseJoint):
         k, place = SLOTS * side, numbers[12 * side : 12 * side + 3]
         own = x[:, k : k + SLOTS].reshape(len(x), 4, 3)
         return own[:, 0] + (np.einsum("i,fic->fc", place, own[:, 1:]) if integers[side] == BODY else 0.0)
+
+    def axis_directions(self, numbers: np.ndarray, integers: np.ndarray, x: np.ndarray) -> np.ndarray:
+        return _direction(0, 3, numbers, integers, x)
+
+    def misaligned(
+        self, kind: Kind, numbers: np.ndarray, integers: np.ndarray, placed: np.ndarray, closed: np.ndarray
+    ) -> str:
+        """Conditions of orthogonality have other solutions: opposite axes, and axes that have changed places."""
+        for number in self.aligned:
+            before, after = (
+                float(_direction(0, number, numbers, integers, x) @ _direction(1, number, numbers, integers, x))
+                for x in (placed, closed)
+            )
+            if after < 0.5 and before > -0.999:  # a joint may be placed with opposite axes
+                angle = np.degrees(np.arccos(np.clip(after, -1.0, 1.0)))
+                return f"axis {number} of b is at {angle:.0f} deg to axis {number} of a, and has to be parallel to it"
+        return ""
+
+
+def _direction(side: int, number: int, numbers: np.ndarray, integers: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Axis with this number of a marker in the fixed axes, (..., 3), from unknowns (..., width)."""
+    k = SLOTS * side
+    own = numbers[k + 3 * number : k + 3 * number + 3]
+    directors = x[..., k + 3 : k + SLOTS].reshape(*x.shape[:-1], 3, 3)
+    return own @ directors if integers[side] == BODY else np.broadcast_to(own, (*x.shape[:-1], 3))

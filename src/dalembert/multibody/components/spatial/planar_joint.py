@@ -27,6 +27,7 @@ class PlanarJoint(Joint):
     axis: Vector = (0.0, 0.0, 1.0)
 
     kind = KIND
+    aligned = (3,)
 
     def lower(self, lowering: SpatialLowering) -> None:
         self._oriented()

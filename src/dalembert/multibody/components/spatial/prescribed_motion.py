@@ -22,10 +22,10 @@ from dalembert.multibody.components.spatial.joint import (
 from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Vector
-from dalembert.multibody.components.spatial.pairs import COORDINATES, LENGTHS, e1, e2, f2
+from dalembert.multibody.components.spatial.pairs import COORDINATES, LENGTHS, e1, e2, f1
 from dalembert.multibody.components.spatial.vectors import dot
 from dalembert.multibody.kernels.constraints import forces_of
-from dalembert.multibody.kernels.elementary import sin_cos
+from dalembert.multibody.kernels.elementary import angle_of, sin_cos
 from dalembert.multibody.kernels.time_inputs import signal
 
 _ANGLE, _DISPLACEMENT = range(2)
@@ -34,12 +34,13 @@ _COORDINATES = {"angle": _ANGLE, "displacement": _DISPLACEMENT}
 
 @inlined
 def _constraint(x, p, m, inputs, g):
-    """(cos u e1 + sin u e2) . f2 for an angle u, e3 . Delta - u for a displacement."""
+    """Angle of the joint less an angle u, within half a turn, or e3 . Delta - u for a displacement."""
     target = signal(inputs, m.motion)
     if m.coordinate == _ANGLE:
         s, c = sin_cos(target)
-        axis = f2(x, p, m)
-        g[0] = c * dot(e1(x, p, m), axis) + s * dot(e2(x, p, m), axis)
+        f = f1(x, p, m)
+        along, across = dot(e1(x, p, m), f), dot(e2(x, p, m), f)
+        g[0] = angle_of(c * along + s * across, c * across - s * along)
     else:
         g[0] = joint_displacement(x, p, m) - target
 
@@ -50,14 +51,9 @@ _forces = forces_of(_constraint, COORDINATES, 1)
 
 @inlined
 def _energy(x, v, p, m, inputs):
-    """No energy; the power that the motion feeds in, -lambda dg/dt at a fixed position."""
-    rate = inputs.signals[m.motion, 1]
-    if m.coordinate == _ANGLE:
-        s, c = sin_cos(inputs.signals[m.motion, 0])
-        axis = f2(x, p, m)
-        rate *= s * dot(e1(x, p, m), axis) - c * dot(e2(x, p, m), axis)
+    """No energy; the power that the motion feeds in, lambda dg/dt at a fixed position."""
     nothing = 0.0 * x[0]
-    return nothing, nothing, -x[COORDINATES] * rate
+    return nothing, nothing, -x[COORDINATES] * inputs.signals[m.motion, 1]
 
 
 @inlined

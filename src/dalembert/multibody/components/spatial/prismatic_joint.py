@@ -10,6 +10,7 @@ from dalembert.multibody.components.spatial.friction import Friction, friction_k
 from dalembert.multibody.components.spatial.joint import Joint, joint_kind
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Vector
+from dalembert.multibody.kernels.kind import Kind
 
 KIND = joint_kind(
     "prismatic_in_space",
@@ -42,10 +43,15 @@ class PrismaticJoint(Joint):
     friction: Friction | None = field(default=None, metadata={"table": "FrictionAlong"})
 
     kind = KIND
+    aligned = (1, 2, 3)
 
     @property
     def smoothing(self) -> Smoothing | None:
         return self.friction.smoothing("speed", "m/s") if self.friction else None
+
+    @property
+    def parts(self) -> dict[str, Kind]:
+        return {"friction": FRICTION} if self.friction else {}
 
     def lower(self, lowering: SpatialLowering) -> None:
         self._oriented()
@@ -53,4 +59,4 @@ class PrismaticJoint(Joint):
         index = self._add(lowering, pair)
         if self.friction:
             law = self.friction.law(f"prismatic joint {self.name!r}", turns=False)
-            lowering.add(FRICTION, index, [*pair.data, *law], pair.integers)
+            lowering.add(FRICTION, index, [*pair.data, *law], pair.integers, f"{self.name}.friction")

@@ -10,6 +10,7 @@ from dalembert.multibody.components.spatial.friction import Friction, friction_k
 from dalembert.multibody.components.spatial.joint import Joint, joint_kind
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Vector
+from dalembert.multibody.kernels.kind import Kind
 
 KIND = joint_kind("revolute_in_space", __name__, MEETS, perpendicular(1, 3), perpendicular(2, 3), angle=True)
 
@@ -45,10 +46,15 @@ class RevoluteJoint(Joint):
     friction: Friction | None = None
 
     kind = KIND
+    aligned = (3,)
 
     @property
     def smoothing(self) -> Smoothing | None:
         return self.friction.smoothing("rate", "rad/s") if self.friction else None
+
+    @property
+    def parts(self) -> dict[str, Kind]:
+        return {"friction": FRICTION} if self.friction else {}
 
     def lower(self, lowering: SpatialLowering) -> None:
         self._oriented()
@@ -56,4 +62,4 @@ class RevoluteJoint(Joint):
         index = self._add(lowering, pair)
         if self.friction:
             law = self.friction.law(f"revolute joint {self.name!r}", turns=True)
-            lowering.add(FRICTION, index, [*pair.data, *law], pair.integers)
+            lowering.add(FRICTION, index, [*pair.data, *law], pair.integers, f"{self.name}.friction")

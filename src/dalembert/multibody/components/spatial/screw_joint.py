@@ -18,7 +18,7 @@ from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Vector
 from dalembert.multibody.components.spatial.pairs import e1, e2, e3, f1, push_a_axis, push_b_axis, push_pair, separation
 from dalembert.multibody.components.spatial.vectors import dot, minus, times
-from dalembert.multibody.kernels.elementary import reciprocal, sin_cos
+from dalembert.multibody.kernels.elementary import angle_of, reciprocal, sin_cos
 
 _push_e1, _push_e2, _push_e3, _push_f1 = push_a_axis(1), push_a_axis(2), push_a_axis(3), push_b_axis(1)
 
@@ -31,22 +31,28 @@ def _counted(x, p, m):
 
 @inlined
 def _threaded(x, p, m, row, g):
-    """cos(u) e2 . f1 - sin(u) e1 . f1 with u = 2 pi (e3 . Delta - offset) / lead, which counts the turns."""
+    """Angle of the joint less the angle u = 2 pi (e3 . Delta - offset) / lead, within half a turn.
+
+    The sine of it would hold half a turn off, too, and Newton's method would end at a thread far from the nearest one.
+    """
     s, c = sin_cos(_counted(x, p, m))
     f = f1(x, p, m)
-    g[row] = c * dot(e2(x, p, m), f) - s * dot(e1(x, p, m), f)
+    along, across = dot(e1(x, p, m), f), dot(e2(x, p, m), f)
+    g[row] = angle_of(c * along + s * across, c * across - s * along)
 
 
 @inlined
 def _threaded_forces(x, p, m, k, r):
-    s, c = sin_cos(_counted(x, p, m))
+    """The gradient of the angle, (along d(across) - across d(along)) / (along^2 + across^2), less that of u."""
     first, second, f, force = e1(x, p, m), e2(x, p, m), f1(x, p, m), x[k]
-    _push_e2(p, m, times(force * c, f), r)
-    _push_e1(p, m, times(-force * s, f), r)
-    _push_f1(p, m, times(force, minus(times(c, second), times(s, first))), r)
-    along = -force * (s * dot(second, f) + c * dot(first, f)) * 2.0 * pi * reciprocal(p.lead)
-    _push_e3(p, m, times(along, separation(x, p, m)), r)
-    push_pair(p, m, times(along, e3(x, p, m)), r)
+    along, across = dot(first, f), dot(second, f)
+    share = force * reciprocal(along * along + across * across)
+    _push_e2(p, m, times(share * along, f), r)
+    _push_e1(p, m, times(-share * across, f), r)
+    _push_f1(p, m, minus(times(share * along, second), times(share * across, first)), r)
+    slide = -force * 2.0 * pi * reciprocal(p.lead)
+    _push_e3(p, m, times(slide, separation(x, p, m)), r)
+    push_pair(p, m, times(slide, e3(x, p, m)), r)
 
 
 CONDITIONS = (
@@ -124,6 +130,7 @@ class ScrewJoint(Joint):
     axis: Vector = (0.0, 0.0, 1.0)
 
     kind = SCREW
+    aligned = (3,)
 
     def __post_init__(self) -> None:
         if not (np.isfinite(np.real(self.lead)) and np.real(self.lead) != 0):

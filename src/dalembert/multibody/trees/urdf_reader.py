@@ -11,6 +11,7 @@ import numpy as np
 
 from dalembert.errors import InputError, ModelError, listed, repeated, require_known, unknown
 from dalembert.multibody.components.spatial.inertia import Inertia
+from dalembert.multibody.components.spatial.mesh_files import unread
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose
 from dalembert.multibody.trees.possible_inertia import REFUSE, TREATMENTS, possible
 from dalembert.multibody.trees.tree import FIXED, PRISMATIC, REVOLUTE, Link, Shape, Tree, TreeJoint
@@ -33,9 +34,10 @@ def read_urdf(path: str | os.PathLike[str], impossible: str = REFUSE) -> Tree:
     """Return the robot of a URDF file.
 
     Links with inertias and visual shapes are imported, and joints with their kind, pose, axis, limits, damping,
-    friction and mimic. Meshes are kept by their names. All other elements and attributes are listed in
-    :attr:`Tree.unsupported`, such as collision shapes, materials, transmissions and sensors. The attribute
-    ``armature`` of ``<dynamics>`` is an addition to URDF; :func:`write_urdf` writes it.
+    friction and mimic. Meshes are drawn where their files are there (STL, OBJ, DAE and PLY, with the extra ``meshes``).
+    All other elements and attributes are listed in :attr:`Tree.unsupported`, such as collision shapes, materials,
+    transmissions and sensors. The attribute ``armature`` of ``<dynamics>`` is an addition to URDF; :func:`write_urdf`
+    writes it.
 
     Floating and planar joints are fixed at their zero position, and listed. A joint without ``<limit>`` has no limits.
 
@@ -173,18 +175,22 @@ def _shapes(link: Element, path: Path, notes: list[str]) -> tuple[Shape, ...]:
         own = kinds[0]
         own.known = True
         file = own.required_word("filename") if own.tag == "mesh" else ""
-        if file and not _mesh_is_there(file, path):
-            notes.append(f"line {own.line}: the mesh {file!r} of {own.owner} is not there, so it is not drawn")
-        found.append(Shape(own.tag, _SIZES[own.tag](own), _pose(visual), file))
+        mesh = _mesh(file, path) if file else None
+        if file:
+            problem = "is not there, so it is not drawn" if mesh is None else unread(mesh)
+            if problem:
+                notes.append(f"line {own.line}: the mesh {file!r} of {own.owner} {problem}")
+                mesh = None
+        found.append(Shape(own.tag, _SIZES[own.tag](own), _pose(visual), file, str(mesh or "")))
     return tuple(found)
 
 
-def _mesh_is_there(file: str, path: Path) -> bool:
-    """Whether the file of a mesh exists; packages are looked for in the folders around the file."""
+def _mesh(file: str, path: Path) -> Path | None:
+    """The file of a mesh, if it is there; packages are looked for in the folders around the file."""
     scheme, separator, name = file.partition("://")
-    if scheme == "package" and separator:
-        return any((folder / name).is_file() for folder in path.absolute().parents)
-    return (path.parent / (name if separator else file)).is_file()
+    folders = path.absolute().parents if scheme == "package" and separator else [path.absolute().parent]
+    places = [folder / (name if separator else file) for folder in folders]
+    return next((place for place in places if place.is_file()), None)
 
 
 def _link(own: Element, notes: list[str], inertia: Inertia | None, shapes: tuple[Shape, ...]) -> Link:

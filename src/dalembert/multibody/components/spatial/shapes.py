@@ -12,6 +12,7 @@ from dalembert.arguments import Checked
 from dalembert.errors import InputError, require_known, shown
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.spatial.inertia import Inertia
+from dalembert.multibody.components.spatial.mesh_files import triangles_of
 from dalembert.multibody.components.spatial.orientation import Pose, Vector
 
 BOX, CYLINDER, SPHERE, MESH = KINDS = "box", "cylinder", "sphere", "mesh"
@@ -41,7 +42,9 @@ class Shape(Checked):
     pose : Pose
         Of the centre of the shape, in the axes of the body.
     file : str
-        Of a mesh, which is not drawn.
+        Name of the file of a mesh.
+    found : str
+        Path of that file; empty where it is not there or is not read, so that the mesh is not drawn.
 
     Examples
     --------
@@ -54,6 +57,7 @@ class Shape(Checked):
     sizes: tuple[Number, ...] = number("m")
     pose: Pose = AT_ORIGIN
     file: str = ""
+    found: str = ""
 
     IN_WORDS = "a shape such as Shape.box((0.1, 0.2, 0.3))"
 
@@ -112,10 +116,14 @@ class Shape(Checked):
 
     @property
     def surface(self) -> Surface | None:
-        """The surface as triangles in the axes of the body; None for a mesh."""
+        """The surface as triangles in the axes of the body; None for a mesh whose file is not read."""
         if self.kind == MESH:
-            return None
-        corners, triangles = {BOX: _box, CYLINDER: _cylinder, SPHERE: _sphere}[self.kind](*np.real(self.sizes))
+            mesh = triangles_of(self.found) if self.found else None
+            if mesh is None:
+                return None
+            corners, triangles = mesh[0] * np.real(self.sizes), mesh[1]
+        else:
+            corners, triangles = {BOX: _box, CYLINDER: _cylinder, SPHERE: _sphere}[self.kind](*np.real(self.sizes))
         axes = np.real(self.pose.orientation.matrix)
         return Surface(corners @ axes.T + np.real(self.pose.position), triangles)
 

@@ -8,14 +8,18 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.multibody import Drawing
+from dalembert.multibody.components.spatial.mesh_files import simplified
+from dalembert.multibody.components.spatial.shapes import Surface
 from dalembert.report.charts.drawing import colour_of
 from dalembert.report.charts.frequency.body import space
 from dalembert.report.charts.motion.outlines import NAMED_BODIES, bodies_of, outlines, path_of, unfolded
 from dalembert.report.charts.motion.playback import Playback
 from dalembert.report.look import LIGHT, plain, themed
 
-CORNERS_A_FRAME = 1000
-"""Corners of surfaces above which bodies are drawn as lines."""
+CORNERS_A_FRAME = 2500
+"""Corners of surfaces above which surfaces are simplified."""
+FEWEST = 20
+"""Corners of a surface below which bodies are drawn as lines."""
 AXIS = 0.09
 """Length of the axes of a body as part of the drawing's size."""
 STILL = 1e-9
@@ -84,10 +88,9 @@ def mechanism_in_space(
 
 
 def _meshes(drawing: Drawing) -> Meshes:
-    """Surfaces of bodies; many bodies become one, and none is drawn where there are too many corners."""
+    """Surfaces of bodies; many bodies become one, and none is drawn where there are too many bodies."""
+    drawing = _light(drawing)
     own = drawing.surfaces
-    if sum(len(surface.corners) for surface in own.values()) > CORNERS_A_FRAME:
-        return {}
     meshes = {name: (drawing.corners(name).astype(np.float32), own[name].triangles) for name in own}
     if len(meshes) <= NAMED_BODIES:
         return meshes
@@ -95,6 +98,21 @@ def _meshes(drawing: Drawing) -> Meshes:
     triangles = [mesh[1] + number for mesh, number in zip(meshes.values(), first, strict=False)]
     corners = np.concatenate([mesh[0] for mesh in meshes.values()], axis=1)
     return {f"{len(meshes)} bodies with shapes": (corners, np.concatenate(triangles))}
+
+
+def _light(drawing: Drawing) -> Drawing:
+    """The drawing with as many corners as the frames of a report can hold."""
+    own = drawing.surfaces
+    if sum(len(surface.corners) for surface in own.values()) <= CORNERS_A_FRAME:
+        return drawing
+    most = CORNERS_A_FRAME // len(own)
+    if most < FEWEST:
+        return replace(drawing, surfaces={})
+    few = {
+        name: surface if len(surface.corners) <= most else Surface(*simplified(*surface, most))
+        for name, surface in own.items()
+    }
+    return replace(drawing, surfaces=few)
 
 
 def _axes(drawing: Drawing, length: float) -> dict[str, np.ndarray]:

@@ -86,7 +86,8 @@ def test_a_mechanism_in_space_is_a_function_of_its_parameters(write):
 
 def test_joints_begin_at_stated_coordinates(write):
     stated = 'space = true\npose = { pin = "10*J" }\nrates = { "pin.angle" = "60 rpm" }'
-    study = load(write(("space = true", stated)))
+    aligned = '{ axes = "x", angles = "-90 deg" }'
+    study = load(write(("space = true", stated), (TURNED, aligned)))
     assert study.builder(J=0.08).stated.coordinates == {("pin", "angle"): pytest.approx(0.8)}
     start = study.forward(["pin.angle", "pin.rate"], [0.0, 0.01]).evaluate([[0.08]]).only()[0, 0]
     np.testing.assert_allclose(start, [0.8, 2 * np.pi], atol=1e-12)

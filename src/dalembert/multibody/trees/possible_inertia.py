@@ -9,6 +9,8 @@ from dalembert.multibody.components.spatial.orientation import Vector
 REFUSE, REPLACE = TREATMENTS = "refuse", "replace"
 _RADIUS = 1e-3
 """Least radius of gyration of a replaced inertia along a principal axis, m."""
+_THIN = 1e-6
+"""Radius of gyration of a point mass, or of a thin rod about its axis, m."""
 _SHARE = 1e-6
 """Least second moment of a replaced inertia, relative to the largest one."""
 
@@ -18,8 +20,9 @@ def possible(
 ) -> Inertia | None:
     """The inertia of a link, from a tensor about its centre of mass (3, 3); None without mass and inertia.
 
-    The nearest possible one has the same principal axes; second moments along them, the eigenvalues of tr(J) / 2 - J,
-    that are too small are raised.
+    Point masses and thin bodies, whose second moments are zero along some axes, are imported with a small radius of
+    gyration along these, and listed. The nearest possible one of an impossible inertia has the same principal axes;
+    second moments along them, the eigenvalues of tr(J) / 2 - J, that are too small are raised.
 
     Raises
     ------
@@ -34,15 +37,26 @@ def possible(
             raise ModelError(f"{wrong}; expected a positive mass. Correct it, or read with impossible='replace'")
         notes.append(f"{wrong}; the link is imported without mass")
         return None
+    second, axes = np.linalg.eigh(0.5 * np.trace(tensor) * np.eye(3) - tensor)
+    thin = np.abs(second) < 0.5 * mass * _THIN**2
+    if np.any(thin) and np.all(second[~thin] > 0.0):
+        notes.append(
+            f"{place}: {'a point mass' if np.all(thin) else 'a thin body'}, imported with a radius of gyration of "
+            f"{_THIN:g} m where it has none"
+        )
+        return Inertia.of(mass, _tensor(axes, np.maximum(second, mass * _THIN**2)), centre)
     try:
         return Inertia.of(mass, tensor, centre)
     except InputError as error:
         if impossible == REFUSE:
             raise ModelError(f"{place}: {error}, or read with impossible='replace'") from None
-        second, axes = np.linalg.eigh(0.5 * np.trace(tensor) * np.eye(3) - tensor)
-        raised = np.maximum(second, max(_SHARE * second[2], 0.0) or mass * _RADIUS**2)
-        own = axes @ np.diag(raised) @ axes.T
-        replaced = np.trace(own) * np.eye(3) - own
+        replaced = _tensor(axes, np.maximum(second, max(_SHARE * second[2], 0.0) or mass * _RADIUS**2))
         change = np.abs(replaced - tensor).max()
         notes.append(f"{place}: {error}. Replaced by the nearest possible one, which differs by {change:.3g} kg m^2")
         return Inertia.of(mass, replaced, centre)
+
+
+def _tensor(axes: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Inertia tensor of these second moments along axes, the columns of a matrix."""
+    own = axes @ np.diag(second) @ axes.T
+    return np.trace(own) * np.eye(3) - own

@@ -82,6 +82,11 @@ def read_urdf(path: str | os.PathLike[str], impossible: str = REFUSE) -> Tree:
     _refuse_repeated(path, robot, "joint")
     if not links:
         raise ModelError(f"{path}: the file has no <link>. A robot has at least one")
+    for own in joints:
+        if (mimic := own.child("mimic")) is not None:
+            known, leader = [joint.required_word("name") for joint in joints], mimic.required_word("joint")
+            if leader not in known:
+                raise ModelError(f"{mimic.place}: {unknown('joint', leader, known)}")
     root, ordered = _ordered(path, list(links), joints)
 
     def parts(name: str) -> tuple[Inertia | None, tuple[Shape, ...]]:

@@ -162,10 +162,10 @@ def test_reactions_of_a_gear_on_a_carrier_that_turns() -> None:
     system.add(sp.Torque("drive", arm.point("origin"), z=0.4))
     motion = mb.simulate(system, 0.4, mb.RadauIIA(tolerance=1e-10))
     torque, angle = motion.channels(["gear.torque_b", "frame.angle"]).T
-    assert np.abs(torque).min() > 1e-3
+    assert np.abs(torque).max() > 0.1
     directions = np.column_stack([np.cos(angle), np.sin(angle), 0.0 * angle])
     np.testing.assert_allclose(motion.reactions("gear")[:, 3:], torque[:, None] * directions, atol=1e-12)
-    with pytest.raises(InputError, match=r"unknown joint 'gaer' in Trajectory.reactions.*'gear'"):
+    with pytest.raises(InputError, match="unknown joint 'gaer'; did you mean 'gear'"):
         motion.reactions("gaer")
 
 

@@ -39,14 +39,14 @@ def test_inertias() -> None:
     with refused(
         InputError,
         snapshot(
-            "Inertia: the principal moments are 0.1, 0.2, 0.4 kg m^2; the largest is 0.1 larger than the sum of both others, which no body can have. Check moments and products"
+            "Inertia: the principal moments are 0.1, 0.2, 0.4 kg m^2; the largest, about (0, 0, 1), is 0.1 larger than the sum of both others, which no body can have. Check moments and products"
         ),
     ):
         Inertia(1.0, (0.1, 0.2, 0.4))
     with refused(
         InputError,
         snapshot(
-            "Inertia: the smallest principal moment is -0.0561553 kg m^2; expected a positive one. Check moments and products"
+            "Inertia: the smallest principal moment, about (0.788, -0.615, 0), is -0.0561553 kg m^2; expected a positive one. Check moments and products"
         ),
     ):
         Inertia(1.0, (0.1, 0.2, 0.2), products=(0.2, 0.0, 0.0))

@@ -253,8 +253,13 @@ REFUSED = {
         'ixx="0.002" iyy="0.001" izz="0.002"',
         'ixx="0.002" iyy="0.001" izz="0.004"',
         "arm.urdf, line 24: link 'wrist': <inertial>: Inertia: the principal moments are 0.001, 0.002, 0.004 kg m^2; the "
-        "largest is 0.001 larger than the sum of both others, which no body can have. Check moments and products, or "
+        "largest, about (0, 0, 1), is 0.001 larger than the sum of both others, which no body can have. Check moments and products, or "
         "read with impossible='replace'",
+    ),
+    "a leader that is not there": (
+        '<axis xyz="0 1 0.2"/>',
+        '<axis xyz="0 1 0.2"/><mimic joint="trun"/>',
+        "arm.urdf, line 48: joint 'bend': <mimic>: unknown joint 'trun'; did you mean 'turn'?",
     ),
     "mass without a body": (
         '<mass value="0.8"/>',
@@ -292,8 +297,14 @@ def test_impossible_inertias_are_replaced_by_the_nearest(file):
     # second moments -0.5, 1.5 and 2.5 g m^2 along z, x and y: the first becomes almost zero
     assert np.allclose(tree.link("wrist").inertia.moments, (0.0025, 0.0015, 0.004), rtol=1e-5)
     assert tree.unsupported[0].endswith("Replaced by the nearest possible one, which differs by 0.0005 kg m^2")
-    point = read_urdf(file(ARM.replace(old, 'ixx="0" iyy="0" izz="0"')), impossible="replace")
-    assert np.allclose(point.link("wrist").inertia.moments, 0.8 * 2e-6)
+    thin = read_urdf(file(ARM.replace(old, 'ixx="0.002" iyy="0.002" izz="0"')))
+    assert np.allclose(thin.link("wrist").inertia.moments, (0.002, 0.002, 1.6e-12), rtol=1e-6, atol=0)
+    assert thin.unsupported[0] == (
+        "arm.urdf, line 24: link 'wrist': <inertial>: a thin body, imported with a radius of gyration of 1e-06 m where it "
+        "has none"
+    )
+    point = read_urdf(file(ARM.replace(old, 'ixx="0" iyy="0" izz="1e-21"')))
+    assert np.allclose(point.link("wrist").inertia.moments, 0.8 * 2e-12, rtol=1e-6, atol=0)
     massless = read_urdf(file(ARM.replace('<mass value="0.8"/>', '<mass value="0"/>')), impossible="replace")
     assert massless.link("wrist").inertia is None
 

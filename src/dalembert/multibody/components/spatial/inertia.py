@@ -57,18 +57,18 @@ class Inertia(Checked):
     IN_WORDS = "an Inertia such as Inertia.box(mass=1.0, sides=(0.1, 0.2, 0.3))"
 
     def __post_init__(self) -> None:
-        principal = np.linalg.eigvalsh(np.real(self.tensor))
-        if principal[0] <= 0.0:
-            raise InputError(
-                f"Inertia: the smallest principal moment is {principal[0]:.6g} kg m^2; expected a positive one. "
-                "Check moments and products"
-            )
+        principal, axes = np.linalg.eigh(np.real(self.tensor))
         excess = principal[2] - principal[0] - principal[1]
-        if excess > _ROUNDING * principal[2]:
+        if principal[0] >= -_ROUNDING * principal[2] and excess > _ROUNDING * principal[2]:
             raise InputError(
                 f"Inertia: the principal moments are {', '.join(f'{moment:.6g}' for moment in principal)} kg m^2; the "
-                f"largest is {excess:.6g} larger than the sum of both others, which no body can have. Check moments "
-                "and products"
+                f"largest, about {_direction(axes[:, 2])}, is {excess:.6g} larger than the sum of both others, which "
+                "no body can have. Check moments and products"
+            )
+        if principal[0] <= 0.0:
+            raise InputError(
+                f"Inertia: the smallest principal moment, about {_direction(axes[:, 0])}, is {principal[0]:.6g} "
+                "kg m^2; expected a positive one. Check moments and products"
             )
 
     @property
@@ -122,3 +122,9 @@ class Inertia(Checked):
         """The same body with its centre of mass shifted by a vector, m."""
         centre = tuple(np.add(self.centre, to).tolist())
         return Inertia(self.mass, self.moments, self.products, centre)
+
+
+def _direction(axis: np.ndarray) -> str:
+    """A principal axis for messages; its largest component is positive."""
+    turned = axis * np.sign(axis[np.argmax(np.abs(axis))])
+    return f"({', '.join(f'{entry:.3g}' for entry in turned.round(6) + 0.0)})"

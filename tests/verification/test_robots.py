@@ -162,7 +162,7 @@ def listed(tree: Tree) -> np.ndarray:
 @pytest.mark.slow
 def test_robots_of_others(record_evidence, tmp_path):
     """Total mass is that of the file; every element and attribute is imported or listed; written files are the same."""
-    strict, read, gaps, errors = 0, 0, [], []
+    strict, read, gaps, errors, refusals = 0, 0, [], [], []
     for path in robots():
         document = minidom.parse(str(path)).documentElement
         try:
@@ -171,7 +171,7 @@ def test_robots_of_others(record_evidence, tmp_path):
         except ModelError as error:
             if "impossible" not in str(error):
                 continue  # no links, or a joint that follows a missing one
-            assert "about (" in str(error) or "the mass is 0 kg" in str(error), error
+            refusals.append(str(error))
             try:
                 tree = read_urdf(path, impossible="replace")
             except ModelError:
@@ -189,6 +189,7 @@ def test_robots_of_others(record_evidence, tmp_path):
         assert [link.name for link in again.links] == [link.name for link in tree.links], path
         assert [joint.axis for joint in again.moving] == [joint.axis for joint in tree.moving], path
     assert (strict, read) >= (51, 67)
+    assert all("about (" in sentence or "the mass is 0 kg" in sentence for sentence in refusals)  # axis and amount
     source = "example-robot-data 6.0, counted by another XML parser"
     evidence = {"topic": TOPIC, "kind": "other method", "source": source}
     record_evidence(

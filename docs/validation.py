@@ -67,6 +67,7 @@ AREAS = {
             "Least squares: NIST regressions",
             "Response sensitivity",
             "Sensitivities",
+            "Residual diagnostics",
             "Several specimens",
             "Sobol indices",
             "Statistics of estimates",

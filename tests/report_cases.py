@@ -1,6 +1,6 @@
 """Small studies that provoke every figure and every sentence of reports and summaries, with the sentences of each."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -38,6 +38,14 @@ SLOPE = PythonModel(lambda a: a * TIMES, {"a": Parameter("a", 0.0, 2.0, start=0.
 GHOST = PythonModel(lambda a, ghost: a * TIMES + 0 * ghost, {"a": (0.0, 2.0), "ghost": (0.0, 1.0)}, ["x"], TIMES)
 WAVE = PythonModel(lambda rate: np.cos(rate * TIMES), {"rate": (1.0, 20.0)}, ["x"], TIMES)
 NEAR_POLE = PythonModel(lambda a: np.array([1 / (1.02 - a)]), {"a": (-1.0, 1.0)}, ["x"], np.zeros(1))
+LONG = np.linspace(0, 4, 201)
+LINE_IN_TIME = PythonModel(
+    lambda offset, slope: offset + slope * LONG, {"offset": (-5.0, 5.0), "slope": (-5.0, 5.0)}, ["x"], LONG
+)
+ALMOST_AT_ONCE = np.concatenate([np.linspace(0, 0.1, 30), [2.0]])
+FAR_SAMPLE = PythonModel(
+    lambda offset, slope: offset + slope * ALMOST_AT_ONCE, LINE_IN_TIME.parameters, ["x"], ALMOST_AT_ONCE
+)
 BANDS = banded(DECAY, [1.8, 0.7], [2.2, 0.9], points=2)
 
 
@@ -62,6 +70,19 @@ def _with_outliers() -> da.Measurements:
     values = data.values.copy()
     values[[7, 30]] += 1.0
     return replace(data, values=values)
+
+
+def _noisy(outliers: Mapping[int, float] = {}, factor: Any = 1.0, added: Any = 0.0) -> Measurements:
+    """A line with noise of one fault."""
+    errors = 0.1 * np.random.default_rng(0).standard_normal(201) * factor + added
+    errors[list(outliers)] += list(outliers.values())
+    return Measurements.of(LONG, {"x": 1 + LONG / 2 + errors})
+
+
+def _signs_stay() -> Measurements:
+    """Heavy tails hide a drift from the autocorrelation, not from the signs."""
+    errors = 0.04 * np.random.default_rng(8).standard_cauchy(201).clip(-40, 40) + 0.06 * np.sign(np.sin(4.5 * LONG))
+    return Measurements.of(LONG, {"x": 1 + LONG / 2 + errors})
 
 
 def _exact(model: PythonModel, values: list[float], **options: Any) -> Measurements:
@@ -325,6 +346,45 @@ CASES: dict[str, Case] = {
             "The residuals of 'x' are correlated (lag-1 autocorrelation",
             "They are not noise: the model lacks something.",
         ),
+    ),
+    "an outlier": Case(
+        lambda: da.identify(LINE_IN_TIME, _noisy({140: 1.0})),
+        (
+            "1 sample is an outlier: 'x' at 2.8 s",
+            "Without the largest, 'slope' changes by",
+            "Leave out wrong ones, or use a robust loss",
+            "Outliers, the largest first",
+            "Samples with the largest influence.",
+        ),
+        ("residual-diagnostics",),
+    ),
+    "outliers of all kinds": Case(
+        lambda: da.identify(LINE_IN_TIME, _noisy({20: 1.0, 60: -1.0, 100: 1.0, 140: -1.0})),
+        ("4 samples are outliers:", ", and 1 more."),
+    ),
+    "a hum": Case(
+        lambda: da.identify(LINE_IN_TIME, _noisy(added=0.1 * np.sin(23 * LONG))),
+        ("have a periodic part:", "Look for its source, such as mains voltage"),
+    ),
+    "noise that grows": Case(
+        lambda: da.identify(LINE_IN_TIME, _noisy(factor=0.2 + LONG)),
+        ("The residuals of 'x' grow with", "Weight the samples by their noise:"),
+    ),
+    "signs that stay": Case(
+        lambda: da.identify(LINE_IN_TIME, _signs_stay()),
+        (
+            "change their sign too rarely:",
+            "Look at the residuals over time for what the model lacks.",
+            "are not normally distributed (Anderson–Darling test). Look at the normal quantiles.",
+        ),
+    ),
+    "one sample decides": Case(
+        lambda: da.identify(FAR_SAMPLE, _exact(FAR_SAMPLE, [1.0, 0.5], noise=0.1, seed=1)),
+        ("decides the fit (Cook's distance", "Check this sample, and measure more like it."),
+    ),
+    "many channels": Case(
+        lambda: da.identify(_experiments(names="abcdefghijklmn")),
+        ("The figure has the 12 channels that the tests doubt most.", "Click a name in the legend"),
     ),
     "correlated noise": Case(
         lambda: da.identify(

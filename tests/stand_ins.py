@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from dalembert.forward import Coordinate
-from dalembert.inverse import BandFit, Fit, Identifiability, ParameterSet
+from dalembert.inverse import BandFit, Fit, Identifiability, ParameterSet, ResidualDiagnostics
 from dalembert.multibody import Trajectory
 from dalembert.parameters import Parameter, Parameters
 from dalembert.study.tasks.sweep import Sweep
@@ -115,6 +115,7 @@ def fit(
         plain_deviations=np.array([2.1e-4, 3.3e-4]),
         integration_bias=np.full(2, np.nan),
         identifiability=lambda: Identifiability(np.array([120.0, 3.0]), np.eye(2), ()),
+        diagnostics=lambda: ResidualDiagnostics(parameters.names, (), (), (), True),
         parameters=parameters,
         values=np.array([0.785312, 0.65]),
         deviations=np.array([2.1e-4, 3.3e-4]),

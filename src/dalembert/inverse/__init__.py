@@ -12,6 +12,10 @@ from dalembert.inverse.bands.global_surrogate import GlobalSurrogate
 from dalembert.inverse.bands.identify_bands import identify_bands
 from dalembert.inverse.bands.nested import Nested
 from dalembert.inverse.correlation.correlated import CorrelatedResiduals, NoiseProcess
+from dalembert.inverse.diagnostics.findings import Outlier
+from dalembert.inverse.diagnostics.influence import Influence
+from dalembert.inverse.diagnostics.residual_diagnostics import ResidualDiagnostics
+from dalembert.inverse.diagnostics.series_residuals import SeriesResiduals
 from dalembert.inverse.events import (
     Checked,
     Event,
@@ -56,6 +60,7 @@ __all__ = [
     "Fit",
     "GlobalSurrogate",
     "Identifiability",
+    "Influence",
     "KnownNoise",
     "Likelihood",
     "MixedNoise",
@@ -65,6 +70,7 @@ __all__ = [
     "NoiseModel",
     "NoiseProcess",
     "OrnsteinUhlenbeckNoise",
+    "Outlier",
     "ParameterSet",
     "Paved",
     "Population",
@@ -73,8 +79,10 @@ __all__ = [
     "Profiled",
     "Profiles",
     "ProportionalNoise",
+    "ResidualDiagnostics",
     "Sampled",
     "Screened",
+    "SeriesResiduals",
     "ShootingState",
     "StartBegan",
     "StartEnd",

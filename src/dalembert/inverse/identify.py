@@ -22,7 +22,7 @@ from dalembert.inverse.experiments.explained import explained_findings
 from dalembert.inverse.experiments.joined import joined
 from dalembert.inverse.experiments.smoothed import noise_findings, smooth_noise
 from dalembert.inverse.experiments.suspect_units import unit_findings
-from dalembert.inverse.experiments.validation import HeldOut, split
+from dalembert.inverse.experiments.validation import HeldOut, split, whole_jacobian
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.fit.integration import integration_bias, integration_findings
 from dalembert.inverse.fit.outcome import outcome, too_few_findings
@@ -270,8 +270,10 @@ def identify(
         integration=found,
         correlated=correlated,
         halves=parts_of_time,
+        jacobian=None if at is None or not one_run else whole_jacobian(posed, problem, at),
     )
     fit = with_coverage(fit, posed)
+    fit = replace(fit, findings=(*fit.findings, *fit.diagnostics().findings))
     journal.tell(Finished(fit.success, fit.status, fit.fitness, fit.values, fit.simulations))
     return fit
 

@@ -157,7 +157,7 @@ def test_on_rounded_data_the_first_start_settles_it_and_the_end_is_polished():
 def test_a_model_that_cannot_explain_the_data_is_told_by_its_residuals():
     bent = Measurements.of(TIMES, {"x": 1 + TIMES + 0.5 * np.sin(3 * TIMES), "y": TIMES**2 - 1})
     fit = identify(LINE, bent)
-    left = {"correlated-residuals", "systematic-residuals", "model-misfit", "parameters-drift"}
+    left = {"correlated-residuals", "systematic-residuals", "model-misfit", "parameters-drift", "periodic-residuals"}
     assert {finding.code for finding in fit.findings} == left
 
 

@@ -25,6 +25,7 @@ SOURCES = [
     "inverse/problem/prior.py",
     "inverse/correlation/findings.py",
     "inverse/least_squares/identifiable.py",
+    "inverse/diagnostics/findings.py",
     *(f"inverse/fit/{name}.py" for name in ("integration", "outcome")),
     *(f"inverse/experiments/{name}.py" for name in ("coverage", "explained", "suspect_units", "validation")),
     *(f"inverse/misfit/{name}.py" for name in ("delays", "halves", "model_misfit")),

@@ -1,10 +1,12 @@
 """Residuals of one channel of one experiment, in the order of its samples."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from dalembert.data import Measurements
+from dalembert.inverse.experiments.experiment import Part
 from dalembert.inverse.experiments.tracks import tracks
 from dalembert.inverse.problem.problem import Problem
 
@@ -60,15 +62,39 @@ def series_of(problem: Problem, weights: np.ndarray | None = None, *, fewest: in
     ``weights`` (samples, channels) replace those of the problem: only values of positive weight are part of a series.
     """
     weights = problem.weights if weights is None else weights
-    names = problem.data.channels
     for track in tracks(problem):
-        unit = track.data.coordinate.unit
-        for column, channel in zip(track.columns, track.data.channels, strict=True):
-            kept = weights[track.rows, column] > 0
-            if np.count_nonzero(kept) >= fewest:
-                along, rows = track.times[kept], track.rows[kept] * len(names) + column
-                grid, step = even_grid(along)
-                yield Series(names[column], rows, along, grid, step, unit, track.name, channel)
+        where = track.rows, track.columns
+        yield from _of_record(track.name, track.data, *where, problem.data.channels, weights, fewest)
+
+
+def series_of_record(data: Measurements, weights: np.ndarray, parts: Sequence[Part]) -> Iterator[Series]:
+    """Yield the series of the data of a fit, whose ``parts`` are those of several experiments; empty for a single one.
+
+    ``weights`` have the shape (samples, channels).
+    """
+    if not parts:
+        rows, columns = (np.arange(size) for size in data.values.shape)
+        yield from _of_record("", data, rows, columns, data.channels, weights)
+    for part in parts:
+        yield from _of_record(part.name, part.data(data), part.rows, part.columns, data.channels, weights)
+
+
+def _of_record(
+    experiment: str,
+    own: Measurements,
+    rows: np.ndarray,
+    columns: np.ndarray,
+    names: tuple[str, ...],
+    weights: np.ndarray,
+    fewest: int = 2,
+) -> Iterator[Series]:
+    """Yield the series of one record, which stands in ``rows`` and ``columns`` of the joint one."""
+    for column, channel in zip(columns, own.channels, strict=True):
+        kept = weights[rows, column] > 0
+        if np.count_nonzero(kept) >= fewest:
+            along, places = own.coordinate.values[kept], rows[kept] * len(names) + column
+            grid, step = even_grid(along)
+            yield Series(names[column], places, along, grid, step, own.coordinate.unit, experiment, channel)
 
 
 def even_grid(along: np.ndarray) -> tuple[np.ndarray | None, float]:

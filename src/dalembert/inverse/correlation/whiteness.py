@@ -67,8 +67,10 @@ def is_first_order(series: Series, first: float, values: np.ndarray, basis: np.n
     return min(p_value(later, white, left[:, singular > 1e-9 * singular[0]]), periodic) >= LEVEL / 10
 
 
-def p_value_of_period(values: np.ndarray) -> float:
+def p_value_of_period(values: np.ndarray, fitted: float = 0.0) -> float:
     """Return the probability of a periodic part at least as large in white noise (places,): Fisher's g test.
+
+    ``fitted`` is the number of parameters that a fit took out of the values: each leaves half a frequency less.
 
     Source: R. A. Fisher, Tests of significance in harmonic analysis, Proceedings of the Royal Society A 125 (1929).
 
@@ -76,7 +78,7 @@ def p_value_of_period(values: np.ndarray) -> float:
     True
     """
     power = np.abs(np.fft.rfft(values - np.mean(values))[1:]) ** 2
-    count, share = len(power), float(np.max(power) / np.sum(power))
+    count, share = max(len(power) - fitted / 2, 1.0), float(np.max(power) / np.sum(power))
     return min(1.0, count * (1 - share) ** (count - 1))
 
 

@@ -53,7 +53,13 @@ def with_coverage(fit: Fit, problem: Problem) -> Fit:
         covered=float(np.mean(together)) if len(together) else np.nan,
     )
     findings = (*fit.findings, *_findings(validation))
-    return replace(fit, validation=validation, findings=findings, simulations=problem.journal.simulations)
+    return replace(
+        fit,
+        validation=validation,
+        findings=findings,
+        simulations=problem.journal.simulations,
+        jacobian=None if fit.jacobian is None else at.jacobian,
+    )
 
 
 def _findings(validation: Validation) -> Iterator[Finding]:

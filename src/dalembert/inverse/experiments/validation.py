@@ -10,7 +10,7 @@ from dalembert.errors import InputError, require_known
 from dalembert.inverse.experiments.experiment import Part
 from dalembert.inverse.experiments.experiments import JointModel
 from dalembert.inverse.experiments.explained import WORSE, Explained, explained, percentages
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import Linearisation, Problem
 from dalembert.stored_fields import Over
 
 HeldOut = float | str | Sequence[str] | Mapping[str, float] | None
@@ -102,6 +102,16 @@ def split(problem: Problem, validation: HeldOut) -> Split:
         validation = (validation,)
     lengths = dict(validation) if isinstance(validation, Mapping) else dict.fromkeys(validation, 0.0)
     return _experiments(problem, lengths, everything)
+
+
+def whole_jacobian(whole: Problem, part: Problem, at: Linearisation) -> np.ndarray:
+    """Return the jacobian (samples, channels, parameters) of a part in that of the whole, NaN where it has none."""
+    if part is whole:
+        return at.jacobian
+    found = np.full((*whole.weights.shape, at.jacobian.shape[-1]), np.nan)
+    columns = [whole.data.channels.index(name) for name in part.data.channels]
+    found[: part.samples, columns] = at.jacobian
+    return found
 
 
 def _ends(problem: Problem, share: float, fitted: np.ndarray) -> Split:

@@ -12,6 +12,7 @@ from dalembert.contents import Contents
 from dalembert.errors import InputError, shown
 from dalembert.findings import Finding
 from dalembert.inverse.correlation.correlated import CorrelatedResiduals
+from dalembert.inverse.diagnostics.residual_diagnostics import ResidualDiagnostics, residual_diagnostics
 from dalembert.inverse.events import StartEnd, Step
 from dalembert.inverse.experiments.experiment import ExperimentFit, Part, experiment_fit
 from dalembert.inverse.experiments.validation import Validation
@@ -77,6 +78,9 @@ class Fit(EndedResult):
         How far the integrator's error moves the values; None for a model that cannot be simulated more exactly.
     halves : Halves, optional
         Parameters of the first and of the second half of the records; None where that is not known.
+    jacobian : array, shape (samples, channels, parameters), optional
+        ∂R/∂p at ``values``, NaN where the response was not linearised. None where the model gives none, and for
+        segments.
     """
 
     FORMAT: ClassVar[str] = "dalembert fit 1"
@@ -105,6 +109,7 @@ class Fit(EndedResult):
     correlated: CorrelatedResiduals | None = None
     integration: IntegrationBias | None = None
     halves: Halves | None = None
+    jacobian: Annotated[np.ndarray | None, Over("sample", "channel", "parameter")] = None
 
     @property
     def plain_deviations(self) -> np.ndarray:
@@ -148,6 +153,25 @@ class Fit(EndedResult):
         known = Estimate(self.deviations, self.correlation, self.singular_values, self.directions)
         found = tuple(identifiability_findings(self.parameters, self.values, known))
         return Identifiability(self.singular_values, self.directions, found, self.deviations, self.correlation)
+
+    def diagnostics(self) -> ResidualDiagnostics:
+        """Return tests of the residuals, outliers by channel and time, and the influence of single samples.
+
+        Fits of former versions have no Jacobian: their leverages are NaN.
+
+        Examples
+        --------
+        >>> from dalembert import Measurements, PythonModel, identify
+        >>> times = np.linspace(0.0, 1.0, 101)
+        >>> line = PythonModel(lambda slope: slope * times, {"slope": (0.0, 3.0)}, ["x"], times)
+        >>> noisy = 2 * times + 0.1 * np.random.default_rng(0).standard_normal(101)
+        >>> noisy[70] += 1.0
+        >>> found = identify(line, Measurements.of(times, {"x": noisy})).diagnostics()
+        >>> print(found.outliers[0], round(found.outliers[0].size, 1))
+        'x' at 0.7 s -10.2
+        >>> lags, correlations, limits = found.series[0].autocorrelation()
+        """
+        return residual_diagnostics(self)
 
     @property
     def conclusions(self) -> tuple[Finding, ...]:

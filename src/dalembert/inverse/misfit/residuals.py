@@ -20,6 +20,7 @@ from dalembert.inverse.least_squares.estimate import left_vectors
 from dalembert.inverse.misfit.local_noise import local_deviation
 from dalembert.inverse.problem.noise import quantum
 from dalembert.inverse.problem.problem import Linearisation, Problem
+from dalembert.parameters import Parameters
 
 BOUND = 1e-6
 """Distance from a bound, as a part of the width between bounds, up to which a parameter is on it."""
@@ -61,9 +62,7 @@ class Residuals:
         if problem.loss is not None:
             counted = problem.weights.ravel() > 0
             values[counted] = problem.loss.influence(values[counted])
-        parameters = problem.model.parameters
-        near = BOUND * (parameters.upper - parameters.lower)
-        free = (at.vector - parameters.lower > near) & (parameters.upper - at.vector > near)
+        free = off_bounds(problem.model.parameters, at.vector)
         return cls(problem, at, values, left_vectors(slopes[:, free])[: at.response.size], free, known)
 
     @property
@@ -122,3 +121,9 @@ class Residuals:
         """Return the residuals less ``amount`` of a column (values,) that is orthogonal to the basis."""
         basis = np.column_stack([self.basis, column / np.linalg.norm(column)])
         return replace(self, values=self.values - amount * column, basis=basis)
+
+
+def off_bounds(parameters: Parameters, values: np.ndarray) -> np.ndarray:
+    """Return which parameters are on no bound at values, both of shape (parameters,)."""
+    near = BOUND * (parameters.upper - parameters.lower)
+    return (values - parameters.lower > near) & (parameters.upper - values > near)

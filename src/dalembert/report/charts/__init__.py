@@ -32,6 +32,7 @@ _NAMES = {
     "identification.profile": "profile",
     "identification.regularisation": "l_curve steps",
     "identification.residual_bands": "residual_bands",
+    "identification.residual_diagnostics": "residual_diagnostics",
     "identification.responses": "responses",
     "identification.search": "convergence starts",
     "identification.specimens": "specimens",

@@ -36,6 +36,7 @@ from dalembert.report.charts.identification.profile import profile as profile
 from dalembert.report.charts.identification.regularisation import l_curve as l_curve
 from dalembert.report.charts.identification.regularisation import steps as steps
 from dalembert.report.charts.identification.residual_bands import residual_bands as residual_bands
+from dalembert.report.charts.identification.residual_diagnostics import residual_diagnostics as residual_diagnostics
 from dalembert.report.charts.identification.responses import responses as responses
 from dalembert.report.charts.identification.search import convergence as convergence
 from dalembert.report.charts.identification.search import starts as starts

@@ -1,4 +1,4 @@
-"""Identified parameters: the response against the data, the motion, the search, and what is known beyond the fit."""
+"""Identified parameters: response, data, residuals, the motion, the search, and what is known beyond the fit."""
 
 from dalembert.inverse import Fit, Prediction, Profiles
 from dalembert.multibody import Trajectory
@@ -11,6 +11,7 @@ from dalembert.report.sections.identification.estimates import estimates
 from dalembert.report.sections.identification.identifiability import identifiability
 from dalembert.report.sections.identification.prediction import predicted
 from dalembert.report.sections.identification.profiles import profiled
+from dalembert.report.sections.identification.residuals import residuals
 from dalembert.report.sections.identification.response import compared, experiments
 from dalembert.report.sections.identification.search import search
 from dalembert.report.sections.identification.shooting import shooting
@@ -21,13 +22,14 @@ from dalembert.report.sections.motion.mechanism import mechanisms
 
 @sections_of(Fit)
 def fit(result: Fit, asked: Asked) -> list[Section]:
-    """Estimates, the response against the data, the motion, the search, and what is known beyond."""
+    """Estimates, the response against the data, the residuals, the motion, the search, and what is known beyond."""
     moving, profiles, predictions = asked.each(Trajectory), asked.one(Profiles), asked.each(Prediction)
     data = {"": result.data, **{item.name: item.data for item in result.experiments}}
     return [
         _headline(result),
         estimates(result),
         experiments(result) if result.experiments else compared(result),
+        *residuals(result),
         *mechanisms(moving, asked.points, data),
         *search(result),
         *([] if result.nodes is None else [shooting(result, result.nodes)]),

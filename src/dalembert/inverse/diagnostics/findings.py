@@ -1,0 +1,191 @@
+"""Findings of residual diagnostics."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from dalembert.errors import counted, listed
+from dalembert.findings import Finding
+from dalembert.inverse.diagnostics.noise_tests import rank_correlation, runs
+from dalembert.inverse.diagnostics.series_residuals import SeriesResiduals
+
+LEVEL = 0.001
+"""Probability with which a test takes independent noise for something else, over all channels of a fit."""
+
+DECIDES = 1.0
+"""Cook's distance from which one sample decides a fit: without it the parameters leave their confidence region."""
+
+FREEDOM = 10
+"""Fewest degrees of freedom with which a single sample that decides is reported: of few samples each one does."""
+
+SHOWN = 3
+"""Outliers that a message lists."""
+
+
+@dataclass(frozen=True)
+class Outlier:
+    """A value that the noise of its channel does not explain.
+
+    Parameters
+    ----------
+    experiment : str
+        Empty for a single one.
+    channel : str
+    at : float
+        Coordinate, in ``unit``.
+    unit : str
+    size : float
+        Residual R − data in standard deviations of the channel's other residuals.
+    p_value : float
+        Probability that noise has any value as far out, over all values of the fit.
+    parameter : str
+        The parameter that the value moves most.
+    change : float
+        Its identified value less that without this one, in standard deviations; 0 where it is not known.
+    """
+
+    experiment: str
+    channel: str
+    at: float
+    unit: str
+    size: float
+    p_value: float
+    parameter: str
+    change: float
+
+    def __str__(self) -> str:
+        record = f" of {self.experiment!r}" if self.experiment else ""
+        return f"{self.channel!r}{record} at {self.at:.4g} {self.unit}".rstrip()
+
+
+def diagnostic_findings(
+    names: Sequence[str], series: Sequence[SeriesResiduals], outliers: Sequence[Outlier], *, robust: bool
+) -> Iterator[Finding]:
+    """Yield what the tests conclude, at most one finding for each test.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Of the parameters.
+    series : sequence of SeriesResiduals
+    outliers : sequence of Outlier
+        Largest first.
+    robust : bool
+        Whether the loss makes outliers count less.
+    """
+    if outliers:
+        yield _of_outliers(outliers, robust=robust)
+    if (worst := _worst(series, "runs")) is not None:
+        yield _of_runs(worst)
+    if (worst := _worst(series, "period")) is not None:
+        yield _of_period(worst)
+    over = [(one, key) for key in ("size over response", "size over coordinate") if (one := _worst(series, key, 2))]
+    if over:
+        yield _of_size(*min(over, key=lambda pair: pair[0].p_values[pair[1]]))
+    if (worst := _worst(series, "normality")) is not None:
+        yield _of_normality(worst)
+    yield from _of_influence(names, series)
+
+
+def _worst(series: Sequence[SeriesResiduals], test: str, tests: int = 1) -> SeriesResiduals | None:
+    """Return the series of the least probability, if that is significant among all series and ``tests``."""
+    tried = [one for one in series if test in one.p_values]
+    worst = min(tried, key=lambda one: one.p_values[test], default=None)
+    return worst if worst is not None and worst.p_values[test] < LEVEL / (len(tried) * tests) else None
+
+
+def _of_outliers(outliers: Sequence[Outlier], *, robust: bool) -> Finding:
+    first, number = outliers[0], len(outliers)
+    names = listed([f"{item} ({abs(item.size):.2g} standard deviations)" for item in outliers[:SHOWN]])
+    more = f", and {number - SHOWN} more" if number > SHOWN else ""
+    moved = (
+        f" Without the largest, {first.parameter!r} changes by {abs(first.change):.2g} standard deviations."
+        if abs(first.change) >= 0.1
+        else ""
+    )
+    values = {
+        "outliers": number,
+        "experiment": first.experiment,
+        "channel": first.channel,
+        "at": first.at,
+        "size": first.size,
+        "p_value": first.p_value,
+        "parameter": first.parameter,
+        "change": first.change,
+    }
+    message = f"{counted(number, 'sample')} {'is an outlier' if number == 1 else 'are outliers'}: {names}{more}.{moved}"
+    advice = "Check these samples. Leave out wrong ones, or use a robust loss such as 'huber'."
+    return Finding("outlying-samples", "note" if robust else "warning", values, message, "" if robust else advice)
+
+
+def _of_runs(one: SeriesResiduals) -> Finding:
+    count, expected, probability = runs(one.standardised[np.isfinite(one.standardised)])
+    values = {"channel": one.name, "runs": count, "expected": expected, "p_value": probability}
+    how = "rarely" if count < expected else "often"
+    message = (
+        f"The residuals of {one.name!r} change their sign too {how}: {count} runs of equal signs, {expected:.0f} are "
+        "expected of independent noise."
+    )
+    advice = "Look at the residuals over time for what the model lacks."
+    return Finding("runs-of-signs", "warning", values, message, advice)
+
+
+def _of_period(one: SeriesResiduals) -> Finding:
+    _, frequency, share = one.periodic_part()
+    values = {"channel": one.name, "period": 1 / frequency, "share": share, "p_value": one.p_values["period"]}
+    size = f"{1 / frequency:.3g} {one.series.unit}".rstrip()
+    message = (
+        f"The residuals of {one.name!r} have a periodic part: {100 * share:.2g} % of their power has the period {size}."
+    )
+    advice = "Look for its source, such as mains voltage, a motor, or a mode that the model lacks."
+    return Finding("periodic-residuals", "note" if one.correlated else "warning", values, message, advice)
+
+
+def _of_size(one: SeriesResiduals, test: str) -> Finding:
+    there = np.isfinite(one.standardised)
+    over_response = test == "size over response"
+    along = np.abs(one.response) if over_response else one.series.along
+    correlation, probability = rank_correlation(np.abs(one.standardised[there]), along[there])
+    what = "the size of the response" if over_response else "the coordinate"
+    how = "grow" if correlation > 0 else "shrink"
+    values = {"channel": one.name, "over": what, "correlation": correlation, "p_value": probability}
+    message = f"The residuals of {one.name!r} {how} with {what} (rank correlation {correlation:.2f})."
+    advice = "Weight the samples by their noise: the standard deviations assume that it is constant in a channel."
+    return Finding("unequal-variance", "warning", values, message, advice)
+
+
+def _of_normality(one: SeriesResiduals) -> Finding:
+    values = {"channel": one.name, "p_value": one.p_values["normality"]}
+    message = f"The residuals of {one.name!r} are not normally distributed (Anderson–Darling test)."
+    advice = "Look at the normal quantiles. A robust loss is more exact where large residuals are frequent."
+    return Finding("non-normal-residuals", "note", values, message, advice)
+
+
+def _of_influence(names: Sequence[str], series: Sequence[SeriesResiduals]) -> Iterator[Finding]:
+    """Yield the sample that decides the fit, if there is one."""
+    known = [one for one in series if np.any(np.isfinite(one.distance))]
+    freedom = sum(len(one.residuals) for one in known) - len(names)
+    if not known or freedom < FREEDOM:
+        return
+    worst = max(known, key=lambda one: float(np.nanmax(one.distance)))
+    row = int(np.nanargmax(worst.distance))
+    distance = float(worst.distance[row])
+    if not distance > DECIDES:
+        return
+    change = np.nan_to_num(worst.changes[row])
+    most = int(np.argmax(np.abs(change)))
+    at, unit = float(worst.series.along[row]), worst.series.unit
+    values = {
+        "channel": worst.name,
+        "at": at,
+        "distance": distance,
+        "leverage": float(worst.leverage[row]),
+        "parameter": names[most],
+        "change": float(change[most]),
+    }
+    message = (
+        f"The sample of {worst.name!r} at {f'{at:.4g} {unit}'.rstrip()} decides the fit (Cook's distance "
+        f"{distance:.3g}): without it {names[most]!r} changes by {abs(change[most]):.2g} standard deviations."
+    )
+    yield Finding("influential-sample", "note", values, message, "Check this sample, and measure more like it.")

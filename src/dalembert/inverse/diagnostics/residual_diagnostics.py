@@ -1,0 +1,203 @@
+"""Diagnostics of the residuals of a fit: what is standardised, tested and listed."""
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.special import ndtr, stdtr
+
+from dalembert.findings import Finding
+from dalembert.inverse.correlation.correlation import SMALL
+from dalembert.inverse.correlation.series import Series, series_of_record
+from dalembert.inverse.correlation.whiteness import LEAST, p_value
+from dalembert.inverse.diagnostics.findings import LEVEL, Outlier, diagnostic_findings
+from dalembert.inverse.diagnostics.influence import ALONE, Influence, influence
+from dalembert.inverse.diagnostics.noise_tests import normality, rank_correlation, runs
+from dalembert.inverse.diagnostics.series_residuals import SeriesResiduals
+from dalembert.inverse.least_squares.estimate import left_vectors
+from dalembert.inverse.misfit.residuals import off_bounds
+from dalembert.inverse.problem.prior import prior_slopes
+
+if TYPE_CHECKING:
+    from dalembert.inverse.fit.fit import Fit
+
+
+_MEDIAN = 0.6745  # of the size of a standard normal variable
+
+
+@dataclass(frozen=True, eq=False)
+class ResidualDiagnostics:
+    """Standardised residuals of a fit, tests of them, outliers, and the influence of single samples.
+
+    Parameters
+    ----------
+    parameters : tuple of str
+    series : tuple of SeriesResiduals
+        One for each channel of each experiment with at least two fitted values.
+    outliers : tuple of Outlier
+        Largest first.
+    findings : tuple of Finding
+        What the tests conclude; those of the fit have the same ones.
+    tested : bool
+        Whether the residuals are tested: they are not where rounding explains them, or where the search did not
+        converge.
+
+    Notes
+    -----
+    Each test takes independent noise for something else in one of a thousand fits, over all channels and values.
+    """
+
+    parameters: tuple[str, ...]
+    series: tuple[SeriesResiduals, ...]
+    outliers: tuple[Outlier, ...]
+    findings: tuple[Finding, ...]
+    tested: bool
+
+    def __str__(self) -> str:
+        return "\n".join(map(str, self.findings)) or "The tests find nothing against independent normal residuals."
+
+
+def residual_diagnostics(fit: "Fit") -> ResidualDiagnostics:
+    """Return the diagnostics of a fit; :meth:`Fit.diagnostics` is the public name."""
+    residual = np.where(fit.weights > 0, np.sqrt(fit.weights) * np.nan_to_num(fit.residuals), 0.0).ravel()
+    slopes, free = _slopes(fit), off_bounds(fit.parameters, fit.values)
+    robust = "loss" in fit.provenance
+    variance = _variance(residual[fit.weights.ravel() > 0]) if robust and not _given(fit) else fit.residual_variance
+    freedom = None if fit.noise_is_known or robust else float(fit.degrees_of_freedom)
+    known = _unknown(fit) if slopes is None else influence(slopes, residual, free, variance, freedom)
+    basis = np.zeros((len(residual), 0)) if slopes is None else left_vectors(slopes[:, free])[: len(residual)]
+    tested = _tested(fit)
+    correlated = () if fit.correlated is None else tuple(item.channel for item in fit.correlated.processes)
+    found = []
+    for own in series_of_record(fit.data, fit.weights, fit.parts):
+        made = _standardised(fit, own, residual, known, robust=robust, correlated=own.name in correlated)
+        judged = tested and len(own.rows) >= LEAST and not (fit.noise_is_known and made.deviation**2 < SMALL)
+        tests = _tests(made, residual, basis) if judged else {}
+        found.append(replace(made, p_values=tests))
+    outliers = _outliers(fit, found, robust=robust) if tested else ()
+    findings = tuple(diagnostic_findings(fit.parameters.names, found, outliers, robust=robust)) if tested else ()
+    return ResidualDiagnostics(fit.parameters.names, tuple(found), outliers, findings, tested)
+
+
+ROUNDED = ("arithmetic", "rounded")
+"""Sources of noise that is none."""
+
+OUTSIDE = 5.0
+"""Standardised residual beyond which a value is an outlier, and does not count for the shape of the distribution."""
+
+
+def _tested(fit: "Fit") -> bool:
+    """Whether the residuals are those of a minimum, and more than rounding."""
+    rounded = any(item.code == "misfit-at-noise" and item.values["source"] in ROUNDED for item in fit.outcome)
+    apart = fit.nodes is not None and fit.nodes.segments > 1
+    return fit.success and not rounded and not apart
+
+
+def _given(fit: "Fit") -> bool:
+    return fit.data.deviations is not None and fit.provenance.get("weights") == "data"
+
+
+def _slopes(fit: "Fit") -> np.ndarray | None:
+    """W^½ ∂R/∂p · scale of all values, then of priors, (values + priors, parameters); None without a Jacobian."""
+    if fit.jacobian is None or not len(fit.values):
+        return None
+    scale = fit.parameters.scale
+    fitted = fit.weights[..., None] > 0
+    rows = np.where(fitted, np.sqrt(fit.weights)[..., None] * fit.jacobian * scale, 0.0).reshape(-1, len(scale))
+    return np.concatenate([rows, prior_slopes(fit.parameters, fit.values, scale)])
+
+
+def _unknown(fit: "Fit") -> Influence:
+    """Influence without a Jacobian."""
+    number = fit.weights.size
+    lost = np.full(number, np.nan)
+    return Influence(lost, lost, np.full((number, len(fit.values)), np.nan))
+
+
+def _variance(values: np.ndarray) -> float:
+    """Variance from the median size, which outliers hardly change."""
+    return float(np.median(np.abs(values)) / _MEDIAN) ** 2
+
+
+def _standardised(
+    fit: "Fit", own: Series, residual: np.ndarray, known: Influence, *, robust: bool, correlated: bool
+) -> SeriesResiduals:
+    """Residuals of one series, without tests.
+
+    Without a Jacobian each value has an equal share of the parameters.
+    """
+    values, leverage = residual[own.rows], known.leverage[own.rows]
+    share = min(1.0, len(fit.values) / max(1, np.count_nonzero(fit.weights)))
+    used = np.where(np.isnan(leverage), share, leverage)
+    freedom = len(values) - float(np.sum(used))
+    if robust:
+        variance = _variance(values) * len(values) / freedom if freedom > 0 else np.nan
+    else:
+        variance = float(values @ values) / freedom if freedom > 1 else np.nan
+    standardised = np.full(len(values), np.nan)
+    there = (1 - used > ALONE) & (variance > 0)
+    standardised[there] = values[there] / np.sqrt(variance * (1 - used[there]))
+    deleted = standardised
+    if not robust and freedom > 1:
+        deleted = standardised * np.sqrt((freedom - 1) / np.maximum(freedom - standardised**2, ALONE * freedom))
+    return SeriesResiduals(
+        series=own,
+        response=fit.response.ravel()[own.rows],
+        residuals=fit.residuals.ravel()[own.rows],
+        standardised=standardised,
+        deleted=deleted,
+        leverage=leverage,
+        distance=known.distance[own.rows],
+        changes=known.changes[own.rows],
+        deviation=float(np.sqrt(variance)),
+        correlated=correlated,
+        p_values={},
+    )
+
+
+def _tests(made: SeriesResiduals, residual: np.ndarray, basis: np.ndarray) -> dict[str, float]:
+    """Probabilities of the tests; correlated residuals are not tested for what needs independence."""
+    own, values = made.series, made.standardised
+    found = {"autocorrelation": p_value(own, residual[own.rows], basis[own.rows])}
+    there = np.isfinite(values)
+    if np.count_nonzero(there) < LEAST or not np.std(values[there]) > 0:
+        return found
+    if own.grid is not None:
+        found["period"] = made.periodic_part(float(np.sum(basis[own.rows] ** 2)))[0]
+    if made.correlated:
+        return found
+    kept = values[there]
+    usual = kept[np.abs(made.deleted[there]) < OUTSIDE]
+    found["runs"] = runs(kept)[2]
+    found["normality"] = normality(usual) if len(usual) >= LEAST else 1.0
+    size = np.abs(kept)
+    found["size over response"] = rank_correlation(size, np.abs(made.response[there]))[1]
+    found["size over coordinate"] = rank_correlation(size, own.along[there])[1]
+    return found
+
+
+def _outliers(fit: "Fit", found: list[SeriesResiduals], *, robust: bool) -> tuple[Outlier, ...]:
+    """Values that no normal noise explains, largest first; correlated residuals are not searched."""
+    searched = [one for one in found if one.p_values and not one.correlated]
+    total = sum(len(one.residuals) for one in searched)
+    outliers = []
+    for one in searched:
+        freedom = len(one.residuals) - np.nansum(one.leverage) - 1
+        size = np.abs(np.nan_to_num(one.deleted))
+        probability = 2 * (ndtr(-size) if robust else stdtr(freedom, -size))
+        for row in np.flatnonzero(probability < LEVEL / total):
+            change = np.nan_to_num(one.changes[row])
+            worst = int(np.argmax(np.abs(change))) if len(change) else 0
+            outliers.append(
+                Outlier(
+                    experiment=one.series.experiment,
+                    channel=one.series.channel,
+                    at=float(one.series.along[row]),
+                    unit=one.series.unit,
+                    size=float(one.deleted[row]),
+                    p_value=float(min(1.0, total * probability[row])),
+                    parameter=fit.parameters.names[worst] if len(change) else "",
+                    change=float(change[worst]) if len(change) else 0.0,
+                )
+            )
+    return tuple(sorted(outliers, key=lambda item: -abs(item.size)))

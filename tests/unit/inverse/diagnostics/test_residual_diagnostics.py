@@ -1,0 +1,212 @@
+"""What residual diagnostics find in noise with one known fault, and that they find nothing in white noise."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from inline_snapshot import snapshot
+
+import dalembert as da
+from dalembert.data import Measurements
+from dalembert.forward import PythonModel
+from dalembert.inverse import Experiment, Fit, identify
+from dalembert.optimize import ParticleSwarm
+
+TIMES = np.linspace(0, 2, 201)
+LINE = PythonModel(lambda a, b: a + b * TIMES, {"a": (-5.0, 5.0), "b": (-5.0, 5.0)}, ["x"], TIMES)
+SIZE = 0.1
+
+
+def noise(seed, number=201):
+    return SIZE * np.random.default_rng(seed).standard_normal(number)
+
+
+def fitted(errors, model=LINE, **options):
+    data = Measurements.of(model.coordinate, {"x": 1 + 2 * model.coordinate.values + errors}, missing="leave-out")
+    return identify(model, data, starts=1, horizon=None, **options)
+
+
+def linear_fits(fit, errors):
+    """The fit of a linear model with other noise, repeatedly, without a search."""
+    slopes = fit.jacobian[:, 0]
+    for own in errors:
+        values = np.array([1 + 2 * TIMES + own]).T
+        found = np.linalg.lstsq(slopes, values[:, 0], rcond=None)[0]
+        response = (slopes @ found)[:, None]
+        data = replace(fit.data, values=values)
+        yield replace(fit, data=data, values=found, response=response, fitness=float(np.sum((response - values) ** 2)))
+
+
+def codes(found):
+    return [item.code for item in found.findings]
+
+
+def test_white_noise_is_rarely_taken_for_something_else():
+    fit = fitted(noise(0))
+    errors = SIZE * np.random.default_rng(1).standard_normal((400, 201))
+    tried = [item.diagnostics() for item in linear_fits(fit, errors)]
+    alarms = sum(bool(codes(found)) for found in tried)
+    assert alarms <= 7  # 2 of 400 are expected
+    for test in ("runs", "normality", "period", "size over response", "size over coordinate"):
+        small = np.mean([found.series[0].p_values[test] < 0.05 for found in tried])
+        assert 0.015 < small < 0.09, test
+
+
+def test_an_outlier_is_named_with_its_time_and_its_effect():
+    errors = noise(0)
+    errors[140] += 1.0
+    fit = fitted(errors)
+    (outlier,) = fit.diagnostics().outliers
+    assert (outlier.channel, outlier.experiment, outlier.unit) == ("x", "", "s")
+    assert outlier.at == pytest.approx(1.4)
+    assert outlier.size < -8  # computed minus measured
+    weights = np.ones((201, 1))
+    weights[140] = 0
+    without = identify(LINE, fit.data, weights=weights, starts=1, horizon=None)
+    moved = (fit.values - without.values) / without.deviations
+    assert outlier.parameter == "b"
+    assert outlier.change == pytest.approx(moved[1], rel=0.01)
+    assert str(next(item for item in fit.findings if item.code == "outlying-samples")) == snapshot(
+        "1 sample is an outlier: 'x' at 1.4 s (11 standard deviations). Without the largest, 'b' changes by 0.52 standard deviations. Check these samples. Leave out wrong ones, or use a robust loss such as 'huber'."
+    )
+
+
+def test_a_robust_fit_notes_its_outliers():
+    errors = noise(0)
+    errors[[20, 140]] += 1.0
+    found = fitted(errors, loss="huber", loss_scale=0.15).diagnostics()
+    assert sorted(round(item.at, 2) for item in found.outliers) == [0.2, 1.4]
+    assert [(item.code, item.severity) for item in found.findings] == [("outlying-samples", "note")]
+
+
+@pytest.mark.parametrize(
+    ("errors", "code"),
+    [
+        (noise(3) * (0.2 + TIMES), "unequal-variance"),
+        (noise(4) + 0.1 * np.sin(2 * np.pi * 7.3 * TIMES), "periodic-residuals"),
+        (0.15 * (np.random.default_rng(5).exponential(size=201) - 1), "non-normal-residuals"),
+    ],
+    ids=["variance", "hum", "skewed"],
+)
+def test_a_fault_of_the_noise_is_found(errors, code):
+    assert code in codes(fitted(errors).diagnostics())
+
+
+def test_the_period_of_a_hum_is_that_of_the_finding():
+    found = fitted(noise(4) + 0.1 * np.sin(2 * np.pi * 7.3 * TIMES)).diagnostics()
+    (finding,) = (item for item in found.findings if item.code == "periodic-residuals")
+    assert finding.values["period"] == pytest.approx(1 / 7.3, rel=0.05)
+    assert str(finding) == snapshot(
+        "The residuals of 'x' have a periodic part: 25 % of their power has the period 0.133 s. Look for its source, such as mains voltage, a motor, or a mode that the model lacks."
+    )
+
+
+def test_heavy_tails_that_hide_a_drift_have_few_runs():
+    rng = np.random.default_rng(8)
+    errors = 0.04 * rng.standard_cauchy(201).clip(-40, 40) + 0.06 * np.sign(np.sin(9 * TIMES))
+    assert "runs-of-signs" in codes(fitted(errors).diagnostics())
+
+
+def test_a_sample_that_decides_the_fit_is_named():
+    times = np.concatenate([np.linspace(0, 0.1, 30), [2.0]])
+    model = PythonModel(lambda a, b: a + b * times, {"a": (-5.0, 5.0), "b": (-5.0, 5.0)}, ["x"], times)
+    found = fitted(noise(1, 31), model).diagnostics()
+    (finding,) = (item for item in found.findings if item.code == "influential-sample")
+    assert finding.values["at"] == 2.0
+    assert finding.values["leverage"] == pytest.approx(0.99, abs=0.02)
+    assert str(finding) == snapshot(
+        "The sample of 'x' at 2 s decides the fit (Cook's distance 188): without it 'b' changes by 20 standard deviations. Check this sample, and measure more like it."
+    )
+
+
+def test_missing_values_uneven_samples_and_wrapping_channels():
+    times = np.sort(np.random.default_rng(2).uniform(0, 6, 150))
+    model = PythonModel(lambda w: w * times, {"w": (0.5, 3.0)}, [da.Channel("angle", "rad")], times)
+    angle = (2 * times + 0.05 * np.random.default_rng(3).standard_normal(150) + np.pi) % (2 * np.pi) - np.pi
+    angle[[10, 50, 51]] = np.nan
+    angle[90] += 0.6
+    data = Measurements.of(times, {"angle": angle}, wraps=["angle"], missing="leave-out")
+    found = identify(model, data, start=[2.0], starts=1, horizon=None).diagnostics()
+    (series,) = found.series
+    assert len(series.residuals) == 147
+    assert np.max(np.abs(series.residuals)) < 1
+    assert [item.at for item in found.outliers] == [times[90]]
+    assert "period" not in series.p_values  # the samples are uneven
+    lags, correlations, limits = series.autocorrelation()
+    assert lags[0] == pytest.approx(np.median(np.diff(times[np.isfinite(angle)])))
+    assert np.mean(np.abs(correlations) < limits) > 0.8
+    frequencies, power = series.spectrum()
+    assert np.mean(power) == pytest.approx(1)
+    assert len(frequencies) == 73
+
+
+def test_each_channel_of_each_experiment_is_judged_by_its_own_noise():
+    experiments = []
+    for seed, (name, size) in enumerate({"quiet": 0.01, "loud": 1.0}.items()):
+        errors = size * np.random.default_rng(seed).standard_normal(201)
+        errors[60] += 10 * size
+        experiments.append(Experiment(name, LINE, Measurements.of(TIMES, {"x": 1 + 2 * TIMES + errors}, size)))
+    found = identify(experiments, starts=1, horizon=None).diagnostics()
+    assert [one.name for one in found.series] == ["quiet.x", "loud.x"]
+    assert {(item.experiment, item.channel, round(item.at, 2)) for item in found.outliers} == {
+        ("quiet", "x", 0.6),
+        ("loud", "x", 0.6),
+    }
+
+
+def test_known_deviations_priors_and_bounds():
+    parameters = {"a": da.Parameter("a", -5.0, 5.0, start=1.0, deviation=0.01), "b": da.Parameter("b", -5.0, 1.9)}
+    model = PythonModel(lambda a, b: a + b * TIMES, parameters, ["x"], TIMES)
+    data = Measurements.of(TIMES, {"x": 1 + 2 * TIMES + noise(0)}, deviations=SIZE)
+    fit = identify(model, data, starts=1, horizon=None)
+    (series,) = fit.diagnostics().series
+    expected = (1 / SIZE**2) / (201 / SIZE**2 + 1 / 0.01**2)  # b is on its bound
+    np.testing.assert_allclose(series.leverage, expected, rtol=1e-6)
+    np.testing.assert_array_equal(series.changes[:, 1], 0.0)
+
+
+def test_held_out_samples_do_not_count():
+    fit = fitted(noise(0), validation=0.25)
+    (series,) = fit.diagnostics().series
+    assert len(series.residuals) == 151
+    assert fit.jacobian.shape == (201, 1, 2)
+    assert np.all(np.isfinite(fit.jacobian))
+    assert np.sum(series.leverage) == pytest.approx(2)
+
+
+def test_exact_data_and_fits_that_did_not_converge_are_not_tested():
+    assert not fitted(np.zeros(201)).diagnostics().tested
+    assert not replace(fitted(noise(0)), success=False).diagnostics().tested
+
+
+def test_a_fit_without_a_jacobian_has_tests_but_no_leverages():
+    model = PythonModel(lambda a: float(np.real(a)) * TIMES, {"a": (0.0, 4.0)}, ["x"], TIMES)
+    data = Measurements.of(TIMES, {"x": 2 * TIMES + noise(0)})
+    fit = identify(model, data, method=ParticleSwarm(10, 20), polish=False)
+    found = replace(fit, success=True).diagnostics()
+    assert fit.jacobian is None
+    assert np.all(np.isnan(found.series[0].leverage))
+    assert found.series[0].p_values["normality"] > 0.01
+
+
+def test_correlated_residuals_are_not_tested_for_what_needs_independence():
+    slow = np.convolve(noise(0, 221), np.ones(21) / 5, mode="valid")
+    found = fitted(slow).diagnostics()
+    assert found.series[0].correlated
+    assert list(found.series[0].p_values) == ["autocorrelation", "period"]
+
+
+def test_a_file_gives_back_the_diagnostics(tmp_path):
+    errors = noise(0)
+    errors[140] += 1.0
+    fit = fitted(errors)
+    fit.save(tmp_path / "fit.nc")
+    loaded = Fit.load(tmp_path / "fit.nc")
+    assert loaded.diagnostics().outliers == fit.diagnostics().outliers
+    assert str(loaded.diagnostics()) == str(fit.diagnostics())
+
+
+def test_nothing_found_is_said():
+    assert str(fitted(noise(2)).diagnostics()) == snapshot(
+        "The tests find nothing against independent normal residuals."
+    )

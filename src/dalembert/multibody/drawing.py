@@ -26,6 +26,8 @@ class Drawing:
         Origin in m and axes of bodies in space.
     surfaces : mapping of body to Surface
         In the axes of bodies that have shapes.
+    ground : Surface, optional
+        Of the ground, in the fixed axes.
     """
 
     times: np.ndarray
@@ -33,6 +35,7 @@ class Drawing:
     joints: dict[str, np.ndarray]
     axes: dict[str, np.ndarray] = field(default_factory=dict)
     surfaces: Mapping[str, Any] = field(default_factory=dict)
+    ground: Any = None
 
     def corners(self, body: str) -> np.ndarray:
         """Corners of the surface of a body in the fixed axes, (frames, corners, 3), m."""
@@ -59,4 +62,4 @@ def draw(system: Mechanism, lowered: Lowered, times: np.ndarray, x: np.ndarray, 
         position = joint.position(kind, lowered.data[kind][row].real, integers, x[:, index])
         if position is not None:
             joints[joint.name] = position
-    return Drawing(times, lines, joints, axes, surfaces)
+    return Drawing(times, lines, joints, axes, surfaces, system.ground_surface)

@@ -52,6 +52,7 @@ class Sketch:
         own = self.drawing
         known = [*own.lines.values(), *own.joints.values(), *self.ends.values(), *self.marks.values()]
         known += map(own.corners, own.surfaces)
+        known += [] if own.ground is None else [own.ground.corners]
         return np.concatenate([np.reshape(array, (-1, across)) for array in known])
 
 

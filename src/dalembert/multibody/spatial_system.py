@@ -7,6 +7,7 @@ from dalembert.multibody.components.spatial.body import Body
 from dalembert.multibody.components.spatial.joint import Joint
 from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.points import Ground
+from dalembert.multibody.components.spatial.shapes import Shape, Surface, surface_of
 from dalembert.multibody.system import PLACED, Mechanism
 
 
@@ -50,3 +51,9 @@ class SpatialSystem(Mechanism):
     ) -> None:
         super().__init__(gravity, driving, start)
         self.ground = Ground()
+        self.ground_shapes: tuple[Shape, ...] = ()
+        """What the ground looks like, in the fixed axes: the base of a robot."""
+
+    @property
+    def ground_surface(self) -> Surface | None:
+        return surface_of(self.ground_shapes)

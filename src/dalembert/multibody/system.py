@@ -58,6 +58,11 @@ class Mechanism(Displayed):
         self._names: set[str] = set()
         self.stated = NONE
 
+    @property
+    def ground_surface(self) -> Any:
+        """Surface of what the ground looks like, in the fixed axes; None for nothing."""
+        return None
+
     def add(self, component: Component) -> Component:
         """Add a body, a joint or a load, and hand it back."""
         for kind, members in zip(self.KINDS, (self.bodies, self.joints, self.loads), strict=True):

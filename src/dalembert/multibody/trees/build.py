@@ -2,7 +2,7 @@
 
 __all__ = ["built", "groups"]
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -80,7 +80,7 @@ class Group:
 
 def groups(tree: Tree) -> dict[str, Group]:
     """The group of each link, by the name of the link."""
-    of = {tree.root: Group(tree.root, None, {tree.root: (np.zeros(3), np.eye(3))})}
+    of = {tree.root: Group(tree.root, None, {tree.root: (np.zeros(3), np.eye(3))}, shapes=list(tree.shapes))}
     for link in tree.links:
         parent = of[link.parent]
         frame = composed(parent.frames[link.parent], joint_pose(link.joint, 0.0))
@@ -93,10 +93,13 @@ def groups(tree: Tree) -> dict[str, Group]:
         own = of[link.name].frames[link.name]
         if link.inertia is not None:
             of[link.name].inertias.append((own, link.inertia))
-        of[link.name].shapes += [
-            replace(shape, pose=_pose(composed(own, pose_matrix(shape.pose)))) for shape in link.shapes
-        ]
+        of[link.name].shapes += _moved(link.shapes, own)
     return of
+
+
+def _moved(shapes: Iterable[Shape], frame: Frame) -> list[Shape]:
+    """Shapes that are given in a frame."""
+    return [replace(shape, pose=_pose(composed(frame, pose_matrix(shape.pose)))) for shape in shapes]
 
 
 def composed(outer: Frame, inner: Frame) -> Frame:
@@ -136,6 +139,7 @@ def built(
     motion, of = motions(tree, q, q_rates, base), groups(tree)
     root = motion[tree.root]
     system = SpatialSystem(gravity, start=start)
+    system.ground_shapes = tuple(_moved(of[tree.root].shapes, (root.position, root.axes)))
     moving = [link for link in tree.links if link.joint.moves]
     described = {link.joint.name: link.joint for link in moving}
     joints: dict[str, Joint] = {}

@@ -36,6 +36,8 @@ def mechanism_scene(
         else:
             shapes.append(_shape("line", part, unfolded(line)[0], colour))
         names.append(_name(part, line[0].mean(axis=0)))
+    if drawing.ground is not None:
+        shapes.append(_mesh("ground", *drawing.ground, INK))
     for joint in sketch.system.joints:
         ends, at = sketch.ends.get(joint.name), drawing.joints.get(joint.name)
         own = ends if ends is not None else at

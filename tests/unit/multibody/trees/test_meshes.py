@@ -10,8 +10,11 @@ import trimesh
 from dalembert.multibody import RungeKutta4, simulate
 from dalembert.multibody.components.spatial import mesh_files
 from dalembert.multibody.components.spatial.mesh_files import CORNERS, simplified
+from dalembert.multibody.sketch import sketch
+from dalembert.multibody.spatial import Orientation, Pose
 from dalembert.multibody.trees import read_urdf
 from dalembert.report.charts import mechanism
+from dalembert.studio.model.scene import mechanism_scene
 
 ROBOT = """<robot name="pendulum"><link name="base"/>
 <link name="arm"><inertial><origin xyz="0 0 -0.5"/><mass value="2"/>
@@ -26,13 +29,27 @@ SIDES = (100.0, 40.0, 300.0)
 def robot(tmp_path: Path):
     """Reads a pendulum whose arm has this mesh."""
 
-    def read(file: str):
+    def read(file: str, text: str = ROBOT):
         path = tmp_path / "robots" / "pendulum.urdf"
         path.parent.mkdir(exist_ok=True)
-        path.write_text(ROBOT.format(file=file))
+        path.write_text(text.format(file=file))
         return read_urdf(path)
 
     return read
+
+
+def test_shapes_of_the_base_are_drawn_in_the_ground(robot):
+    text = ROBOT.replace(
+        '<link name="base"/>',
+        '<link name="base"><visual><origin xyz="0 0 0.1"/><geometry><box size="0.2 0.4 0.6"/></geometry></visual></link>',
+    )
+    system = robot("arm.stl", text).system(base=Pose((1.0, 0.0, 0.0), Orientation.by_angles("z", [np.pi / 2])))
+    corners = np.abs(system.ground_surface.corners - [1.0, 0.0, 0.1])
+    np.testing.assert_allclose(corners, np.tile([0.2, 0.1, 0.3], (8, 1)), atol=1e-12)
+    drawing = simulate(system, 0.02, RungeKutta4(step=1e-2)).drawing()
+    assert [trace.name for trace in mechanism(drawing).data if isinstance(trace, go.Mesh3d)] == ["ground"]
+    shapes = mechanism_scene(sketch(system), {}, {})["shapes"]
+    assert [shape["part"] for shape in shapes if shape["kind"] == "mesh"] == ["ground"]
 
 
 @pytest.mark.parametrize("suffix", ["stl", "obj", "dae", "ply", "STL"])

@@ -43,6 +43,7 @@ def mechanism_in_space(
     drawn = {name: unfolded(line) for name, line in drawing.lines.items()}
     bodies = bodies_of({name: line for name, line in drawn.items() if name not in drawing.surfaces or not meshes})
     known = [*drawn.values(), *(mesh[0] for mesh in meshes.values()), *drawing.joints.values()]
+    known += [] if drawing.ground is None else [drawing.ground.corners]
     box = _box([*known, *paths.values(), *measured.values()])
     size = float(np.ptp(box, axis=0).max())
     grounded = {name: at for name, at in drawing.joints.items() if np.ptp(at, axis=0).max() < STILL * size}
@@ -53,6 +54,7 @@ def mechanism_in_space(
         *(_line(path_of(path), 3, LIGHT.muted, name=f"path of {plain(name)}") for name, path in paths.items()),
         *(_crosses(name, points) for name, points in measured.items()),
         _markers("fixed to ground", grounded, 0, "square", LIGHT.muted),
+        *([] if drawing.ground is None else [_mesh("ground", *drawing.ground, LIGHT.muted)]),
     ]
     first = int(frames[0])
     shown = [*bodies, *meshes]

@@ -11,6 +11,7 @@ NAMES = (
     "beams",
     "joints",
     "sensitivities",
+    "adjoint",
     "batches",
     "cluster",
     "identification",

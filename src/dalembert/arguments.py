@@ -181,7 +181,7 @@ def _finite_floats(value: Any) -> bool:
     return (
         isinstance(value, np.ndarray)
         and value.ndim == 1
-        and value.dtype == float
+        and value.dtype in (float, complex)
         and bool(np.all(np.abs(value) <= LARGEST))
     )
 

@@ -8,6 +8,7 @@ HOMES = {
     "AncfCable": "components.planar.ancf_cable",
     "Augmented": "integrators.stabilisation",
     "Automatic": "integrators.automatic",
+    "BSpline": "components.signals",
     "Baumgarte": "integrators.stabilisation",
     "Body": "components.planar.body",
     "Bushing": "components.planar.bushing",
@@ -58,7 +59,7 @@ KINDS = {
     "Body": ("AncfBeam", "AncfCable", "PointMass", "RigidBar", "RigidBarBetween", "RigidBody"),
     "Joint": ("DistanceJoint", "FixedJoint", "GearJoint", "PrescribedMotion", "PrismaticJoint", "RevoluteJoint"),
     "Load": ("Bushing", "Force", "Motor", "Servo", "Spring", "Torque", "TorsionSpring", "UserForce"),
-    "Signal": ("Constant", "Custom", "Harmonic", "Polynomial", "Step", "Table"),
+    "Signal": ("BSpline", "Constant", "Custom", "Harmonic", "Polynomial", "Step", "Table"),
     "Integrator": (
         "Automatic",
         "Collocation",

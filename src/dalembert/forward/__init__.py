@@ -3,6 +3,7 @@
 from dalembert.lazy import lazy_names
 
 _NAMES = {
+    "adjoint": "Pull prefers_adjoint pullback",
     "checkpoint": "Checkpoint",
     "cluster": "Executor connected takes_executor",
     "complex_steps": "check_derivatives",

@@ -262,6 +262,23 @@ def check_steps(
             )
 
 
+def check_together(
+    parameters: Parameters,
+    vector: np.ndarray,
+    numbers: Callable[[np.ndarray], np.ndarray],
+    check: Callable[[], None],
+) -> None:
+    """Compare numbers along one direction of all parameters; where that loses a complex step, ``check`` raises.
+
+    Its price does not grow with the number of parameters. Parameters and numbers as in :func:`check_steps`.
+    """
+    margin = np.minimum(DIFFERENCE * parameters.scale, (parameters.upper - parameters.lower) / 4)
+    inside = np.clip(vector, parameters.lower + margin, parameters.upper - margin)
+    direction = margin / DIFFERENCE * np.random.default_rng(0).uniform(0.5, 1.0, len(inside))
+    if attempted(partial(lost_step, _line(numbers, inside, direction), 1.0)):
+        check()
+
+
 def _line(
     numbers: Callable[[np.ndarray], np.ndarray], vector: np.ndarray, unit: np.ndarray
 ) -> Callable[[complex], np.ndarray]:
@@ -314,6 +331,7 @@ class Compared:
 
     vectors: set[bytes] = field(default_factory=set)
     functions: bool = False  # whether functions of the user's were, along a motion
+    together: bool = False  # whether all parameters were moved at once
 
     def once(self, vector: np.ndarray, compare: Callable[[bool], None]) -> None:
         """Compare at a vector where that was not done; thoroughly the first time only."""

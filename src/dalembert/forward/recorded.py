@@ -3,12 +3,13 @@
 import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from time import perf_counter
 
 import numpy as np
 
 from dalembert.errors import SolveError
+from dalembert.forward.adjoint import ADJOINT, Pull, pullback
 from dalembert.forward.checkpoint import Checkpoint
 from dalembert.forward.complex_steps import check_derivatives
 from dalembert.forward.responses import Responses
@@ -87,6 +88,17 @@ class Recorded(Wrapped):
         """Response (samples, channels) and its jacobian (samples, channels, parameters)."""
         values, jacobian = self._once("linearise", vector, lambda: self.model.linearise(vector))
         return values, jacobian
+
+    def pullback(self, vector: np.ndarray) -> tuple[np.ndarray, Pull]:
+        """Response (samples, channels), and the gradients of its weighted sums by the model's adjoint."""
+        opened = cache(lambda: pullback(self.model, vector, ADJOINT))
+        (response,) = self._once("pullback", vector, lambda: (opened()[0],))
+
+        def pull(cotangent: np.ndarray) -> np.ndarray:
+            asked = np.concatenate([vector, np.ravel(cotangent)])
+            return self._once("pull", asked, lambda: (opened()[1](cotangent),))[0]
+
+        return response, pull
 
     def check_derivatives(self, vector: np.ndarray) -> None:
         """Compare the complex step of the model with differences at a vector (parameters,), once a checkpoint."""

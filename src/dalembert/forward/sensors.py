@@ -10,6 +10,7 @@ from scipy.interpolate import make_interp_spline
 
 from dalembert.arguments import check_model, samples_of
 from dalembert.errors import InputError, require_known, shown
+from dalembert.forward.adjoint import ADJOINT, Pull, pullback
 from dalembert.forward.complex_steps import check_derivatives
 from dalembert.forward.lag import lagged
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
@@ -160,6 +161,31 @@ class Sensors:
         vector = np.asarray(vector, dtype=float)
         response, slopes = self.model.linearise(vector[: len(self.model.parameters)])
         return self._read(vector, np.concatenate([response[:, :, None], slopes], axis=2))
+
+    @property
+    def adjoint_from(self) -> int | None:
+        """Number of parameters from which the adjoint is cheaper than the Jacobian; None without an adjoint."""
+        least = getattr(self.model, "adjoint_from", None)
+        return None if least is None else least + len(self.parameters) - len(self.model.parameters)
+
+    def pullback(self, vector: np.ndarray) -> tuple[np.ndarray, Pull]:
+        """Readings (samples, channels), and the gradients of their weighted sums by the model's adjoint."""
+        vector, inner = np.asarray(vector, dtype=float), len(self.model.parameters)
+        response, pull_model = pullback(self.model, vector[:inner], ADJOINT)
+        read, slopes = self._read(vector, response[:, :, None])
+
+        def pull(cotangent: np.ndarray) -> np.ndarray:
+            cotangent = np.asarray(cotangent, dtype=float)
+            own = np.zeros_like(response)
+            for column, channel in enumerate(self.channels):
+                gain = self._value(vector, self._named(channel.name, "gain"), 1.0)
+                of_samples, _, _ = self._seen(vector, channel.name, np.eye(len(response)))
+                own[:, column] = gain * (cotangent[:, column] @ of_samples)
+            gradient = np.einsum("sc,scp->p", cotangent, slopes)
+            gradient[:inner] += pull_model(own)
+            return gradient
+
+        return read, pull
 
     def check_derivatives(self, vector: np.ndarray) -> None:
         """Compare the complex step of the model with differences at a vector (parameters,)."""

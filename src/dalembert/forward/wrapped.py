@@ -8,6 +8,7 @@ from typing import Self
 import numpy as np
 
 from dalembert.findings import Finding
+from dalembert.forward.adjoint import ADJOINT, Pull, pullback
 from dalembert.forward.complex_steps import check_derivatives
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
 from dalembert.forward.refinement import Refinement, refined
@@ -58,6 +59,15 @@ class Wrapped:
     def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Response (samples, channels) and its jacobian (samples, channels, parameters)."""
         return self.model.linearise(vector)
+
+    @property
+    def adjoint_from(self) -> int | None:
+        """Number of parameters from which the adjoint is cheaper than the Jacobian; None without an adjoint."""
+        return getattr(self.model, "adjoint_from", None)
+
+    def pullback(self, vector: np.ndarray) -> tuple[np.ndarray, Pull]:
+        """Response (samples, channels), and the gradients of its weighted sums by the model's adjoint."""
+        return pullback(self.model, vector, ADJOINT)
 
     def check_derivatives(self, vector: np.ndarray) -> None:
         """Compare the complex step of the model with differences at a vector (parameters,)."""

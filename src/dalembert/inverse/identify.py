@@ -10,6 +10,7 @@ from dalembert.arguments import check_whole, takes_checked
 from dalembert.data import Measurements
 from dalembert.errors import InputError, SolveError, require_known, shown
 from dalembert.forward import Executor, ForwardModel, check_derivatives, findings_at, takes_executor
+from dalembert.forward.adjoint import GRADIENTS
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.correlation.correlated import CorrelatedResiduals
 from dalembert.inverse.correlation.correlation import correlation
@@ -66,6 +67,7 @@ def identify(
     loss_scale: float | None = None,
     validation: HeldOut = None,
     shooting: MultipleShooting | None = None,
+    derivative: str = "auto",
     on_event: OnEvent | None = None,
     executor: Executor = None,
 ) -> Fit:
@@ -110,6 +112,9 @@ def identify(
         parameters of its own, such as its initial state, come from there. 0 fits none of it.
     shooting : MultipleShooting, optional
         Least squares in segments that must meet, in place of the growing horizon: for chaotic motion.
+    derivative : {"auto", "direct", "adjoint"}
+        How minimisers that need only gradients get them: from the Jacobian, or from the adjoint of a model that has
+        one (see :func:`dalembert.forward.pullback`). "auto" decides by the number of parameters.
     on_event : callable, optional
         Called with each event (see :mod:`dalembert.inverse.events`) as it happens.
     executor : str or distributed.Client, optional
@@ -169,12 +174,15 @@ def identify(
     if horizon is not None:
         require_known("horizon", str(horizon), HORIZONS)
     require_known("spread", str(spread), SPREADS)
+    require_known("derivative", str(derivative), GRADIENTS)
     model, data, weights, parts = joined("identify", begun(placed(model, executor), start), data, weights)
     given = data.deviations is not None and weights is None
     smooth = None if shooting is None or given or weights is not None else smooth_noise(data, parts)
     journal = Journal(len(data.coordinate.values), on_event)
     weighed = weights if smooth is None else np.broadcast_to(smooth**-2.0, data.values.shape)
-    posed = replace(pose(model, data, weighed, journal), loss=loss_of(loss, loss_scale, known=given))
+    posed = replace(
+        pose(model, data, weighed, journal), loss=loss_of(loss, loss_scale, known=given), derivative=derivative
+    )
     parted = split(posed, validation)
     problem, journal.samples = parted.part, parted.part.samples
     origin = None if start is None else _origin(problem, start)

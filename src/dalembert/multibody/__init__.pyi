@@ -27,6 +27,7 @@ from dalembert.multibody.components.planar.user_force import UserForce as UserFo
 from dalembert.multibody.components.points import Ground as Ground
 from dalembert.multibody.components.points import GroundPoint as GroundPoint
 from dalembert.multibody.components.points import Point as Point
+from dalembert.multibody.components.signals import BSpline as BSpline
 from dalembert.multibody.components.signals import Constant as Constant
 from dalembert.multibody.components.signals import Custom as Custom
 from dalembert.multibody.components.signals import Harmonic as Harmonic

@@ -96,6 +96,24 @@ def _refuse_misalignment(system: Mechanism, lowered: Lowered, placed: np.ndarray
             )
 
 
+def moves_start(system: Mechanism, placed: Lowered) -> bool:
+    """Whether a complex step in the numbers of a placed system may change its initial state: if not, nothing is solved.
+
+    Loads, stiffnesses and masses do not, unless the system starts at its equilibrium.
+    """
+    if system.start == EQUILIBRIUM or system.stated.coordinates or system.stated.rates:
+        return True
+    joints = [kind for kind in placed.data if kind.constraint is not None]
+    arrays = (placed.x, placed.v, placed.frames, placed.rates, *(placed.data[kind] for kind in joints))
+    if any(np.iscomplexobj(array) and np.any(np.imag(array)) for array in arrays):
+        return True
+    read = [placed.structure.meta[kind] for kind in joints if kind.integers]
+    signals = np.unique(np.concatenate([integers.ravel() for integers in read])) if read else ()
+    data = np.imag(placed.signal_data)
+    rows = (placed.structure.signals[s] for s in signals if 0 < s < len(placed.structure.signals))
+    return bool(placed.callbacks) or any(np.any(data[first : first + count]) for _, first, count, _ in rows)
+
+
 def _posed(system: Mechanism, lowered: Lowered, model: Model, free: np.ndarray, begin: float) -> Lowered:
     """Arrays with frames where the joints have the stated coordinates, which are approached in small steps."""
     kept = kept_coordinates(system)

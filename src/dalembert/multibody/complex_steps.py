@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from dalembert.errors import InputError
-from dalembert.forward.complex_steps import DROPPING, REMEDY, Lost, attempted, check_steps, lost_step
+from dalembert.forward.complex_steps import DROPPING, REMEDY, Lost, attempted, check_steps, check_together, lost_step
 from dalembert.multibody.callbacks import in_complex_numbers
 from dalembert.multibody.components.signals import Custom
 from dalembert.multibody.evaluate import residual
@@ -82,9 +82,24 @@ def check_numbers(
         check_steps(parameters, vector, lambda at: _numbers(lowered(at)), place, thorough=thorough)
 
 
+def check_numbers_together(builder: Callable[..., Mechanism], parameters: Parameters, vector: np.ndarray) -> None:
+    """Compare as :func:`check_numbers`, along one direction of all parameters at once; they are few builds.
+
+    Raises
+    ------
+    InputError
+        It names the parameter, the component and its number.
+    """
+    with in_complex_numbers(strict=True):
+        check_together(
+            parameters, vector, lambda at: _numbers(lower(_built(builder, parameters, at))),
+            lambda: check_numbers(builder, parameters, vector),
+        )  # fmt: skip
+
+
 def _built(builder: Callable[..., Mechanism], parameters: Parameters, vector: np.ndarray) -> Mechanism:
     """The system with functions of the user's as Python runs them, since compiling one takes a second."""
-    given = [value if value.imag else value.real for value in vector.tolist()]  # one of them is complex at most
+    given = [value if value.imag else value.real for value in vector.tolist()]
     system = copy(builder(**parameters.arguments(given)))
     system.loads = [
         replace(load, function=_plain(load.function)) if hasattr(load, "function") else load for load in system.loads

@@ -61,6 +61,14 @@ class Couplings:
         places[inside] = own
         return self._slots(places), numbers // self.size, numbers % self.size
 
+    def places(self, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
+        """Places of entries in the matrix that is factorised at each step."""
+        layout = self.fresh[1]
+        if not self._is_banded:
+            return columns * layout.lead + rows
+        i, j = (self._reordered[0][own] for own in (rows, columns))
+        return j * layout.lead + 2 * layout.reach + i - j
+
     @cached_property
     def dense(self) -> tuple[np.ndarray, Layout]:
         """Slots and layout of a dense matrix by columns."""

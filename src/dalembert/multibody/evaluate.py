@@ -38,17 +38,22 @@ def tangent(
     by: tuple[float, float, float],
     rows: tuple[float, float] = (1.0, 1.0),
     t: float = 0.0,
+    a: np.ndarray | None = None,
+    within: float | None = None,
 ) -> csr_matrix:
-    """Derivative of the residual along ``by[0] dq + by[1] dv + by[2] da`` and the multipliers, sparse (N, N)."""
+    """Derivative of the residual along ``by[0] dq + by[1] dv + by[2] da`` and the multipliers, sparse (N, N).
+
+    Accelerations are zero if not given. ``within`` says on which side of a jump the time ``t`` lies.
+    """
     structure, model = lowered.structure, lowered.tangents
     slots, i, j = structure.full.separate
     x, v = map(np.ascontiguousarray, (x, v))
-    values, a = np.zeros(len(i)), np.zeros_like(x)
+    values, a = np.zeros(len(i)), np.zeros_like(x) if a is None else np.ascontiguousarray(a)
     call = model.call().set(
         x=x, v=v, a=a, matrix=values, entries=len(values), mode=TANGENT, motion=rows[0], constraint=rows[1]
     )
     call.set(by_x=by[0], by_v=by[1], by_a=by[2])
-    model.evaluate(call, t, t)
+    model.evaluate(call, t, t if within is None else within)
     call.signals.imag = 0.0  # a function of the user's may answer with a direction of its own
     model.each("tangent", call, slots)
     inside = (i < structure.size) & (j < structure.size)

@@ -10,13 +10,14 @@ import numpy as np
 
 from dalembert.errors import ModelError, told
 from dalembert.forward import Channel, Coordinate, ForwardModel, Responses, ensemble
+from dalembert.forward.adjoint import Pull
 from dalembert.forward.builders import built, inexact, restructured
 from dalembert.forward.complex_steps import Compared
 from dalembert.forward.differences import COMPLEX_STEP, central_differences
 from dalembert.kernels.preparation import prepare
-from dalembert.multibody.assemble import assembled
+from dalembert.multibody.assemble import assembled, moves_start
 from dalembert.multibody.callbacks import in_complex_numbers
-from dalembert.multibody.complex_steps import Along, check_closures, check_forces, check_numbers
+from dalembert.multibody.complex_steps import Along, check_closures, check_forces, check_numbers, check_numbers_together
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.run import Run, make_problem
@@ -59,7 +60,7 @@ class MotionModel(ABC):
         return Coordinate("time", "s", self.times)
 
     @cached_property
-    def _problem(self) -> Problem:
+    def problem(self) -> Problem:
         return make_problem(self._built.shared, self.times)
 
     def evaluate(self, vectors: np.ndarray) -> Responses:
@@ -70,7 +71,7 @@ class MotionModel(ABC):
         vectors = self.parameters.batch(vectors)
         values = np.full((len(vectors), len(self.times), len(self.channels)), np.nan)
         failures: list[str | None] = [None] * len(vectors)
-        solver, workers, problem = self._built.solver, self._built.workers, self._problem
+        solver, workers, problem = self._built.solver, self._built.workers, self.problem
 
         def work(rows: np.ndarray) -> None:
             samples: dict[int, Lowered] = {}
@@ -114,7 +115,7 @@ class MotionModel(ABC):
             lowered, perturbed = self._perturbed(vector)
             active = [column for column, own in enumerate(perturbed) if _moves(own)]
             directions = [perturbed[column] for column in active]
-            (run,) = self._built.solver.integrate([lowered], directions, self._problem, self.times[-1])
+            (run,) = self._built.solver.integrate([lowered], directions, self.problem, self.times[-1])
         if run.reason:
             raise run.reason
         for name, own in zip(self.parameters.names, perturbed, strict=True):
@@ -215,6 +216,18 @@ class BuiltModel(MotionModel):
         if self.derivative == COMPLEX_STEP:
             self._compared.once(vector, lambda thorough: check_numbers(self.builder, self.parameters, vector, thorough))
 
+    def check_together(self, vector: np.ndarray) -> None:
+        """Compare as :meth:`check_derivatives` where nothing was compared, along one direction of all parameters.
+
+        Raises
+        ------
+        InputError
+            As :meth:`check_derivatives`.
+        """
+        if not (self._compared.vectors or self._compared.together):
+            check_numbers_together(self.builder, self.parameters, vector)
+            self._compared.together = True
+
     @cached_property
     def _compared(self) -> Compared:
         return Compared()
@@ -224,9 +237,33 @@ class BuiltModel(MotionModel):
             self.check_derivatives(vector)
         if not self._compared.functions:
             at = Along(self.observer, self.times, run.states, self.begin)
-            check_forces(lowered, at, self._problem.scale)
+            check_forces(lowered, at, self.problem.scale)
             check_closures(self.builder, self.parameters, vector, at)
             self._compared.functions = True
+
+    @property
+    def adjoint_from(self) -> int | None:
+        """Number of parameters from which the adjoint is cheaper than the Jacobian; None without an adjoint."""
+        from dalembert.multibody.adjoint.model import adjoint_from  # which only users of an adjoint load
+
+        return adjoint_from(self)
+
+    def pullback(self, vector: np.ndarray) -> tuple[np.ndarray, Pull]:
+        """Response (samples, channels), and the gradients of its weighted sums by the discrete adjoint.
+
+        See :func:`dalembert.forward.pullback`, which chooses between this method and :meth:`linearise`.
+
+        Raises
+        ------
+        InputError
+            For what has no adjoint: other integrators than generalized-alpha, mechanisms in space, energies of the
+            system as channels, functions of the user's; and as :meth:`linearise`.
+        SolveError
+            Where the solver could not go on.
+        """
+        from dalembert.multibody.adjoint.model import pulled  # which only users of an adjoint load
+
+        return pulled(self, self.parameters.real_vector(vector))
 
     def placed(self, vector: np.ndarray, begin: float) -> tuple[Lowered, tuple[Lowered, ...]]:
         """Arrays of the mechanism as placed, and those moved along each parameter; kept for the last vector.
@@ -246,6 +283,21 @@ class BuiltModel(MotionModel):
         """Arrays of the mechanism at a parameter vector and a time of the signals; as placed if not ``closed``."""
         system = self.system(vector)
         return self._fit(assembled(system, begin=begin) if closed else lower(system, begin))
+
+    def along(self, vector: np.ndarray, direction: np.ndarray, begin: float) -> Lowered:
+        """The closed arrays of :meth:`lowered_at`, moved by a complex step along a direction of all parameters.
+
+        Where the initial state does not move, its real part is that of the first placement.
+        """
+        slopes = dict(zip(self.parameters.names, direction.tolist(), strict=True))
+        moved = {
+            name: complex(value, STEP * slopes[name]) if slopes.get(name) else value
+            for name, value in self.parameters.mapping(vector).items()
+        }
+        system = built(self.builder, moved, Mechanism)
+        placed = lower(system, begin)
+        moves = moves_start(system, placed)
+        return self._fit(assembled(system, perturbed=True, placed=placed, begin=begin) if moves else placed)
 
     def perturbed_at(self, vector: np.ndarray, column: int, begin: float, *, closed: bool) -> Lowered:
         """The arrays of :meth:`lowered_at`, moved by a complex step of the scale of one parameter."""

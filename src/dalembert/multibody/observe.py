@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -109,19 +110,42 @@ def _outputs(
     """All outputs of components of a kind, (samples, components, outputs)."""
     numbers = np.array([row.numbers(lowered) for row in rows])
     numbers = np.ascontiguousarray(numbers if model.dtype is complex else np.real(numbers), dtype=model.dtype)
+    block = OutputBlock(kind, *columns_of(rows), numbers)
+    return block.read(model, (x, v, a), times if kind.observes_inputs else times[:0])
+
+
+def columns_of(rows: Sequence[_Row]) -> tuple[np.ndarray, np.ndarray]:
+    """Unknowns (rows, width) and integers (rows, -) of channels of one kind."""
     index = np.array([row.index for row in rows], dtype=np.int64)
-    integers = np.array([row.integers or (0,) for row in rows], dtype=np.int64)
-    block, call = np.zeros(1, BLOCK), model.call()
-    block["count"], block["index"], block["integers"] = len(rows), index.ctypes.data, integers.ctypes.data
-    block["numbers"], block["outputs"] = numbers.ctypes.data, kind.kernel("outputs", model.dtype).address
-    out = np.zeros((len(x), len(rows), len(kind.outputs)), dtype=model.dtype)
-    places = (array.ctypes.data for array in (x, v, a))
-    stamps = np.ascontiguousarray(times if kind.observes_inputs else times[:0], dtype=float)
-    outputs_history(
-        model.address, call.address, block.ctypes.data, *places, x.strides[0], stamps, beside(stamps, -1),
-        out.ctypes.data, out.strides[0], len(x),
-    )  # fmt: skip
-    return out
+    return index, np.array([row.integers or (0,) for row in rows], dtype=np.int64)
+
+
+class OutputBlock:
+    """Components of one kind whose outputs are read: unknowns (count, width), integers and numbers (count, -)."""
+
+    def __init__(self, kind: Kind, index: np.ndarray, integers: np.ndarray, numbers: np.ndarray) -> None:
+        self.kind, self._arrays = kind, (index, integers, numbers)
+        self.kernel: Any = kind.kernel("outputs", complex if np.iscomplexobj(numbers) else float)
+        block = self._words = np.zeros(1, BLOCK)
+        block["count"], block["index"], block["integers"] = len(index), index.ctypes.data, integers.ctypes.data
+        block["numbers"], block["outputs"] = numbers.ctypes.data, self.kernel.address
+
+    @property
+    def address(self) -> int:
+        """Address of the block."""
+        return self._words.ctypes.data
+
+    def read(self, model: Model, states: Sequence[np.ndarray], stamps: np.ndarray) -> np.ndarray:
+        """Outputs (samples, components, outputs) of contiguous states (samples, -); without stamps no signals."""
+        x, v, a = states
+        call, stamps = model.call().set(last=x.shape[1] - 1), np.ascontiguousarray(stamps, dtype=float)
+        out = np.zeros((len(x), len(self._arrays[0]), len(self.kind.outputs)), dtype=x.dtype)
+        places = (array.ctypes.data for array in (x, v, a))
+        outputs_history(
+            model.address, call.address, self.address, *places, x.strides[0], stamps, beside(stamps, -1),
+            out.ctypes.data, out.strides[0], len(x),
+        )  # fmt: skip
+        return out
 
 
 def beside(times: np.ndarray, side: int) -> np.ndarray:

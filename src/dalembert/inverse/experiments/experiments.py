@@ -16,11 +16,14 @@ from dalembert.forward import (
     Coordinate,
     Executor,
     ForwardModel,
+    Pull,
     Refinement,
     Responses,
     check_derivatives,
     findings_at,
     on_cluster,
+    prefers_adjoint,
+    pullback,
     refined,
     starting,
 )
@@ -95,6 +98,30 @@ class JointModel:
             response[part.block] = own[: len(part.rows), picked]
             jacobian[np.ix_(part.rows, part.columns, wiring)] = slopes[: len(part.rows), picked]
         return response, jacobian
+
+    @property
+    def adjoint_from(self) -> int | None:
+        """1 if the adjoint of one of the models is cheaper than its Jacobian, else None."""
+        return 1 if any(prefers_adjoint(model) for _, model, _, _ in self._simulated()) else None
+
+    def pullback(self, vector: np.ndarray) -> tuple[np.ndarray, Pull]:
+        """Joint response (rows, channels), and the gradients of its weighted sums, by the cheaper way of each model."""
+        response, pulls = np.zeros(self._shape), []
+        for part, model, picked, wiring in self._simulated():
+            with errors_named(part.name):
+                own, pull_own = pullback(model, np.asarray(vector)[wiring])
+            response[part.block] = own[: len(part.rows), picked]
+            pulls.append((part, picked, wiring, own.shape, pull_own))
+
+        def pull(cotangent: np.ndarray) -> np.ndarray:
+            gradient = np.zeros(len(vector))
+            for part, picked, wiring, shape, pull_own in pulls:
+                inner = np.zeros(shape)
+                inner[: len(part.rows), picked] = np.asarray(cotangent)[part.block]
+                gradient[wiring] += pull_own(inner)
+            return gradient
+
+        return response, pull
 
     def check_derivatives(self, vector: np.ndarray) -> None:
         """Compare the complex steps of the models with differences at a vector (parameters,)."""

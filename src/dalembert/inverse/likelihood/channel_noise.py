@@ -83,11 +83,30 @@ class ChannelNoise:
         rows = ((1 - residual * logarithmic) / sizes)[:, None] * jacobian
         if self.whitening is not None:
             rows = self.whitening.matrix(values) @ rows
+        return white, logs, rows, logarithmic[:, None] * jacobian, self._noise_slopes(residual, response, values)
+
+    def cotangent(
+        self, residual: np.ndarray, response: np.ndarray, values: Mapping[str, np.ndarray]
+    ) -> tuple[float, np.ndarray, dict[str, float]]:
+        """Return the log density of all values, and its derivatives by the response (values,) and by the noise."""
+        sizes = self.model.deviations(response, self.given, values)
+        logarithmic = self.model.slopes(response, self.given, values) / sizes
+        white, logs = self.standardised(residual, response, values)
+        back = white if self.whitening is None else self.whitening.matrix(values).T @ white
+        by_response = -(1 - residual * logarithmic) / sizes * back - logarithmic
+        slopes = self._noise_slopes(residual, response, values)
+        by_noise = {full: float(-white @ move - np.sum(change)) for full, (move, change) in slopes.items()}
+        return float(np.sum(-0.5 * white**2 - logs - HALF_LOG_2_PI)), by_response, by_noise
+
+    def _noise_slopes(
+        self, residual: np.ndarray, response: np.ndarray, values: Mapping[str, np.ndarray]
+    ) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+        """Derivatives of the whitened residuals and of the log deviations, by the full name of a noise parameter."""
         noise = {}
         for bare, full in self.names.items():
             moved = {**values, bare: values[bare] + 1j * STEP}
             noise[full] = tuple(np.imag(part) / STEP for part in self.standardised(residual, response, moved))
-        return white, logs, rows, logarithmic[:, None] * jacobian, noise
+        return noise
 
     def simulated(
         self, response: np.ndarray, values: Mapping[str, np.ndarray], random: np.random.Generator

@@ -107,8 +107,29 @@ class Likelihood:
         SolveError
             If the simulation fails.
         """
+        if self.problem.by_adjoint:
+            return self._by_adjoint(self.parameters.real_vector(vector))  # pyright: ignore[reportArgumentType]
         found = self.expansion(vector)
         return found.value, found.gradient
+
+    def _by_adjoint(self, vector: np.ndarray) -> tuple[float, np.ndarray]:
+        """The log-likelihood and its gradient, whose price does not grow with the number of the model's parameters."""
+        response, pull = self.problem.pulled(vector[: self._split])
+        known, total = self.parameters.arguments(vector), 0.0
+        gradient, cotangent = np.zeros(len(vector)), np.zeros(response.size)
+        residual = self.problem.misfit(response).ravel()
+        for channel in self.channels:
+            places = channel.series.rows
+            own, by_response, by_noise = channel.cotangent(
+                residual[places], response.ravel()[places], channel.values(known)
+            )
+            total += own
+            cotangent[places] += by_response
+            for full, slope in by_noise.items():
+                if full in self.parameters.names:
+                    gradient[self.parameters.names.index(full)] += slope
+        gradient[: self._split] += pull(cotangent.reshape(response.shape))
+        return total, gradient
 
     def expansion(self, vector: ArrayLike) -> Expansion:
         """Return the log-likelihood with the whitened residuals and their derivatives.

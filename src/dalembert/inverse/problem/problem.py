@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 from dalembert import forward
 from dalembert.data import Measurements
 from dalembert.errors import DalembertError, SolveError, StorageError
-from dalembert.forward import ForwardModel
+from dalembert.forward import ForwardModel, Pull, prefers_adjoint, pullback
+from dalembert.forward.adjoint import ADJOINT, AUTO
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.loss import Loss
 from dalembert.inverse.problem.matching import (
@@ -25,6 +26,9 @@ from dalembert.inverse.problem.matching import (
 from dalembert.inverse.problem.prior import check_priors, prior_residual, prior_slopes, priors
 from dalembert.inverse.problem.search_coordinates import SearchCoordinates
 from dalembert.inverse.problem.simulated import failing_at, simulated
+
+ADJOINT_COST = 4
+"""Simulations that a gradient by the adjoint counts as."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +62,8 @@ class Problem:
     journal : Journal
     loss : Loss, optional
         The square if not given; all that is minimised are squares of residuals that it has transformed.
+    derivative : {"auto", "direct", "adjoint"}
+        How gradients are computed, see :func:`dalembert.forward.pullback`.
     """
 
     model: ForwardModel
@@ -67,6 +73,7 @@ class Problem:
     search: SearchCoordinates
     journal: Journal
     loss: Loss | None = None
+    derivative: str = AUTO
 
     @property
     def samples(self) -> int:
@@ -139,6 +146,35 @@ class Problem:
         self.journal.computed(vector, response[:, self.columns])
         return Linearisation(vector, response[:, self.columns], jacobian[:, self.columns])
 
+    @property
+    def by_adjoint(self) -> bool:
+        """Whether gradients come from the adjoint."""
+        return self.derivative == ADJOINT or (self.derivative == AUTO and prefers_adjoint(self.model))
+
+    def pulled(self, vector: np.ndarray) -> tuple[np.ndarray, Pull]:
+        """Response (samples, channels), and the gradients of its weighted sums (parameters,) by the adjoint.
+
+        Raises
+        ------
+        SolveError
+            Whatever goes wrong in the simulation at this vector.
+        InputError
+            For a model without an adjoint.
+        """
+        self.journal.simulations += ADJOINT_COST
+        with failing_at(self.model, self.journal, vector):
+            response, pull_whole = pullback(self.model, vector, ADJOINT)
+            if not np.all(np.isfinite(response)):
+                raise SolveError("the response is not finite")
+        self.journal.computed(vector, response[:, self.columns])
+
+        def pull(cotangent: np.ndarray) -> np.ndarray:
+            whole = np.zeros_like(response)
+            np.add.at(whole.T, self.columns, cotangent.T)
+            return pull_whole(whole)
+
+        return response[:, self.columns], pull
+
     def linearised(self, vector: np.ndarray) -> Linearisation | None:
         """Response and jacobian at a parameter vector; None where the model gives no jacobian."""
         try:
@@ -175,11 +211,34 @@ class Problem:
 
     def gradient(self, point: np.ndarray) -> np.ndarray:
         """Gradient of the fitness at a search point, both (parameters,); zero where the sample fails."""
+        vector = self.search.vectors(point)
         try:
-            at = self.linearise(self.search.vectors(point))
+            if self.by_adjoint:
+                return self._gradient_by_adjoint(vector)
+            at = self.linearise(vector)
         except SolveError:
             return np.zeros_like(point)
         return 2 * self.slopes(at).T @ self.residuals(at.vector, at.response)
+
+    def slope(self, vector: np.ndarray) -> np.ndarray:
+        """Gradient of the fitness by the parameters, without priors, at a vector, both (parameters,).
+
+        Raises
+        ------
+        SolveError
+            If the simulation fails.
+        """
+        if not self.by_adjoint:
+            at = self.linearise(vector)
+            rows = self.weighted(at.jacobian, at.response).reshape(-1, len(vector))
+            return 2 * rows.T @ self.residual(at.response)
+        response, pull = self.pulled(vector)
+        return 2 * pull(self.weighted(self.residual(response).reshape(response.shape), response))
+
+    def _gradient_by_adjoint(self, vector: np.ndarray) -> np.ndarray:
+        parameters, unit = self.model.parameters, self.search.slope(vector)
+        priors = prior_slopes(parameters, unit).T @ prior_residual(parameters, vector) if self.priors else 0.0
+        return self.slope(vector) * unit + 2 * priors
 
 
 def _posed(alone: Problem, work: Work[Item], model: ForwardModel, item: Item) -> None:

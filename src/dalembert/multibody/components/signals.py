@@ -1,6 +1,6 @@
 """Functions of time for loads and prescribed motions."""
 
-__all__ = ["Constant", "Custom", "Harmonic", "Polynomial", "Signal", "Step", "Table"]
+__all__ = ["BSpline", "Constant", "Custom", "Harmonic", "Polynomial", "Signal", "Step", "Table"]
 
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
@@ -224,6 +224,68 @@ class Table(Signal):
             return kinds.HELD, np.concatenate([[*head, 1.0], values]), times
         pieces = _pieces(times.tobytes(), values.tobytes(), values.dtype.char, self.kind, self.integrals)
         return kinds.PIECEWISE, np.concatenate([[*head, float(pieces.shape[1])], pieces.ravel()]), times
+
+
+#: Coefficients of t^0 to t^3 (rows) over a piece of length 1, by its four coefficients of the spline (columns).
+_UNIFORM = np.array([[1.0, 4.0, 1.0, 0.0], [-3.0, 0.0, 3.0, 0.0], [3.0, -6.0, 3.0, 0.0], [-1.0, 3.0, -3.0, 1.0]]) / 6.0
+
+
+@dataclass(frozen=True)
+class BSpline(Signal):
+    """Cubic B-spline with even knots: an unknown history whose coefficients are parameters.
+
+    The value is the sum of ``coefficients[k] B(t / h - k + 3)``, with B the cubic cardinal B-spline, t from ``start``,
+    and pieces of the length h = (end - start) / (coefficients - 3). So each coefficient changes four pieces alone,
+    which makes derivatives by hundreds of coefficients cheap. A cubic :class:`Table` goes through its values, but each
+    of them changes all pieces.
+
+    Parameters
+    ----------
+    coefficients : sequence of float, shape (coefficients,)
+        At least four. Equal ones are a constant of that value.
+    start, end : float
+        s; before and after the value is held.
+
+    Raises
+    ------
+    InputError
+        For fewer than four coefficients, and for an end that is not after the start.
+
+    Examples
+    --------
+    >>> BSpline([0.0, 1.0, 2.0, 1.0, 0.0], 0.0, 0.4).pieces
+    2
+    """
+
+    coefficients: Sequence[Number]
+    start: float = field(metadata={"unit": "s"})
+    end: float = field(metadata={"unit": "s"})
+
+    def __post_init__(self) -> None:
+        if len(self.coefficients) < 4:
+            raise InputError(f"BSpline: {len(self.coefficients)} coefficients were given; expected at least four")
+        if not self.start < self.end:
+            raise InputError(f"BSpline: start is {self.start} s and end is {self.end} s; expected start before end")
+
+    @property
+    def pieces(self) -> int:
+        """Number of its polynomials."""
+        return len(self.coefficients) - 3
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """The ends at which the spline has a slope."""
+        c = np.real(self.coefficients)
+        steep = np.abs([c[2] - c[0], c[-1] - c[-3]]) > 1e-6 * np.ptp(c)
+        return tuple(time for time, is_steep in zip((self.start, self.end), steep, strict=True) if is_steep)
+
+    def lower(self) -> "tuple[int, Numbers, Numbers]":
+        c, count = np.asarray(self.coefficients), self.pieces
+        knots = np.linspace(self.start, self.end, count + 1)
+        length = (self.end - self.start) / count
+        windows = np.stack([c[k : k + count] for k in range(4)], axis=1)
+        pieces = windows @ _UNIFORM.T / length ** np.arange(4)
+        return kinds.PIECEWISE, np.concatenate([[1.0, 0.0, 0.0, 0.0, 4.0], pieces.ravel()]), knots
 
 
 #: What a table does between its times.

@@ -187,6 +187,7 @@ class Declaration:
         """Whether the kind has kernels of this role."""
         return {
             **dict.fromkeys(("residual", "tangent"), self.residual is not None or self.constraint is not None),
+            "pullback": self.residual is not None or self.constraint is not None,
             "rates": self.constraint is not None,
             "energy": self.energy is not None or self.residual is not None,
             "outputs": self.observe is not None,

@@ -3,12 +3,13 @@
 from dataclasses import dataclass, field
 
 from dalembert.kernels.kernel import Compiled
-from dalembert.multibody.kernels import loops, nodes, real_tangents
+from dalembert.multibody.kernels import loops, nodes, pullbacks, real_tangents
 from dalembert.multibody.kernels.debugging import plain
 from dalembert.multibody.kernels.declaration import Declaration
 from dalembert.multibody.kernels.loops import BlockKernel
 
-_MAKERS = {**loops.MAKERS, **nodes.MAKERS, "tangent": real_tangents.tangent}
+_MAKERS = {**loops.MAKERS, **nodes.MAKERS, "tangent": real_tangents.tangent, "pullback": pullbacks.pullback}
+_COMPLEX = ("tangent", "pullback")  #: roles of complex models alone
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +30,8 @@ class Kind(Declaration):
     def all_kernels(self) -> list[Compiled]:
         """The kernels of all roles that the kind has."""
         roles = [
-            (role, dtype) for role in _MAKERS if self.has(role) and role != "tangent" for dtype in (float, complex)
+            (role, dtype) for role in _MAKERS if self.has(role) and role not in _COMPLEX for dtype in (float, complex)
         ]
-        return [self.kernel(*role) for role in (*roles, *[("tangent", complex)] * self.quadratic)]
+        pulled = self.is_flat and self.has("pullback")
+        more = [("tangent", complex)] * self.quadratic + [("pullback", complex)] * pulled
+        return [self.kernel(*role) for role in (*roles, *more)]

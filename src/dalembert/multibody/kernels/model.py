@@ -129,6 +129,10 @@ class Model:
         """Address of the table."""
         return self._words[0].ctypes.data
 
+    def block(self, number: int) -> int:
+        """Address of a block by its number among the kinds."""
+        return self._words[1][number : number + 1].ctypes.data
+
     def evaluate(self, call: "Call", t: float, within: float) -> None:
         """Evaluate the signals of a call."""
         EVALUATE[self.dtype](call.set(t=t, within=within).address, self.address)
@@ -141,7 +145,7 @@ class Model:
                 if slots is not None:
                     call.set(slots=slots[k])
                 kernel: Any = kind.kernel(role, self.dtype)
-                kernel(call.address, self._words[1][k : k + 1].ctypes.data)
+                kernel(call.address, self.block(k))
 
     def call(self) -> "Call":
         """A call in the arithmetic of the model."""

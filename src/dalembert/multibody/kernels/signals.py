@@ -28,7 +28,7 @@ def _polynomial(data, first, count, t):
 
 
 @inner
-def _segment(knots, first, count, t):
+def segment(knots, first, count, t):
     """Number of the interval of `count` + 1 knots that holds t; the last one beyond the end."""
     low, high = 0, count - 1
     while low < high:
@@ -50,7 +50,7 @@ def _table(first, count, knot, data, knots, t, out):
     inside = low <= since.real <= high
     if not inside:
         since = 0.0 * since + (low if since.real < low else high)
-    part = _segment(knots, knot, parts, since.real)
+    part = segment(knots, knot, parts, since.real)
     piece = first + TABLE_HEAD + order * part
     value, rate, second = _polynomial(data, piece, order, since - knots[knot + part])
     value, rate, second = scale * value, scale * rate, scale * second
@@ -67,7 +67,7 @@ def _table(first, count, knot, data, knots, t, out):
 
 
 @inner
-def _evaluate(kind, first, count, knot, data, knots, callbacks, t, within, out):
+def evaluate_one(kind, first, count, knot, data, knots, callbacks, t, within, out):
     """Value, rate and second rate of one signal, into ``out`` (3,)."""
     out[0], out[1], out[2] = 0.0, 0.0, 0.0
     if kind == TIME:
@@ -89,7 +89,7 @@ def _evaluate(kind, first, count, knot, data, knots, callbacks, t, within, out):
         _table(first, count, knot, data, knots, t, out)
     elif kind == HELD:
         since = within - data[first + 2].real
-        part = _segment(knots, knot, count - TABLE_HEAD, since)
+        part = segment(knots, knot, count - TABLE_HEAD, since)
         value = data[first + TABLE_HEAD + part]
         for side in range(-1, 2, 2):  # the mean of both sides, where the method means a change itself
             other = part + side
@@ -121,7 +121,7 @@ def _kernel(dtype: type) -> BlockKernel:
         callbacks = integers(table.callbacks, table.callback_count)
         t, within = own.t + data[0].real, own.within + data[0].real
         for n in range(table.signal_count):
-            _evaluate(index[n, 0], index[n, 1], index[n, 2], index[n, 3], data, knots, callbacks, t, within, out[n])
+            evaluate_one(index[n, 0], index[n, 1], index[n, 2], index[n, 3], data, knots, callbacks, t, within, out[n])
 
     return BlockKernel(evaluate, f"dal_signals_{dtype.__name__}")
 

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
@@ -53,3 +54,30 @@ def _sum_multiples(context, builder, signature, arguments):
             total = builder.fadd(total, builder.fmul(factor, given, flags=("contract",)), flags=("contract",))
         builder.store(total, place, align=8)
     return context.get_dummy_value()
+
+
+@intrinsic(lambda a, at, b, begin, count: float(np.dot(a[at : at + count], b[begin : begin + count])))
+def dot(typingctx, a, at, b, begin, count):
+    """Sum of a[at : at + count] * b[begin : begin + count], of contiguous vectors of real numbers; by lanes."""
+    return types.float64(a, types.int64, b, types.int64, types.int64), _sum_products
+
+
+def _sum_products(context, builder, signature, arguments):
+    def start(number, offset):
+        data = cgutils.create_struct_proxy(signature.args[number])(context, builder, value=arguments[number]).data
+        return builder.gep(data, [offset])
+
+    word, lanes = ir.IntType(64), ir.VectorType(ir.DoubleType(), LANES)
+    parts = start(0, arguments[1]), start(2, arguments[3])
+    with builder.goto_entry_block():
+        total = builder.alloca(lanes)
+    builder.store(ir.Constant(lanes, [0.0] * LANES), total)
+    with cgutils.for_range_slice(builder, word(0), arguments[-1], word(LANES)) as (i, _):
+        first, second = (
+            builder.load(builder.bitcast(builder.gep(part, [i]), lanes.as_pointer()), align=8) for part in parts
+        )
+        product = builder.fmul(first, second, flags=("contract",))
+        builder.store(builder.fadd(builder.load(total), product, flags=("contract",)), total)
+    sums = builder.load(total)
+    own = [builder.extract_element(sums, ir.Constant(ir.IntType(32), lane)) for lane in range(LANES)]
+    return builder.fadd(builder.fadd(own[0], own[1]), builder.fadd(own[2], own[3]))

@@ -65,6 +65,10 @@ class IdentifyTable(StudyTable):
         None,
         description="true, or a table: segments that must meet, in place of the growing horizon: for chaotic motion",
     )
+    derivative: Literal["auto", "direct", "adjoint"] = Field(
+        "auto",
+        description="gradients of minimisers: from all sensitivities, from the adjoint, or by the number of parameters",
+    )
     profile: bool = Field(False, description="whether to make the profile likelihood of each parameter too")
     prediction: bool = Field(False, description="whether to make bands of the response and of new measurements too")
     level: float = Field(0.95, gt=0, lt=1, description="probability of profiles' intervals and of bands")
@@ -214,7 +218,7 @@ class Identify(Task):
             horizon=None if table.horizon == "whole" else table.horizon,
             shooting=None if table.shooting is None else table.shooting.settings(),
             on_event=teller(emit, as_record),
-            **table.picked("starts", "seed", "polish", "spread", "loss", "loss_scale", "validation"),
+            **table.picked("starts", "seed", "polish", "spread", "loss", "loss_scale", "validation", "derivative"),
         )
         return _identified(study, fit, telling.beyond(table, model, data, fit, teller(emit, as_record)))
 

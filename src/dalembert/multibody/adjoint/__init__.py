@@ -1,0 +1,1 @@
+"""Gradients of motions by the discrete adjoint, at a price that does not grow with the number of parameters."""

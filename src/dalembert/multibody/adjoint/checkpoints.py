@@ -1,0 +1,115 @@
+"""States of a motion that are computed again from checkpoints, so that memory grows with the root of the steps."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from dalembert.kernels.preparation import prepare
+from dalembert.multibody.integrators.adjoint_sweep import Path, Steps
+from dalembert.multibody.integrators.consistent import accelerate, consistency
+from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
+from dalembert.multibody.integrators.problem import DONE, Models, Problem
+from dalembert.multibody.integrators.replay import ReplayRoom, replay, replay_room
+from dalembert.multibody.integrators.run import cut_down, explain
+from dalembert.multibody.kernels.model import Call
+from dalembert.multibody.kernels.motion import MotionState, resting
+from dalembert.multibody.lowered import Lowered
+
+
+class Stretch(NamedTuple):
+    """Steps between two starts of the integration: their numbers, the start, s, and a time within the motion there.
+
+    ``consistent``: whether accelerations are solved for at the start.
+    """
+
+    first: int
+    last: int
+    begin: float
+    within: float
+    consistent: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Player:
+    """A motion whose steps are known: it starts its stretches, and repeats some of its steps."""
+
+    lowered: Lowered
+    solver: GeneralizedAlpha
+    problem: Problem
+    steps: Steps
+
+    @cached_property
+    def _models(self) -> Models:
+        real, tangents = self.lowered.real.need("rates"), self.lowered.tangents
+        return Models(real.address, tangents.address, np.zeros(0, np.int64))
+
+    @cached_property
+    def _calls(self) -> tuple[Call, Call]:
+        return self.lowered.real.call(), self.lowered.tangents.call()
+
+    @cached_property
+    def _room(self) -> ReplayRoom:
+        prepare([replay])
+        real, complex_ = self._calls
+        return replay_room(self.problem, real.address, complex_.address)
+
+    def begun(self, stretch: Stretch, before: MotionState) -> MotionState:
+        """Return the state at the start of a stretch from that at the end of the stretch before, which changes."""
+        if stretch.consistent:
+            still = resting(0, len(before.x))
+            real, complex_ = self._calls
+            room = consistency(self.problem, real.address, complex_.address, 0)
+            accelerate(self.problem, self._models, stretch.begin, stretch.within, before, still, room)
+        return before
+
+    def play(self, state: MotionState, own: slice, kept: bool) -> Path:
+        """Take steps from a state, which is overwritten; return the states at their ends, none if not ``kept``."""
+        count = own.stop - own.start if kept else 0
+        path = Path(*np.zeros((3, count, len(state.x))))
+        solver, steps = self.solver, Steps(*(part[own] for part in self.steps))
+        status = replay(
+            self.problem, self._models, solver.spectral_radius, solver.newton_tolerance, steps, state, path, self._room
+        )
+        if status != DONE:
+            raise explain(self.lowered, status, float(steps.ends[0]), 0, cut_down(solver.step))
+        return path
+
+
+@dataclass(frozen=True, eq=False)
+class Checkpoints:
+    """States before some of the steps, by the number of the step."""
+
+    player: Player
+    states: dict[int, MotionState]
+
+    def backwards(self, stretch: Stretch) -> Iterator[tuple[slice, Path]]:
+        """Yield the steps of a stretch in blocks from the last to the first, with the states at their ends."""
+        last = stretch.last
+        for first in sorted((k for k in self.states if stretch.first <= k < stretch.last), reverse=True):
+            state, own = copied(self.states[first]), slice(first, last)
+            yield own, self.player.play(state, own, kept=True)
+            last = first
+
+
+def copied(state: MotionState) -> MotionState:
+    """Return a copy of a state."""
+    return MotionState(*(part.copy() for part in state))
+
+
+def checkpoints(
+    player: Player, stretches: tuple[Stretch, ...], start: MotionState
+) -> tuple[Checkpoints, tuple[MotionState, ...]]:
+    """Repeat a motion; return the states each root of the number of steps, and those at the starts of the stretches."""
+    distance = int(np.ceil(np.sqrt(len(player.steps.ends))))
+    state, states, starts = copied(start), {}, []
+    state.w[:] = state.a
+    for stretch in stretches:
+        state = player.begun(stretch, state) if stretch.first else state
+        starts.append(copied(state))
+        for first in range(stretch.first, stretch.last, distance):
+            states[first] = copied(state)
+            player.play(state, slice(first, min(first + distance, stretch.last)), kept=False)
+    return Checkpoints(player, states), tuple(starts)

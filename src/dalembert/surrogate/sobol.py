@@ -1,31 +1,48 @@
 """Sobol indices of a function from its Chebyshev surrogate, in closed form."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial.chebyshev import chebvander
-from numpy.polynomial.legendre import leggauss, legvander
+from numpy.typing import ArrayLike
 
-from dalembert.surrogate.polynomial import ChebyshevPolynomial
+from dalembert.surrogate.orthonormal import OrthonormalExpansion, Rule, orthonormal
 from dalembert.surrogate.surrogate import Surrogate
 
 NOTHING = 1e-12
 """A standard deviation that is rounding, over the mean."""
+SURE = 3.0
+"""Standard errors of the means over checks that the ends of the indices include."""
+
+
+@dataclass(frozen=True, eq=False)
+class Checks:
+    """Runs at random points of the inputs' distribution that compare the function with its surrogate.
+
+    Parameters
+    ----------
+    eta : array, shape (n, d)
+        Coordinates in [−1, 1].
+    errors : array, shape (n, outputs)
+        Function less surrogate.
+    """
+
+    eta: np.ndarray
+    errors: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
 class SobolIndices:
-    """Parts of the variance of each output that come from the inputs, all uniform and independent over the box.
+    """Parts of the variance of each output, or of each group of outputs, that come from the inputs.
 
     Parameters
     ----------
     mean, variance : array, shape (outputs,)
+        Of a group, sums over its outputs.
     first, total : array, shape (d, outputs)
         Var E[f | x_k]/Var f, and 1 − Var E[f | all but x_k]/Var f. NaN where the variance is zero.
     first_ends, total_ends : array, shape (2, d, outputs)
         Lower and upper ends that follow from the error of the surrogate.
-    error : array, shape (outputs,)
-        Of the surrogate over the box.
     """
 
     mean: np.ndarray
@@ -34,20 +51,6 @@ class SobolIndices:
     total: np.ndarray
     first_ends: np.ndarray
     total_ends: np.ndarray
-    error: np.ndarray
-
-    def summed(self, groups: np.ndarray) -> "SobolIndices":
-        """Return indices of groups of outputs: parts of the variances, summed over the outputs of each group.
-
-        Parameters
-        ----------
-        groups : array of int, shape (outputs,)
-            Number of the group of each output, from 0.
-        """
-        member = groups[:, None] == np.arange(groups.max(initial=-1) + 1)
-        first, total = (np.nan_to_num(part) * self.variance @ member for part in (self.first, self.total))
-        # The error of a group is a norm too: the root of the sum of squares.
-        return _indices(self.mean @ member, self.variance @ member, first, total, np.sqrt(self.error**2 @ member))
 
     @property
     def uncertainty(self) -> np.ndarray:
@@ -56,13 +59,25 @@ class SobolIndices:
         return np.max([np.abs(ends - indices).max(axis=(0, 1), initial=0.0) for indices, ends in pairs], axis=0)
 
 
-def sobol_indices(surrogate: Surrogate) -> SobolIndices:
+def sobol_indices(
+    surrogate: Surrogate,
+    *,
+    rules: Sequence[Rule] = (),
+    groups: ArrayLike | None = None,
+    checks: Checks | None = None,
+) -> SobolIndices:
     """Return the Sobol indices of a function from its surrogate, with the intervals that the surrogate's error leaves.
 
     Parameters
     ----------
     surrogate : Surrogate
         As :func:`~dalembert.surrogate.fit` returns it.
+    rules : sequence of Rule, of length d
+        Integrals over the distribution of each input in [−1, 1], all independent; uniform if not given.
+    groups : array of int, shape (outputs,), optional
+        Number of the group of each output, from 0, for indices of groups: sums of parts over sums of variances.
+    checks : Checks, optional
+        Narrower intervals where the function is not smooth.
 
     Returns
     -------
@@ -70,13 +85,14 @@ def sobol_indices(surrogate: Surrogate) -> SobolIndices:
 
     Notes
     -----
-    In normalised Legendre polynomials f = Σ_α c_α P_α, and Var f = Σ_{α≠0} c_α². The first-order index of x_k has the
-    terms with α_k > 0 alone, the total index all terms with α_k > 0 (Sudret, Global sensitivity analysis using
-    polynomial chaos expansions, 2008).
+    In polynomials that are orthonormal for the inputs, f = Σ_α c_α p_α and Var f = Σ_{α≠0} c_α². The first-order index
+    of x_k has the terms with α_k > 0 alone, the total index all terms with α_k > 0 (Sudret, Global sensitivity analysis
+    using polynomial chaos expansions, 2008).
 
-    Each part of the variance is the square of a projection of f, and an error of at most ε over the box changes the
-    norm of a projection by at most ε. A part V_u of the variance V of the surrogate therefore gives an index between
-    (√V_u − ε)²/(√V + ε)² and (√V_u + ε)²/(√V − ε)².
+    A part V_u of the variance is the square of a projection P_u f. With f = s + e, s the surrogate,
+    V_u(f) = V_u(s) + 2 E[P_u s · e] + ‖P_u e‖². Without checks |e| ≤ ε over the box bounds the root of V_u:
+    √V_u(s) ± ε. With checks the middle term is their mean ± 3 standard errors, and the last one is at most E[e²]. The
+    narrower one of both counts. An index V_u/(V_u + V_rest) has its ends where V_u and V_rest have theirs.
 
     Examples
     --------
@@ -85,55 +101,78 @@ def sobol_indices(surrogate: Surrogate) -> SobolIndices:
     >>> found.first[:, 0].round(6).tolist(), found.variance.round(6).tolist()
     ([0.2, 0.8], [0.416667])
     """
-    exponents, coefficients = in_legendre(surrogate.polynomial)
-    squares, active = coefficients**2, exponents > 0
-    of_all = active.any(axis=1)
-    alone = active & (active.sum(axis=1) == 1)[:, None]
-    mean = coefficients[~of_all].sum(axis=0)
-    squares[:, squares[of_all].sum(axis=0) <= (NOTHING * mean) ** 2] = 0.0
-    first, total = alone.T @ squares, active.T @ squares
-    return _indices(mean, squares[of_all].sum(axis=0), first, total, np.asarray(surrogate.error, dtype=float))
-
-
-def _indices(
-    mean: np.ndarray, variance: np.ndarray, first: np.ndarray, total: np.ndarray, error: np.ndarray
-) -> SobolIndices:
-    """Indices from parts of the variance, shape (d, outputs)."""
-    first_ends, total_ends = (_ends(part, variance, error) for part in (first, total))
+    expansion = orthonormal(surrogate.polynomial, rules)
+    outputs = len(surrogate.error)
+    number = np.arange(outputs) if groups is None else np.asarray(groups)
+    member = (number[:, None] == np.arange(number.max(initial=-1) + 1)).astype(float)
+    active = expansion.exponents > 0
+    varying = active.any(axis=1)
+    masks = [*(active & (active.sum(axis=1) == 1)[:, None]).T, *active.T]  # of the first-order, then the total indices
+    squares, mean = expansion.coefficients**2, expansion.coefficients[~varying].sum(axis=0)
+    squares[:, squares[varying].sum(axis=0) <= (NOTHING * mean) ** 2] = 0.0
+    summed = squares @ member
+    variance, parts = summed[varying].sum(axis=0), np.array([summed[mask].sum(axis=0) for mask in masks])
+    error = np.asarray(surrogate.error, dtype=float)
+    if checks is not None:
+        error = np.maximum(error, np.abs(checks.errors).max(axis=0))
+    norm = np.sqrt(error**2 @ member)
+    own, rest = _by_norm(parts, norm), _by_norm(np.maximum(variance - parts, 0.0), norm)
+    if checks is not None:
+        checked = _by_checks(expansion, masks, varying, member, checks)
+        own, rest = (_narrower(of, *mine) for of, mine in zip((own, rest), checked, strict=True))
+    ends = _ends(own, rest).reshape(2, 2, -1, len(variance))
     with np.errstate(invalid="ignore", divide="ignore"):
-        return SobolIndices(mean, variance, first / variance, total / variance, first_ends, total_ends, error)
+        first, total = (parts / variance).reshape(2, -1, len(variance))
+    return SobolIndices(mean @ member, variance, first, total, ends[:, 0], ends[:, 1])
 
 
-def in_legendre(polynomial: ChebyshevPolynomial) -> tuple[np.ndarray, np.ndarray]:
-    """Return exponents (terms, d) and coefficients (terms, outputs) of a polynomial in normalised Legendre polynomials.
+@dataclass(frozen=True, eq=False)
+class _Range:
+    """Parts of the variance by the surrogate, and their ends: all of shape (masks, groups)."""
 
-    Their squares have the mean 1 over the box. Direction after direction, T_n = Σ_j M_nj P_j.
-    """
-    exponents, coefficients = polynomial.exponents, polynomial.coefficients
-    for direction, degree in enumerate(polynomial.degrees.tolist()):
-        others = np.delete(exponents, direction, axis=1)
-        rows, row = np.unique(others, axis=0, return_inverse=True)
-        table = np.zeros((len(rows), degree + 1, coefficients.shape[1]))
-        table[row.reshape(-1), exponents[:, direction]] = coefficients
-        longest = np.zeros(len(rows), dtype=int)
-        np.maximum.at(longest, row.reshape(-1), exponents[:, direction])
-        at, degrees = np.nonzero(np.arange(degree + 1) <= longest[:, None])
-        exponents = np.insert(rows[at], direction, degrees, axis=1)
-        coefficients = np.einsum("nj,rno->rjo", _change(degree), table)[at, degrees]
-    return exponents, coefficients
+    value: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
 
 
-def _change(degree: int) -> np.ndarray:
-    """M_nj = ½ ∫ T_n P_j over [−1, 1], exact by Gauss and Legendre's rule, shape (degree + 1, degree + 1)."""
-    nodes, weights = leggauss(degree + 1)
-    legendre = legvander(nodes, degree) * np.sqrt(2 * np.arange(degree + 1) + 1)
-    return chebvander(nodes, degree).T @ (0.5 * weights[:, None] * legendre)
+def _by_norm(parts: np.ndarray, error: np.ndarray) -> _Range:
+    """Parts whose roots are right within an error (groups,)."""
+    root = np.sqrt(parts)
+    return _Range(parts, np.maximum(root - error, 0.0) ** 2, (root + error) ** 2)
 
 
-def _ends(parts: np.ndarray, variance: np.ndarray, error: np.ndarray) -> np.ndarray:
-    """Lower and upper ends of indices, shape (2, d, outputs)."""
-    norms, whole = np.sqrt(parts), np.sqrt(variance)
+def _narrower(known: _Range, change: np.ndarray, radius: np.ndarray, most: np.ndarray) -> _Range:
+    """Range that is narrowed by V_u(s) + 2 (change ± radius) + what is between 0 and ``most``."""
+    lower = np.maximum(known.lower, known.value + 2 * (change - radius))
+    upper = np.minimum(known.upper, known.value + 2 * (change + radius) + most)
+    return _Range(known.value, np.minimum(lower, known.value), np.maximum(upper, known.value))
+
+
+def _by_checks(
+    expansion: OrthonormalExpansion, masks: list[np.ndarray], varying: np.ndarray, member: np.ndarray, checks: Checks
+) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """E[P_u s · e] of the parts and of what is left, each with its error and with E[e²] at most."""
+    count = len(checks.eta)
+    each = np.empty((len(masks), count, member.shape[1]))
+    whole = np.empty(each.shape[1:])
+    for rows, table in expansion.tables(checks.eta):
+        errors = checks.errors[rows]
+        for number, mask in enumerate(masks):
+            each[number, rows] = (table[:, mask] @ expansion.coefficients[mask] * errors) @ member
+        whole[rows] = (table[:, varying] @ expansion.coefficients[varying] * errors) @ member
+    squares = checks.errors**2 @ member
+    most = squares.mean(axis=0) + _standard_error(squares)
+    return tuple((part.mean(axis=-2), _standard_error(part), most) for part in (each, whole - each))  # type: ignore[return-value]
+
+
+def _standard_error(values: np.ndarray) -> np.ndarray:
+    """Of the mean over the second axis from the end, as often as it is included."""
+    count = values.shape[-2]
+    return SURE * values.std(axis=-2, ddof=1) / np.sqrt(count)
+
+
+def _ends(own: _Range, rest: _Range) -> np.ndarray:
+    """Lower and upper ends of indices, shape (2, masks, groups); 0 and 1 where nothing is known."""
     with np.errstate(invalid="ignore", divide="ignore"):
-        lower = (np.maximum(norms - error, 0.0) / (whole + error)) ** 2
-        upper = np.where(whole > error, ((norms + error) / (whole - error)) ** 2, 1.0)
-    return np.stack([lower, np.minimum(upper, 1.0)])
+        lower, upper = own.lower / (own.lower + rest.upper), own.upper / (own.upper + rest.lower)
+    return np.stack([np.nan_to_num(lower, nan=0.0), np.nan_to_num(upper, nan=1.0)])

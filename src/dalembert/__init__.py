@@ -63,7 +63,7 @@ _NAMES = {
     """,
     "export": "export_vtk",
     "uncertainty": """
-        Comparison Propagation SensitivityIndices compare global_sensitivity propagate
+        Comparison Propagation Screening SensitivityIndices compare global_sensitivity propagate screen
         Chebyshev LatinHypercube MonteCarlo Optimise Scan Taylor Vertex
     """,
     "vibration": """

@@ -175,12 +175,14 @@ from dalembert.uncertainty import MonteCarlo as MonteCarlo
 from dalembert.uncertainty import Optimise as Optimise
 from dalembert.uncertainty import Propagation as Propagation
 from dalembert.uncertainty import Scan as Scan
+from dalembert.uncertainty import Screening as Screening
 from dalembert.uncertainty import SensitivityIndices as SensitivityIndices
 from dalembert.uncertainty import Taylor as Taylor
 from dalembert.uncertainty import Vertex as Vertex
 from dalembert.uncertainty import compare as compare
 from dalembert.uncertainty import global_sensitivity as global_sensitivity
 from dalembert.uncertainty import propagate as propagate
+from dalembert.uncertainty import screen as screen
 from dalembert.vibration import Backbone as Backbone
 from dalembert.vibration import BilinearStop as BilinearStop
 from dalembert.vibration import BoucWen as BoucWen

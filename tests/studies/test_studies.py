@@ -38,7 +38,7 @@ def found(study: Study, outcome: Outcome, row: dict[str, Any]) -> float:
             return (
                 outcome.best["fitness"] if quantity == "fitness" else values[quantity] / values.get(row.get("per"), 1)
             )
-        case "design" | "identify_inertias" | "exciting_trajectory":
+        case "design" | "identify_inertias" | "exciting_trajectory" | "global_sensitivity" | "screening":
             return outcome.best["values"][quantity]
         case "identify_bands" if quantity == "simulations":
             return getattr(outcome, "result").simulations  # noqa: B009

@@ -4,10 +4,12 @@ from dalembert.uncertainty.chebyshev import Chebyshev
 from dalembert.uncertainty.comparison import Comparison, Row, compare
 from dalembert.uncertainty.events import Began, Ended, Event, Ran, as_record
 from dalembert.uncertainty.methods import methods_by_name
+from dalembert.uncertainty.morris import screen
 from dalembert.uncertainty.optimise import Optimise
 from dalembert.uncertainty.propagate import propagate
 from dalembert.uncertainty.propagation import Propagation
 from dalembert.uncertainty.samplings import LatinHypercube, MonteCarlo, Sampling, Scan, Vertex
+from dalembert.uncertainty.screening import Screening
 from dalembert.uncertainty.sensitivity_indices import SensitivityIndices
 from dalembert.uncertainty.sobol import global_sensitivity
 from dalembert.uncertainty.taylor import Taylor
@@ -26,6 +28,7 @@ __all__ = [
     "Row",
     "Sampling",
     "Scan",
+    "Screening",
     "SensitivityIndices",
     "Taylor",
     "Vertex",
@@ -34,4 +37,5 @@ __all__ = [
     "global_sensitivity",
     "methods_by_name",
     "propagate",
+    "screen",
 ]

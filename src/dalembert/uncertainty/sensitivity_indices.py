@@ -21,7 +21,9 @@ class SensitivityIndices(Result):
     coordinate : Coordinate
     channels, units : tuple of str
     box : Box
-        The intervals over which the parameters are uniform and independent.
+        The intervals of the parameters, which are independent.
+    distributions : tuple of str, length parameters
+        Distribution of each parameter within its interval.
     mean, deviations : array, shape (samples, channels)
         Of the response over the box.
     first, total : array, shape (samples, channels, parameters)
@@ -31,6 +33,11 @@ class SensitivityIndices(Result):
     uncertainty : array, shape (channels,)
         Largest error of an index of the whole channel that the error of the surrogate allows.
     runs : int
+        All simulations, checks and failed ones included.
+    checks : int
+        Random runs that the surrogate was compared with.
+    failures : tuple of str
+        Reasons of the runs that failed.
     provenance : mapping
     findings : tuple of Finding
     """
@@ -41,6 +48,7 @@ class SensitivityIndices(Result):
     channels: Annotated[tuple[str, ...], Labels("channel")]
     units: Annotated[tuple[str, ...], Labels("channel", name="unit")]
     box: StoredBox
+    distributions: Annotated[tuple[str, ...], Labels("parameter", name="distribution")]
     mean: Table
     deviations: Table
     first: Annotated[np.ndarray, Over("sample", "channel", "parameter")]
@@ -49,8 +57,21 @@ class SensitivityIndices(Result):
     whole_total: Annotated[np.ndarray, Over("channel", "parameter")]
     uncertainty: Annotated[np.ndarray, Over("channel")]
     runs: int
+    checks: int
+    failures: tuple[str, ...]
     provenance: Mapping[str, Any]
     findings: tuple[Finding, ...] = ()
+
+    @property
+    def success(self) -> bool:
+        """Whether all runs succeeded."""
+        return not self.failures
+
+    @property
+    def status(self) -> str:
+        """How exact the indices are."""
+        worst = float(np.nan_to_num(self.uncertainty).max())
+        return f"The indices of whole channels are uncertain by at most {worst:.1g}, from {self.runs} simulations."
 
     def summary(self) -> str:
         """Return a table of the indices of whole channels, then the effort."""
@@ -59,4 +80,6 @@ class SensitivityIndices(Result):
             for p, name in enumerate(self.box.names):
                 indices = f"{self.whole_first[c, p]:.4f}", f"{self.whole_total[c, p]:.4f}"
                 rows.append((channel if p == 0 else "", name, *indices, f"{self.uncertainty[c]:.1g}"))
-        return "\n".join([*text_table(rows), "", *fact_lines(runs=self.runs), *map(str, self.findings)])
+        return "\n".join(
+            [*text_table(rows), "", *fact_lines(runs=self.runs, checks=self.checks), *map(str, self.findings)]
+        )

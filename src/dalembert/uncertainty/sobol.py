@@ -1,43 +1,69 @@
-"""Which parameters cause the variance of a response over a box: Sobol indices from a surrogate."""
+"""Which parameters cause the variance of a response: Sobol indices from a surrogate."""
+
+from dataclasses import dataclass
 
 import numpy as np
 
-from dalembert.arguments import check_model, check_whole, is_number
+from dalembert.arguments import check_model, check_whole, is_number, takes_checked
 from dalembert.errors import InputError, SolveError, shown
-from dalembert.forward import ForwardModel
+from dalembert.findings import Finding
+from dalembert.forward import Executor, ForwardModel, findings_at, on_cluster, takes_executor
 from dalembert.forward.provenance import provenance
-from dalembert.surrogate import Adaptive, SobolIndices, Surrogate, fit, sobol_indices
+from dalembert.surrogate import Adaptive, Checks, SobolIndices, Surrogate, fit, sobol_indices
 from dalembert.surrogate.scheme import Scheme
-from dalembert.uncertainty.propagate import Intervals, box_of
+from dalembert.surrogate.unseen import unseen
+from dalembert.uncertainty.events import Began, Ended, OnEvent
+from dalembert.uncertainty.inputs import Distributions, Inputs, described, inputs_of
 from dalembert.uncertainty.runs import Runs
 from dalembert.uncertainty.sensitivity_indices import SensitivityIndices
 
+NAME = "global_sensitivity"
+FEWEST, SHARE, MOST = 30, 0.1, 1000
+"""Checks at least, as a part of the runs of the surrogate, and at most."""
+USUAL = 0.05
+"""Tolerance of the surrogate, as a part of that of the indices: the root of a part of the variance is as exact."""
+NEGLIGIBLE = 0.01
+"""Total index below which a parameter may be fixed."""
 
+
+@takes_executor
+@takes_checked("tolerance", "checks", "seed")
 def global_sensitivity(
     model: ForwardModel,
-    intervals: Intervals,
+    intervals: Distributions | None = None,
     scheme: Scheme | None = None,
     *,
     tolerance: float = 0.02,
+    checks: int | None = None,
     seed: int = 0,
+    on_event: OnEvent | None = None,
+    executor: Executor = None,
 ) -> SensitivityIndices:
     """Return the Sobol indices of every channel, at every sample and of the channel as a whole.
 
-    The parameters are independent and uniform within their intervals. The first-order index of a parameter is the part
-    of the variance that it causes alone; its total index contains its interactions with others. Both come from a
-    Chebyshev surrogate in closed form.
+    The parameters are independent. The first-order index of a parameter is the part of the variance that it causes
+    alone; its total index contains its interactions with others. Both come from a Chebyshev surrogate in closed form.
 
     Parameters
     ----------
     model : ForwardModel
-    intervals : Box, or mapping of str to Interval, (lower, upper) or number
-        One for each parameter of the model, in SI units.
+    intervals : Box, or mapping of str to Interval, (lower, upper), number or prior, optional
+        One for each parameter of the model, in SI units. It is uniform within an interval. A distribution such as
+        ``Normal(mean, deviation)`` is truncated by the bounds of the parameter, or where its tails are below 1e-5. If
+        not given, the priors of the parameters; without prior a parameter is uniform between its bounds.
     scheme : TotalDegree, Tensor or Adaptive, optional
-        Of the surrogate, see :func:`dalembert.surrogate.fit`.
+        Of the surrogate, see :func:`dalembert.surrogate.fit`; ``Adaptive(tolerance / 20)`` if not given.
     tolerance : float
         Largest uncertainty of the indices of a whole channel, which follows from the error of the surrogate.
+    checks : int, optional
+        Random runs that the surrogate is compared with: at least 2. Without it a tenth of those of the surrogate, and
+        from 30 to 1000.
     seed : int
         Of the runs that test the surrogate.
+    on_event : callable, optional
+        Called with each event (see :mod:`dalembert.uncertainty.events`) as it happens.
+    executor : str or distributed.Client, optional
+        Address of a Dask cluster, or a client of one, to which batches go.
 
     Returns
     -------
@@ -46,7 +72,7 @@ def global_sensitivity(
     Raises
     ------
     InputError
-        For a parameter without an interval, and a tolerance that is not between 0 and 1.
+        For a parameter without an interval, correlated priors, and a tolerance that is not between 0 and 1.
     SolveError
         If the indices of a channel are more uncertain than the tolerance.
 
@@ -59,48 +85,86 @@ def global_sensitivity(
     --------
     >>> import numpy as np, dalembert as da
     >>> times = np.linspace(0.0, 1.0, 11)
-    >>> model = da.PythonModel(lambda a, b: a * times + 0.1 * b, {"a": (0, 1), "b": (0, 1)}, ["x"], times)
+    >>> model = da.PythonModel(lambda a, b: a * times + 0.1 * b, {"a": (0, 1), "b": (-9, 9)}, ["x"], times)
     >>> found = da.global_sensitivity(model, {"a": (0.0, 1.0), "b": (0.0, 1.0)})
     >>> found.first[0, 0].round(3).tolist(), found.first[-1, 0].round(3).tolist()
     ([0.0, 1.0], [0.99, 0.01])
+    >>> found = da.global_sensitivity(model, {"a": (0.0, 1.0), "b": da.Normal(0.0, 1.0)})
+    >>> found.first[-1, 0].round(3).tolist()
+    [0.893, 0.107]
     """
-    check_model("global_sensitivity", model)
-    check_whole("global_sensitivity", "seed", seed, 0)
+    check_model(NAME, model)
+    check_whole(NAME, "seed", seed, 0)
+    if checks is not None:
+        check_whole(NAME, "checks", checks, 2)
     if not is_number(tolerance) or not 0 < tolerance < 1:
-        raise InputError(f"global_sensitivity: tolerance is {shown(tolerance)}; expected a number between 0 and 1")
-    box = box_of(model, intervals)
-    runs, scheme = Runs(model, box, "global sensitivity"), Adaptive() if scheme is None else scheme
+        raise InputError(f"{NAME}: tolerance is {shown(tolerance)}; expected a number between 0 and 1")
+    model = on_cluster(model, executor)
+    inputs, scheme = inputs_of(model, intervals, NAME), scheme or Adaptive(USUAL * tolerance)
+    runs = Runs(model, inputs.box, "global sensitivity", on_event)
+    runs.tell(Began(runs.method, None))
+    made = _surrogate(runs, inputs, scheme, checks, seed)
     samples, channels = runs.shape
-    surrogate = fit(
-        lambda points: runs.values(points).reshape(len(points), -1),
-        box.lower,
-        box.upper,
-        scheme,
-        seed=seed,
-        groups=np.tile(np.arange(channels), samples),
+    each, whole = (
+        sobol_indices(made.surrogate, rules=inputs.rules, groups=groups, checks=made.checks)
+        for groups in (None, made.groups)
     )
-    found = sobol_indices(surrogate)
-    whole = found.summed(np.tile(np.arange(channels), samples))
     names = tuple(channel.name for channel in model.channels)
-    _demand(whole, names, tolerance, _improvement(surrogate))
-    shape = samples, channels, len(box.names)
-    return SensitivityIndices(
+    _demand(whole, names, tolerance, _improvement(made.surrogate))
+    shape = samples, channels, len(inputs.box)
+    result = SensitivityIndices(
         coordinate=model.coordinate,
         channels=names,
         units=tuple(channel.unit for channel in model.channels),
-        box=box,
-        mean=found.mean.reshape(samples, channels),
-        deviations=np.sqrt(found.variance).reshape(samples, channels),
-        first=found.first.T.reshape(shape),
-        total=found.total.T.reshape(shape),
+        box=inputs.box,
+        distributions=inputs.texts,
+        mean=each.mean.reshape(samples, channels),
+        deviations=np.sqrt(each.variance).reshape(samples, channels),
+        first=each.first.T.reshape(shape),
+        total=each.total.T.reshape(shape),
         whole_first=whole.first.T,
         whole_total=whole.total.T,
         uncertainty=whole.uncertainty,
         runs=runs.count,
-        provenance=provenance(
-            model, scheme, seed=seed, tolerance=tolerance, intervals={n: [i.lower, i.upper] for n, i in box.items()}
+        checks=0 if made.checks is None else len(made.checks.eta),
+        failures=tuple(runs.failures),
+        provenance=provenance(model, scheme, seed=seed, tolerance=tolerance, intervals=dict(described(inputs))),
+        findings=(
+            *failed_runs(runs),
+            *_negligible(inputs, whole),
+            unseen(made.surrogate, inputs.box.names),
+            *findings_at(model, inputs.box.middle),
         ),
     )
+    runs.tell(Ended(runs.method, result.success, result.status, runs.count, 0.0))
+    return result
+
+
+@dataclass(frozen=True, eq=False)
+class _Made:
+    """A surrogate of all samples and channels, the channel of each of its outputs, and its checks."""
+
+    surrogate: Surrogate
+    groups: np.ndarray
+    checks: Checks | None
+
+
+def _surrogate(runs: Runs, inputs: Inputs, scheme: Scheme, count: int | None, seed: int) -> _Made:
+    samples, channels = runs.shape
+    groups, box = np.tile(np.arange(channels), samples), inputs.box
+
+    def function(points: np.ndarray) -> np.ndarray:
+        return runs.values(points).reshape(len(points), -1)
+
+    surrogate = fit(function, box.lower, box.upper, scheme, seed=seed, groups=groups)
+    if not len(runs.free):
+        return _Made(surrogate, groups, None)
+    number = int(np.clip(SHARE * surrogate.runs, FEWEST, MOST)) if count is None else count
+    points = inputs.random(number, np.random.default_rng((seed, 5)))
+    errors = function(points) - surrogate(points)
+    known = np.isfinite(errors).all(axis=1)
+    checks = Checks(inputs.eta(points[known]), errors[known]) if known.sum() > 1 else None
+    return _Made(surrogate, groups, checks)
 
 
 def _improvement(surrogate: Surrogate) -> str:
@@ -116,7 +180,35 @@ def _demand(whole: SobolIndices, names: tuple[str, ...], tolerance: float, more:
     worst = int(np.argmax(np.nan_to_num(whole.uncertainty)))
     if whole.uncertainty[worst] > tolerance:
         raise SolveError(
-            f"global_sensitivity: the error of the surrogate leaves the indices of channel {names[worst]!r} uncertain "
-            f"by {whole.uncertainty[worst]:.2g}, more than the tolerance of {tolerance:g}. Improve the surrogate "
-            f"({more}), narrow the intervals, or raise the tolerance."
+            f"{NAME}: the error of the surrogate leaves the indices of channel {names[worst]!r} uncertain by "
+            f"{whole.uncertainty[worst]:.2g}, more than the tolerance of {tolerance:g}. Improve the surrogate "
+            f"({more}), increase checks, narrow the intervals, or raise the tolerance."
         )
+
+
+def _negligible(inputs: Inputs, whole: SobolIndices) -> list[Finding]:
+    """Finding on parameters that may be fixed, as the upper ends of their total indices are small in all channels."""
+    varying = whole.variance > 0
+    if not varying.any():
+        return []
+    most = whole.total_ends[1][:, varying].max(axis=1)
+    values = {
+        name: float(index)
+        for name, index, width in zip(inputs.box.names, most, inputs.box.radius, strict=True)
+        if index < NEGLIGIBLE and width > 0
+    }
+    if not values:
+        return []
+    names = ", ".join(values)
+    message = f"The total indices of these parameters are below {NEGLIGIBLE:g} in all channels: {names}."
+    return [Finding("negligible-parameters", "note", values, message, "They may be fixed within their intervals.")]
+
+
+def failed_runs(runs: Runs) -> list[Finding]:
+    """Return the finding of the runs that failed, if there are any."""
+    if not runs.failures:
+        return []
+    number, first = len(runs.failures), runs.failures[0]
+    message = f"{number} of {runs.count} runs failed and were left out, the first: {first}."
+    advice = "Narrow the intervals to where the model can be run."
+    return [Finding("failed-runs", "error", {"failures": number, "first": first}, message, advice)]

@@ -34,7 +34,10 @@ SOURCES = [
     "inverse/specimens/estimate.py",
     *(f"inverse/assessment/{name}.py" for name in ("designs", "prediction", "profiles", "walk")),
     *(f"optimize/{name}.py" for name in ("least_squares", "response_sensitivity", "swarm")),
-    *(f"uncertainty/{name}.py" for name in ("chebyshev", "comparison", "optimise", "propagate", "taylor")),
+    *(
+        f"uncertainty/{name}.py"
+        for name in ("chebyshev", "comparison", "morris", "optimise", "propagate", "sobol", "taylor")
+    ),
     *SECTIONS,
     "study/tasks/telling.py",
 ]

@@ -19,7 +19,7 @@ MODEL = da.PythonModel(
 
 @pytest.fixture(scope="module")
 def found():
-    return da.global_sensitivity(MODEL, BOX)
+    return da.global_sensitivity(MODEL, BOX, Adaptive(1e-6))
 
 
 def test_indices_over_time_and_of_whole_channels(found):
@@ -52,6 +52,13 @@ def test_total_index_of_a_product_is_that_of_its_moments(found):
     ("options", "sentence"),
     [
         ({"tolerance": 2.0}, snapshot("global_sensitivity: tolerance is 2.0; expected a number between 0 and 1")),
+        ({"checks": 1}, snapshot("global_sensitivity: checks is 1; expected a whole number, at least 2")),
+        (
+            {"intervals": {**BOX, "rate": da.Normal(9.0, 0.1)}},
+            snapshot(
+                "global_sensitivity: the distribution of 'rate', Normal(mean=9.0, deviation=0.1), has the probability 0 between the bounds of the parameter (0, 3). Correct the distribution or the bounds."
+            ),
+        ),
         (
             {"intervals": {"gain": (0.5, 1.5)}},
             snapshot(
@@ -59,12 +66,45 @@ def test_total_index_of_a_product_is_that_of_its_moments(found):
             ),
         ),
     ],
-    ids=["tolerance", "intervals"],
+    ids=["tolerance", "checks", "distribution", "intervals"],
 )
 def test_what_is_refused(options, sentence):
     with pytest.raises(da.InputError) as refused:
         da.global_sensitivity(MODEL, **{"intervals": BOX, **options})
     assert str(refused.value) == sentence
+
+
+def test_correlated_parameters_are_refused():
+    both = da.CorrelatedNormal(("a", "b"), (1.0, 1.0), ((0.01, 0.005), (0.005, 0.01)))
+    box = [da.Parameter(name, 0.0, 2.0, prior=both) for name in "ab"]
+    model = da.PythonModel(lambda a, b: a * TIMES + b, box, ["x"], TIMES)
+    with pytest.raises(da.InputError) as refused:
+        da.global_sensitivity(model)
+    assert str(refused.value) == snapshot(
+        "global_sensitivity: the distribution of 'a' is correlated with others, and indices of correlated parameters are not defined. Use an interval or a distribution of it alone in intervals."
+    )
+
+
+def test_priors_of_parameters_are_the_distributions_if_no_intervals_are_given():
+    """Var(a t) = t² var(a): the truncation of ± 4.3 deviations leaves 0.9996 of the variance."""
+    parameters = [da.Parameter("a", -5.0, 5.0, prior=da.Normal(1.0, 0.3)), da.Parameter("b", 0.0, 1.0)]
+    known = da.global_sensitivity(da.PythonModel(lambda a, b: a * TIMES + b, parameters, ["x"], TIMES))
+    np.testing.assert_allclose(known.deviations[:, 0] ** 2, 0.09 * TIMES**2 + 1 / 12, rtol=1e-3)
+    assert known.distributions == ("Normal(mean=1.0, deviation=0.3)", "uniform")
+    assert known.box["b"] == da.Interval(0.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("prior", "variance"),
+    [(da.Uniform(1.0, 2.0), 1 / 12), (da.HalfNormal(0.5), 0.25 * (1 - 2 / np.pi)), (da.LogUniform(1.0, 1e3), None)],
+    ids=["uniform", "half-normal", "log-uniform"],
+)
+def test_distributions_have_their_variance(prior, variance):
+    model = da.PythonModel(lambda a: np.array([a]), {"a": (0.0, 2e3)}, ["x"], TIMES[:1])
+    known = da.global_sensitivity(model, {"a": prior})
+    log = np.log(1e3)
+    expected = (1e6 - 1) / (2 * log) - (999 / log) ** 2 if variance is None else variance
+    assert known.deviations[0, 0] ** 2 == pytest.approx(expected, rel=1e-3)
 
 
 def test_a_surrogate_that_is_too_coarse_is_refused():
@@ -88,4 +128,4 @@ def test_it_is_stored_and_reported(found, tmp_path):
     text = (tmp_path / "report.html").read_text(encoding="utf-8")
     for words in ("Global sensitivity", "Sobol indices", "first-order index", "gain"):
         assert words in text
-    assert list(found.figures()) == ["shares-1", "shares-2"]
+    assert list(found.figures()) == ["indices-1", "shares-1", "indices-2", "shares-2"]

@@ -4,6 +4,8 @@ from dalembert.lazy import lazy_names
 
 _NAMES = {
     "bounds.bands": "bands",
+    "bounds.effects": "effects",
+    "bounds.indices": "indices",
     "bounds.methods": "differences methods",
     "bounds.shares": "shares",
     "frequency.backbone": "backbone",

@@ -1,0 +1,177 @@
+"""Which of many parameters matter: Morris's screening by elementary effects."""
+
+import numpy as np
+
+from dalembert.arguments import check_model, check_whole, takes_checked
+from dalembert.errors import InputError, SolveError
+from dalembert.findings import Finding
+from dalembert.forward import Executor, ForwardModel, findings_at, on_cluster, takes_executor
+from dalembert.forward.provenance import provenance
+from dalembert.uncertainty.events import Began, Ended, OnEvent
+from dalembert.uncertainty.inputs import Distributions, described, inputs_of
+from dalembert.uncertainty.runs import Runs
+from dalembert.uncertainty.screening import Screening
+from dalembert.uncertainty.sobol import failed_runs
+
+NAME = "screen"
+SMALL = 0.05
+"""Part of the largest effect on a channel below which a parameter may be fixed."""
+
+
+@takes_executor
+@takes_checked("trajectories", "levels", "seed")
+def screen(
+    model: ForwardModel,
+    intervals: Distributions | None = None,
+    *,
+    trajectories: int = 20,
+    levels: int = 4,
+    seed: int = 0,
+    on_event: OnEvent | None = None,
+    executor: Executor = None,
+) -> Screening:
+    """Return the elementary effects of the parameters on each channel: a ranking of many parameters by few runs.
+
+    A trajectory starts at a random point and changes one parameter after the other, which costs parameters + 1 runs.
+    Each change gives an effect: the difference of the response, scaled to the whole interval of the parameter. Needs
+    the extra ``sensitivity``: ``pip install 'dalembert[sensitivity]'``.
+
+    Parameters
+    ----------
+    model : ForwardModel
+    intervals : Box, or mapping of str to Interval, (lower, upper), number or prior, optional
+        As for :func:`global_sensitivity`. A parameter with a distribution is changed in steps of its probability.
+    trajectories : int
+        At least 2; usual are 10 to 50.
+    levels : int
+        Of each parameter: an even number. A step is levels/(2 (levels − 1)) of the interval.
+    seed : int
+    on_event : callable, optional
+        Called with each event (see :mod:`dalembert.uncertainty.events`) as it happens.
+    executor : str or distributed.Client, optional
+        Address of a Dask cluster, or a client of one, to which batches go.
+
+    Returns
+    -------
+    Screening
+
+    Raises
+    ------
+    InputError
+        For intervals that do not match the parameters, fewer than 2 trajectories, levels that are odd, and a missing
+        extra.
+    SolveError
+        If fewer than 2 trajectories are without failed runs.
+
+    Notes
+    -----
+    Trajectories are SALib's. Source: Morris, Factorial sampling plans for preliminary computational experiments (1991);
+    the mean of absolute effects: Campolongo, Cariboni and Saltelli, An effective screening design for sensitivity
+    analysis of large models (2007).
+
+    Examples
+    --------
+    >>> import numpy as np, dalembert as da
+    >>> times = np.linspace(0.0, 1.0, 11)
+    >>> model = da.PythonModel(lambda a, b: a * times + 0.1 * b, {"a": (0, 1), "b": (0, 1)}, ["x"], times)
+    >>> found = da.screen(model, trajectories=4)
+    >>> found.ranking("x"), found.effects[-1, 0].round(6).tolist()
+    (('a', 'b'), [1.0, 0.1])
+    """
+    check_model(NAME, model)
+    check_whole(NAME, "seed", seed, 0)
+    check_whole(NAME, "trajectories", trajectories, 2)
+    check_whole(NAME, "levels", levels, 2)
+    if levels % 2:
+        raise InputError(f"{NAME}: levels is {levels}; expected an even number, as 4")
+    model = on_cluster(model, executor)
+    inputs = inputs_of(model, intervals, NAME)
+    runs = Runs(model, inputs.box, "screening", on_event)
+    free = runs.free
+    parts = _trajectories(len(free), trajectories, levels, seed)
+    every = np.full((*parts.shape[:2], len(inputs.box)), 0.5)
+    every[:, :, free] = parts
+    runs.tell(Began(runs.method, every.shape[0] * every.shape[1]))
+    runs.most = every.shape[0] * every.shape[1]
+    points = inputs.points(every.reshape(-1, len(inputs.box)))
+    values = runs.values(points).reshape(*every.shape[:2], *runs.shape)
+    known = np.isfinite(values).all(axis=(1, 2, 3))
+    if known.sum() < 2:
+        raise SolveError(
+            f"{NAME}: only {known.sum()} of {trajectories} trajectories are without failed runs, the first: "
+            f"{runs.failures[0]}. Narrow the intervals to where the model can be run."
+        )
+    effects = np.zeros((int(known.sum()), *runs.shape, len(inputs.box)))
+    effects[..., free] = _effects(parts[known], values[known])
+    size = np.sqrt((effects**2).mean(axis=1))
+    spread = effects.std(axis=0, ddof=1)
+    whole, errors = size.mean(axis=0), size.std(axis=0, ddof=1) / np.sqrt(len(size))
+    result = Screening(
+        coordinate=model.coordinate,
+        channels=tuple(channel.name for channel in model.channels),
+        units=tuple(channel.unit for channel in model.channels),
+        box=inputs.box,
+        distributions=inputs.texts,
+        mean=effects.mean(axis=0),
+        effects=np.abs(effects).mean(axis=0),
+        spread=spread,
+        whole_effects=whole,
+        whole_spread=np.sqrt((spread**2).mean(axis=0)),
+        errors=errors,
+        trajectories=len(effects),
+        runs=runs.count,
+        failures=tuple(runs.failures),
+        provenance=provenance(
+            model, seed=seed, trajectories=trajectories, levels=levels, intervals=dict(described(inputs))
+        ),
+        findings=(
+            *failed_runs(runs),
+            *_small(inputs.box.names, whole + 2 * errors, whole, free),
+            *findings_at(model, inputs.box.middle),
+        ),
+    )
+    runs.tell(Ended(runs.method, result.success, result.status, runs.count, 0.0))
+    return result
+
+
+def _trajectories(parameters: int, count: int, levels: int, seed: int) -> np.ndarray:
+    """Probabilities of the parameters along trajectories, shape (count, parameters + 1, parameters)."""
+    if parameters == 0:
+        raise InputError(f"{NAME}: all intervals have the width 0. Give at least one parameter an interval.")
+    try:
+        from SALib.sample.morris import sample
+    except ImportError:
+        raise InputError(
+            "screen: SALib is needed and not installed; run: pip install 'dalembert[sensitivity]'"
+        ) from None
+    names = [f"x{k}" for k in range(parameters)]
+    problem = {"num_vars": parameters, "names": names, "bounds": [[0.0, 1.0]] * parameters}
+    points = sample(problem, count, num_levels=levels, seed=seed)
+    return np.clip(points.reshape(count, parameters + 1, parameters), 0.0, 1.0)
+
+
+def _effects(parts: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Effects (trajectories, samples, channels, parameters) from values (trajectories, points, samples, channels).
+
+    Each step of a trajectory changes one parameter.
+    """
+    steps = np.diff(parts, axis=1)
+    changed = np.abs(steps).argmax(axis=2)
+    sizes = np.take_along_axis(steps, changed[..., None], axis=2)[..., 0]
+    slopes = np.diff(values, axis=1) / sizes[:, :, None, None]
+    order = np.argsort(changed, axis=1)
+    return np.moveaxis(np.take_along_axis(slopes, order[:, :, None, None], axis=1), 1, -1)
+
+
+def _small(names: tuple[str, ...], most: np.ndarray, whole: np.ndarray, free: np.ndarray) -> list[Finding]:
+    """Finding on parameters whose effects are small in all channels, shape (channels, parameters)."""
+    largest = whole.max(axis=1, keepdims=True)
+    shares = np.divide(most, largest, out=np.zeros_like(most), where=largest > 0).max(axis=0)
+    values = {names[k]: float(shares[k]) for k in free if shares[k] < SMALL}
+    if not values:
+        return []
+    message = (
+        f"The effects of these parameters are below {100 * SMALL:g} % of the largest one in all channels: "
+        f"{', '.join(values)}."
+    )
+    return [Finding("small-effects", "note", values, message, "They may be fixed within their intervals.")]

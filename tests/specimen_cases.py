@@ -13,6 +13,16 @@ def _population(rates: list[float]) -> da.Population:
     return da.population(fits)
 
 
+def _joint() -> tuple[da.Fit, dict[str, da.Population]]:
+    """A fit of three specimens, and beside it their population."""
+    experiments = [
+        da.Experiment(f"part {k}", DECAY, measured(DECAY, [2.0, rate], 0.02, k, deviations=0.02), own=("rate",))
+        for k, rate in enumerate((0.8, 1.0, 1.3))
+    ]
+    fit = da.identify(experiments, starts=1)
+    return fit, {"population": da.population(fit)}
+
+
 SPECIMEN_CASES = {
     "few specimens": Case(
         lambda: _population([0.8, 1.0, 1.1, 1.3]),
@@ -25,5 +35,10 @@ SPECIMEN_CASES = {
             "Values of the specimens, and adjusted by what is known of the others",
         ),
         ("specimens-1", "specimens-2"),
+    ),
+    "a fit of specimens": Case(
+        _joint,
+        ("There are 3 specimens. Their spread is uncertain.", "Values of the specimens, and adjusted"),
+        ("specimens-1",),
     ),
 }

@@ -33,6 +33,9 @@ def found(study: Study, outcome: Outcome, row: dict[str, Any]) -> float:
     """The number that a row of expected.toml asks for."""
     quantity = row["quantity"]
     match study.task:
+        case "identify" if "of" in row:
+            population = getattr(outcome, "told")["population"]  # noqa: B009
+            return float(getattr(population, quantity)[population.names.index(row["of"])])
         case "identify":
             values = outcome.best["values"]
             return (

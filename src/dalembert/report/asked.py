@@ -74,7 +74,8 @@ class Asked:
                 if not isinstance(value, Section) and not any(value is other for other in self.taken):
                     raise InputError(
                         f"report: {shown(one)} was given beside the result; expected a trajectory, profiles, a "
-                        "prediction, a comparison in time, a backbone, a deformation, reduction errors, or a section"
+                        "population, a prediction, a comparison in time, a backbone, a deformation, reduction errors, "
+                        "or a section"
                     )
 
 

@@ -83,5 +83,5 @@ def change(degree: int, rule: Rule = uniform) -> np.ndarray:
     Q_ij/√w_i and M = Rᵀ.
     """
     nodes, weights = rule(degree)
-    upper = np.linalg.qr(np.sqrt(weights)[:, None] * chebvander(nodes, degree), mode="r")
+    upper = np.asarray(np.linalg.qr(np.sqrt(weights)[:, None] * chebvander(nodes, degree), mode="r"))
     return (upper * np.where(np.diag(upper) < 0, -1.0, 1.0)[:, None]).T

@@ -106,7 +106,7 @@ def sobol_indices(
     number = np.arange(outputs) if groups is None else np.asarray(groups)
     member = (number[:, None] == np.arange(number.max(initial=-1) + 1)).astype(float)
     active = expansion.exponents > 0
-    varying = active.any(axis=1)
+    varying = np.asarray(active.any(axis=1))
     masks = [*(active & (active.sum(axis=1) == 1)[:, None]).T, *active.T]  # of the first-order, then the total indices
     squares, mean = expansion.coefficients**2, expansion.coefficients[~varying].sum(axis=0)
     squares[:, squares[varying].sum(axis=0) <= (NOTHING * mean) ** 2] = 0.0

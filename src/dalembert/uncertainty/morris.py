@@ -89,13 +89,13 @@ def screen(
     runs = Runs(model, inputs.box, "screening", on_event)
     free = runs.free
     parts = _trajectories(len(free), trajectories, levels, seed)
-    every = np.full((*parts.shape[:2], len(inputs.box)), 0.5)
-    every[:, :, free] = parts
-    runs.tell(Began(runs.method, every.shape[0] * every.shape[1]))
-    runs.most = every.shape[0] * every.shape[1]
-    points = inputs.points(every.reshape(-1, len(inputs.box)))
-    values = runs.values(points).reshape(*every.shape[:2], *runs.shape)
-    known = np.isfinite(values).all(axis=(1, 2, 3))
+    steps = len(free) + 1
+    runs.most = trajectories * steps
+    every = np.full((runs.most, len(inputs.box)), 0.5)
+    every[:, free] = parts.reshape(runs.most, -1)
+    runs.tell(Began(runs.method, runs.most))
+    values = runs.values(inputs.points(every)).reshape(trajectories, steps, *runs.shape)
+    known = np.isfinite(values.reshape(trajectories, -1)).all(axis=1)
     if known.sum() < 2:
         raise SolveError(
             f"{NAME}: only {known.sum()} of {trajectories} trajectories are without failed runs, the first: "

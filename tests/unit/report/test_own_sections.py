@@ -67,7 +67,7 @@ def test_what_no_section_shows_is_refused(tmp_path: Path) -> None:
     with refused(
         InputError,
         snapshot(
-            "report: 3 was given beside the result; expected a trajectory, profiles, a prediction, a comparison in time, a backbone, a deformation, reduction errors, or a section"
+            "report: 3 was given beside the result; expected a trajectory, profiles, a population, a prediction, a comparison in time, a backbone, a deformation, reduction errors, or a section"
         ),
     ):
         report(fit(), tmp_path / "a.html", 3)

@@ -63,9 +63,12 @@ def test_steps_follow_the_probability_of_a_distribution():
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
-        ({"trajectories": 1}, snapshot('screen: trajectories is 1; expected a whole number, at least 2')),
-        ({"levels": 5}, snapshot('screen: levels is 5; expected an even number, as 4')),
-        ({"intervals": dict.fromkeys(NAMES, 1.0)}, snapshot('screen: all intervals have the width 0. Give at least one parameter an interval.')),
+        ({"trajectories": 1}, snapshot("screen: trajectories is 1; expected a whole number, at least 2")),
+        ({"levels": 5}, snapshot("screen: levels is 5; expected an even number, as 4")),
+        (
+            {"intervals": dict.fromkeys(NAMES, 1.0)},
+            snapshot("screen: all intervals have the width 0. Give at least one parameter an interval."),
+        ),
     ],
     ids=["trajectories", "levels", "width"],
 )

@@ -79,7 +79,8 @@ def population(
 
     Notes
     -----
-    It assumes fits whose responses are nearly linear within the deviations, so that C_i is right.
+    It assumes fits whose responses are nearly linear within the deviations, so that C_i is right. With two specimens
+    the likelihood decreases as 1/spread, so that nothing bounds the spread; three are the least.
 
     Examples
     --------

@@ -30,6 +30,9 @@ if TYPE_CHECKING:
 DEFAULT = "least-squares"
 STEPS_IN_SEGMENTS = 80  # of multiple shooting from one start, about: 57 to 105 in studies/chaotic-pendulum
 
+FEWEST = 3
+"""Specimens of a population: with two, the likelihood does not bound their spread."""
+
 MOST_MOTIONS = 4
 """Experiments whose motion the report draws: each drawing adds to the size of its page."""
 
@@ -68,6 +71,11 @@ class IdentifyTable(StudyTable):
     derivative: Literal["auto", "direct", "adjoint"] = Field(
         "auto",
         description="gradients of minimisers: from all sensitivities, from the adjoint, or by the number of parameters",
+    )
+    population: bool | list[str] = Field(
+        False,
+        description="mean and spread over the experiments, one for each specimen, of local parameters: their names, or "
+        "true for all that the experiments have in common",
     )
     profile: bool = Field(False, description="whether to make the profile likelihood of each parameter too")
     prediction: bool = Field(False, description="whether to make bands of the response and of new measurements too")
@@ -178,7 +186,7 @@ class Identify(Task):
                 f"[identify], profile: the minimum of the loss {file.identify.loss!r} is no likelihood; leave one of "
                 "the keys out"
             )
-        return [*wrong, *_wrong_shooting(file)]
+        return [*wrong, *_wrong_population(file), *_wrong_shooting(file)]
 
     def plan(self, study: Study) -> str:
         model, data = posed(study)
@@ -235,6 +243,29 @@ def _identified(study: Study, fit: "Fit", told: Mapping[str, Any]) -> Identifica
     deviations = dict(zip(fit.parameters.names, known, strict=True))
     values = fit.parameters.mapping(fit.values)
     return Identification(study, fit, {"fitness": fit.fitness, "values": values, "deviations": deviations}, told=told)
+
+
+def _wrong_population(file: Any) -> list[str]:
+    """Sentences about specimens where there are too few, or where they have no local parameter in common."""
+    asked, where = file.identify.population, "[identify], population"
+    if not asked:
+        return []
+    held = file.identify.validation if isinstance(file.identify.validation, list) else []
+    specimens = [table for table in file.experiments if table.name not in held]
+    if len(specimens) < FEWEST:
+        return [
+            f"{where}: there are {len(specimens)} experiments to fit, and a spread needs at least {FEWEST} specimens; "
+            "add [[experiments]], or leave the key out"
+        ]
+    common = [name for name in specimens[0].own if all(name in table.own for table in specimens)]
+    if asked is True:
+        none = f"{where}: the experiments have no local parameter in common; name those that vary in own of each"
+        return [] if common else [none]
+    return [
+        f"{where}: {name!r} is no local parameter of all experiments; name it in own of each"
+        for name in asked
+        if name not in common
+    ]
 
 
 def _wrong_shooting(file: Any) -> list[str]:

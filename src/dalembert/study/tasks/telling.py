@@ -1,4 +1,4 @@
-"""What an identification tells beyond its values: profiles and predictions beside its result, and a look before it."""
+"""What an identification tells beyond its values: populations, profiles and predictions, and a look before it."""
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -11,15 +11,18 @@ if TYPE_CHECKING:
     from dalembert.inverse import Fit
     from dalembert.inverse.events import OnEvent
 
-PROFILES, PREDICTION = "profiles", "prediction"
+POPULATION, PROFILES, PREDICTION = "population", "profiles", "prediction"
 """Names of the files beside the result; of several experiments each has its own prediction, ``prediction-NAME``."""
 
 
 def beyond(table: Any, model: Any, data: Any, fit: "Fit", on_event: "OnEvent") -> dict[str, Any]:
     """Profiles and predictions of a fit, as far as the table asks for them, by the names of their files."""
-    from dalembert.inverse import predict, profile
+    from dalembert.inverse import population, predict, profile
 
     told: dict[str, Any] = {}
+    if table.population:
+        names = None if table.population is True else table.population
+        told[POPULATION] = population(fit, names, level=table.level)
     if table.profile:
         told[PROFILES] = profile(model, data, fit, level=table.level, on_event=on_event)
     if table.prediction:
@@ -47,10 +50,11 @@ def _of(experiment: str) -> str:
 
 def load(result: Path, experiments: Iterable[str]) -> dict[str, Any]:
     """What was written beside a result, of experiments by these names."""
-    from dalembert.inverse import Prediction, Profiles
+    from dalembert.inverse import Population, Prediction, Profiles
 
     return loaded_beside(
-        result, {PROFILES: Profiles, **dict.fromkeys([PREDICTION, *map(_of, experiments)], Prediction)}
+        result,
+        {POPULATION: Population, PROFILES: Profiles, **dict.fromkeys([PREDICTION, *map(_of, experiments)], Prediction)},
     )
 
 

@@ -9,14 +9,13 @@ from dalembert.report.digits import counted, interval, shown
 from dalembert.report.headline import MOST_VALUES, Headline
 from dalembert.report.quantities import labelled
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Fold, Plot, Row, Section
+from dalembert.report.section import Fold, Listed, Plot, Row, Section
 from dalembert.report.table import Table, cell, cells
 
 
 @sections_of(Population)
 def population(told: Population, asked: Asked) -> list[Section]:
     """Means and spreads, then the specimens."""
-    level = f"{100 * told.level:g} %"
     named = [labelled(name, unit) for name, unit in zip(told.names, told.units, strict=True)]
     texts = [f"{shown(float(m))}, spread {shown(float(s))}" for m, s in zip(told.mean, told.spread, strict=True)]
     facts = {
@@ -24,14 +23,22 @@ def population(told: Population, asked: Asked) -> list[Section]:
         "specimens": counted(len(told.specimens)),
     }
     headline = Headline(title="Several specimens", verdict="estimated", facts=facts, findings=told.findings)
+    return [headline, varied(told)]
+
+
+def varied(told: Population, *more: Listed) -> Section:
+    """Means, spreads, and the specimens of each parameter."""
+    level = f"{100 * told.level:g} %"
+    named = [labelled(name, unit) for name, unit in zip(told.names, told.units, strict=True)]
     how = f"The line is the mean. The band contains a new specimen with {level}. Bars are two standard deviations."
     plots = [Plot(f"specimens-{k}", charts.specimens(told, name), how) for k, name in enumerate(told.names, 1)]
     blocks = (
         _means(told, named, level),
+        *more,
         Row(plots, beside=len(plots) > 1),
         Fold(_values(told, named), rows="specimens"),
     )
-    return [headline, Section("Mean and spread", blocks)]
+    return Section("Mean and spread", blocks)
 
 
 def _means(told: Population, named: list[str], level: str) -> Table:

@@ -38,8 +38,9 @@ def report(
         The file is written whole or not at all; its folder is made.
     *beside
         Other results that are shown with it, and sections of yours (:class:`Part`). A fit is shown with a trajectory
-        at the identified values, a population, profiles and a prediction; of several experiments, give a mapping of their names. A
-        response over frequency is shown with a comparison in time, a backbone, a deformation and reduction errors.
+        at the identified values, a population, profiles and a prediction; of several experiments, give a mapping of
+        their names. A response over frequency is shown with a comparison in time, a backbone, a deformation and
+        reduction errors.
     notes : str or sequence of str
         Paragraphs under the headline. In one text, empty lines separate them.
     **options

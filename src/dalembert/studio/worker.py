@@ -89,11 +89,6 @@ class Worker:
     spares : bool
         Whether the process leaves the processors to others that have work.
 
-    Attributes
-    ----------
-    busy : str or None
-        Subject of the request that is answered now.
-
     Notes
     -----
     The process starts with :meth:`start`, and again with the first request after it has ended.
@@ -107,7 +102,7 @@ class Worker:
         self._connection: Connection | None = None
         self._ended = ""
         self._cause: Cause = "ended"
-        self.busy: str | None = None
+        self._computed: object | None = None
         Thread(target=self._take_turns, daemon=True).start()  # the studio ends without waiting for it
 
     def start(self) -> None:
@@ -144,15 +139,19 @@ class Worker:
             if not answer.set_running_or_notify_cancel():
                 return
             try:
-                self.busy = subject
+                self._computed = mine
                 answer.set_result(self._exchange(request) if self._newest.get(subject) is mine else None)
             except Exception as error:
                 answer.set_exception(error)
             finally:
-                self.busy = None
+                self._computed = None
 
         self._turns.put(turn)
         return await asyncio.wrap_future(answer)
+
+    def holds_up(self, subject: str) -> bool:
+        """Return True if another request than the newest one of a subject is computed now."""
+        return self._computed not in (None, self._newest.get(subject))
 
     def drop(self, subject: str) -> None:
         """Drop the request of a subject that waits."""

@@ -71,6 +71,23 @@ def test_the_newest_request_of_each_subject_wins(worker):
     assert run(ask_all) == [0.0, None, None, None, None, 8.0, 14.0]
 
 
+def test_a_request_is_held_up_by_others_alone(worker):
+    async def ask_all():
+        held = [worker.holds_up("read")]
+        first = asyncio.create_task(worker.ask("read", double, 0.0, wait=1.0))
+        await asyncio.sleep(0.1)
+        held.append(worker.holds_up("read"))  # it is the newest one
+        second = asyncio.create_task(worker.ask("read", double, 1.0, wait=1.0))
+        await asyncio.sleep(0.1)
+        held.append(worker.holds_up("read"))
+        await first
+        await asyncio.sleep(0.1)
+        held += [worker.holds_up("read"), worker.holds_up("drawn")]
+        return await second, held
+
+    assert run(ask_all) == (2.0, [False, False, True, False, True])
+
+
 def test_a_request_that_waits_can_be_dropped(worker):
     async def ask_all():
         first = asyncio.create_task(worker.ask("slow", double, 1.0, wait=0.3))

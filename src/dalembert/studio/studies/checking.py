@@ -25,7 +25,6 @@ class Checking:
 
     def __init__(self, draft: Draft, worker: Worker) -> None:
         self._draft, self._worker = draft, worker
-        self._asked = 0
         self._place = ui.context.slot
         self._waiting: ui.timer | None = None
         background_tasks.create(self.check())  # while the browser still loads the page
@@ -33,16 +32,11 @@ class Checking:
 
     async def check(self) -> None:
         """Read the text now."""
-        text, before = self._draft.text, self._asked
-        self._asked += 1
-        request = asyncio.ensure_future(self._read(text))
-        try:
-            await asyncio.wait([request], timeout=PATIENCE)
-            if not request.done() and (before or self._worker.busy not in (None, "reading")):
-                self._worker.interrupt()  # it computes for a text that is no longer there
-            self._draft.take(await request or Reading(""))
-        finally:
-            self._asked -= 1
+        request = asyncio.ensure_future(self._read(self._draft.text))
+        await asyncio.wait([request], timeout=PATIENCE)
+        if not request.done() and self._worker.holds_up("reading"):
+            self._worker.interrupt()  # it computes for a text that is no longer there
+        self._draft.take(await request or Reading(""))
 
     async def _read(self, text: str) -> Reading | None:
         try:

@@ -33,7 +33,8 @@ SETTLED = 8.0
 VIEW: ViewportSize = {"width": 1440, "height": 900}
 STUDY_PAGE = {"its text": ".cm-content .cm-line", "checked": "text=Valid.", "drawn": ".model-drawing svg"}
 RUN_PAGE = {"its state": "[role=status]", "its report": "iframe"}
-TABLE, CARDS = {"listed": ".ag-row"}, {"listed": "[role=listitem]"}
+TABLE = {"the newest listed": ".ag-row", "all listed": f".ag-root[aria-rowcount='{RUNS + 1}']"}
+CARDS = {"listed": "[role=listitem]"}
 Times = dict[str, dict[str, float]]
 """Seconds by the clock and of the processor until something is shown."""
 

@@ -147,7 +147,9 @@ class DataGuide:
             self.suspects = ()
             return
         try:
-            self.suspects = await self._worker.ask("suspects", compare, self.draft.path, self.candidate) or ()
+            found = await self._worker.ask("suspects", compare, self.draft.path, self.candidate)
+            if found is not None:  # otherwise there is a newer request
+                self.suspects = found
         except DalembertError:  # a model that fails says so where it is simulated
             self.suspects = ()
 

@@ -38,6 +38,7 @@ class DataPanel:
         self.draft, self.room = draft, room
         self.guide = DataGuide(draft, room.worker)
         self._quiet = False
+        self._listed: list[tuple[str, str, str]] = []
         self._redraw = Latest(self._look)
         with ui.column().classes("w-full gap-3") as self._all:
             self._build_file()
@@ -136,6 +137,11 @@ class DataPanel:
         self._layout.set_text(f"{shown.samples} rows. {shown.layout[:1].upper()}{shown.layout[1:]}.")
 
     def _show_problems(self) -> None:
+        """List the problems; a list that has not changed stays, so that a click on one of its buttons is not lost."""
+        listed = [(finding.severity, str(finding), self.guide.remedy(finding)) for finding in self.guide.findings]
+        if listed == self._listed:
+            return
+        self._listed = listed
         self._problems.clear()
         with self._problems:
             for finding in self.guide.findings:

@@ -65,6 +65,7 @@ AREAS = {
             "Identification of chaotic motion",
             "Inertial parameters",
             "Least squares: NIST regressions",
+            "Posterior distributions",
             "Response sensitivity",
             "Sensitivities",
             "Residual diagnostics",

@@ -52,10 +52,10 @@ _NAMES = {
         Bands Measurements derivative merged read read_bands read_trials
     """,
     "inverse": """
-        AutoregressiveNoise BandFit ConstantNoise Designs Experiment Fit GlobalSurrogate KnownNoise
-        Likelihood MixedNoise MultipleShooting Nested NoiseModel OrnsteinUhlenbeckNoise ParameterSet
-        Population Prediction Profiles ProportionalNoise ShootingState design identifiability identify
-        identify_bands identify_set likelihood population predict profile
+        AffineInvariant AutoregressiveNoise BandFit ConstantNoise DelayedAcceptance Designs Experiment Fit
+        GlobalSurrogate KnownNoise Likelihood MixedNoise MultipleShooting NUTS Nested NoiseModel
+        OrnsteinUhlenbeckNoise ParameterSet Population Posterior Prediction Profiles ProportionalNoise ShootingState
+        design identifiability identify identify_bands identify_set likelihood population predict profile sample
     """,
     "multibody": """
         System Point TimeResponse Trajectory WorkPrecision simulate equilibrium modes work_precision

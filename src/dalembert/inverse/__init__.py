@@ -18,6 +18,7 @@ from dalembert.inverse.diagnostics.residual_diagnostics import ResidualDiagnosti
 from dalembert.inverse.diagnostics.series_residuals import SeriesResiduals
 from dalembert.inverse.events import (
     Checked,
+    Drawn,
     Event,
     Finished,
     Paved,
@@ -38,6 +39,11 @@ from dalembert.inverse.likelihood.likelihood import Likelihood, likelihood
 from dalembert.inverse.noise.correlated import AutoregressiveNoise, OrnsteinUhlenbeckNoise
 from dalembert.inverse.noise.deviations import ConstantNoise, KnownNoise, MixedNoise, ProportionalNoise
 from dalembert.inverse.noise.noise_model import NoiseModel
+from dalembert.inverse.posterior.posterior import Posterior
+from dalembert.inverse.posterior.sample import sample
+from dalembert.inverse.posterior.samplers.affine_invariant import AffineInvariant
+from dalembert.inverse.posterior.samplers.delayed_acceptance import DelayedAcceptance
+from dalembert.inverse.posterior.samplers.nuts import NUTS
 from dalembert.inverse.sets.identify_set import identify_set
 from dalembert.inverse.sets.parameter_set import ParameterSet
 from dalembert.inverse.shooting.nodes import Nodes
@@ -47,12 +53,16 @@ from dalembert.inverse.specimens.estimate import population
 from dalembert.inverse.specimens.population import Population
 
 __all__ = [
+    "NUTS",
+    "AffineInvariant",
     "AutoregressiveNoise",
     "BandFit",
     "Checked",
     "ConstantNoise",
     "CorrelatedResiduals",
+    "DelayedAcceptance",
     "Designs",
+    "Drawn",
     "Event",
     "Experiment",
     "ExperimentFit",
@@ -74,6 +84,7 @@ __all__ = [
     "ParameterSet",
     "Paved",
     "Population",
+    "Posterior",
     "Prediction",
     "Profile",
     "Profiled",
@@ -98,4 +109,5 @@ __all__ = [
     "population",
     "predict",
     "profile",
+    "sample",
 ]

@@ -16,6 +16,7 @@ NAMES = (
     "cluster",
     "identification",
     "regressions",
+    "coverage",
     "swarms",
     "collocation",
     "digits",

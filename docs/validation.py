@@ -65,7 +65,7 @@ AREAS = {
             "Identification of chaotic motion",
             "Inertial parameters",
             "Least squares: NIST regressions",
-            "Posterior distributions",
+            "Noise models",
             "Response sensitivity",
             "Sensitivities",
             "Residual diagnostics",

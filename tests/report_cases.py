@@ -23,7 +23,6 @@ from free_oscillations import NOISE, TRUTH, oscillation, oscillator, recorded, r
 from free_oscillations import TIMES as OSCILLATING
 from frequency_cases import FREQUENCY_CASES
 from inertial_cases import INERTIAL_CASES
-from posterior_cases import POSTERIOR_CASES
 from report_case import Case
 from sensitivity_cases import SENSITIVITY_CASES
 from small_models import DECAY, LINE, TIMES, banded, measured
@@ -392,6 +391,27 @@ CASES: dict[str, Case] = {
             DECAY, Measurements.of(TIMES, {"x": DECAY.function(2.0, 0.8) + 0.02 * autoregressive(0, 41, 0.6)}, 0.02)
         ),
         ("Check the model structure and the bounds, or increase `starts`.", "for independent residuals"),
+    ),
+    "noise estimated with the parameters": Case(
+        lambda: da.identify(
+            DECAY,
+            Measurements.of(TIMES, {"x": DECAY.function(2.0, 0.8) + 0.02 * autoregressive(0, 41, 0.6)}),
+            noise=da.AutoregressiveNoise(order=1, deviation=da.ConstantNoise(deviation=(1e-6, 0.01))),
+        ),
+        (
+            "The noise is estimated with the parameters, of 'x': autoregressive of order 1, constant.",
+            "Whitened by it, the residuals are not correlated.",
+            "The noise parameter 'noise.x.deviation' is at its upper bound 0.01. Take a noise model without it",
+            "Noise, estimated with the parameters",
+        ),
+    ),
+    "a noise model that is too simple": Case(
+        lambda: da.identify(
+            DECAY,
+            Measurements.of(TIMES, {"x": DECAY.function(2.0, 0.8) + 0.02 * autoregressive(0, 41, 0.9)}),
+            noise="constant",
+        ),
+        ("The noise model does not describe the residuals of 'x': whitened by it, they are correlated",),
     ),
     "a record whose first part is fitted": Case(
         lambda: da.identify(_experiments(), validation={"b": 2.0}), ("after its first 2",)
@@ -970,7 +990,6 @@ CASES: dict[str, Case] = {
     ),
     **FREQUENCY_CASES,
     **INERTIAL_CASES,
-    **POSTERIOR_CASES,
     **SENSITIVITY_CASES,
     **SPECIMEN_CASES,
 }

@@ -18,7 +18,6 @@ from dalembert.inverse.diagnostics.residual_diagnostics import ResidualDiagnosti
 from dalembert.inverse.diagnostics.series_residuals import SeriesResiduals
 from dalembert.inverse.events import (
     Checked,
-    Drawn,
     Event,
     Finished,
     Paved,
@@ -35,15 +34,12 @@ from dalembert.inverse.experiments.validation import Validation
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.identify import identify
 from dalembert.inverse.least_squares.estimate import Identifiability
+from dalembert.inverse.likelihood.estimated_noise import EstimatedNoise
 from dalembert.inverse.likelihood.likelihood import Likelihood, likelihood
 from dalembert.inverse.noise.correlated import AutoregressiveNoise, OrnsteinUhlenbeckNoise
 from dalembert.inverse.noise.deviations import ConstantNoise, KnownNoise, MixedNoise, ProportionalNoise
+from dalembert.inverse.noise.input_errors import InputErrors, input_errors
 from dalembert.inverse.noise.noise_model import NoiseModel
-from dalembert.inverse.posterior.posterior import Posterior
-from dalembert.inverse.posterior.sample import sample
-from dalembert.inverse.posterior.samplers.affine_invariant import AffineInvariant
-from dalembert.inverse.posterior.samplers.delayed_acceptance import DelayedAcceptance
-from dalembert.inverse.posterior.samplers.nuts import NUTS
 from dalembert.inverse.sets.identify_set import identify_set
 from dalembert.inverse.sets.parameter_set import ParameterSet
 from dalembert.inverse.shooting.nodes import Nodes
@@ -53,16 +49,13 @@ from dalembert.inverse.specimens.estimate import population
 from dalembert.inverse.specimens.population import Population
 
 __all__ = [
-    "NUTS",
-    "AffineInvariant",
     "AutoregressiveNoise",
     "BandFit",
     "Checked",
     "ConstantNoise",
     "CorrelatedResiduals",
-    "DelayedAcceptance",
     "Designs",
-    "Drawn",
+    "EstimatedNoise",
     "Event",
     "Experiment",
     "ExperimentFit",
@@ -71,6 +64,7 @@ __all__ = [
     "GlobalSurrogate",
     "Identifiability",
     "Influence",
+    "InputErrors",
     "KnownNoise",
     "Likelihood",
     "MixedNoise",
@@ -84,7 +78,6 @@ __all__ = [
     "ParameterSet",
     "Paved",
     "Population",
-    "Posterior",
     "Prediction",
     "Profile",
     "Profiled",
@@ -105,9 +98,9 @@ __all__ = [
     "identify",
     "identify_bands",
     "identify_set",
+    "input_errors",
     "likelihood",
     "population",
     "predict",
     "profile",
-    "sample",
 ]

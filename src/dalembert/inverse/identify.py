@@ -1,7 +1,7 @@
 """Parameters from measurements."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,7 +18,7 @@ from dalembert.inverse.correlation.findings import correlation_findings
 from dalembert.inverse.events import Finished, OnEvent
 from dalembert.inverse.experiments.coverage import with_coverage
 from dalembert.inverse.experiments.experiment import Experiment
-from dalembert.inverse.experiments.experiments import JointModel, begun, placed
+from dalembert.inverse.experiments.experiments import begun, placed
 from dalembert.inverse.experiments.explained import explained_findings
 from dalembert.inverse.experiments.joined import joined
 from dalembert.inverse.experiments.smoothed import noise_findings, smooth_noise
@@ -27,13 +27,18 @@ from dalembert.inverse.experiments.validation import HeldOut, split, whole_jacob
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.fit.integration import integration_bias, integration_findings
 from dalembert.inverse.fit.outcome import outcome, too_few_findings
+from dalembert.inverse.fit.settings import settings, weights_source
+from dalembert.inverse.fit.with_noise import check_noise, whole_noise, whole_weights, with_noise
+from dalembert.inverse.fit.with_noise import noise_findings as estimated_noise_findings
 from dalembert.inverse.least_squares.descent import End
 from dalembert.inverse.least_squares.estimate import Estimate, estimate, estimate_of, unknown_estimate
 from dalembert.inverse.least_squares.roughness import roughness_findings
+from dalembert.inverse.likelihood.placing import Noise
 from dalembert.inverse.misfit.misfit import misfit_conclusions
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.loss import loss_of
 from dalembert.inverse.problem.noise import noise_floor
+from dalembert.inverse.problem.prior import priors
 from dalembert.inverse.problem.problem import Linearisation, Problem, pose
 from dalembert.inverse.shooting.growth import growth_findings
 from dalembert.inverse.shooting.restarts import check_restart, check_segments
@@ -44,12 +49,11 @@ from dalembert.inverse.starts.rivals import rival_findings, rivals
 from dalembert.inverse.starts.runs import Method, polished, runs
 from dalembert.inverse.starts.spread import SPREADS
 from dalembert.optimize import LeastSquares, Minimiser, Squares
-from dalembert.stored_fields import encoded
 
 
 @takes_executor
 @takes_checked(
-    "model", "data", "method", "starts", "seed", "loss", "loss_scale", "horizon", "spread", "weights", "start"
+    "model", "data", "method", "starts", "seed", "loss", "loss_scale", "horizon", "spread", "weights", "start", "noise"
 )
 def identify(
     model: ForwardModel | Sequence[Experiment],
@@ -60,6 +64,7 @@ def identify(
     seed: int = 0,
     start: Mapping[str, float] | ArrayLike | None = None,
     weights: ArrayLike | Mapping[str, ArrayLike] | None = None,
+    noise: Noise | None = None,
     polish: bool = False,
     horizon: str | None = "growing",
     spread: str = "latin-hypercube",
@@ -92,6 +97,9 @@ def identify(
     weights : array, shape (channels,) or (samples, channels), optional
         W; 1/deviation² of each channel if the data have deviations, else 1. With experiments a mapping from their
         names to such arrays; 1 for those that it leaves out.
+    noise : NoiseModel, its name, or mapping of channel to NoiseModel, optional
+        Noise that is estimated with the parameters, from the minimum of the search on. If not given, the noise is
+        independent, and correlated residuals are allowed for after the fit.
     polish : bool
         Whether least squares goes on from where another method ends.
     horizon : {"growing", None}
@@ -143,6 +151,10 @@ def identify(
     Parameters whose bounds are positive and more than a decade apart are searched by their logarithm
     (``Parameter.log`` overrules). A failed simulation is infinitely bad, and never ends the run.
 
+    With ``noise`` the weights, and the whitening of correlated noise, follow from noise parameters. The restricted
+    likelihood estimates them together with the model's, from where the search ended, without the bias that deviations
+    and correlations have in short records. Parameters may have priors then, though the data have no deviations.
+
     The first least squares start is ``start`` or ``Parameters.start``. If it does not settle the matter, 8 points a
     parameter and start of a Latin hypercube are simulated in one batch, and further starts are those of the least
     misfit over half, a quarter, an eighth of the samples in turn. From the best end the fitness is scanned along the
@@ -177,11 +189,15 @@ def identify(
     require_known("derivative", str(derivative), GRADIENTS)
     model, data, weights, parts = joined("identify", begun(placed(model, executor), start), data, weights)
     given = data.deviations is not None and weights is None
-    smooth = None if shooting is None or given or weights is not None else smooth_noise(data, parts)
+    check_noise(noise, weights=weights, loss=loss, shooting=shooting)
+    smoothing = shooting is not None or (noise is not None and len(priors(model.parameters)) > 0)
+    smooth = smooth_noise(data, parts) if smoothing and not given and weights is None else None
     journal = Journal(len(data.coordinate.values), on_event)
     weighed = weights if smooth is None else np.broadcast_to(smooth**-2.0, data.values.shape)
     posed = replace(
-        pose(model, data, weighed, journal), loss=loss_of(loss, loss_scale, known=given), derivative=derivative
+        pose(model, data, weighed, journal, noise_known=noise is not None),
+        loss=loss_of(loss, loss_scale, known=given),
+        derivative=derivative,
     )
     parted = split(posed, validation)
     problem, journal.samples = parted.part, parted.part.samples
@@ -208,14 +224,21 @@ def identify(
         )
     if not best.stationary and (polish or (squares and starts > 1 and shooting is None)):
         best = polished(problem, method if isinstance(method, Squares) else LeastSquares(), best)
+    searched, settled = (problem, best, floor), None
+    if noise is not None:
+        problem, best, settled = with_noise(problem, noise, best, known=given)
+        floor = noise_floor(problem)
 
     vector = problem.search.vectors(best.point)
     at = best.linearisation or problem.linearised(vector)
     response = problem.responses(vector[None])[0] if at is None else at.response
-    known = given or problem.priors > 0
+    known = given or problem.priors > 0 if settled is None else settled.noise.known
     reached = best.fitness <= floor.fitness
     exact = reached and floor.source == "arithmetic"
-    estimated, correlated = _estimated(problem, response, at, best, known=known, exact=exact)
+    if settled is None:
+        estimated, correlated = _estimated(problem, response, at, best, known=known, exact=exact)
+    else:
+        estimated, correlated = settled.estimate, None
     rounded = reached and floor.source == "rounded"
     deviations = estimated.deviations
     found = integration_bias(problem, at, best.nodes)
@@ -223,7 +246,7 @@ def identify(
     one_run = best.nodes is None or best.nodes.segments == 1
     looked = None if exact or rounded or not one_run else at
     parts_of_time, followed = misfit_conclusions(problem, looked, known=known)
-    others = rivals(problem, best, floor, deviations, known=known)
+    others = rivals(*searched, deviations, known=known if settled is None else given)
     whole = response if problem is posed else posed.responses(vector[None])[0]
     predicted = parted.validation(whole)
     unexplained = () if predicted is None else explained_findings(predicted.explained)
@@ -236,11 +259,20 @@ def identify(
         fitness=best.fitness,
         response=whole,
         data=data,
-        weights=np.where(parted.fitted, posed.weights, 0.0),
+        weights=np.where(parted.fitted, posed.weights, 0.0) if settled is None else whole_weights(parted, problem),
         history=tuple(journal.history),
         starts=tuple(journal.starts),
         success=best.success and not undetermined,
-        outcome=tuple(outcome(problem, best, response, floor, correlated=correlated is not None)),
+        outcome=tuple(
+            outcome(
+                problem,
+                best,
+                response,
+                floor,
+                correlated=not (correlated is None and settled is None),
+                searched=searched[1].fitness,
+            )
+        ),
         method=method.name if isinstance(method, Minimiser) else type(method).__name__,
         simulations=journal.simulations,
         provenance=provenance(
@@ -250,26 +282,32 @@ def identify(
             seed=seed,
             starts=starts,
             start=None if start is None else model.parameters.vector(start).tolist(),
-            weights="given" if weights is not None else "data" if smooth is None else "smoothed",
+            weights=weights_source(weights, smooth, noise),
             polish=polish,
             horizon=horizon,
             spread=spread,
-            **_beyond(loss, posed, validation, shooting),
+            **settings(loss, posed, validation, shooting, settled),
         ),
         parts=parts,
         validation=predicted,
         nodes=best.nodes,
         findings=(
-            *noise_findings(data, smooth),
+            *noise_findings(data, smooth if noise is None else None),
             *undetermined,
             *too_few_findings(problem, known=known),
-            *rival_findings(problem, best, others, floor),
+            *rival_findings(searched[0], searched[1], others, searched[2]),
             *unit_findings(problem, vector, response),
             *roughness_findings(problem, best, None if exact else at, deviations),
+            *(() if settled is None else estimated_noise_findings(settled)),
             *correlation_findings(correlated, deviations, explained=rounded),
             *followed,
             *integration_findings(
-                None if exact else found, problem, deviations, best.fitness, known=known, white=correlated is None
+                None if exact else found,
+                problem,
+                deviations,
+                best.fitness,
+                known=known,
+                white=correlated is None and settled is None,
             ),
             *unexplained,
             *grown,
@@ -279,6 +317,7 @@ def identify(
         correlated=correlated,
         halves=parts_of_time,
         jacobian=None if at is None or not one_run else whole_jacobian(posed, problem, at),
+        noise=None if settled is None else whole_noise(parted, problem, settled.noise),
     )
     fit = with_coverage(fit, posed)
     fit = replace(fit, findings=(*fit.findings, *fit.diagnostics().findings))
@@ -346,19 +385,3 @@ def _check_shooting(method: Squares | Method, validation: object) -> None:
         raise InputError(
             "shooting: validation was given, but a chaotic motion cannot be predicted; leave one of the two out"
         )
-
-
-def _beyond(loss: str, posed: Problem, validation: HeldOut, shooting: MultipleShooting | None) -> dict[str, object]:
-    """Settings of the provenance that are not the usual ones."""
-    told: dict[str, object] = {}
-    if shooting is not None:
-        told["shooting"] = asdict(shooting)
-    if posed.loss is not None:
-        told["loss"] = {"name": loss, "scale": posed.loss.scale}
-    if validation is not None:
-        told["validation"] = encoded(
-            validation if isinstance(validation, float | int | str | Mapping) else list(validation)
-        )
-    if isinstance(posed.model, JointModel):
-        told["experiments"] = [part.name for part in posed.model.parts]
-    return told

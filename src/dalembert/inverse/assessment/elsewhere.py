@@ -6,7 +6,7 @@ import numpy as np
 import scipy
 
 from dalembert.errors import SolveError
-from dalembert.inverse.assessment.walk import Walk, walked
+from dalembert.inverse.assessment.walk import Walk, least, walked
 from dalembert.inverse.least_squares.descent import Memo
 from dalembert.inverse.problem.problem import Problem
 from dalembert.inverse.starts.neighbours import dips
@@ -47,6 +47,13 @@ def _around(
     try:
         end = walk.method.minimise(memo.residual, memo.jacobian, search.lower, search.upper, point)
         excess, there = (end.fitness - walk.best) / walk.variance, search.vectors(end.x)
+        if any(lower <= there[k] <= upper for lower, upper in found):
+            return None
+        if walk.likelihood is not None and excess < 4 * walk.threshold:  # the misfit with fixed noise is near it
+            found_there = least(problem, k, end.x, walk)
+            if isinstance(found_there, str):
+                return None
+            excess, there = found_there[0], search.vectors(found_there[1])
         if not excess < walk.threshold or any(lower <= there[k] <= upper for lower, upper in found):
             return None
         at = problem.linearise(there)

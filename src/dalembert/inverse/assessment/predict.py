@@ -92,6 +92,7 @@ def predict(model: ForwardModel | Experiment, fit: Fit, level: float = 0.95) -> 
     ]
     for column, end in enumerate(ends):
         deviations[len(response) if end is None else end :, column] = np.nan
+    noise = [noise_deviations(fit, prefix + name, column) for name, column in zip(names, response.T, strict=True)]
     same = data.coordinate.name == model.coordinate.name and set(names) & set(data.channels)
     return Prediction(
         coordinate=model.coordinate,
@@ -99,7 +100,7 @@ def predict(model: ForwardModel | Experiment, fit: Fit, level: float = 0.95) -> 
         units=tuple(channel.unit for channel in model.channels),
         response=response,
         deviations=deviations,
-        noise=np.array([noise_deviation(fit, prefix + name) for name in names]),
+        noise=np.array([np.sqrt(np.mean(own**2)) for own in noise]),
         data=data if same else None,
         level=level,
         quantile=width,
@@ -107,6 +108,7 @@ def predict(model: ForwardModel | Experiment, fit: Fit, level: float = 0.95) -> 
         simulations=1 + len(wiring),
         provenance=provenance(model, level=level, data=fit.data.fingerprint),
         findings=(*(item for item in fit.findings if item.code in INHERITED), *_ended(model, names, ends)),
+        noise_of_samples=np.array(noise).T if fit.noise is not None else None,
     )
 
 
@@ -174,15 +176,23 @@ def response_deviations(fit: Fit, jacobian: np.ndarray) -> np.ndarray:
     return np.where(lost, np.inf, np.sqrt(squares))
 
 
-def noise_deviation(fit: Fit, channel: str) -> float:
-    """Return the standard deviation of a channel's noise; NaN for one that was not measured.
+def noise_deviations(fit: Fit, channel: str, response: np.ndarray) -> np.ndarray:
+    """Return the standard deviation of a channel's noise at a response, both (samples,); NaN if it was not measured.
 
     A channel of an experiment that was not fitted has the noise of the same channel in the experiments that were.
     """
     if channel not in fit.data.channels:
-        return np.nan
+        return np.full(response.shape, np.nan)
     column = fit.data.channels.index(channel)
-    return float(np.sqrt(np.mean([_noise(fit, like, column) ** 2 for like in _fitted(fit, column)])))
+    squares = [_noise_at(fit, like, column, response) ** 2 for like in _fitted(fit, column)]
+    return np.sqrt(np.mean(squares, axis=0))
+
+
+def _noise_at(fit: Fit, column: int, wanted: int, response: np.ndarray) -> np.ndarray:
+    if fit.noise is None:
+        return np.full(response.shape, _noise(fit, column, wanted))
+    known = np.nan if fit.data.deviations is None else float(fit.data.deviations[wanted])
+    return fit.noise.sizes(fit.data.channels[column], response, known)
 
 
 def _fitted(fit: Fit, column: int) -> list[int]:

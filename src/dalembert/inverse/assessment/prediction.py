@@ -12,7 +12,7 @@ from dalembert.findings import Finding
 from dalembert.forward.stored_coordinate import StoredCoordinate
 from dalembert.inverse.fit.stored_data import StoredMeasured
 from dalembert.results import EndedResult, text_table
-from dalembert.stored_fields import Labels, Over, Table
+from dalembert.stored_fields import Labels, OptionalTable, Over, Table
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +31,7 @@ class Prediction(EndedResult):
         Standard deviations of the response, from those of the parameters; NaN from where a
         band is as wide as the motion, see the finding ``band-ends``.
     noise : array, shape (channels,)
-        Standard deviation of a measurement; NaN for channels that were not measured.
+        Standard deviation of a measurement, root mean square over the samples; NaN for channels that were not measured.
     data : Measurements or None
         The fitted data.
     level : float
@@ -46,6 +46,8 @@ class Prediction(EndedResult):
         Versions of the programs, hashes of model and data, and settings.
     findings : tuple of Finding
         Conclusions of the method about the result.
+    noise_of_samples : array, shape (samples, channels), optional
+        Standard deviation of a measurement of each sample, where it depends on the response.
     """
 
     FORMAT: ClassVar[str] = "dalembert prediction 1"
@@ -63,6 +65,7 @@ class Prediction(EndedResult):
     simulations: int
     provenance: Mapping[str, Any]
     findings: tuple[Finding, ...] = ()
+    noise_of_samples: OptionalTable = None
 
     @property
     def lower(self) -> np.ndarray:
@@ -77,12 +80,16 @@ class Prediction(EndedResult):
     @property
     def measured_lower(self) -> np.ndarray:
         """Lower ends of the band of a new measurement, (samples, channels)."""
-        return self.response - self.quantile * np.hypot(self.deviations, self.noise)
+        return self.response - self.quantile * np.hypot(self.deviations, self._noise)
 
     @property
     def measured_upper(self) -> np.ndarray:
         """Upper ends of the band of a new measurement, (samples, channels)."""
-        return self.response + self.quantile * np.hypot(self.deviations, self.noise)
+        return self.response + self.quantile * np.hypot(self.deviations, self._noise)
+
+    @property
+    def _noise(self) -> np.ndarray:
+        return self.noise if self.noise_of_samples is None else self.noise_of_samples
 
     @property
     def success(self) -> bool:

@@ -13,12 +13,14 @@ from dalembert.errors import InputError
 from dalembert.forward import Executor, ForwardModel, check_derivatives, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.assessment.elsewhere import elsewhere
+from dalembert.inverse.assessment.profiled_likelihood import profiled_likelihood
 from dalembert.inverse.assessment.profiles import Profile, Profiles
 from dalembert.inverse.assessment.walk import Walk, walked
 from dalembert.inverse.events import OnEvent
 from dalembert.inverse.experiments.experiment import Experiment
 from dalembert.inverse.experiments.experiments import joint, placed
 from dalembert.inverse.fit.fit import Fit, check_level
+from dalembert.inverse.least_squares.estimate import estimate
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import Linearisation, Problem, pose
 from dalembert.optimize import LeastSquares
@@ -88,6 +90,10 @@ def profile(
     Where residuals are correlated, s² is multiplied by the square of the ratio of the parameter's deviation to that for
     independent residuals, so that the profile of a linear response has the curvature of the corrected covariance.
 
+    Where noise was estimated with the parameters, g is −2 log of the restricted likelihood, and the noise parameters
+    are made best again for each value, as they are unknown and may be correlated with the others. The threshold of the
+    quantile F is freedom · log(1 + F/freedom), so that the interval of a linear response is that of Student's t.
+
     Source: Raue et al., Bioinformatics 25 (2009), 1923-1929; Bates and Watts, Nonlinear Regression Analysis, 1988;
     J. T. Kent, Robust properties of likelihood ratio tests, Biometrika 69 (1982).
 
@@ -123,10 +129,13 @@ def profile(
     at = problem.linearise(values)
     best = float(np.sum(problem.residuals(values, at.response) ** 2))
     known = fit.noise_is_known
-    threshold = float(chdtri(1, 1 - level) if known else fdtri(1, fit.degrees_of_freedom, level))
-    factors, seen = np.ones(len(values)), np.isfinite(fit.deviations)
-    factors[seen] = (fit.deviations[seen] / fit.plain_deviations[seen]) ** 2
-    walks = [Walk(best, noise * factor, threshold, points, LeastSquares(trials=30)) for factor in factors.tolist()]
+    threshold = _threshold(fit, level)
+    likelihood = None if fit.noise is None else profiled_likelihood(problem, at, fit.noise)
+    method = LeastSquares(trials=30)
+    walks = [
+        Walk(best, noise * factor, threshold, points, method, likelihood)
+        for factor in _factors(fit, problem, at).tolist()
+    ]
     ways = [(fit.parameters.names.index(name), side) for name in chosen for side in (-1, 1)]
     curves, sides = [], []
     for k, side in problem.prefetched(partial(_ahead, at, walks), ways):
@@ -148,6 +157,30 @@ def profile(
         simulations=problem.journal.simulations,
         provenance=provenance(problem.model, LeastSquares(trials=30), level=level, points=points),
     )
+
+
+def _threshold(fit: Fit, level: float) -> float:
+    """Return the excess at the ends of the intervals.
+
+    Where noise was estimated with the parameters, the excess is that of twice the logarithm of a likelihood. The
+    threshold is then the one with which the interval of a linear response is that of Student's t.
+    """
+    if fit.noise_is_known:
+        return float(chdtri(1, 1 - level))
+    freedom = fit.degrees_of_freedom
+    quantile = float(fdtri(1, freedom, level))
+    return quantile if fit.noise is None else float(freedom * np.log1p(quantile / freedom))
+
+
+def _factors(fit: Fit, problem: Problem, at: Linearisation) -> np.ndarray:
+    """Return the variance of each parameter relative to that for independent residuals of the weights."""
+    plain, factors = fit.plain_deviations, np.ones(len(fit.values))
+    if fit.noise is not None:
+        scale = fit.parameters.scale
+        plain = estimate(problem.slopes(at, scale), scale, 1.0).deviations
+    seen = np.isfinite(fit.deviations) & np.isfinite(plain)
+    factors[seen] = (fit.deviations[seen] / plain[seen]) ** 2
+    return factors
 
 
 def _ahead(at: Linearisation, walks: Sequence[Walk], problem: Problem, way: tuple[int, int]) -> None:
@@ -177,7 +210,8 @@ def _problem(
         raise InputError(
             f"profile: the model has the parameters {_listed(whole)}, the fit {_listed(fit)}; expected the same"
         )
-    return pose(whole, given, fit.weights, Journal(len(given.coordinate.values), on_event))
+    journal = Journal(len(given.coordinate.values), on_event)
+    return pose(whole, given, fit.weights, journal)
 
 
 def _listed(owner: ForwardModel | Fit) -> str:

@@ -1,11 +1,12 @@
 """One side of a profile likelihood: a walk along the valley of the misfit, away from the identified values."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.optimize import brentq
 
 from dalembert.errors import SolveError
+from dalembert.inverse.assessment.profiled_likelihood import ProfiledLikelihood
 from dalembert.inverse.events import Profiled
 from dalembert.inverse.least_squares.descent import Memo
 from dalembert.inverse.problem.problem import Linearisation, Problem
@@ -29,13 +30,21 @@ LONGEST = 1 / 8
 
 @dataclass(frozen=True)
 class Walk:
-    """What a walk goes by: misfit at the fit, variance of a weighted residual, threshold of the excess, most points."""
+    """What a walk goes by: misfit at the fit, variance of a weighted residual, threshold of the excess, most points.
+
+    ``likelihood`` takes the place of the misfit where noise was estimated with the parameters.
+    """
 
     best: float
     variance: float
     threshold: float
     points: int
     method: LeastSquares
+    likelihood: ProfiledLikelihood | None = None
+
+    def fresh(self) -> "Walk":
+        """Return the same, as it is before its first value."""
+        return self if self.likelihood is None else replace(self, likelihood=self.likelihood.fresh())
 
 
 @dataclass
@@ -54,6 +63,7 @@ def walked(problem: Problem, at: Linearisation, k: int, side: int, walk: Walk, e
     Each value is chosen so that √excess grows by a quarter of its threshold, judging from the last two; once beyond,
     the crossing is found by Brent's method. The other parameters begin where the last two values lead them.
     """
+    walk = walk.fresh()
     search = problem.search
     origin = search.points(at.vector)
     bound = (search.upper if side > 0 else search.lower)[k]
@@ -70,7 +80,7 @@ def walked(problem: Problem, at: Linearisation, k: int, side: int, walk: Walk, e
         for _ in range(HALVINGS):
             value = path[-1][1][k] + side * step
             value = bound if abs(bound - value) < 1e-9 * width else value
-            here = _least(problem, k, path[-1][1] + way * (value - path[-1][1][k]), walk)
+            here = least(problem, k, path[-1][1] + way * (value - path[-1][1][k]), walk)
             if isinstance(here, str):
                 failed, step = here, step / 2
                 continue
@@ -107,8 +117,10 @@ def _first(problem: Problem, at: Linearisation, k: int, walk: Walk) -> tuple[flo
     return (np.sqrt(walk.variance) / length if length > 0 else np.inf), way
 
 
-def _least(problem: Problem, k: int, guess: np.ndarray, walk: Walk) -> tuple[float, np.ndarray] | str:
+def least(problem: Problem, k: int, guess: np.ndarray, walk: Walk) -> tuple[float, np.ndarray] | str:
     """Excess and search point (parameters,) of the least misfit with coordinate k as in ``guess``, or why it failed."""
+    if walk.likelihood is not None:
+        return walk.likelihood.least(problem, k, guess)
     search = problem.search
     guess = np.clip(guess, search.lower, search.upper)
     others = np.arange(len(guess)) != k
@@ -170,7 +182,7 @@ def _crossing(problem: Problem, k: int, path: list[tuple[float, np.ndarray]], wa
             places = sorted(known)
             points = np.array([known[place][1] for place in places])
             guess = np.array([np.interp(value, places, column) for column in points.T])
-            here = _least(problem, k, guess, walk)
+            here = least(problem, k, guess, walk)
             if isinstance(here, str):
                 raise SolveError(here)
             known[value] = _root(here[0]), here[1]

@@ -139,9 +139,6 @@ def summaries(
     """Return what is known of fitted processes; ``found`` has the series' probabilities to be white noise."""
     told = []
     for own, process in fitted:
-        values = response.ravel()[own.rows]
-        rate = np.sqrt(np.mean(np.gradient(values, own.along) ** 2))
-        period = 2 * np.pi * np.std(values) / rate if rate > 0 else np.inf
         first_order = is_first_order(own, process.first, residual[own.rows], basis[own.rows])
         time = -own.step / np.log(process.first) if first_order else process.decay(own.step)
         told.append(
@@ -153,9 +150,19 @@ def summaries(
                 even=own.grid is not None,
                 variance=process.variance,
                 time=float(min(time, own.length)),
-                period=float(min(period, own.length / 3)),
+                period=period_of(own, response.ravel()[own.rows]),
                 unit=own.unit,
                 first_order=first_order,
             )
         )
     return tuple(told)
+
+
+def period_of(series: Series, response: np.ndarray) -> float:
+    """Return the period of a response (values,), 2π times its deviation over that of its rate.
+
+    It is at most a third of the record.
+    """
+    rate = np.sqrt(np.mean(np.gradient(response, series.along) ** 2))
+    period = 2 * np.pi * np.std(response) / rate if rate > 0 else np.inf
+    return float(min(period, series.length / 3))

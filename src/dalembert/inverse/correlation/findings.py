@@ -1,12 +1,12 @@
 """Findings on correlated residuals."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from dalembert.errors import listed
 from dalembert.findings import Finding
-from dalembert.inverse.correlation.correlated import CorrelatedResiduals
+from dalembert.inverse.correlation.correlated import CorrelatedResiduals, NoiseProcess
 
 
 def correlation_findings(
@@ -55,6 +55,11 @@ def correlation_findings(
         f"{worst.order}).{sentence}",
         "" if note else "Check the model structure and the bounds, or increase `starts`.",
     )
+    yield from systematic_findings(systematic)
+
+
+def systematic_findings(systematic: Sequence[NoiseProcess]) -> Iterator[Finding]:
+    """Yield a finding that residuals with these processes are no noise; none without a process."""
     if systematic:
         slow = max(systematic, key=lambda process: process.time / process.period)
         yield Finding(

@@ -58,9 +58,16 @@ class ResidualDiagnostics:
 
 
 def residual_diagnostics(fit: "Fit") -> ResidualDiagnostics:
-    """Return the diagnostics of a fit; :meth:`Fit.diagnostics` is the public name."""
+    """Return the diagnostics of a fit; :meth:`Fit.diagnostics` is the public name.
+
+    Where noise was estimated, they are of whitened residuals.
+    """
     residual = np.where(fit.weights > 0, np.sqrt(fit.weights) * np.nan_to_num(fit.residuals), 0.0).ravel()
     slopes, free = _slopes(fit), off_bounds(fit.parameters, fit.values)
+    if fit.noise is not None:
+        series = list(series_of_record(fit.data, fit.weights, fit.parts))
+        residual = np.nan_to_num(fit.noise.whitened).ravel()
+        slopes = None if slopes is None else fit.noise.whiten(series, slopes)
     robust = "loss" in fit.provenance
     variance = _variance(residual[fit.weights.ravel() > 0]) if robust and not _given(fit) else fit.residual_variance
     freedom = None if fit.noise_is_known or robust else float(fit.degrees_of_freedom)

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from dalembert.findings import Finding
-from dalembert.inverse.assessment.predict import band_end, noise_deviation, response_deviations
+from dalembert.inverse.assessment.predict import band_end, noise_deviations, response_deviations
 from dalembert.inverse.correlation.series import series_of
 from dalembert.inverse.experiments.validation import Validation
 from dalembert.inverse.fit.fit import Fit
@@ -44,7 +44,8 @@ def with_coverage(fit: Fit, problem: Problem) -> Fit:
         wraps = own.name in problem.data.wraps
         end = band_end(width * deviations[own.rows], response[own.rows], wraps=wraps)
         rows = own.rows[:end]
-        inside.append(apart[rows] <= width * np.hypot(deviations[rows], noise_deviation(fit, own.name)))
+        noise = noise_deviations(fit, own.name, response[rows])
+        inside.append(apart[rows] <= width * np.hypot(deviations[rows], noise))
     shares = [float(np.mean(here)) if len(here) else np.nan for here in inside]
     together = np.concatenate([*inside, np.zeros(0, dtype=bool)])
     validation = replace(

@@ -21,6 +21,7 @@ from dalembert.inverse.fit.stored_data import StoredData, StoredParts
 from dalembert.inverse.fit.stored_search import History, Starts
 from dalembert.inverse.least_squares.estimate import Estimate, Identifiability
 from dalembert.inverse.least_squares.identifiable import identifiability_findings
+from dalembert.inverse.likelihood.estimated_noise import EstimatedNoise
 from dalembert.inverse.misfit.halves import Halves
 from dalembert.inverse.problem.combinations import amounts
 from dalembert.inverse.problem.prior import priors
@@ -81,6 +82,9 @@ class Fit(EndedResult):
     jacobian : array, shape (samples, channels, parameters), optional
         ∂R/∂p at ``values``, NaN where the response was not linearised. None where the model gives none, and for
         segments.
+    noise : EstimatedNoise, optional
+        Noise that was estimated with the parameters. The weights are then 1/σ² with the estimated deviation σ of each
+        value, and ``deviations`` allow for the unknown noise and its correlation.
     """
 
     FORMAT: ClassVar[str] = "dalembert fit 1"
@@ -110,6 +114,7 @@ class Fit(EndedResult):
     integration: IntegrationBias | None = None
     halves: Halves | None = None
     jacobian: Annotated[np.ndarray | None, Over("sample", "channel", "parameter")] = None
+    noise: EstimatedNoise | None = None
 
     @property
     def plain_deviations(self) -> np.ndarray:
@@ -192,6 +197,8 @@ class Fit(EndedResult):
     @property
     def noise_is_known(self) -> bool:
         """Return True if the standard deviations follow from those of the data, not from the residuals."""
+        if self.noise is not None:
+            return self.noise.known
         given = self.data.deviations is not None and self.provenance.get("weights") == "data"
         return given or len(priors(self.parameters)) > 0
 
@@ -212,7 +219,7 @@ class Fit(EndedResult):
     @property
     def residual_variance(self) -> float:
         """Return the variance of a weighted residual: 1 where the noise is known, else estimated from the residuals."""
-        if self.noise_is_known:
+        if self.noise_is_known or self.noise is not None:
             return 1.0
         return self.fitness / self.degrees_of_freedom if self.degrees_of_freedom > 0 else np.nan
 
@@ -238,7 +245,18 @@ class Fit(EndedResult):
             *map(str, self.identifiability().findings),
         ]
         texts += map(str, self.findings)
-        return "\n".join([*text_table(rows), "", *facts, "", *_experiments_table(self), *_halves_table(self), *texts])
+        return "\n".join(
+            [
+                *text_table(rows),
+                *_noise_table(self),
+                "",
+                *facts,
+                "",
+                *_experiments_table(self),
+                *_halves_table(self),
+                *texts,
+            ]
+        )
 
     def contents(self) -> Contents:
         found = super().contents()
@@ -275,6 +293,17 @@ def _integration_facts(fit: Fit) -> list[str]:
         f"integrator   bias of the values {amounts(fit.parameters, found.bias)} (by one simulation {found.how})",
         f"             fitness with converged steps {found.fitness:.6g}, with corrected values {found.corrected:.6g}",
     ]
+
+
+def _noise_table(fit: Fit) -> list[str]:
+    """Lines of a table of noise parameters, with an empty one before it; none where no noise was estimated."""
+    if fit.noise is None or fit.noise.known:
+        return []
+    rows = [("noise parameter", "value", "± deviation", "unit", "bounds")]
+    for item, value, deviation in zip(fit.noise.parameters, fit.noise.values, fit.noise.deviations, strict=True):
+        known = "unknown" if np.isnan(deviation) else f"{deviation:.2g}"
+        rows.append((item.name, f"{value:.4g}", known, item.unit, f"{item.lower:.3g} to {item.upper:.3g}"))
+    return ["", *text_table(rows)]
 
 
 def _experiments_table(fit: Fit) -> list[str]:

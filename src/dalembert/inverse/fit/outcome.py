@@ -26,7 +26,7 @@ _MORE = (
 
 
 def outcome(
-    problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor, *, correlated: bool
+    problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor, *, correlated: bool, searched: float
 ) -> Iterator[Finding]:
     """Yield whether the search converged, and how the residuals compare with the noise of the data.
 
@@ -39,13 +39,15 @@ def outcome(
     floor : NoiseFloor
     correlated : bool
         Whether other findings say that the residuals are correlated.
+    searched : float
+        Fitness of the best start, before noise was estimated.
     """
     few = lacking(problem)
     many = "Converged to one of many solutions: the data have fewer values than there are parameters."
     yield converged(best.success, best.message, many if few else "Converged.")
     fitnesses = [start.fitness for start in problem.journal.starts]
     if len(fitnesses) > 1:
-        there = sum(fitness <= best.fitness * (1 + 1e-3) + floor.fitness * 1e-3 for fitness in fitnesses)
+        there = sum(fitness <= searched * (1 + 1e-3) + floor.fitness * 1e-3 for fitness in fitnesses)
         message = f"{there} of {len(fitnesses)} starts converged to the best fitness."
         yield Finding("starts-at-best", "note", {"at_best": there, "starts": len(fitnesses)}, message)
     if best.nodes is not None:

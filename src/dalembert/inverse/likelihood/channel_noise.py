@@ -69,21 +69,21 @@ class ChannelNoise:
                 white, logs = (np.array(part).reshape(residual.shape) for part in zip(*rows, strict=True))
             return -0.5 * white**2 - logs - HALF_LOG_2_PI
 
-    def expansion(
+    def slopes(
         self, residual: np.ndarray, response: np.ndarray, jacobian: np.ndarray, values: Mapping[str, np.ndarray]
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, tuple[np.ndarray, np.ndarray]]]:
-        """Return whitened residuals w and log deviations l (values,), and their derivatives.
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Return w, l (values,), and ∂w, ∂l (values, parameters) with respect to the parameters of the response.
 
-        These are ∂w and ∂l (values, parameters) with respect to the model's parameters, from the ``jacobian`` of the
-        response; and, by name, ∂w and ∂l (values,) with respect to those of the noise.
+        These are the whitened residuals and the logarithms of the deviations; ``jacobian`` is that of the response.
+        Complex noise parameters give complex results.
         """
         sizes = self.model.deviations(response, self.given, values)
         logarithmic = self.model.slopes(response, self.given, values) / sizes
-        white, logs = self.standardised(residual, response, values)
-        rows = ((1 - residual * logarithmic) / sizes)[:, None] * jacobian
+        white, logs, moves = residual / sizes, np.log(sizes), ((1 - residual * logarithmic) / sizes)[:, None] * jacobian
         if self.whitening is not None:
-            rows = self.whitening.matrix(values) @ rows
-        return white, logs, rows, logarithmic[:, None] * jacobian, self._noise_slopes(residual, response, values)
+            matrix = self.whitening.matrix(values)
+            white, logs, moves = matrix @ white, logs - np.log(matrix.diagonal()), matrix @ moves
+        return white, logs, moves, logarithmic[:, None] * jacobian
 
     def cotangent(
         self, residual: np.ndarray, response: np.ndarray, values: Mapping[str, np.ndarray]
@@ -94,19 +94,20 @@ class ChannelNoise:
         white, logs = self.standardised(residual, response, values)
         back = white if self.whitening is None else self.whitening.matrix(values).T @ white
         by_response = -(1 - residual * logarithmic) / sizes * back - logarithmic
-        slopes = self._noise_slopes(residual, response, values)
+        slopes = self.noise_slopes(residual, response, values)
         by_noise = {full: float(-white @ move - np.sum(change)) for full, (move, change) in slopes.items()}
         return float(np.sum(-0.5 * white**2 - logs - HALF_LOG_2_PI)), by_response, by_noise
 
-    def _noise_slopes(
+    def noise_slopes(
         self, residual: np.ndarray, response: np.ndarray, values: Mapping[str, np.ndarray]
     ) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-        """Derivatives of the whitened residuals and of the log deviations, by the full name of a noise parameter."""
-        noise = {}
+        """Return ∂w and ∂l (values,) with respect to each noise parameter, by its full name, from complex steps."""
+        found = {}
         for bare, full in self.names.items():
             moved = {**values, bare: values[bare] + 1j * STEP}
-            noise[full] = tuple(np.imag(part) / STEP for part in self.standardised(residual, response, moved))
-        return noise
+            white, logs = self.standardised(residual, response, moved)
+            found[full] = np.imag(white) / STEP, np.imag(logs) / STEP
+        return found
 
     def simulated(
         self, response: np.ndarray, values: Mapping[str, np.ndarray], random: np.random.Generator

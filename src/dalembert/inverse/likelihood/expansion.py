@@ -64,13 +64,11 @@ def expanded(
     jacobian = at.jacobian.reshape(len(residual), count)
     white, logs, means, spreads = [], [], [], []
     for channel in channels:
-        places = channel.series.rows
-        own, sizes, slopes, spread, noise = channel.expansion(
-            residual[places], response[places], jacobian[places], channel.values(known)
-        )
+        places, values = channel.series.rows, channel.values(known)
+        own, sizes, slopes, spread = channel.slopes(residual[places], response[places], jacobian[places], values)
         moves, changes = np.zeros((2, len(places), len(vector)))
         moves[:, :count], changes[:, :count] = slopes, spread
-        for full, (move, change) in noise.items():
+        for full, (move, change) in channel.noise_slopes(residual[places], response[places], values).items():
             if full in parameters.names:
                 moves[:, parameters.names.index(full)] = move
                 changes[:, parameters.names.index(full)] = change
@@ -79,3 +77,8 @@ def expanded(
         means.append(moves + own[:, None] * changes)
         spreads.append(changes)
     return Expansion(at, vector, *(np.concatenate(part) for part in (white, logs, means, spreads)))
+
+
+def moved(at: Linearisation, vector: np.ndarray) -> Linearisation:
+    """Return the linearised response at another vector (parameters,) of the model."""
+    return Linearisation(vector, at.response + at.jacobian @ (vector - at.vector), at.jacobian)

@@ -10,12 +10,14 @@ from numpy.typing import ArrayLike
 
 from dalembert.data import Measurements
 from dalembert.forward import Executor, ForwardModel, takes_executor
+from dalembert.inverse.correlation.series import Series
 from dalembert.inverse.experiments.experiment import Experiment
 from dalembert.inverse.experiments.experiments import placed
 from dalembert.inverse.experiments.joined import joined
 from dalembert.inverse.likelihood.channel_noise import ChannelNoise
 from dalembert.inverse.likelihood.expansion import Expansion, expanded
-from dalembert.inverse.likelihood.placing import Noise, channel_noises, noise_parameters
+from dalembert.inverse.likelihood.placing import Noise, noises_of, picked_models
+from dalembert.inverse.noise.noise_model import NoiseModel
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import Problem, pose
 from dalembert.parameters import Parameters
@@ -242,7 +244,15 @@ def likelihood(
 def likelihood_of(problem: Problem, noise: Noise | None, *, weighted: bool = False) -> Likelihood:
     """Return the likelihood of a problem; ``weighted`` means that its weights are 1/variance."""
     known = weighted or problem.data.deviations is not None
-    channels, given = channel_noises(problem, noise, known=known)
-    own, model = noise_parameters(problem, channels), problem.model.parameters
+    picked, given = picked_models(problem, noise, known=known)
+    return placed_likelihood(problem, picked, given, known=known)
+
+
+def placed_likelihood(
+    problem: Problem, picked: Mapping[Series, NoiseModel], given: Noise, *, known: bool
+) -> Likelihood:
+    """Return the likelihood of a problem with a noise model for each of its series."""
+    channels, own = noises_of(problem, picked, known=known)
+    model = problem.model.parameters
     parameters = Parameters((*model.items, *own.items), (*model.fixed, *own.fixed))
     return Likelihood(problem, given, parameters, channels)

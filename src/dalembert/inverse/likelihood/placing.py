@@ -6,11 +6,11 @@ from typing import TypeAlias
 
 import numpy as np
 
-from dalembert.errors import InputError, require_known, shown, unknown
+from dalembert.errors import InputError, unknown
 from dalembert.inverse.correlation.series import Series, series_of
 from dalembert.inverse.likelihood.channel_noise import ChannelNoise
-from dalembert.inverse.noise.correlated import AutoregressiveNoise, OrnsteinUhlenbeckNoise
-from dalembert.inverse.noise.deviations import ConstantNoise, KnownNoise, MixedNoise, ProportionalNoise
+from dalembert.inverse.noise.catalogue import noise_model
+from dalembert.inverse.noise.deviations import ConstantNoise, KnownNoise
 from dalembert.inverse.noise.noise_model import Extent, NoiseModel
 from dalembert.inverse.problem.problem import Problem
 from dalembert.parameters import Parameter, Parameters
@@ -18,56 +18,44 @@ from dalembert.parameters import Parameter, Parameters
 Noise: TypeAlias = NoiseModel | str | Mapping[str, NoiseModel | str]
 """One noise model for all channels, or one for each by name."""
 
-MODELS: dict[str, type[NoiseModel]] = {
-    kind.name: kind
-    for kind in (KnownNoise, ConstantNoise, ProportionalNoise, MixedNoise, AutoregressiveNoise, OrnsteinUhlenbeckNoise)
-}
 
-
-def noise_model(given: object) -> NoiseModel:
-    """Return a noise model, from itself or from its name with its defaults.
-
-    Raises
-    ------
-    InputError
-    """
-    if isinstance(given, str):
-        require_known("noise model", given, MODELS, "noise")
-        return MODELS[given]()
-    if not isinstance(given, NoiseModel):
-        hint = f"; write {given.__name__}()" if isinstance(given, type) else ""
-        raise InputError(
-            f"noise is {shown(given)}; expected a noise model such as ConstantNoise(), its name, or a mapping from "
-            f"channels to such models{hint}"
-        )
-    return given
-
-
-def channel_noises(
+def picked_models(
     problem: Problem, given: Noise | None, *, known: bool
-) -> tuple[tuple[ChannelNoise, ...], NoiseModel | Mapping[str, NoiseModel]]:
-    """Return the noise of each channel with compared values, and the models by which it was chosen.
+) -> tuple[dict[Series, NoiseModel], NoiseModel | Mapping[str, NoiseModel]]:
+    """Return the noise model of each channel with compared values, and the models by which it was chosen.
 
     ``known`` means that the weights of the problem are 1/variance.
 
     Raises
     ------
     InputError
-        For a channel that there is not, known noise that is not known, and what :meth:`NoiseModel.whitening` refuses.
+        For a channel that there is not, and what is no noise model.
     """
     usual = KnownNoise() if known else ConstantNoise()
     series = list(series_of(problem, fewest=1))
-    if isinstance(given, Mapping):
-        names = [name for own in series for name in (own.name, own.channel)]
-        for name in given:
-            if name not in names:
-                raise InputError(unknown("channel", str(name), dict.fromkeys(names), "noise"))
-        chosen = {str(name): noise_model(one) for name, one in given.items()}
-        pick = {own: chosen.get(own.name, chosen.get(own.channel, usual)) for own in series}
-    else:
+    if not isinstance(given, Mapping):
         chosen = usual if given is None else noise_model(given)
-        pick = dict.fromkeys(series, chosen)
-    return tuple(_channel_noise(problem, own, model, known=known) for own, model in pick.items()), chosen
+        return dict.fromkeys(series, chosen), chosen
+    names = [name for own in series for name in (own.name, own.channel)]
+    for name in given:
+        if name not in names:
+            raise InputError(unknown("channel", str(name), dict.fromkeys(names), "noise"))
+    several = {str(name): noise_model(one) for name, one in given.items()}
+    return {own: several.get(own.name, several.get(own.channel, usual)) for own in series}, several
+
+
+def noises_of(
+    problem: Problem, picked: Mapping[Series, NoiseModel], *, known: bool
+) -> tuple[tuple[ChannelNoise, ...], Parameters]:
+    """Return the noise of each series, and the parameters of all of them.
+
+    Raises
+    ------
+    InputError
+        For known noise that is not known, and what :meth:`NoiseModel.whitening` refuses.
+    """
+    channels = tuple(_channel_noise(problem, own, model, known=known) for own, model in picked.items())
+    return channels, noise_parameters(problem, channels)
 
 
 def _channel_noise(problem: Problem, series: Series, model: NoiseModel, *, known: bool) -> ChannelNoise:
@@ -76,10 +64,14 @@ def _channel_noise(problem: Problem, series: Series, model: NoiseModel, *, known
             f"noise of channel {series.name!r}: KnownNoise was given, but the data have no deviations; give them, or "
             "take ConstantNoise()"
         )
-    base = f"noise.{series.name if model.local else series.channel}"
-    names = {item.name: f"{base}.{item.name}" for item in model.parameters(_extent(problem, series))}
+    names = {item.name: f"{base_of(series, model)}.{item.name}" for item in model.parameters(_extent(problem, series))}
     weights = problem.weights.ravel()[series.rows]
     return ChannelNoise(series, model, weights**-0.5, names, model.whitening(series))
+
+
+def base_of(series: Series, model: NoiseModel) -> str:
+    """Return how the names of a channel's noise parameters begin: the same for experiments that share them."""
+    return f"noise.{series.name if model.local else series.channel}"
 
 
 def noise_parameters(problem: Problem, channels: tuple[ChannelNoise, ...]) -> Parameters:

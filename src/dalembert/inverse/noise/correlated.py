@@ -7,7 +7,9 @@ from typing import ClassVar
 import numpy as np
 
 from dalembert.errors import InputError, shown
+from dalembert.inverse.correlation.autoregression import levinson
 from dalembert.inverse.correlation.series import Series
+from dalembert.inverse.correlation.whiteness import lagged, on_grid, pairs
 from dalembert.inverse.noise.deviations import ConstantNoise
 from dalembert.inverse.noise.noise_model import Extent, Known, NoiseModel, check_known, noise_parameter
 from dalembert.inverse.noise.whitening import DecayWhitening, GridWhitening, Whitening, correlations_of
@@ -16,19 +18,22 @@ from dalembert.parameters import Parameter
 LARGEST = 0.9999
 """Largest partial autocorrelation."""
 
+STRONGEST = 0.95
+"""Largest autocorrelation of a first guess."""
+
 SAMPLES = 10
 """Fewest samples for each order of a process."""
 
 
 @dataclass(frozen=True)
-class _Correlated(NoiseModel):
+class CorrelatedNoise(NoiseModel):
     """Noise whose standardised values are correlated; its deviation is that of an independent model."""
 
     deviation: NoiseModel = field(default_factory=ConstantNoise)
 
     def __post_init__(self) -> None:
         kind = type(self).__name__
-        if isinstance(self.deviation, _Correlated):
+        if isinstance(self.deviation, CorrelatedNoise):
             raise InputError(f"{kind}: deviation is {shown(self.deviation)}; expected a model of independent noise")
         if self.deviation.local:
             raise InputError(f"{kind}: local is an argument of {kind}, not of its deviation; give it there")
@@ -42,9 +47,12 @@ class _Correlated(NoiseModel):
     def slopes(self, response: np.ndarray, given: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
         return self.deviation.slopes(response, given, values)
 
+    def guess(self, series: Series, residual: np.ndarray, response: np.ndarray) -> dict[str, float]:
+        return self.deviation.guess(series, residual, response)
+
 
 @dataclass(frozen=True)
-class AutoregressiveNoise(_Correlated):
+class AutoregressiveNoise(CorrelatedNoise):
     """Autoregressive noise of even samples: e_t = Σ_j φ_j e_{t−j} + white noise, with gaps or without.
 
     Parameters
@@ -121,12 +129,23 @@ class AutoregressiveNoise(_Correlated):
             )
         return GridWhitening(series.grid, self.order, self._correlations) if self.order else None
 
+    def guess(self, series: Series, residual: np.ndarray, response: np.ndarray) -> dict[str, float]:
+        found = super().guess(series, residual, response)
+        order = self.order or 0
+        if self.partial is None and order and np.any(residual):
+            assert series.grid is not None
+            count, own = np.maximum(pairs(series.grid, order), 1), on_grid(series.grid, residual)
+            covariances = np.array([lagged(own, own, lag) for lag in range(order + 1)]) / count
+            rows, _ = levinson(covariances, STRONGEST)
+            found |= {f"partial{k}": float(row[-1]) for k, row in enumerate(rows, start=1)}
+        return found
+
     def _correlations(self, values: Mapping[str, np.ndarray], number: int) -> np.ndarray:
         return correlations_of([values[f"partial{k}"] for k in range(1, (self.order or 0) + 1)], number)
 
 
 @dataclass(frozen=True)
-class OrnsteinUhlenbeckNoise(_Correlated):
+class OrnsteinUhlenbeckNoise(CorrelatedNoise):
     """Noise whose correlation decays exponentially, exp(−Δt/τ), for uneven samples and even ones.
 
     Parameters
@@ -155,6 +174,14 @@ class OrnsteinUhlenbeckNoise(_Correlated):
         bounds = extent.step / 10, max(extent.length, extent.step)
         own = noise_parameter(self, "time", self.time, bounds, 2 * extent.step, extent.along, log=True)
         return (*self.deviation.parameters(extent), own)
+
+    def guess(self, series: Series, residual: np.ndarray, response: np.ndarray) -> dict[str, float]:
+        found = super().guess(series, residual, response)
+        squares = float(residual @ residual)
+        if self.time is None and len(residual) > 1 and squares > 0:
+            first = np.clip(float(residual[1:] @ residual[:-1]) / squares, 1 - STRONGEST, STRONGEST)
+            found["time"] = float(-series.step / np.log(first))
+        return found
 
     def whitening(self, series: Series) -> Whitening | None:
         return DecayWhitening(np.diff(series.along)) if len(series.rows) > 1 else None

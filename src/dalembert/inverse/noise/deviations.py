@@ -6,6 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from dalembert.inverse.correlation.series import Series
 from dalembert.inverse.noise.noise_model import Extent, Known, NoiseModel, check_known, noise_parameter
 from dalembert.parameters import Parameter
 
@@ -65,6 +66,9 @@ class ConstantNoise(NoiseModel):
     def deviations(self, response: np.ndarray, given: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
         return values["deviation"] + np.zeros_like(response)
 
+    def guess(self, series: Series, residual: np.ndarray, response: np.ndarray) -> dict[str, float]:
+        return {"deviation": _root_mean_square(residual)}
+
 
 @dataclass(frozen=True)
 class ProportionalNoise(NoiseModel):
@@ -97,6 +101,9 @@ class ProportionalNoise(NoiseModel):
 
     def slopes(self, response: np.ndarray, given: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
         return values["relative"] * np.sign(np.real(response))
+
+    def guess(self, series: Series, residual: np.ndarray, response: np.ndarray) -> dict[str, float]:
+        return {"relative": _root_mean_square(residual) / _root_mean_square(response)}
 
 
 @dataclass(frozen=True)
@@ -136,6 +143,15 @@ class MixedNoise(NoiseModel):
 
     def slopes(self, response: np.ndarray, given: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
         return values["relative"] ** 2 * response / self.deviations(response, given, values)
+
+    def guess(self, series: Series, residual: np.ndarray, response: np.ndarray) -> dict[str, float]:
+        size = _root_mean_square(residual) / np.sqrt(2)
+        return {"deviation": size, "relative": size / _root_mean_square(response)}
+
+
+def _root_mean_square(values: np.ndarray) -> float:
+    """Return the root mean square, and not 0."""
+    return max(float(np.sqrt(np.mean(values**2))), np.finfo(float).tiny)
 
 
 def _deviation(owner: NoiseModel, known: Known, extent: Extent) -> Parameter:

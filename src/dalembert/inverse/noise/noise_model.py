@@ -74,6 +74,10 @@ class NoiseModel(Checked):
         """Return the derivative of :meth:`deviations` with respect to the response, of the same shape."""
         return np.zeros_like(response)
 
+    def guess(self, series: Series, residual: np.ndarray, response: np.ndarray) -> dict[str, float]:
+        """Return first guesses of the parameters from residuals and responses (values,)."""
+        return {}
+
     def whitening(self, series: Series) -> Whitening | None:
         """Return what makes standardised residuals of a series independent; None where they are.
 

@@ -20,6 +20,7 @@ from dalembert.study.posing import posed, unknown_names
 from dalembert.study.study import Study
 from dalembert.study.table import StudyTable, checked, told_apart
 from dalembert.study.tasks import telling
+from dalembert.study.tasks.noise import Noise, wrong_noise
 from dalembert.study.tasks.shooting import Shooting, ShootingTable
 from dalembert.study.tasks.task import Outcome, Task
 from dalembert.study.tasks.wrong import needs_parameters, needs_solver, unmatched, unnamed
@@ -76,6 +77,10 @@ class IdentifyTable(StudyTable):
         False,
         description="mean and spread over the experiments, one for each specimen, of local parameters: their names, or "
         "true for all that the experiments have in common",
+    )
+    noise: Noise = Field(
+        None,
+        description="noise model, or a table: noise that is estimated with the parameters; independent if not given",
     )
     profile: bool = Field(False, description="whether to make the profile likelihood of each parameter too")
     prediction: bool = Field(False, description="whether to make bands of the response and of new measurements too")
@@ -186,15 +191,15 @@ class Identify(Task):
                 f"[identify], profile: the minimum of the loss {file.identify.loss!r} is no likelihood; leave one of "
                 "the keys out"
             )
-        return [*wrong, *_wrong_population(file), *_wrong_shooting(file)]
+        return [*wrong, *wrong_noise(file, channels, unmatched), *_wrong_population(file), *_wrong_shooting(file)]
 
     def plan(self, study: Study) -> str:
         model, data = posed(study)
-        names = telling.whole(model).parameters.names
+        names = _whole(model).parameters.names
         return f"identifies {', '.join(names)} from {_measured(model, data)} by {_cost(study.table, len(names))[0]}"
 
     def effort(self, study: Study) -> Effort:
-        model = telling.whole(posed(study)[0])
+        model = _whole(posed(study)[0])
         _, least, most = _cost(study.table, len(model.parameters))
         batch = TOGETHER if isinstance(settings(study.table.method), Swarm) else 1
         return evaluated(model, model.parameters.start, least, most, batch)
@@ -222,9 +227,10 @@ class Identify(Task):
             model,
             data,
             method=settings(table.method),
-            weights=telling.weights(table.weights, model, data),
+            weights=_weights(table.weights, model, data),
             horizon=None if table.horizon == "whole" else table.horizon,
             shooting=None if table.shooting is None else table.shooting.settings(),
+            noise=None if table.noise is None else table.noise.noise(),
             on_event=teller(emit, as_record),
             **table.picked("starts", "seed", "polish", "spread", "loss", "loss_scale", "validation", "derivative"),
         )
@@ -283,9 +289,25 @@ def _wrong_shooting(file: Any) -> list[str]:
     return wrong
 
 
+def _whole(model: Any) -> Any:
+    """The model, or the one that all experiments together are."""
+    from dalembert.inverse.experiments.experiments import joint
+
+    return joint(model)[0] if isinstance(model, list) else model
+
+
 def _measured(model: Any, data: Any) -> str:
     """What is fitted, in words."""
     if data is not None:
         return f"{len(data.coordinate.values)} samples of {', '.join(data.channels)}"
     each = [f"{item.name}: {_measured(item.model, item.data)}" for item in model]
     return f"{len(model)} experiments ({'; '.join(each)})"
+
+
+def _weights(given: dict[str, float] | None, model: Any, data: Any) -> Any:
+    """Weights of channels by name, as identify takes them."""
+    if given is None:
+        return None
+    if data is not None:
+        return [given[channel] for channel in data.channels]
+    return {item.name: [given[channel] for channel in item.data.channels] for item in model}

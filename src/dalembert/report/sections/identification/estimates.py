@@ -15,7 +15,9 @@ from dalembert.report.table import Cell, Table, cell, cells, noted
 def estimates(fit: Fit) -> Section:
     """The identified values, and those of the two halves of the records where they are known."""
     caption = "Each value where it lies between its bounds; bars are two standard deviations."
-    return Section("Parameters", (_values(fit), Plot("parameters", charts.parameters(fit), caption), *_halves(fit)))
+    return Section(
+        "Parameters", (_values(fit), *_noise(fit), Plot("parameters", charts.parameters(fit), caption), *_halves(fit))
+    )
 
 
 def _values(fit: Fit) -> Table:
@@ -39,6 +41,23 @@ def _values(fit: Fit) -> Table:
     table = Table.of("parameters", "Identified values", columns)
     fixed = [_fixed(item, table.columns) for item in fit.parameters.fixed]
     return noted(Table(table.name, table.caption, table.columns, [*table.rows, *fixed]))
+
+
+def _noise(fit: Fit) -> list[Table]:
+    """Parameters of noise that was estimated with those of the model."""
+    found = fit.noise
+    if found is None or found.known:
+        return []
+    items = list(found.parameters)
+    columns: dict[str, Iterable[object]] = {
+        "parameter": [item.name for item in items],
+        "value": map(cell, found.values, found.deviations),
+        "standard deviation": cells(found.deviations, 2),
+        "unit": [item.unit for item in items],
+        "lower bound": [float(item.lower) for item in items],
+        "upper bound": [float(item.upper) for item in items],
+    }
+    return [noted(Table.of("noise", "Noise, estimated with the parameters", columns))]
 
 
 def _fixed(item: Parameter, columns: Iterable[str]) -> tuple[Cell, ...]:

@@ -1,0 +1,84 @@
+"""The profile of a likelihood: its largest value over all parameters but one, those of the noise among them."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from dalembert.errors import DalembertError
+from dalembert.inverse.correlation.series import series_of
+from dalembert.inverse.likelihood.estimated_noise import EstimatedNoise
+from dalembert.inverse.likelihood.expansion import expanded
+from dalembert.inverse.likelihood.likelihood import Likelihood
+from dalembert.inverse.likelihood.maximum import Objective, maximum
+from dalembert.inverse.likelihood.placing import noises_of
+from dalembert.inverse.likelihood.restricted import Restriction
+from dalembert.inverse.problem.problem import Linearisation, Problem
+from dalembert.parameters import Parameters
+
+
+@dataclass(frozen=True, eq=False)
+class ProfiledLikelihood:
+    """Restricted likelihood of model and noise, relative to its value at a fit.
+
+    Parameters
+    ----------
+    likelihood : Likelihood
+    value : float
+        At the fit.
+    noise : array, shape (noise parameters,)
+        At the fit.
+    restriction : Restriction
+        At the fit, and kept: the fit is then the largest value.
+    """
+
+    likelihood: Likelihood
+    value: float
+    noise: np.ndarray
+    restriction: Restriction
+    _last: list[np.ndarray] = field(default_factory=list)
+
+    def fresh(self) -> "ProfiledLikelihood":
+        """Return the same, as it is before its first value: each side of a profile begins with the fit's noise."""
+        return replace(self, _last=[])
+
+    def least(self, problem: Problem, k: int, guess: np.ndarray) -> tuple[float, np.ndarray] | str:
+        """Return twice the loss of log-likelihood with search coordinate k as in ``guess``, and the search point.
+
+        The noise parameters are estimated again with the other parameters: they are unknown, and in noise that depends
+        on the response they are correlated with the others.
+        """
+        search = problem.search
+        vector = search.vectors(np.clip(guess, search.lower, search.upper))
+        own = replace(
+            self.likelihood, problem=replace(self.likelihood.problem, model=problem.model, journal=problem.journal)
+        )
+        try:
+            start = np.concatenate([vector, self._last[-1] if self._last else self.noise])
+            found = maximum(own, start, frozenset({k}), restriction=self.restriction)
+        except DalembertError as error:
+            return str(error)
+        if not found.success:
+            return found.message
+        self._last[:] = [found.vector[len(vector) :]]
+        return 2 * (self.value - found.value), search.points(found.vector[: len(vector)])
+
+
+def profiled_likelihood(problem: Problem, at: Linearisation, noise: EstimatedNoise) -> ProfiledLikelihood:
+    """Return the likelihood of a fit whose noise was estimated.
+
+    Parameters
+    ----------
+    problem : Problem
+        With the weights of the fit.
+    at : Linearisation
+        At the identified values.
+    noise : EstimatedNoise
+    """
+    picked = {own: noise.models[own.name] for own in series_of(problem, fewest=1)}
+    channels, _ = noises_of(problem, picked, known=True)
+    own = problem.model.parameters
+    parameters = Parameters((*own.items, *noise.parameters.items), (*own.fixed, *noise.parameters.fixed))
+    restriction = Restriction(problem, channels, parameters, at)
+    there = expanded(problem, channels, parameters, at, np.concatenate([at.vector, noise.values]))
+    value = Objective(parameters, own, restriction).value(there)
+    return ProfiledLikelihood(Likelihood(problem, noise.models, parameters, channels), value, noise.values, restriction)

@@ -1,0 +1,27 @@
+"""First guesses of noise parameters from the residuals of a fit."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from dalembert.inverse.likelihood.channel_noise import ChannelNoise
+from dalembert.inverse.problem.problem import Linearisation, Problem
+from dalembert.parameters import Parameters
+
+
+def guessed(
+    channels: Sequence[ChannelNoise], parameters: Parameters, problem: Problem, at: Linearisation
+) -> np.ndarray:
+    """Return first guesses (parameters,) of noise parameters, means over the channels that share them."""
+    residual, response = problem.misfit(at.response).ravel(), at.response.ravel()
+    found: dict[str, list[float]] = {name: [] for name in parameters.names}
+    for channel in channels:
+        places = channel.series.rows
+        for bare, value in channel.model.guess(channel.series, residual[places], response[places]).items():
+            if channel.names[bare] in found:
+                found[channel.names[bare]].append(value)
+    values = [
+        float(np.mean(found[item.name])) if found[item.name] else start
+        for item, start in zip(parameters, parameters.start, strict=True)
+    ]
+    return parameters.clip(np.array(values))

@@ -1,1 +1,0 @@
-"""The posterior distribution of parameters, sampled."""

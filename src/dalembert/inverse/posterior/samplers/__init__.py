@@ -1,1 +1,0 @@
-"""Samplers of a posterior: one file each."""

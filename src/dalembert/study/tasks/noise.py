@@ -1,0 +1,106 @@
+"""Noise models of measured channels in a study file."""
+
+from collections.abc import Collection
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field
+
+from dalembert.study.numbers import Number, Seconds
+from dalembert.study.table import StudyTable, checked
+
+if TYPE_CHECKING:
+    from dalembert.inverse import NoiseModel
+
+Model = Literal["known", "constant", "proportional", "mixed", "autoregressive", "ornstein-uhlenbeck"]
+
+
+class DeviationTable(StudyTable):
+    """The standard deviation of correlated noise."""
+
+    model: Literal["known", "constant", "proportional", "mixed"] = Field("constant", description="what it depends on")
+    deviation: Number | list[Number] | None = Field(None, description="constant part: its value, or its two bounds")
+    relative: float | list[float] | None = Field(None, description="part of the response: its value, or its two bounds")
+
+
+class ChannelNoiseTable(StudyTable):
+    """The noise of a channel, which is estimated with the parameters."""
+
+    model: Model = Field(description="what describes the noise")
+    local: bool = Field(False, description="whether each of several experiments has its noise parameters")
+    deviation: Number | list[Number] | DeviationTable | None = Field(
+        None,
+        description="standard deviation: its value, or its two bounds; of correlated noise a table",
+    )
+    relative: float | list[float] | None = Field(
+        None, description="deviation as a part of the response: its value, or its two bounds"
+    )
+    order: int | None = Field(None, ge=0, description="of autoregressive noise; chosen by AICc if not given")
+    partial: list[float] | None = Field(None, description="fixed partial autocorrelations of autoregressive noise")
+    time: Seconds | list[Seconds] | None = Field(
+        None, description="correlation time of ornstein-uhlenbeck noise: its value, or its two bounds"
+    )
+
+    def _wrong(self) -> list[str]:
+        checked(self.settings)
+        return []
+
+    def settings(self) -> "NoiseModel":
+        """The noise model."""
+        from dalembert.inverse.noise.catalogue import from_table
+
+        return from_table(self._given())
+
+    def _given(self) -> dict[str, Any]:
+        plain = self.picked(*(key for key in type(self).model_fields if key in self.model_fields_set))
+        if isinstance(self.deviation, DeviationTable):
+            given = self.deviation.picked(*self.deviation.model_fields_set)
+            plain["deviation"] = {"model": self.deviation.model, **given}
+        return {name: value for name, value in plain.items() if value is not None}
+
+
+class NoiseTable(ChannelNoiseTable):
+    """The noise of all channels, or of some."""
+
+    model: Model | None = Field(None, description="what describes the noise of all channels that have no table")  # type: ignore[assignment]
+    channels: dict[str, ChannelNoiseTable] | None = Field(
+        None, description="noise of single channels, by name; the others have that of the data, or a constant one"
+    )
+
+    def _wrong(self) -> list[str]:
+        if self.model is not None and self.channels is not None:
+            return ["model and channels exclude each other; give each channel its table, or one model for all"]
+        if self.channels is not None:
+            return []
+        if self.model is None:
+            return ["the key 'model' is missing; expected it, or the table channels"]
+        return super()._wrong()
+
+    def noise(self) -> Any:
+        """The noise as :func:`~dalembert.identify` takes it."""
+        if self.channels is None:
+            return self.settings()
+        return {name: table.settings() for name, table in self.channels.items()}
+
+
+def _table(given: object) -> object:
+    """The table that the name of a noise model stands for."""
+    return {"model": given} if isinstance(given, str) else given
+
+
+Noise = Annotated[NoiseTable | None, BeforeValidator(_table, json_schema_input_type=NoiseTable | Model | None)]
+"""The key ``noise``: the name of a noise model, or a table."""
+
+
+def wrong_noise(file: Any, channels: Collection[str], unmatched: Any) -> list[str]:
+    """Sentences about noise that cannot be."""
+    table = file.identify
+    if table.noise is None:
+        return []
+    wrong = unmatched(table.noise.channels, channels, "noise", "[identify.noise], channels") if channels else []
+    if table.weights is not None:
+        wrong.append("[identify.noise] cannot be used with weights, which follow from it; leave one of them out")
+    if table.loss != "linear":
+        wrong.append(f"[identify.noise] cannot be used with the loss {table.loss!r}; leave one of them out")
+    if table.shooting is not None:
+        wrong.append("[identify.noise] cannot be used with [identify.shooting]; leave one of them out")
+    return wrong

@@ -48,6 +48,51 @@ def test_a_published_meta_analysis(record_evidence):
     assert found.p_value[0] < 1e-10
 
 
+RAILS = np.array(
+    [[55, 53, 54], [26, 37, 32], [78, 91, 85], [92, 100, 96], [49, 51, 50], [80, 85, 83]], dtype=float
+)  # fmt: skip
+"""Three travel times of an ultrasonic wave in each of six rails, in ns above 36,100 ns."""
+MIXED = "Pinheiro and Bates, Mixed-effects models in S and S-PLUS (2000), data of rails, restricted likelihood"
+
+
+def test_published_mixed_effects_of_rails(record_evidence):
+    """Repetitions on each specimen, all as exact as their pooled deviation says."""
+    within = np.sqrt(np.sum((RAILS - RAILS.mean(axis=1, keepdims=True)) ** 2) / 12)
+    found = estimated(independent(RAILS.mean(axis=1), within / np.sqrt(3)))
+    for quantity, reference, ours, tolerance in (
+        ("deviation within a rail", 4.020779, within, 1e-6),
+        ("mean", 66.5, found.mean[0], 1e-6),
+        ("standard deviation of the mean", 10.17104, found.mean_deviations[0], 1e-4),
+        ("spread between rails", 24.80547, found.spread[0], 1e-4),
+    ):
+        record_evidence(
+            f"travel times in six rails: {quantity}", reference, ours, tolerance=tolerance, topic=TOPIC,
+            kind="published", source=MIXED, unit="ns",
+        )  # fmt: skip
+
+
+@pytest.mark.slow
+def test_statsmodels_estimates_the_same_spread(record_evidence):
+    """Specimens with unequal numbers of repetitions; the deviation of one of them is that of statsmodels."""
+    mixed = pytest.importorskip("statsmodels.regression.mixed_linear_model")
+    random = np.random.default_rng(11)
+    counts = np.array([3, 12, 4, 7, 5, 9, 3, 6, 10, 4])
+    groups = np.repeat(np.arange(len(counts)), counts)
+    times = 20 + 2 * random.standard_normal(len(counts))[groups] + 3 * random.standard_normal(len(groups))
+    theirs = mixed.MixedLM(times, np.ones((len(times), 1)), groups).fit(reml=True)
+    means = np.array([times[groups == number].mean() for number in range(len(counts))])
+    found = estimated(independent(means, np.sqrt(theirs.scale / counts)[:, None]))
+    for quantity, reference, ours in (
+        ("mean", theirs.fe_params[0], found.mean[0]),
+        ("standard deviation of the mean", theirs.bse_fe[0], found.mean_deviations[0]),
+        ("spread", np.sqrt(theirs.cov_re[0, 0]), found.spread[0]),
+    ):
+        record_evidence(
+            f"ten specimens with 3 to 12 repetitions: {quantity}", reference, ours, tolerance=1e-3, topic=TOPIC,
+            kind="other code", source="statsmodels, MixedLM by restricted maximum likelihood",
+        )  # fmt: skip
+
+
 def test_equally_exact_specimens_have_the_covariance_of_their_values_less_that_of_their_fits(record_evidence):
     mixing = np.array([[1.0, 0.0, 0.0], [0.5, 1.0, 0.0], [-0.2, 0.3, 0.7]])
     values = np.random.default_rng(3).standard_normal((12, 3)) @ mixing.T

@@ -47,11 +47,10 @@ class Plot:
     @cached_property
     def json(self) -> Markup:
         """The figure for a script element: without title, template and controls, which the page has itself."""
-        bare = go.Figure(self.figure)
-        bare.layout.template = None  # pyright: ignore[reportAttributeAccessIssue]
-        bare.layout.title = None  # pyright: ignore[reportAttributeAccessIssue]
-        bare.layout.updatemenus, bare.layout.sliders = (), ()  # pyright: ignore[reportAttributeAccessIssue]
-        return Markup((to_json(bare) or "").translate(SAFE))
+        bare = self.figure.to_dict()  # a copy as a Figure would check all of it again
+        for key in ("template", "title", "updatemenus", "sliders"):
+            bare["layout"].pop(key, None)
+        return Markup((to_json(bare, validate=False) or "").translate(SAFE))
 
 
 @dataclass(frozen=True)

@@ -66,6 +66,7 @@ AREAS = {
             "Inertial parameters",
             "Least squares: NIST regressions",
             "Noise models",
+            "Posterior distributions",
             "Response sensitivity",
             "Sensitivities",
             "Residual diagnostics",

@@ -23,6 +23,7 @@ from free_oscillations import NOISE, TRUTH, oscillation, oscillator, recorded, r
 from free_oscillations import TIMES as OSCILLATING
 from frequency_cases import FREQUENCY_CASES
 from inertial_cases import INERTIAL_CASES
+from posterior_cases import POSTERIOR_CASES
 from report_case import Case
 from sensitivity_cases import SENSITIVITY_CASES
 from small_models import DECAY, LINE, TIMES, banded, measured
@@ -990,6 +991,7 @@ CASES: dict[str, Case] = {
     ),
     **FREQUENCY_CASES,
     **INERTIAL_CASES,
+    **POSTERIOR_CASES,
     **SENSITIVITY_CASES,
     **SPECIMEN_CASES,
 }

@@ -224,7 +224,7 @@ def entry(base: str, names: Iterable[str]) -> str:
 
 def stub(homes: Mapping[str, str]) -> str:
     """Lines that import each name from its module, in the order that Ruff wants: classes before functions."""
-    order = sorted(homes, key=lambda name: (homes[name], name[0].islower(), name))
+    order = sorted(homes, key=lambda name: (homes[name], name[0].islower(), not name.isupper(), name))
     return "".join(f"from {homes[name]} import {name} as {name}\n" for name in order)
 
 

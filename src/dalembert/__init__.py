@@ -52,11 +52,11 @@ _NAMES = {
         Bands Measurements derivative merged read read_bands read_trials
     """,
     "inverse": """
-        AutoregressiveNoise BandFit ConstantNoise Designs EstimatedNoise Experiment Fit GlobalSurrogate
-        InputErrors KnownNoise Likelihood MixedNoise MultipleShooting Nested NoiseModel
-        OrnsteinUhlenbeckNoise ParameterSet Population Prediction Profiles ProportionalNoise ShootingState
-        design identifiability identify identify_bands identify_set input_errors likelihood population
-        predict profile
+        AffineInvariant AutoregressiveNoise BandFit ConstantNoise DelayedAcceptance Designs EstimatedNoise
+        Experiment Fit GlobalSurrogate InputErrors KnownNoise Likelihood MixedNoise MultipleShooting NUTS
+        Nested NoiseModel OrnsteinUhlenbeckNoise ParameterSet Population Posterior Prediction Profiles
+        ProportionalNoise ShootingState design identifiability identify identify_bands identify_set
+        input_errors likelihood population predict profile sample
     """,
     "multibody": """
         System Point TimeResponse Trajectory WorkPrecision simulate equilibrium modes work_precision

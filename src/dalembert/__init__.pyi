@@ -51,9 +51,12 @@ from dalembert.forward import Sensors as Sensors
 from dalembert.forward import on_cluster as on_cluster
 from dalembert.intervals import Box as Box
 from dalembert.intervals import Interval as Interval
+from dalembert.inverse import NUTS as NUTS
+from dalembert.inverse import AffineInvariant as AffineInvariant
 from dalembert.inverse import AutoregressiveNoise as AutoregressiveNoise
 from dalembert.inverse import BandFit as BandFit
 from dalembert.inverse import ConstantNoise as ConstantNoise
+from dalembert.inverse import DelayedAcceptance as DelayedAcceptance
 from dalembert.inverse import Designs as Designs
 from dalembert.inverse import EstimatedNoise as EstimatedNoise
 from dalembert.inverse import Experiment as Experiment
@@ -69,6 +72,7 @@ from dalembert.inverse import NoiseModel as NoiseModel
 from dalembert.inverse import OrnsteinUhlenbeckNoise as OrnsteinUhlenbeckNoise
 from dalembert.inverse import ParameterSet as ParameterSet
 from dalembert.inverse import Population as Population
+from dalembert.inverse import Posterior as Posterior
 from dalembert.inverse import Prediction as Prediction
 from dalembert.inverse import Profiles as Profiles
 from dalembert.inverse import ProportionalNoise as ProportionalNoise
@@ -83,6 +87,7 @@ from dalembert.inverse import likelihood as likelihood
 from dalembert.inverse import population as population
 from dalembert.inverse import predict as predict
 from dalembert.inverse import profile as profile
+from dalembert.inverse import sample as sample
 from dalembert.multibody import AncfBeam as AncfBeam
 from dalembert.multibody import AncfCable as AncfCable
 from dalembert.multibody import Augmented as Augmented

@@ -36,7 +36,7 @@ def found(study: Study, outcome: Outcome, row: dict[str, Any]) -> float:
         case "identify" if "of" in row:
             population = getattr(outcome, "told")["population"]  # noqa: B009
             return float(getattr(population, quantity)[population.names.index(row["of"])])
-        case "identify":
+        case "identify" | "sample":
             values = outcome.best["values"]
             return (
                 outcome.best["fitness"] if quantity == "fitness" else values[quantity] / values.get(row.get("per"), 1)

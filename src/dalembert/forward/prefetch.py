@@ -55,7 +55,7 @@ def prefetched(model: ForwardModel, work: Work[Item], items: Sequence[Item]) -> 
     >>> [float(work(model, rate)[-1, 0, 0].round(3)) for rate in prefetched(model, work, [0.5, 1.0])]
     [-0.607, -0.368]
     """
-    if len(items) < 2 or not any(_distributed(model)):
+    if len(items) < 2 or not on_several_machines(model):
         yield from items
         return
     parts: list[Distributed] = []
@@ -86,6 +86,11 @@ def prefetched(model: ForwardModel, work: Work[Item], items: Sequence[Item]) -> 
             finally:
                 for part in parts:
                     part.prefetched.clear()
+
+
+def on_several_machines(model: ForwardModel) -> bool:
+    """Return whether batches of the model, or of models in it, go to a cluster."""
+    return any(_distributed(model))
 
 
 @dataclass(frozen=True)

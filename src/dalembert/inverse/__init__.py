@@ -18,6 +18,7 @@ from dalembert.inverse.diagnostics.residual_diagnostics import ResidualDiagnosti
 from dalembert.inverse.diagnostics.series_residuals import SeriesResiduals
 from dalembert.inverse.events import (
     Checked,
+    Drawn,
     Event,
     Finished,
     Paved,
@@ -40,6 +41,11 @@ from dalembert.inverse.noise.correlated import AutoregressiveNoise, OrnsteinUhle
 from dalembert.inverse.noise.deviations import ConstantNoise, KnownNoise, MixedNoise, ProportionalNoise
 from dalembert.inverse.noise.input_errors import InputErrors, input_errors
 from dalembert.inverse.noise.noise_model import NoiseModel
+from dalembert.inverse.posterior.posterior import Posterior
+from dalembert.inverse.posterior.sample import sample
+from dalembert.inverse.posterior.samplers.affine_invariant import AffineInvariant
+from dalembert.inverse.posterior.samplers.delayed_acceptance import DelayedAcceptance
+from dalembert.inverse.posterior.samplers.nuts import NUTS
 from dalembert.inverse.sets.identify_set import identify_set
 from dalembert.inverse.sets.parameter_set import ParameterSet
 from dalembert.inverse.shooting.nodes import Nodes
@@ -49,12 +55,16 @@ from dalembert.inverse.specimens.estimate import population
 from dalembert.inverse.specimens.population import Population
 
 __all__ = [
+    "NUTS",
+    "AffineInvariant",
     "AutoregressiveNoise",
     "BandFit",
     "Checked",
     "ConstantNoise",
     "CorrelatedResiduals",
+    "DelayedAcceptance",
     "Designs",
+    "Drawn",
     "EstimatedNoise",
     "Event",
     "Experiment",
@@ -78,6 +88,7 @@ __all__ = [
     "ParameterSet",
     "Paved",
     "Population",
+    "Posterior",
     "Prediction",
     "Profile",
     "Profiled",
@@ -103,4 +114,5 @@ __all__ = [
     "population",
     "predict",
     "profile",
+    "sample",
 ]

@@ -71,6 +71,15 @@ class Profiled:
 
 
 @dataclass(frozen=True, eq=False)
+class Drawn:
+    """A sampler has some of the draws of all chains, those of the warm-up included."""
+
+    kind: ClassVar[str] = "drawn"
+    draws: int
+    of: int
+
+
+@dataclass(frozen=True, eq=False)
 class Step:
     """One iteration of one start.
 
@@ -147,7 +156,7 @@ class Finished:
     simulations: int
 
 
-Event = StartBegan | Screened | Sampled | Checked | Paved | Profiled | Step | StartEnd | Finished
+Event = StartBegan | Screened | Sampled | Checked | Paved | Profiled | Drawn | Step | StartEnd | Finished
 OnEvent = Callable[[Event], None]
 
 

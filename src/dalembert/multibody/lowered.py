@@ -10,7 +10,7 @@ from dalembert.multibody.callbacks import Callback, Failures
 from dalembert.multibody.components.body import BaseBody
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.model import Blocks, Model, Signals
-from dalembert.multibody.kernels.signals import EVALUATE
+from dalembert.multibody.kernels.signals import evaluators
 from dalembert.multibody.structure import Structure
 
 
@@ -80,7 +80,8 @@ class Lowered:
         """Kernels of the components that every simulation needs, and those for derivatives along directions."""
         roles = [("residual", float), ("tangent", complex), ("rates", float)]
         roles += [("residual", complex), ("rates", complex)] * derivatives
-        return [kind.kernel(*role) for role in roles for kind in self.data if kind.has(role[0])] + [*EVALUATE.values()]
+        own = [kind.kernel(*role) for role in roles for kind in self.data if kind.has(role[0])]
+        return [*own, *evaluators(self.structure.signals).values()]
 
     def model(self, dtype: type, *roles: str) -> Model:
         """The arrays in real or in complex numbers, with the kernels of these roles."""

@@ -104,10 +104,10 @@ def wrong_experiments(file: Any) -> list[str]:
     if file.experiments and file.data is not None:
         wrong.append("[data] and [[experiments]] are both given; expected one of them")
     wrong += [
-        f"{table} belongs to [identify], and the task is [{task}]; leave it out"
+        f"{table} belongs to [identify] or [sample], and the task is [{task}]; leave it out"
         for task in file.tasks
         for table, given in (("[[experiments]]", file.experiments), ("[sensors]", file.sensors))
-        if given and task != "identify"
+        if given and task not in ("identify", "sample")
     ]
     measured = measured_channels(file)
     wrong += [unknown("channel", name, measured, "[sensors]") for name in file.sensors if not reads(name, measured)]

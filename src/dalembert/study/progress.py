@@ -63,6 +63,8 @@ class Told:
                 return f"{inside} boxes inside, {boundary} on the boundary, {waiting} to look at", 0, None
             case {"event": "profiled", "parameter": name, "simulations": simulations}:
                 return f"profile of {name} · {simulations} simulations", 0, None
+            case {"event": "drawn", "draws": draws, "of": of}:
+                return f"{draws} of {of} draws", draws, of
             case {"event": "following", "begin": begin, "end": end}:
                 return f"following the response from {begin:g} to {end:g} Hz", 0, None
             case {"event": "followed", "frequency": frequency, "amplitude": amplitude, "dof": dof, "done": part}:

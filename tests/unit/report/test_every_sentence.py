@@ -31,6 +31,7 @@ SOURCES = [
     *(f"inverse/experiments/{name}.py" for name in ("coverage", "explained", "suspect_units", "validation")),
     *(f"inverse/misfit/{name}.py" for name in ("delays", "halves", "model_misfit")),
     *(f"inverse/bands/{name}.py" for name in ("band_fit", "outcome")),
+    *(f"inverse/posterior/{name}.py" for name in ("conclusions", "convergence")),
     "inverse/sets/outcome.py",
     "inverse/specimens/estimate.py",
     *(f"inverse/assessment/{name}.py" for name in ("designs", "prediction", "profiles", "walk")),

@@ -219,7 +219,7 @@ def test_each_experiment_has_its_prediction(write, tmp_path):
         ),
         (
             TWO + "[identify_set]\nerror = 0.1\n",
-            "[[experiments]] belongs to [identify], and the task is [identify_set]; leave it out",
+            "[[experiments]] belongs to [identify] or [sample], and the task is [identify_set]; leave it out",
         ),
         (
             TWO + "[sensors.y]\ngain = [0.5, 2.0]\n[identify]\n",

@@ -20,8 +20,11 @@ def surrogate_of(
     shape: tuple[int, int],
     seed: int,
     held_out: int | None = None,
+    groups: np.ndarray | None = None,
 ) -> Surrogate:
-    """Surrogate of (samples, channels) = ``shape`` outputs, each channel with a scale of its own, told to the journal.
+    """Surrogate of (samples, channels) = ``shape`` outputs, told to the journal.
+
+    Each channel has a scale of its own, or the outputs that have one number in ``groups`` (outputs,).
 
     Raises
     ------
@@ -38,7 +41,7 @@ def surrogate_of(
             scheme,
             seed=seed,
             held_out=held_out,
-            groups=np.tile(np.arange(channels), samples),
+            groups=np.tile(np.arange(channels), samples) if groups is None else groups,
             on_runs=lambda runs: journal.tell(Sampled(runs, journal.simulations)),
         )
     except SolveError as error:

@@ -6,11 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from dalembert.kernels.kernel import BlockKernel
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.nodes import CHANGE, RESTORE, SPREAD
 from dalembert.multibody.kernels.records import BLOCK, CALL, MODEL
 from dalembert.multibody.kernels.reduction import Reduction
-from dalembert.multibody.kernels.signals import EVALUATE
+from dalembert.multibody.kernels.signals import evaluators
 
 
 @dataclass(frozen=True)
@@ -79,7 +80,7 @@ class Model:
         table["knots"], table["signal_data"] = self.signals.knots.ctypes.data, self.signals.data.ctypes.data
         table["knot_count"], table["number_count"] = len(self.signals.knots), len(self.signals.data)
         table["callbacks"], table["callback_count"] = self.callbacks.ctypes.data, len(self.callbacks)
-        table["evaluate"] = EVALUATE[self.dtype].address
+        table["evaluate"] = self._evaluator.address
         object.__setattr__(self, "_words", (head, full, reduced, nodes))
         self.need(*self.roles)
 
@@ -125,6 +126,10 @@ class Model:
         return kernel.address
 
     @property
+    def _evaluator(self) -> BlockKernel:
+        return evaluators(self.signals.index)[self.dtype]
+
+    @property
     def address(self) -> int:
         """Address of the table."""
         return self._words[0].ctypes.data
@@ -135,7 +140,7 @@ class Model:
 
     def evaluate(self, call: "Call", t: float, within: float) -> None:
         """Evaluate the signals of a call."""
-        EVALUATE[self.dtype](call.set(t=t, within=within).address, self.address)
+        self._evaluator(call.set(t=t, within=within).address, self.address)
 
     def each(self, role: str, call: "Call", slots: np.ndarray | None = None, only: Kind | None = None) -> None:
         """Call the kernels of a role, block by block, or those of one kind."""

@@ -30,6 +30,7 @@ _NAMES = {
     "identification.measured": "measured",
     "identification.parameters": "parameters",
     "identification.paving": "paving",
+    "identification.posterior": "marginal pair_plots predictive traces",
     "identification.prediction": "prediction",
     "identification.profile": "profile",
     "identification.regularisation": "l_curve steps",

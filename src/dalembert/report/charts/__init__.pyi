@@ -33,6 +33,10 @@ from dalembert.report.charts.identification.intervals import intervals as interv
 from dalembert.report.charts.identification.measured import measured as measured
 from dalembert.report.charts.identification.parameters import parameters as parameters
 from dalembert.report.charts.identification.paving import paving as paving
+from dalembert.report.charts.identification.posterior import marginal as marginal
+from dalembert.report.charts.identification.posterior import pair_plots as pair_plots
+from dalembert.report.charts.identification.posterior import predictive as predictive
+from dalembert.report.charts.identification.posterior import traces as traces
 from dalembert.report.charts.identification.prediction import prediction as prediction
 from dalembert.report.charts.identification.profile import profile as profile
 from dalembert.report.charts.identification.regularisation import l_curve as l_curve

@@ -37,7 +37,7 @@ def mechanism_scene(
             shapes.append(_shape("line", part, unfolded(line)[0], colour))
         names.append(_name(part, line[0].mean(axis=0)))
     if drawing.ground is not None:
-        shapes.append(_mesh("ground", *drawing.ground, INK))
+        shapes.append(_mesh("ground", drawing.ground.corners, drawing.ground.triangles, INK))
     for joint in sketch.system.joints:
         ends, at = sketch.ends.get(joint.name), drawing.joints.get(joint.name)
         own = ends if ends is not None else at

@@ -195,11 +195,11 @@ class Identify(Task):
 
     def plan(self, study: Study) -> str:
         model, data = posed(study)
-        names = _whole(model).parameters.names
+        names = telling.whole(model).parameters.names
         return f"identifies {', '.join(names)} from {_measured(model, data)} by {_cost(study.table, len(names))[0]}"
 
     def effort(self, study: Study) -> Effort:
-        model = _whole(posed(study)[0])
+        model = telling.whole(posed(study)[0])
         _, least, most = _cost(study.table, len(model.parameters))
         batch = TOGETHER if isinstance(settings(study.table.method), Swarm) else 1
         return evaluated(model, model.parameters.start, least, most, batch)
@@ -227,7 +227,7 @@ class Identify(Task):
             model,
             data,
             method=settings(table.method),
-            weights=_weights(table.weights, model, data),
+            weights=telling.weights(table.weights, model, data),
             horizon=None if table.horizon == "whole" else table.horizon,
             shooting=None if table.shooting is None else table.shooting.settings(),
             noise=None if table.noise is None else table.noise.noise(),
@@ -289,25 +289,9 @@ def _wrong_shooting(file: Any) -> list[str]:
     return wrong
 
 
-def _whole(model: Any) -> Any:
-    """The model, or the one that all experiments together are."""
-    from dalembert.inverse.experiments.experiments import joint
-
-    return joint(model)[0] if isinstance(model, list) else model
-
-
 def _measured(model: Any, data: Any) -> str:
     """What is fitted, in words."""
     if data is not None:
         return f"{len(data.coordinate.values)} samples of {', '.join(data.channels)}"
     each = [f"{item.name}: {_measured(item.model, item.data)}" for item in model]
     return f"{len(model)} experiments ({'; '.join(each)})"
-
-
-def _weights(given: dict[str, float] | None, model: Any, data: Any) -> Any:
-    """Weights of channels by name, as identify takes them."""
-    if given is None:
-        return None
-    if data is not None:
-        return [given[channel] for channel in data.channels]
-    return {item.name: [given[channel] for channel in item.data.channels] for item in model}

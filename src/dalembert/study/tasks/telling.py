@@ -79,3 +79,19 @@ def foreseen(model: Any, data: Any) -> tuple[str, ...]:
     rubbing = (item for item in findings_at(model, model.parameters.start) if item.code == "slip-rate")
     units = first_unit_findings(model, data)
     return tuple(f"At the first guesses: {sentence}" for sentence in (*sentences, *rubbing, *units))
+
+
+def whole(model: Any) -> Any:
+    """The model, or the one that all experiments together are."""
+    from dalembert.inverse.experiments.experiments import joint
+
+    return joint(model)[0] if isinstance(model, list) else model
+
+
+def weights(given: dict[str, float] | None, model: Any, data: Any) -> Any:
+    """Weights of channels by name, as identify takes them."""
+    if given is None:
+        return None
+    if data is not None:
+        return [given[channel] for channel in data.channels]
+    return {item.name: [given[channel] for channel in item.data.channels] for item in model}

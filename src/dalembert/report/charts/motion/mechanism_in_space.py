@@ -54,7 +54,7 @@ def mechanism_in_space(
         *(_line(path_of(path), 3, LIGHT.muted, name=f"path of {plain(name)}") for name, path in paths.items()),
         *(_crosses(name, points) for name, points in measured.items()),
         _markers("fixed to ground", grounded, 0, "square", LIGHT.muted),
-        *([] if drawing.ground is None else [_mesh("ground", *drawing.ground, LIGHT.muted)]),
+        *(_mesh("ground", own.corners, own.triangles, LIGHT.muted) for own in [drawing.ground] if own is not None),
     ]
     first = int(frames[0])
     shown = [*bodies, *meshes]
@@ -111,7 +111,9 @@ def _light(drawing: Drawing) -> Drawing:
     if most < FEWEST:
         return replace(drawing, surfaces={})
     few = {
-        name: surface if len(surface.corners) <= most else Surface(*simplified(*surface, most))
+        name: surface
+        if len(surface.corners) <= most
+        else Surface(*simplified(surface.corners, surface.triangles, most))
         for name, surface in own.items()
     }
     return replace(drawing, surfaces=few)

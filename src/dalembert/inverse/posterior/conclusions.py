@@ -1,0 +1,100 @@
+"""What a posterior shows of data and priors."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from dalembert.findings import Finding
+from dalembert.inverse.posterior.preconditioning import Centred
+from dalembert.inverse.posterior.unbounded import UnboundedCoordinates
+from dalembert.inverse.problem.prior import ALONE
+from dalembert.parameters import Parameter, Parameters
+from dalembert.priors import SquarePrior
+
+CONFLICT = 3.0
+"""Standard deviations between data and prior from which they contradict each other: 0.3 % by chance."""
+
+CLOSE = 0.02
+"""Distance to a bound, relative to that of the bounds, that counts as at the bound."""
+
+PILED = 0.1
+"""Part of the draws at a bound from which the bound decides; for a flat posterior it is 0.02."""
+
+
+def prior_conflicts(found: Centred) -> Iterator[Finding]:
+    """Yield findings on priors that contradict the data, by the linearised likelihood at the mode.
+
+    With the residual r of a prior, its change Δr up to the maximum of the likelihood alone and the standard deviation s
+    that the data leave in it, (r + Δr)/√(1 + s²) is standard normal if prior and data agree.
+    """
+    if found.data_information is None:
+        return
+    target, parameters = found.target, found.target.parameters
+    slope = target.coordinates.slope(target.centre)
+    _, gradient = target.likelihood.linearise(found.vector)
+    values, directions = np.linalg.eigh(found.data_information)
+    seen = values > 1e-10 * values[-1]
+    if not np.any(seen):
+        return
+    rows = directions[:, seen]
+    covariance = rows / values[seen] @ rows.T
+    blind = np.sqrt(np.sum(directions[:, ~seen] ** 2, axis=1))
+    step = covariance @ (slope * gradient)
+    for k, item in enumerate(parameters):
+        prior = item.distribution
+        if not isinstance(prior, SquarePrior) or blind[k] > 1e-3:
+            continue
+        rate = float(prior.residual_slope(found.vector[k])) * slope[k]
+        residual = float(prior.residual(found.vector[k])) + rate * step[k]
+        apart = abs(residual) / np.sqrt(1 + rate**2 * covariance[k, k])
+        if apart > CONFLICT:
+            yield Finding(
+                "prior-conflict",
+                "warning",
+                {"parameter": item.name, "deviations": float(apart)},
+                f"The prior of {item.name!r} excludes what the data show: they are {apart:.1f} standard deviations "
+                "apart.",
+                "Correct the prior, or look for what the model lacks.",
+            )
+
+
+def findings(parameters: Parameters, draws: np.ndarray) -> Iterator[Finding]:
+    """Yield findings on the posterior from draws (draws, parameters)."""
+    inside = _between(parameters, draws)
+    for k, item in enumerate(parameters):
+        prior = item.distribution
+        quantiles = prior.within(np.linspace(0.005, 0.995, 100), item.lower, item.upper)
+        before, after = float(np.std(quantiles)), float(np.std(draws[:, k]))
+        if after**2 > ALONE * before**2:
+            yield _dominated(item, before, after)
+            continue
+        for side, near in (("lower", inside[:, k] < CLOSE), ("upper", inside[:, k] > 1 - CLOSE)):
+            share, bound = float(np.mean(near)), float(getattr(item, side))
+            if share > PILED:
+                yield Finding(
+                    "posterior-at-bound",
+                    "warning",
+                    {"parameter": item.name, "side": side, "bound": bound, "share": share},
+                    f"{100 * share:.0f} % of the draws of {item.name!r} are at its {side} bound {bound:.6g}.",
+                    "Widen the bound if the true value may lie beyond it.",
+                )
+
+
+def _dominated(item: Parameter, before: float, after: float) -> Finding:
+    return Finding(
+        "prior-dominates",
+        "warning",
+        {"parameters": item.name, "prior": before, "deviation": after},
+        f"The data add nothing to the prior of {item.name!r}: its standard deviation is {before:.3g} in the prior and "
+        f"{after:.3g} in the posterior.",
+        f"Check that the prior and the bounds are not too narrow, or measure a quantity that depends on {item.name!r}.",
+    )
+
+
+def _between(parameters: Parameters, draws: np.ndarray) -> np.ndarray:
+    """Where draws lie between the bounds, from 0 to 1, in the coordinates of the search."""
+    logs = UnboundedCoordinates(parameters).logarithmic
+    lower, upper, values = (
+        np.where(logs, np.log(np.where(logs, one, 1.0)), one) for one in (parameters.lower, parameters.upper, draws)
+    )
+    return (values - lower) / (upper - lower)

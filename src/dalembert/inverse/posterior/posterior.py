@@ -1,0 +1,190 @@
+"""The result of sampling a posterior."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+
+import numpy as np
+
+from dalembert.findings import Finding
+from dalembert.inverse.experiments.experiment import Part
+from dalembert.inverse.fit.fit import check_level
+from dalembert.inverse.fit.stored_data import StoredData, StoredParts
+from dalembert.inverse.posterior.convergence import Convergence, ended
+from dalembert.results import EndedResult, fact_lines, fixed_lines, text_table
+from dalembert.stored_fields import Labels, Over, Source, Store, StoredParameters
+
+if TYPE_CHECKING:
+    from arviz import InferenceData
+
+_OF_DRAWS = ("chain", "draw")
+
+
+class _Statistics:
+    """Statistics of the sampler as variables over ``chain`` and ``draw``."""
+
+    def store(self, to: Store, settings: dict[str, Any], name: str, value: Mapping[str, np.ndarray]) -> None:
+        settings[name] = sorted(value)
+        for one, array in value.items():
+            array = array.astype(np.int8) if array.dtype == bool else array
+            to.variables[f"statistic_{one}"] = (_OF_DRAWS, array)
+
+    def load(self, source: Source, settings: Mapping[str, Any], name: str) -> dict[str, np.ndarray]:
+        arrays = {one: source.arrays[f"statistic_{one}"] for one in settings[name]}
+        return {one: array.astype(bool) if array.dtype == np.int8 else array for one, array in arrays.items()}
+
+
+@dataclass(frozen=True, eq=False)
+class Posterior(EndedResult):
+    """Draws of the posterior distribution of parameters, as :func:`sample` returns them.
+
+    Parameters
+    ----------
+    parameters : Parameters
+        Those of the model, then those of the noise.
+    draws : array, shape (chains, draws, parameters)
+    log_density : array, shape (chains, draws)
+        Of the posterior, in the coordinates of the sampler, up to a constant.
+    statistics : mapping of str to array, shape (chains, draws)
+        Of the sampler, by the names of ArviZ, such as ``diverging``.
+    r_hat, bulk, tail, errors : array, shape (parameters,)
+        Rank-normalised R-hat, effective sample sizes for centre and tails, Monte Carlo standard error of the mean.
+    mode : array, shape (parameters,)
+        Largest posterior density of the coordinates without bounds.
+    linear_deviations : array, shape (parameters,)
+        Standard deviations from the response and the priors, linearised at the mode.
+    log_likelihood : array, shape (kept draws, values)
+        Log density of each compared value, at the draws numbered by ``kept``.
+    kept : array of int, shape (kept draws,)
+        Numbers of draws, counted over all chains in turn: all, or evenly spaced ones where the values are very many.
+    experiments, channels : tuple of str, length values
+        Where the compared values stand; experiments are empty for a single one.
+    rows : array of int, shape (values,)
+        Of the compared values in the data.
+    replicas : array, shape (replicas, samples, channels)
+        Posterior predictive: responses with simulated noise; NaN where no value was compared.
+    replicated : array of int, shape (replicas,)
+        Numbers of their draws.
+    data : Measurements
+    parts : tuple of Part
+        Where each of several experiments stands in the data.
+    sampler : str
+    warmup, simulations : int
+        ``simulations`` are those of the sampling; a response with its sensitivities counts as 1 + parameters.
+    provenance : mapping
+    findings : tuple of Finding
+    """
+
+    FORMAT: ClassVar[str] = "dalembert posterior 1"
+
+    parameters: StoredParameters
+    draws: Annotated[np.ndarray, Over("chain", "draw", "parameter")]
+    log_density: Annotated[np.ndarray, Over("chain", "draw")]
+    statistics: Annotated[Mapping[str, np.ndarray], _Statistics()]
+    r_hat: Annotated[np.ndarray, Over("parameter")]
+    bulk: Annotated[np.ndarray, Over("parameter")]
+    tail: Annotated[np.ndarray, Over("parameter")]
+    errors: Annotated[np.ndarray, Over("parameter")]
+    mode: Annotated[np.ndarray, Over("parameter")]
+    linear_deviations: Annotated[np.ndarray, Over("parameter")]
+    log_likelihood: Annotated[np.ndarray, Over("kept", "value")]
+    kept: Annotated[np.ndarray, Over("kept", name="kept_draw")]
+    experiments: Annotated[tuple[str, ...], Labels("value", name="value_experiment")]
+    channels: Annotated[tuple[str, ...], Labels("value", name="value_channel")]
+    rows: Annotated[np.ndarray, Over("value", name="value_row")]
+    replicas: Annotated[np.ndarray, Over("replica", "sample", "channel")]
+    replicated: Annotated[np.ndarray, Over("replica", name="replicated_draw")]
+    data: StoredData
+    sampler: str
+    warmup: int
+    simulations: int
+    provenance: Mapping[str, Any]
+    parts: Annotated[Sequence[Part], StoredParts()] = ()
+    findings: tuple[Finding, ...] = field(default=())
+
+    @property
+    def convergence(self) -> Convergence:
+        """Diagnostics of the chains."""
+        return Convergence(self.r_hat, self.bulk, self.tail, self.errors)
+
+    @property
+    def outcome(self) -> tuple[Finding, ...]:
+        """Whether the chains have converged, and whether there are enough draws."""
+        return tuple(ended(self.parameters.names, self.convergence, *self.draws.shape[:2]))
+
+    @property
+    def success(self) -> bool:
+        """Whether no finding on the chains is an error."""
+        return all(finding.severity != "error" for finding in self.outcome)
+
+    @property
+    def flat(self) -> np.ndarray:
+        """All draws, chain after chain, shape (chains × draws, parameters)."""
+        return self.draws.reshape(-1, len(self.parameters))
+
+    @property
+    def mean(self) -> np.ndarray:
+        """Posterior means (parameters,)."""
+        return self.flat.mean(axis=0)
+
+    @property
+    def deviations(self) -> np.ndarray:
+        """Posterior standard deviations (parameters,)."""
+        return self.flat.std(axis=0, ddof=1)
+
+    @property
+    def estimates(self) -> dict[str, float]:
+        """Posterior means by name."""
+        return self.parameters.mapping(self.mean)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """Draws of a parameter, shape (chains, draws)."""
+        return self.draws[:, :, self.parameters.names.index(name)]
+
+    def intervals(self, level: float = 0.95) -> dict[str, tuple[float, float]]:
+        """Interval of each parameter between the quantiles (1 ∓ level)/2 of its draws, by name.
+
+        Raises
+        ------
+        InputError
+            For a level that is not between 0 and 1.
+        """
+        check_level(level, "intervals")
+        lower, upper = np.quantile(self.flat, [(1 - level) / 2, (1 + level) / 2], axis=0)
+        return dict(zip(self.parameters.names, zip(lower.tolist(), upper.tolist(), strict=True), strict=True))
+
+    def band(self, level: float = 0.95) -> tuple[np.ndarray, np.ndarray]:
+        """Quantiles of the posterior predictive, shape (samples, channels) each; NaN where no value was compared."""
+        check_level(level, "band")
+        lower, upper = np.full((2, *self.replicas.shape[1:]), np.nan)
+        there = np.all(np.isfinite(self.replicas), axis=0)
+        ends = np.quantile(self.replicas[:, there], [(1 - level) / 2, (1 + level) / 2], axis=0)
+        lower[there], upper[there] = ends
+        return lower, upper
+
+    @property
+    def inference_data(self) -> "InferenceData":
+        """Everything as ArviZ has it: posterior, sampler statistics, log-likelihood, predictive and observed data.
+
+        Needs the extra ``posterior``.
+        """
+        from dalembert.inverse.posterior.inference_data import inference_data
+
+        return inference_data(self)
+
+    def summary(self) -> str:
+        """Return a table of the parameters, then how sampling ended and the findings."""
+        rows = [("parameter", "mean", "± deviation", "95 % interval", "unit", "R-hat", "effective draws", "± linear")]
+        intervals = self.intervals()
+        columns = zip(
+            self.parameters, self.mean, self.deviations, self.r_hat, np.minimum(self.bulk, self.tail),
+            self.linear_deviations, strict=True,
+        )  # fmt: skip
+        for item, mean, deviation, r_hat, effective, linear in columns:
+            lower, upper = intervals[item.name]
+            texts = f"{mean:.6g}", f"{deviation:.2g}", f"{lower:.5g} to {upper:.5g}", item.unit
+            rows.append((item.name, *texts, f"{r_hat:.3f}", f"{effective:.0f}", f"{linear:.2g}"))
+        chains, draws, _ = self.draws.shape
+        facts = fact_lines(sampler=self.sampler, draws=f"{chains} chains x {draws}", simulations=self.simulations)
+        lines = [*text_table(rows), "", *fixed_lines(self), *facts, self.status, *map(str, self.findings)]
+        return "\n".join(lines)

@@ -1,0 +1,142 @@
+"""Where sampling begins, and the coordinates in which the posterior is round: the mode and its curvature."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import minimize
+
+from dalembert.errors import DalembertError, InputError, SolveError, StorageError
+from dalembert.inverse.likelihood.likelihood import Likelihood
+from dalembert.inverse.posterior.target import Target
+from dalembert.inverse.problem.prior import prior_slopes
+from dalembert.parameters import Parameters
+
+FAR = 1e3
+"""Largest change of a target's value that its search takes for finite."""
+
+STEP = 0.05
+"""Step of second differences in coordinates without bounds, for models without a jacobian."""
+
+
+@dataclass(frozen=True, eq=False)
+class Centred:
+    """A target around its mode.
+
+    Parameters
+    ----------
+    target : Target
+    vector : array, shape (parameters,)
+        Parameters at the mode of the density of the coordinates without bounds.
+    covariance : array, shape (parameters, parameters)
+        Of the parameters, from the linearised response and the priors.
+    data_information : array, shape (parameters, parameters), or None
+        Fisher information of the data about the coordinates at the mode; None without a jacobian.
+    """
+
+    target: Target
+    vector: np.ndarray
+    covariance: np.ndarray
+    data_information: np.ndarray | None
+
+    @property
+    def deviations(self) -> np.ndarray:
+        """Linear standard deviations (parameters,)."""
+        return np.sqrt(np.diag(self.covariance))
+
+
+def centred(likelihood: Likelihood, parameters: Parameters, start: np.ndarray, *, gradients: bool) -> Centred:
+    """Return the target around the mode that is reached from a start (parameters,).
+
+    With ``gradients`` the mode is searched by L-BFGS-B, and the curvature is JᵀΣ⁻¹J and that of the priors. Without,
+    Nelder and Mead's simplex and second differences serve.
+
+    Raises
+    ------
+    SolveError
+        If the model cannot be simulated at the start.
+    """
+    count = len(parameters)
+    target = Target(likelihood, parameters, np.zeros(count), np.eye(count))
+    point = target.coordinates.points(start)
+    value = float(target.evaluate(point[None])[0])
+    if not np.isfinite(value):
+        failures = likelihood.problem.journal.failures
+        reason = failures[-1] if failures else "the likelihood is not finite there"
+        raise SolveError(f"the posterior cannot be sampled from its start: {reason}. Change the start or the bounds")
+    for _ in range(2):  # the second search is in the coordinates of the first one's end
+        information, _ = _information(target, point, gradients=gradients)
+        target = replace(target, centre=point, factor=_factor(information))
+        point = target.points(_searched(target, gradients=gradients))
+    information, data = _information(target, point, gradients=gradients)
+    factor = _factor(information)
+    rows = target.coordinates.slope(point)[:, None] * factor
+    found = replace(target, centre=point, factor=factor)
+    return Centred(found, target.coordinates.vectors(point), rows @ rows.T, data)
+
+
+def _searched(target: Target, *, gradients: bool) -> np.ndarray:
+    """The place of the largest density, from the centre of the target."""
+    origin = np.zeros(len(target.centre))
+    bound = float(target.evaluate(origin[None])[0])
+
+    def squared(place: np.ndarray) -> tuple[float, np.ndarray]:
+        value, gradient = target.linearise(place)
+        return (bound - value, -gradient) if np.isfinite(value) else (FAR + float(place @ place), 2 * place)
+
+    def plain(place: np.ndarray) -> float:
+        value = float(target.evaluate(place[None])[0])
+        return bound - value if np.isfinite(value) else FAR + float(place @ place)
+
+    if gradients:
+        limits = [(-8.0, 8.0)] * len(origin)  # a search within what the curvature allows
+        return minimize(squared, origin, jac=True, method="L-BFGS-B", bounds=limits, options={"maxiter": 100}).x
+    size = len(origin)
+    simplex = np.vstack([origin, 0.5 * np.eye(size)])
+    options = {"maxfev": 100 * size, "initial_simplex": simplex, "xatol": 1e-3, "fatol": 1e-4}
+    return minimize(plain, origin, method="Nelder-Mead", options=options).x
+
+
+def _information(target: Target, point: np.ndarray, *, gradients: bool) -> tuple[np.ndarray, np.ndarray | None]:
+    """Information about the coordinates (parameters, parameters), with that of priors; and that of the data alone."""
+    coordinates = target.coordinates
+    vector, slope = coordinates.vectors(point), coordinates.slope(point)
+    prior = prior_slopes(target.parameters, vector, slope)
+    between = np.exp(-np.abs(point)) / (1 + np.exp(-np.abs(point))) ** 2  # u (1 − u)
+    known = prior.T @ prior + np.diag(2 * between)
+    if gradients:
+        try:
+            rows = target.likelihood.expansion(vector).rows * slope
+        except SolveError:
+            rows = np.zeros((0, len(point)))
+        return rows.T @ rows + known, rows.T @ rows
+    return known + np.diag(
+        _curvatures(replace(target, centre=np.zeros(len(point)), factor=np.eye(len(point))), point)
+    ), None
+
+
+def _curvatures(target: Target, point: np.ndarray) -> np.ndarray:
+    """Second differences of the log-likelihood along each coordinate, with the sign of an information."""
+    moved = STEP * np.eye(len(point))
+    vectors = target.vectors(np.concatenate([point[None], point + moved, point - moved]))
+    middle, above, below = np.split(target.likelihood.evaluate(vectors), [1, 1 + len(point)])
+    found = -(above - 2 * middle + below) / STEP**2
+    return np.where(np.isfinite(found) & (found > 0), found, 0.0)
+
+
+def _factor(information: np.ndarray) -> np.ndarray:
+    """L⁻ᵀ of the Cholesky factor L of an information."""
+    return np.linalg.inv(np.linalg.cholesky(information)).T
+
+
+def has_jacobian(likelihood: Likelihood, vector: np.ndarray) -> bool:
+    """Return whether the model returns a jacobian at a vector of the likelihood (parameters,)."""
+    model = likelihood.problem.model
+    try:
+        model.linearise(vector[: len(model.parameters)])
+    except StorageError:
+        raise
+    except (InputError, NotImplementedError, AttributeError):
+        return False
+    except DalembertError:
+        return True  # it fails here, and may not elsewhere
+    return True

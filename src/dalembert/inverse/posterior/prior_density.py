@@ -1,0 +1,71 @@
+"""The prior density of all parameters together."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from dalembert.inverse.problem.prior import joint_priors
+from dalembert.parameters import Parameters
+from dalembert.priors import CorrelatedNormal
+
+
+@dataclass(frozen=True)
+class PriorDensity:
+    """Product of the priors of all parameters, up to the constant that truncation by the bounds brings.
+
+    Examples
+    --------
+    >>> density = PriorDensity(Parameters.of({"a": (0.0, 2.0), "b": (0.0, 4.0)}))
+    >>> np.exp(density(np.array([1.0, 1.0]))).round(6).item()
+    0.125
+    """
+
+    parameters: Parameters
+
+    @cached_property
+    def _alone(self) -> list[int]:
+        items = self.parameters.items
+        return [k for k, item in enumerate(items) if not isinstance(item.prior, CorrelatedNormal)]
+
+    @cached_property
+    def _joint(self) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        """Columns, mean and whitening matrix of the priors of several parameters."""
+        found = joint_priors(self.parameters)
+        return [(columns, np.array(prior.mean), prior.whitening()) for prior, columns in found]
+
+    def __call__(self, vectors: np.ndarray) -> np.ndarray:
+        """Logarithm of the density (...,) at vectors (..., parameters)."""
+        found = np.zeros(vectors.shape[:-1])
+        for k in self._alone:
+            found = found + self.parameters.items[k].distribution.log_density(vectors[..., k])
+        for columns, mean, matrix in self._joint:
+            white = (vectors[..., columns] - mean) @ matrix.T
+            constant = np.sum(np.log(np.diag(matrix))) - len(mean) / 2 * np.log(2 * np.pi)
+            found = found - 0.5 * np.sum(white**2, axis=-1) + constant
+        return found
+
+    def gradient(self, vector: np.ndarray) -> np.ndarray:
+        """Its derivative at a vector, both (parameters,)."""
+        found = np.zeros(len(vector))
+        for k in self._alone:
+            found[k] = self.parameters.items[k].distribution.slope(vector[k])
+        for columns, mean, matrix in self._joint:
+            found[columns] = -matrix.T @ matrix @ (vector[columns] - mean)
+        return found
+
+    def draws(self, count: int, seed: int) -> np.ndarray:
+        """Vectors drawn from the truncated prior, shape (count, parameters)."""
+        random, parameters = np.random.default_rng(seed), self.parameters
+        found = np.empty((count, len(parameters)))
+        for k in self._alone:
+            item = parameters.items[k]
+            found[:, k] = item.distribution.within(random.random(count), item.lower, item.upper)
+        for columns, mean, matrix in self._joint:
+            factor, missing = np.linalg.inv(matrix), np.arange(count)
+            lower, upper = parameters.lower[columns], parameters.upper[columns]
+            while len(missing):
+                found[np.ix_(missing, columns)] = mean + random.standard_normal((len(missing), len(mean))) @ factor.T
+                there = found[np.ix_(missing, columns)]
+                missing = missing[np.any((there < lower) | (there > upper), axis=1)]
+        return found

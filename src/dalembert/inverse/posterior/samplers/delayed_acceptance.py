@@ -1,0 +1,205 @@
+"""Delayed acceptance: a surrogate proposes, the model decides."""
+
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+import numpy as np
+from scipy.special import erfc
+
+from dalembert.arguments import limited
+from dalembert.errors import SolveError
+from dalembert.findings import Finding
+from dalembert.inverse.posterior.samplers.sampler import Chains, Length, OnDraws, Sampler
+from dalembert.inverse.posterior.surrogate_model import SurrogateModel, with_surrogate
+from dalembert.inverse.posterior.target import Target
+from dalembert.surrogate import Adaptive
+from dalembert.surrogate.scheme import Scheme
+
+PILOT = 32
+"""Draws of the surrogate's posterior that test it."""
+
+LIMIT = 1.0
+"""Largest standard deviation of the surrogate's error in the log density; half of the proposals are then accepted."""
+
+BURN = 20
+"""Decisions of the model in each chain before the first draw that is kept."""
+
+WANTED = 0.3
+"""Acceptance of the random walk on the surrogate to which its step is adapted."""
+
+EDGE = 0.02
+"""Distance to a side of the surrogate's box, relative to its width, within which the box cuts the posterior."""
+
+
+@dataclass(frozen=True)
+class DelayedAcceptance(Sampler):
+    """Metropolis sampler whose proposals come from a surrogate's posterior, and whose acceptance is the model's.
+
+    A short random walk on the surrogate makes each proposal y of x. It is accepted with the probability
+    min(1, π(y) π*(x)/(π(x) π*(y))), with the posterior π of the model and π* of the surrogate. So the draws are those
+    of the model's posterior, however inexact the surrogate is: its error only lowers the acceptance. A draw costs at
+    most one simulation.
+
+    Parameters
+    ----------
+    scheme : TotalDegree, Tensor or Adaptive
+        Of the Chebyshev surrogate, see :func:`dalembert.surrogate.fit`.
+    walk : int, optional
+        Steps of the random walk for a proposal; 5 for each parameter if not given.
+
+    Notes
+    -----
+    Source: J. A. Christen and C. Fox, Markov chain Monte Carlo using an approximation, Journal of Computational and
+    Graphical Statistics 14 (2005).
+    """
+
+    name: ClassVar[str] = "delayed-acceptance"
+    gradients: ClassVar[bool] = False
+
+    scheme: Scheme = field(default_factory=lambda: Adaptive(tolerance=1e-4))
+    walk: int | None = limited(None, least=1)
+
+    def sampled(self, target: Target, length: Length, on_draws: OnDraws) -> Chains:
+        """Sample the chains together: their simulations are batches.
+
+        Raises
+        ------
+        SolveError
+            If the surrogate is too inaccurate, or its runs fail.
+        """
+        random = np.random.default_rng(length.chain_seed(0))
+        rows = target.coordinates.slope(target.centre)[:, None] * target.factor
+        vector = target.coordinates.vectors(target.centre)
+        cheap = with_surrogate(target, vector, np.sqrt(np.sum(rows**2, axis=1)), self.scheme, length.seed)
+        walk = _Walk(cheap, self.walk or 5 * len(target.centre), random)
+        states = walk.started(length.chains, length.warmup)
+        error, acceptance = _error(target, cheap, walk, states)
+        if not error <= LIMIT:
+            raise SolveError(_too_inaccurate(error, acceptance, cheap))
+        exact = target.evaluate(states.places)
+        keep: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
+        for _ in range(BURN + length.draws):
+            proposed = walk.walked(states)
+            there = target.evaluate(proposed.places)
+            with np.errstate(invalid="ignore"):
+                ratio = (there - exact) - (proposed.density - states.density)
+            taken = np.log(random.random(length.chains)) < np.nan_to_num(ratio, nan=-np.inf, posinf=np.inf)
+            states, exact = states.where(taken, proposed), np.where(taken, there, exact)
+            keep.append((states.places, exact, taken))
+            on_draws(length.chains, length.chains * (BURN + length.draws))
+        places, density, accepted = (np.stack(part, axis=1)[:, BURN:] for part in zip(*keep, strict=True))
+        findings = _findings(cheap, places, accepted)
+        return Chains(places, density, {"accepted": accepted}, findings=tuple(findings))
+
+
+@dataclass(frozen=True, eq=False)
+class _States:
+    """Places (chains, parameters) of chains, and the log density (chains,) of the surrogate there."""
+
+    places: np.ndarray
+    density: np.ndarray
+
+    def where(self, mask: np.ndarray, others: "_States") -> "_States":
+        """Others where a mask (chains,) is true."""
+        places = np.where(mask[:, None], others.places, self.places)
+        return _States(places, np.where(mask, others.density, self.density))
+
+
+@dataclass
+class _Walk:
+    """Random-walk Metropolis on a surrogate; its step is adapted in the warm-up alone."""
+
+    target: Target
+    steps: int
+    random: np.random.Generator
+    scale: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.scale = 2.4 / np.sqrt(len(self.target.centre))
+
+    def started(self, chains: int, warmup: int) -> _States:
+        """States after a warm-up, which begins near the mode."""
+        places = 0.5 * self.random.standard_normal((chains, len(self.target.centre)))
+        states = _States(places, self.target.evaluate(places))
+        origin = np.zeros_like(places)
+        states = states.where(~np.isfinite(states.density), _States(origin, self.target.evaluate(origin)))
+        for number in range(max(warmup, 100)):
+            states, accepted = self._step(states)
+            self.scale *= float(np.exp((accepted - WANTED) / np.sqrt(1 + number)))
+        return states
+
+    def walked(self, states: _States) -> _States:
+        """States some steps later."""
+        for _ in range(self.steps):
+            states, _ = self._step(states)
+        return states
+
+    def _step(self, states: _States) -> tuple[_States, float]:
+        places = states.places + self.scale * self.random.standard_normal(states.places.shape)
+        proposed = _States(places, self.target.evaluate(places))
+        with np.errstate(invalid="ignore"):
+            ratio = proposed.density - states.density
+        taken = np.log(self.random.random(len(places))) < np.nan_to_num(ratio, nan=-np.inf, posinf=np.inf)
+        return states.where(taken, proposed), float(np.mean(taken))
+
+
+def _error(target: Target, cheap: Target, walk: _Walk, states: _States) -> tuple[float, float]:
+    """Standard deviation of the surrogate's error in the log density over its posterior, and the expected acceptance.
+
+    For normal errors of the deviation s the acceptance is erfc(s/2).
+    """
+    pilot = []
+    while len(pilot) * len(states.places) < PILOT:
+        states = walk.walked(states)
+        pilot.append(states)
+    places, density = np.concatenate([one.places for one in pilot]), np.concatenate([one.density for one in pilot])
+    error = target.evaluate(places) - density
+    if not np.all(np.isfinite(error)):
+        return np.inf, 0.0
+    spread = float(np.std(error))
+    return spread, float(erfc(spread / 2))
+
+
+def _too_inaccurate(error: float, acceptance: float, cheap: Target) -> str:
+    model = cheap.problem.model
+    assert isinstance(model, SurrogateModel)
+    surrogate = model.surrogate
+    better = surrogate.ended or surrogate.scheme.more(2 * surrogate.order)
+    if isinstance(surrogate.scheme, Adaptive) and not surrogate.ended:
+        better = f"allow less error by Adaptive(tolerance=...), now {surrogate.scheme.tolerance:g}"
+    size = f"by ±{error:.2g}" if np.isfinite(error) else "without limit"
+    return (
+        f"the surrogate of {surrogate.runs} runs is too inaccurate: over {PILOT} draws of its posterior, its log "
+        f"density is wrong {size}, more than {LIMIT:g}, and about {100 * acceptance:.0f} % of the proposals would be "
+        f"accepted. Improve it ({better}), narrow the bounds, or sample without a surrogate"
+    )
+
+
+def _findings(cheap: Target, places: np.ndarray, accepted: np.ndarray) -> list[Finding]:
+    model = cheap.problem.model
+    assert isinstance(model, SurrogateModel)
+    polynomial, problem = model.surrogate.polynomial, model.problem
+    part = float(np.mean(accepted))
+    values = {"acceptance": part, "runs": model.surrogate.runs}
+    message = (
+        f"A surrogate of {model.surrogate.runs} simulations proposed the draws; the model accepted {100 * part:.0f} % "
+        "of the proposals."
+    )
+    found = [Finding("delayed-acceptance", "note", values, message)]
+    vectors = cheap.vectors(places)[..., : len(problem.model.parameters)]
+    inside = (problem.search.points(vectors) - polynomial.lower) / (polynomial.upper - polynomial.lower)
+    for k, name in enumerate(problem.model.parameters.names):
+        cut = (polynomial.lower[k] > problem.search.lower[k], polynomial.upper[k] < problem.search.upper[k])
+        near = (inside[..., k] < EDGE, inside[..., k] > 1 - EDGE)
+        share = max((float(np.mean(one)) for one, is_cut in zip(near, cut, strict=True) if is_cut), default=0.0)
+        if share > 0.001:
+            found.append(
+                Finding(
+                    "surrogate-box",
+                    "warning",
+                    {"parameter": name, "share": share},
+                    f"The box of the surrogate cuts the posterior of {name!r}.",
+                    "Sample without a surrogate, or narrow the bounds to where the posterior is.",
+                )
+            )
+    return found

@@ -1,0 +1,190 @@
+"""The No-U-Turn sampler, by nutpie."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from threading import Event
+from typing import Any, ClassVar, cast
+
+import numpy as np
+
+from dalembert.arguments import limited
+from dalembert.findings import Finding
+from dalembert.forward import ensemble
+from dalembert.forward.prefetch import on_several_machines
+from dalembert.inverse.posterior.packages import package
+from dalembert.inverse.posterior.samplers.sampler import Chains, Length, OnDraws, Sampler
+from dalembert.inverse.posterior.target import Target
+from dalembert.inverse.problem.journal import Journal
+from dalembert.inverse.problem.problem import Problem
+
+STATISTICS = {
+    "diverging": bool,
+    "maxdepth_reached": bool,
+    "depth": int,
+    "n_steps": int,
+    "energy": float,
+    "energy_error": float,
+    "mean_tree_accept": float,
+    "step_size": float,
+}
+"""What is kept of nutpie's statistics."""
+
+
+@dataclass(frozen=True)
+class NUTS(Sampler):
+    """No-U-Turn sampler, a Hamiltonian Monte Carlo method that needs gradients (nutpie).
+
+    Parameters
+    ----------
+    target_accept : float
+        Mean acceptance probability that the step size is adapted to. Larger values give smaller steps and fewer
+        divergences.
+    max_depth : int
+        A draw takes at most 2^max_depth steps.
+
+    Notes
+    -----
+    Source: M. D. Hoffman and A. Gelman, The No-U-Turn sampler, Journal of Machine Learning Research 15 (2014).
+    """
+
+    name: ClassVar[str] = "nuts"
+    gradients: ClassVar[bool] = True
+
+    target_accept: float = limited(0.8, above=0, below=1)
+    max_depth: int = limited(10, least=1)
+
+    def check(self) -> None:
+        package("nutpie", "the sampler NUTS")
+
+    def sampled(self, target: Target, length: Length, on_draws: OnDraws) -> Chains:
+        """Sample the chains, several at a time in threads, or on the workers of a cluster.
+
+        Raises
+        ------
+        SolveError
+            If no start of a chain can be simulated.
+        """
+        stop, several = Event(), range(length.chains)
+        one = partial(_chain, self, length, on_draws, stop)
+        if on_several_machines(target.problem.model):
+            alone = target.of(replace(target.problem, model=cast(Any, None), journal=Journal(target.problem.samples)))
+            ahead = target.problem.prefetched(partial(_on_worker, alone, self, length), several)
+            found = [one(target, chain) for chain in ahead]
+        else:
+            found = list(ensemble(partial(_apart, target, one), several, on_stop=stop.set))
+        return _joined(found, self.max_depth)
+
+
+def _silent(draws: int, of: int) -> None:
+    """Take the number of draws and do nothing."""
+
+
+def _apart(target: Target, one: Callable[[Target, int], Chains], chain: int) -> Chains:
+    """A chain with a journal of its own, since several threads count."""
+    problem = replace(target.problem, journal=Journal(target.problem.samples))
+    found = one(target.of(problem), chain)
+    return replace(found, simulations=problem.journal.simulations)
+
+
+def _on_worker(target: Target, sampler: NUTS, length: Length, problem: Problem, chain: int) -> None:
+    _chain(sampler, length, _silent, Event(), target.of(problem), chain)
+
+
+def _chain(sampler: NUTS, length: Length, on_draws: OnDraws, stop: Event, target: Target, chain: int) -> Chains:
+    """Sample one chain.
+
+    nutpie calls Python from a thread of its own and ends the process where a function raises. So the first error is
+    kept, further calls return at once, and the error is raised at the end.
+    """
+    nutpie, count = package("nutpie", "the sampler NUTS"), len(target.centre)
+    errors: list[BaseException] = []
+
+    def density(place: np.ndarray) -> tuple[float, np.ndarray]:
+        if errors or stop.is_set():
+            return -np.inf, np.zeros(count)
+        try:
+            return target.linearise(place)
+        except BaseException as error:
+            errors.append(error)
+            return -np.inf, np.zeros(count)
+
+    def expanded(place: np.ndarray) -> dict[str, np.ndarray]:
+        try:
+            if not errors:
+                on_draws(1, length.total)
+        except BaseException as error:
+            errors.append(error)
+        return {"place": np.array(place)}
+
+    def start(seed: int) -> np.ndarray:
+        return np.random.default_rng(seed).standard_normal(count)
+
+    compiled = nutpie.compiled_pyfunc.from_pyfunc(
+        count,
+        lambda: density,
+        lambda *seeds: expanded,
+        [np.dtype(float)],
+        [(count,)],
+        ["place"],
+        make_initial_point_fn=start,
+    )
+    trace = _trace(nutpie, compiled, sampler, length, chain, errors)
+    if errors:
+        raise errors[0]
+    found = trace.sample_stats
+    if trace.posterior["place"].shape[1] < length.draws:  # nutpie returns what it has when it is interrupted
+        raise KeyboardInterrupt
+    statistics = {name: found[name].values.astype(kind) for name, kind in STATISTICS.items()}
+    return Chains(trace.posterior["place"].values, found["logp"].values, statistics)
+
+
+def _trace(nutpie: Any, compiled: Any, sampler: NUTS, length: Length, chain: int, errors: list[BaseException]) -> Any:
+    """What nutpie returns; the error of a function of ours where that is why it ended."""
+    try:
+        return nutpie.sample(
+            compiled,
+            draws=length.draws,
+            tune=length.warmup,
+            chains=1,
+            cores=1,
+            seed=length.chain_seed(chain),
+            progress_bar=False,
+            save_warmup=False,
+            target_accept=sampler.target_accept,
+            maxdepth=sampler.max_depth,
+        )
+    except BaseException:
+        if errors:
+            raise errors[0] from None
+        raise
+
+
+def _joined(found: list[Chains], max_depth: int) -> Chains:
+    """All chains as one, with what their statistics show."""
+    statistics = {name: np.concatenate([one.statistics[name] for one in found]) for name in STATISTICS}
+    return Chains(
+        np.concatenate([one.places for one in found]),
+        np.concatenate([one.log_density for one in found]),
+        statistics,
+        sum(one.simulations for one in found),
+        tuple(_findings(statistics, max_depth)),
+    )
+
+
+def _findings(statistics: dict[str, np.ndarray], max_depth: int) -> list[Finding]:
+    found, draws = [], statistics["diverging"].size
+    diverging, deep = (int(np.sum(statistics[name])) for name in ("diverging", "maxdepth_reached"))
+    if diverging:
+        message = f"{diverging} of {draws} draws diverge: the sampler misses parts of the posterior near them."
+        advice = (
+            "Increase target_accept, for example to 0.95. If draws still diverge, narrow the bounds, or give priors to "
+            "parameters that the data do not determine."
+        )
+        values = {"divergences": diverging, "draws": draws}
+        found.append(Finding("divergent-draws", "warning", values, message, advice))
+    if deep > 0.01 * draws:
+        message = f"{deep} of {draws} draws end at the largest trajectory of 2^{max_depth} steps."
+        advice = "Increase warmup, or max_depth."
+        found.append(Finding("long-trajectories", "warning", {"draws": deep, "depth": max_depth}, message, advice))
+    return found

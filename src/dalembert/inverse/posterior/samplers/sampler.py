@@ -1,0 +1,92 @@
+"""What every sampler of a posterior offers."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import ClassVar, TypeAlias
+
+import numpy as np
+
+from dalembert.arguments import Checked
+from dalembert.findings import Finding
+from dalembert.inverse.posterior.target import Target
+
+OnDraws: TypeAlias = Callable[[int, int], None]
+"""Called with the number of draws that were added, of all chains and in the warm-up too, and of those in the end."""
+
+
+@dataclass(frozen=True)
+class Length:
+    """How long chains are.
+
+    Parameters
+    ----------
+    chains, draws, warmup : int
+        ``draws`` of each chain are kept, after ``warmup`` that are not.
+    seed : int
+    """
+
+    chains: int
+    draws: int
+    warmup: int
+    seed: int
+
+    @property
+    def total(self) -> int:
+        """Draws of all chains, with those of the warm-up."""
+        return self.chains * (self.warmup + self.draws)
+
+    def chain_seed(self, chain: int) -> int:
+        """Seed of one chain, independent of those of the others."""
+        return int(np.random.SeedSequence([self.seed, chain]).generate_state(1)[0])
+
+
+@dataclass(frozen=True, eq=False)
+class Chains:
+    """Draws of several chains.
+
+    Parameters
+    ----------
+    places : array, shape (chains, draws, parameters)
+        In the coordinates of the target.
+    log_density : array, shape (chains, draws)
+        Of the target.
+    statistics : mapping of str to array, shape (chains, draws)
+        Of the sampler, by the names that ArviZ uses.
+    simulations : int
+        Those that the problem's journal has not counted.
+    findings : tuple of Finding
+        What only the sampler knows.
+    """
+
+    places: np.ndarray
+    log_density: np.ndarray
+    statistics: Mapping[str, np.ndarray] = field(default_factory=dict)
+    simulations: int = 0
+    findings: tuple[Finding, ...] = ()
+
+
+@dataclass(frozen=True)
+class Sampler(Checked, ABC):
+    """Base of the samplers; a subclass with a ``name`` needs no other registration."""
+
+    name: ClassVar[str]
+    gradients: ClassVar[bool]
+    """Whether it needs gradients."""
+
+    def check(self) -> None:
+        """Refuse where a package that it needs is not installed.
+
+        Raises
+        ------
+        InputError
+        """
+
+    @abstractmethod
+    def sampled(self, target: Target, length: Length, on_draws: OnDraws) -> Chains:
+        """Sample a target.
+
+        Raises
+        ------
+        SolveError
+        """

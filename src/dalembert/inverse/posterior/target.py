@@ -1,0 +1,77 @@
+"""The density that samplers sample: the posterior in preconditioned coordinates without bounds."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from dalembert.errors import SolveError
+from dalembert.inverse.likelihood.likelihood import Likelihood
+from dalembert.inverse.posterior.prior_density import PriorDensity
+from dalembert.inverse.posterior.unbounded import UnboundedCoordinates
+from dalembert.inverse.problem.problem import Problem
+from dalembert.parameters import Parameters
+
+
+@dataclass(frozen=True, eq=False)
+class Target:
+    """Log posterior density of y, with z = centre + factor y, and z the coordinates without bounds.
+
+    Parameters
+    ----------
+    likelihood : Likelihood
+    parameters : Parameters
+        Those of the likelihood, with their priors.
+    centre : array, shape (parameters,)
+    factor : array, shape (parameters, parameters)
+        For a normal posterior with the covariance factor factorᵀ, y has independent standard normal components.
+    """
+
+    likelihood: Likelihood
+    parameters: Parameters
+    centre: np.ndarray
+    factor: np.ndarray
+
+    @cached_property
+    def coordinates(self) -> UnboundedCoordinates:
+        return UnboundedCoordinates(self.parameters)
+
+    @cached_property
+    def prior(self) -> PriorDensity:
+        return PriorDensity(self.parameters)
+
+    @property
+    def problem(self) -> Problem:
+        return self.likelihood.problem
+
+    def of(self, problem: Problem) -> "Target":
+        """The same density with the model of another problem."""
+        return replace(self, likelihood=replace(self.likelihood, problem=problem))
+
+    def points(self, places: np.ndarray) -> np.ndarray:
+        """Coordinates z of y, both (..., parameters)."""
+        return self.centre + places @ self.factor.T
+
+    def vectors(self, places: np.ndarray) -> np.ndarray:
+        """Parameter vectors of y, both (..., parameters)."""
+        return self.coordinates.vectors(self.points(places))
+
+    def evaluate(self, places: np.ndarray) -> np.ndarray:
+        """Log density (batch,) at y (batch, parameters); −∞ where the simulation failed."""
+        points = self.points(places)
+        vectors = self.coordinates.vectors(points)
+        found = self.likelihood.evaluate(vectors) + self.prior(vectors) + self.coordinates.log_slope(points)
+        return np.where(np.isnan(found), -np.inf, found)
+
+    def linearise(self, place: np.ndarray) -> tuple[float, np.ndarray]:
+        """Log density and its gradient (parameters,) at y (parameters,); −∞ and 0 where the simulation failed."""
+        point = self.points(place)
+        vector = self.coordinates.vectors(point)
+        try:
+            value, gradient = self.likelihood.linearise(vector)
+        except SolveError:
+            return -np.inf, np.zeros(len(place))
+        value = value + float(self.prior(vector)) + float(self.coordinates.log_slope(point))
+        slope = self.coordinates.slope(point) * (gradient + self.prior.gradient(vector))
+        found = self.factor.T @ (slope + self.coordinates.log_slope_gradient(point))
+        return (value, found) if np.isfinite(value) and np.all(np.isfinite(found)) else (-np.inf, np.zeros(len(place)))

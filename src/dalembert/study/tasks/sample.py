@@ -1,0 +1,157 @@
+"""Sample: the posterior distribution of parameters from measured data."""
+
+from pathlib import Path
+from typing import Any
+
+from pydantic import Field
+
+from dalembert.kinds import named
+from dalembert.study.catalogue import part, schemes
+from dalembert.study.components import chosen, settings_of
+from dalembert.study.duration import Effort, evaluated
+from dalembert.study.events import Emit, teller
+from dalembert.study.experiments import measured_channels
+from dalembert.study.numbers import Number
+from dalembert.study.posing import posed, unknown_names
+from dalembert.study.study import Study
+from dalembert.study.table import StudyTable
+from dalembert.study.tasks import telling
+from dalembert.study.tasks.task import Outcome, Task, loaded_beside
+from dalembert.study.tasks.wrong import needs_parameters, needs_solver, unmatched, unnamed
+
+STEPS = 5
+"""Gradients of a draw of the No-U-Turn sampler on a nearly round posterior, about: 3 to 7."""
+
+
+class SampleTable(StudyTable):
+    """Draw the parameters from their posterior distribution."""
+
+    sampler: Any = None
+    surrogate: Any = None
+    chains: int = Field(4, ge=1, description="independent chains")
+    draws: int = Field(1000, ge=1, description="draws of each chain that are kept")
+    warmup: int = Field(500, ge=1, description="draws of each chain before them")
+    seed: int = Field(0, ge=0, description="of all random numbers")
+    weights: dict[str, Number] | None = Field(None, description="weight of each channel; from deviations if not given")
+    start: dict[str, Number] = Field({}, description="where the posterior is large; identified first if not given")
+    profile: bool = Field(False, description="whether to make the profile likelihood of each parameter too")
+
+
+class Sampled(Outcome):
+    """A posterior, and profiles if they were asked for."""
+
+    @property
+    def summary(self) -> str:
+        return "\n\n".join([self.result.summary(), *telling.summaries(self.told)])
+
+
+class Sample(Task):
+    """The task ``[sample]``."""
+
+    name = "sample"
+    rank = 3
+    schema = SampleTable
+    needs = (needs_parameters, needs_solver)
+
+    def keys(self) -> dict[str, Any]:
+        surrogate = settings_of(schemes()) | bool | None
+        words = "true, or a scheme: a surrogate proposes the draws, and the model decides; for costly models"
+        return {
+            "sampler": chosen(samplers(), "or a table with kind and settings; chosen by the model if not given", part),
+            "surrogate": (surrogate, Field(None, description=words)),
+        }
+
+    def wrong(self, file: Any) -> list[str]:
+        wrong, table = super().wrong(file), file.sample
+        if file.data is None and not file.experiments:
+            wrong.append("[sample] needs a [data] table")
+        if channels := measured_channels(file):
+            wrong += unmatched(table.weights, channels, "weight", "[sample], weights")
+        if table.sampler is not None and table.surrogate and table.sampler.kind != "delayed-acceptance":
+            wrong.append(
+                f"[sample]: sampler {table.sampler.kind!r} and surrogate are given; a surrogate proposes draws of the "
+                "sampler 'delayed-acceptance'. Leave one of the keys out"
+            )
+        return [*wrong, *unnamed(table.start, file.parameters, "[sample.start]")]
+
+    def plan(self, study: Study) -> str:
+        table, names = study.table, unknown_names(study)
+        least, most = _cost(table, len(names))
+        return (
+            f"draws {', '.join(names)} from their posterior, {table.chains} chains of {table.warmup} + {table.draws} "
+            f"draws, by {least} to {most} simulations"
+        )
+
+    def effort(self, study: Study) -> Effort:
+        model = telling.whole(posed(study)[0])
+        return evaluated(model, model.parameters.start, *_cost(study.table, len(model.parameters)))
+
+    def foresight(self, study: Study) -> int:
+        return 2 + len(unknown_names(study))
+
+    def foreseen(self, study: Study) -> tuple[str, ...]:
+        return telling.foreseen(*posed(study))
+
+    def unknowns(self, study: Study) -> tuple[str, ...]:
+        return unknown_names(study)
+
+    def run(self, study: Study, emit: Emit) -> Outcome:
+        from dalembert.inverse import identify, profile, sample
+        from dalembert.inverse.events import as_record
+
+        table, tell = study.table, teller(emit, as_record)
+        model, data = posed(study)
+        weights = telling.weights(table.weights, model, data)
+        start: Any = {**_starts(model), **table.start} if table.start else None
+        told = {}
+        if table.profile:
+            start = identify(model, data, weights=weights, seed=table.seed, start=start, on_event=tell)
+            told[telling.PROFILES] = profile(model, data, start, on_event=tell)
+        posterior = sample(
+            model,
+            data,
+            weights=weights,
+            start=start,
+            sampler=None if table.sampler is None else table.sampler.settings(),
+            surrogate=getattr(table.surrogate, "settings", lambda: table.surrogate)(),
+            on_event=tell,
+            **table.picked("chains", "draws", "warmup", "seed"),
+        )
+        return _outcome(study, posterior, told)
+
+    def load(self, study: Study, path: Path) -> Outcome:
+        from dalembert.inverse import Posterior, Profiles
+
+        return _outcome(study, Posterior.load(path), loaded_beside(path, {telling.PROFILES: Profiles}))
+
+
+def samplers() -> dict[str, type]:
+    """Samplers by the names that a study file gives them."""
+    from dalembert.inverse.posterior.samplers.sampler import Sampler
+
+    return named("dalembert.inverse.posterior.samplers", Sampler)
+
+
+def _starts(model: Any) -> dict[str, float]:
+    """First guesses by name."""
+    parameters = telling.whole(model).parameters
+    return parameters.mapping(parameters.start)
+
+
+def _cost(table: Any, parameters: int) -> tuple[int, int]:
+    """Number of simulations at least and at most, about."""
+    kind = "nuts" if table.sampler is None else table.sampler.kind
+    if table.surrogate or kind == "delayed-acceptance":
+        return table.chains * table.draws // 2, table.chains * (table.draws + 20) + 2000
+    if kind == "affine-invariant":
+        count = max(table.chains, 4 * parameters) * (table.draws + table.warmup) * 5
+        return count, count
+    gradients = table.chains * (table.draws + table.warmup)
+    return 2 * gradients * (1 + parameters), 2 * STEPS * gradients * (1 + parameters)
+
+
+def _outcome(study: Study, posterior: Any, told: dict[str, Any]) -> Sampled:
+    """The outcome, with means and standard deviations."""
+    deviations = dict(zip(posterior.parameters.names, posterior.deviations.tolist(), strict=True))
+    best = {"values": posterior.estimates, "deviations": deviations}
+    return Sampled(study, posterior, best, told=told)

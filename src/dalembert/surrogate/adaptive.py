@@ -131,3 +131,8 @@ class Adaptive(Checked):
 
     def more(self, order: int) -> str:
         return f"allow more runs by Adaptive(most_runs=...), now {self.most_runs}"
+
+    @property
+    def less_error(self) -> str:
+        """Advice where it ended at its tolerance."""
+        return f"allow less error by Adaptive(tolerance=...), now {self.tolerance:g}"

@@ -171,7 +171,7 @@ def _improvement(surrogate: Surrogate) -> str:
     """What gives a better surrogate."""
     scheme = surrogate.scheme
     if isinstance(scheme, Adaptive) and not surrogate.ended:  # it ended at its tolerance
-        return f"allow less error by Adaptive(tolerance=...), now {scheme.tolerance:g}"
+        return scheme.less_error
     return surrogate.ended or scheme.more(2 * surrogate.order)
 
 

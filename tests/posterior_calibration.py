@@ -1,7 +1,6 @@
 """Whether posteriors are calibrated: ranks of the truth among draws, and how often intervals contain the truth.
 
-``python tests/posterior_calibration.py ranks|coverage`` repeats it many times and writes the table of results that the
-tests compare.
+``python tests/posterior_calibration.py ranks|coverage decay|pendulum 200`` repeats it, and writes the results into a table.
 """
 
 import json
@@ -124,12 +123,12 @@ def covered(name: str, seed: int) -> list[bool]:
     return [bool(low <= value <= high) for value, (low, high) in zip(vector, intervals.values(), strict=True)]
 
 
-def probability(ranked: list[list[int]]) -> list[float]:
-    """Probability of a larger chi-square of ranks over 20 bins if they are uniform, of each parameter."""
+def probability(ranked: list[list[int]], bins: int = BINS) -> list[float]:
+    """Probability of a larger chi-square of ranks over bins if they are uniform, of each parameter."""
     table = np.array(ranked)
-    counts = np.array([np.bincount(one * BINS // (DRAWS + 1), minlength=BINS) for one in table.T])
-    expected = len(table) / BINS
-    return chi2.sf(np.sum((counts - expected) ** 2 / expected, axis=1), BINS - 1).tolist()
+    counts = np.array([np.bincount(one * bins // (DRAWS + 1), minlength=bins) for one in table.T])
+    expected = len(table) / bins
+    return chi2.sf(np.sum((counts - expected) ** 2 / expected, axis=1), bins - 1).tolist()
 
 
 def repeated(function: Callable[[str, int], Any], name: str, count: int, workers: int = 1) -> list[Any]:

@@ -69,6 +69,7 @@ AREAS = {
             "Posterior distributions",
             "Response sensitivity",
             "Sensitivities",
+            "Model comparison",
             "Residual diagnostics",
             "Several specimens",
             "Sobol indices",

@@ -80,6 +80,20 @@ def _noisy(outliers: Mapping[int, float] = {}, factor: Any = 1.0, added: Any = 0
     return Measurements.of(LONG, {"x": 1 + LONG / 2 + errors})
 
 
+PARABOLA = PythonModel(
+    lambda offset, slope, bend: offset + slope * LONG + bend * LONG**2,
+    {"offset": (-5.0, 5.0), "slope": (-5.0, 5.0), "bend": (-5.0, 5.0)},
+    ["x"],
+    LONG,
+)
+BENT = _noisy(added=0.1 * LONG**2)
+
+
+def _of_four_blocks() -> str:
+    fits = {"line": da.identify(LINE_IN_TIME, _noisy()), "bent": da.identify(PARABOLA, _noisy())}
+    return da.compare_models(fits, leave_out="blocks", blocks=4).summary()
+
+
 def _signs_stay() -> Measurements:
     """Heavy tails hide a drift from the autocorrelation, not from the signs."""
     errors = 0.04 * np.random.default_rng(8).standard_cauchy(201).clip(-40, 40) + 0.06 * np.sign(np.sin(4.5 * LONG))
@@ -386,6 +400,26 @@ CASES: dict[str, Case] = {
     "many channels": Case(
         lambda: da.identify(_experiments(names="abcdefghijklmn")),
         ("The figure has the 12 channels that the tests doubt most.", "Click a name in the legend"),
+    ),
+    "models compared": Case(
+        lambda: da.compare_models({"line": da.identify(LINE_IN_TIME, BENT), "bent": da.identify(PARABOLA, BENT)}),
+        (
+            "'bent' predicts best: its log predictive density is larger",
+            "The residuals of 'line' are correlated. AIC, AICc and BIC take values for independent",
+            "Left out together: blocks of neighbouring samples.",
+            "A step is a part of the data that a model predicts worse.",
+        ),
+        ("model-differences", "difference-by-group"),
+    ),
+    "equal models": Case(
+        lambda: da.compare_models(
+            {"line": da.identify(LINE_IN_TIME, _noisy()), "bent": da.identify(PARABOLA, _noisy())}
+        ),
+        ("The data do not distinguish", "which means nothing. Prefer the simplest, 'line'"),
+    ),
+    "models of four blocks": Case(
+        lambda: str(_of_four_blocks()),
+        ("Only 4 groups were left out", "Leave out more, smaller groups."),
     ),
     "correlated noise": Case(
         lambda: da.identify(

@@ -52,11 +52,12 @@ _NAMES = {
         Bands Measurements derivative merged read read_bands read_trials
     """,
     "inverse": """
-        AffineInvariant AutoregressiveNoise BandFit ConstantNoise DelayedAcceptance Designs EstimatedNoise
-        Experiment Fit GlobalSurrogate InputErrors KnownNoise Likelihood MixedNoise MultipleShooting NUTS
-        Nested NoiseModel OrnsteinUhlenbeckNoise ParameterSet Population Posterior Prediction Profiles
-        ProportionalNoise ShootingState design identifiability identify identify_bands identify_set
-        input_errors likelihood population predict profile sample
+        AffineInvariant AutoregressiveNoise BandFit ConstantNoise CrossValidation DelayedAcceptance Designs
+        EstimatedNoise Experiment Fit GlobalSurrogate InputErrors KnownNoise Likelihood MixedNoise
+        ModelComparison MultipleShooting NUTS Nested NoiseModel OrnsteinUhlenbeckNoise ParameterSet Population
+        Posterior Prediction Profiles ProportionalNoise ResidualDiagnostics ShootingState compare_models
+        cross_validate design identifiability identify identify_bands identify_set input_errors likelihood
+        population predict profile sample
     """,
     "multibody": """
         System Point TimeResponse Trajectory WorkPrecision simulate equilibrium modes work_precision

@@ -56,6 +56,7 @@ from dalembert.inverse import AffineInvariant as AffineInvariant
 from dalembert.inverse import AutoregressiveNoise as AutoregressiveNoise
 from dalembert.inverse import BandFit as BandFit
 from dalembert.inverse import ConstantNoise as ConstantNoise
+from dalembert.inverse import CrossValidation as CrossValidation
 from dalembert.inverse import DelayedAcceptance as DelayedAcceptance
 from dalembert.inverse import Designs as Designs
 from dalembert.inverse import EstimatedNoise as EstimatedNoise
@@ -66,6 +67,7 @@ from dalembert.inverse import InputErrors as InputErrors
 from dalembert.inverse import KnownNoise as KnownNoise
 from dalembert.inverse import Likelihood as Likelihood
 from dalembert.inverse import MixedNoise as MixedNoise
+from dalembert.inverse import ModelComparison as ModelComparison
 from dalembert.inverse import MultipleShooting as MultipleShooting
 from dalembert.inverse import Nested as Nested
 from dalembert.inverse import NoiseModel as NoiseModel
@@ -76,7 +78,10 @@ from dalembert.inverse import Posterior as Posterior
 from dalembert.inverse import Prediction as Prediction
 from dalembert.inverse import Profiles as Profiles
 from dalembert.inverse import ProportionalNoise as ProportionalNoise
+from dalembert.inverse import ResidualDiagnostics as ResidualDiagnostics
 from dalembert.inverse import ShootingState as ShootingState
+from dalembert.inverse import compare_models as compare_models
+from dalembert.inverse import cross_validate as cross_validate
 from dalembert.inverse import design as design
 from dalembert.inverse import identifiability as identifiability
 from dalembert.inverse import identify as identify

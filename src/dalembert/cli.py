@@ -1,4 +1,4 @@
-"""The command line: ``dalembert new | run | resume | check | list | report | studio | compile | schema``.
+"""The command line: ``dalembert new | run | resume | check | list | report | compare | studio | compile | schema``.
 
 Exit codes: 0 done, 1 the solver could not, 2 the input is wrong, 130 stopped by the user.
 """
@@ -188,6 +188,25 @@ def report(run: Run) -> None:
     from dalembert.study import report_run
 
     typer.echo(f"report: {report_run(_folder(run))}")
+
+
+@app.command()
+def compare(
+    runs: Annotated[
+        list[Path],
+        typer.Argument(metavar="RUN...", help="Folders of runs, or their names in runs/.", show_default=False),
+    ],
+    out: Annotated[Path, typer.Option(help="File of the report.")] = Path("comparison.html"),
+    leave_out: Annotated[
+        str | None, typer.Option(metavar="WHAT", help="What is predicted from all else: values, blocks or experiments.")
+    ] = None,
+) -> None:
+    """Rank identified models of the same data by how well they predict, and say when the difference means nothing."""
+    from dalembert.study.compare_runs import compare_runs
+
+    found = compare_runs([_folder(run) for run in runs], leave_out)
+    typer.echo(found.summary())
+    typer.echo(f"report: {found.report(out)}")
 
 
 @app.command()

@@ -11,6 +11,9 @@ from dalembert.inverse.bands.band_fit import BandFit
 from dalembert.inverse.bands.global_surrogate import GlobalSurrogate
 from dalembert.inverse.bands.identify_bands import identify_bands
 from dalembert.inverse.bands.nested import Nested
+from dalembert.inverse.comparison.compare_models import compare_models
+from dalembert.inverse.comparison.cross_validation import CrossValidation, cross_validate
+from dalembert.inverse.comparison.model_comparison import ModelComparison
 from dalembert.inverse.correlation.correlated import CorrelatedResiduals, NoiseProcess
 from dalembert.inverse.diagnostics.findings import Outlier
 from dalembert.inverse.diagnostics.influence import Influence
@@ -62,6 +65,7 @@ __all__ = [
     "Checked",
     "ConstantNoise",
     "CorrelatedResiduals",
+    "CrossValidation",
     "DelayedAcceptance",
     "Designs",
     "Drawn",
@@ -78,6 +82,7 @@ __all__ = [
     "KnownNoise",
     "Likelihood",
     "MixedNoise",
+    "ModelComparison",
     "MultipleShooting",
     "Nested",
     "Nodes",
@@ -104,6 +109,8 @@ __all__ = [
     "Step",
     "Validation",
     "as_record",
+    "compare_models",
+    "cross_validate",
     "design",
     "identifiability",
     "identify",

@@ -28,6 +28,7 @@ _NAMES = {
     "identification.identifiability": "correlation singular_values",
     "identification.intervals": "intervals",
     "identification.measured": "measured",
+    "identification.model_comparison": "difference_by_group model_differences",
     "identification.parameters": "parameters",
     "identification.paving": "paving",
     "identification.posterior": "marginal pair_plots predictive traces",

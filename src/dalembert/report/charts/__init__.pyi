@@ -31,6 +31,8 @@ from dalembert.report.charts.identification.identifiability import correlation a
 from dalembert.report.charts.identification.identifiability import singular_values as singular_values
 from dalembert.report.charts.identification.intervals import intervals as intervals
 from dalembert.report.charts.identification.measured import measured as measured
+from dalembert.report.charts.identification.model_comparison import difference_by_group as difference_by_group
+from dalembert.report.charts.identification.model_comparison import model_differences as model_differences
 from dalembert.report.charts.identification.parameters import parameters as parameters
 from dalembert.report.charts.identification.paving import paving as paving
 from dalembert.report.charts.identification.posterior import marginal as marginal

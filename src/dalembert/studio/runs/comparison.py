@@ -1,6 +1,7 @@
 """Runs compared: responses over each other, values with deviations, and the differences of their studies."""
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -9,7 +10,7 @@ import h5py
 import numpy as np
 import plotly.graph_objects as go
 
-from dalembert.errors import DalembertError
+from dalembert.errors import DalembertError, InputError
 from dalembert.report import sections_of
 from dalembert.report.asked import Asked
 from dalembert.report.headline import Headline
@@ -20,6 +21,7 @@ from dalembert.report.table import Cell, Table, cell
 from dalembert.report.thin import thinned
 from dalembert.studio.runs.differences import as_text, differences
 from dalembert.studio.runs.run_list import row, with_deviation
+from dalembert.study.compare_runs import fit_of
 from dalembert.study.folder import RunFolder
 
 MOST_FIGURES = 24
@@ -84,9 +86,27 @@ def _sections(comparison: RunComparison, asked: Asked) -> list[Section]:
     return [
         headline,
         Section("Values", (comparison.table,)),
+        *_models(comparison),
         Section("Responses", list(_responses(comparison))),
         Section("Studies", list(_studies(comparison))),
     ]
+
+
+def _models(comparison: RunComparison) -> list[Section]:
+    """The ranking of identified models; none where fewer than two runs identified one."""
+    from dalembert.inverse import compare_models
+    from dalembert.report.sections.identification.model_comparison import compared_models
+
+    fits = {}
+    for folder in comparison.folders:
+        with suppress(DalembertError, OSError):  # another task, no result, or a damaged one
+            fits[folder.path.name] = fit_of(folder)
+    if len(fits) < 2:
+        return []
+    try:
+        return [compared_models(compare_models(fits), findings=True)]
+    except InputError as error:
+        return [Section("Model comparison", (f"These models are not ranked. {error}.",))]
 
 
 def _responses(comparison: RunComparison) -> Iterator[Block]:

@@ -41,6 +41,7 @@ def test_the_page_has_values_responses_and_differences(root, tmp_path):
     assert "3 runs compared" in text
     assert "+ step = &#34;1 ms&#34;" in text
     assert "responses-1" in text
+    assert "which means nothing" in text  # of the two fits
 
 
 def test_the_values_as_csv(root):

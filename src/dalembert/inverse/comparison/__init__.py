@@ -1,0 +1,1 @@
+"""Several models of the same data: criteria, cross-validation, and whether their difference means anything."""

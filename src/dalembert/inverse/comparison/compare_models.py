@@ -1,0 +1,203 @@
+"""Models of the same data side by side: criteria, predictive densities, and whether a difference means anything."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from dalembert.errors import InputError, shown
+from dalembert.inverse.comparison.conclusions import comparison_findings
+from dalembert.inverse.comparison.cross_validation import CrossValidation, fits_of
+from dalembert.inverse.comparison.draws import Predictive, is_inference_data, of_draws
+from dalembert.inverse.comparison.left_out import counted_groups, groups
+from dalembert.inverse.comparison.model_comparison import ModelComparison
+from dalembert.inverse.comparison.predictive import linearised
+from dalembert.inverse.fit.fit import Fit
+
+LEFT_OUT = {"values": "single values", "blocks": "blocks of neighbouring samples", "experiments": "experiments"}
+
+
+@dataclass(frozen=True, eq=False)
+class Criteria:
+    """What one model's comparison is made of."""
+
+    parameters: int
+    rms: float
+    log_likelihood: float
+    densities: np.ndarray
+    waic: float = np.nan
+
+
+def compare_models(
+    models: Mapping[str, Any], *, leave_out: str | None = None, blocks: int | None = None
+) -> ModelComparison:
+    """Rank models of the same data by how well they predict data that were left out.
+
+    Parameters
+    ----------
+    models : mapping of str to Fit, CrossValidation or InferenceData
+        By the names of the models, all of one kind. Fits are judged by their linearisation, with no further
+        simulation; :func:`cross_validate` fits again; draws are those of ArviZ, with the group ``log_likelihood``.
+    leave_out : {"values", "blocks", "experiments"}, optional
+        For fits: what is left out together. Without it single values, or blocks where residuals are correlated.
+    blocks : int, optional
+        For fits: number of blocks of each record.
+
+    Returns
+    -------
+    ModelComparison
+
+    Raises
+    ------
+    InputError
+        For fewer than two models, different data or weights, a robust loss, a fit without a Jacobian, and values that
+        the others do not predict.
+
+    Notes
+    -----
+    AIC = 2k − 2 log L, AICc = AIC + 2k (k + 1)/(n − k − 1), BIC = k log n − 2 log L for k parameters and n values. They
+    take values for independent. elpd is the sum of the log predictive densities of groups that were left out. The
+    standard deviation of a difference over G groups is √G times that of the groups' differences. A difference below 4,
+    or below two of its standard deviations, means nothing.
+
+    Source: H. Akaike, A new look at the statistical model identification, IEEE Transactions on Automatic Control 19
+    (1974); A. Vehtari, A. Gelman, J. Gabry, Practical Bayesian model evaluation using leave-one-out cross-validation
+    and WAIC, Statistics and Computing 27 (2017); T. Sivula, M. Magnusson, A. Vehtari, Uncertainty in Bayesian
+    leave-one-out cross-validation based model comparison (2020).
+
+    Examples
+    --------
+    >>> from dalembert import Measurements, PythonModel, identify
+    >>> times = np.linspace(0.0, 1.0, 40)
+    >>> line = PythonModel(lambda slope: slope * times, {"slope": (0.0, 3.0)}, ["x"], times)
+    >>> bent = PythonModel(lambda bend: bend * times**2, {"bend": (0.0, 3.0)}, ["x"], times)
+    >>> data = Measurements.of(times, {"x": 2 * times + 0.1 * np.random.default_rng(0).standard_normal(40)})
+    >>> found = compare_models({"bent": identify(bent, data), "line": identify(line, data)})
+    >>> found.models, found.findings[0].code
+    (('line', 'bent'), 'best-model')
+    """
+    named = dict(models)
+    if len(named) < 2:
+        raise InputError(f"compare_models: {len(named)} model was given; expected at least two, by their names")
+    if all(map(is_inference_data, named.values())):
+        return _compared_draws({name: of_draws(name, one) for name, one in named.items()})
+    for name, one in named.items():
+        if not isinstance(one, Fit | CrossValidation) or type(one) is not type(next(iter(named.values()))):
+            raise InputError(
+                f"compare_models: {name!r} is {shown(one)}; expected fits alone, cross-validations alone, or "
+                "InferenceData alone"
+            )
+    fits = fits_of(named)
+    _check_same_data(fits)
+    if any(isinstance(one, CrossValidation) for one in named.values()):
+        numbers, left_out = _groups_of(named)
+        densities = {name: one.log_densities for name, one in named.items()}
+        how = "cross-validation by fits without each group"
+    else:
+        correlated = [fit for fit in fits.values() if fit.correlated is not None]
+        left_out = leave_out or ("blocks" if correlated else "values")
+        slowest = max(fits.values(), key=_correlation_time)
+        numbers = groups(slowest, left_out, blocks)
+        places = counted_groups(numbers)
+        densities = {
+            name: np.array([linearised(name, fit).without(rows) for rows in places]) for name, fit in fits.items()
+        }
+        how = "leave-out predictions of the linearised models"
+    found = {}
+    for name, fit in fits.items():
+        at = linearised(name, fit)
+        if not np.all(np.isfinite(densities[name])):
+            raise InputError(
+                f"compare_models: {name!r} cannot predict values that are left out, as they alone determine a "
+                "parameter; leave out smaller groups"
+            )
+        rms = float(np.sqrt(np.mean(at.residual[at.fitted] ** 2)))
+        found[name] = Criteria(at.parameters, rms, at.log_likelihood(), densities[name])
+    correlated = [name for name, fit in fits.items() if fit.correlated is not None]
+    data = next(iter(fits.values())).provenance["data"]
+    number = int(np.count_nonzero(numbers >= 0))
+    return _result(found, number, how, LEFT_OUT[left_out], {"data": data}, correlated)
+
+
+def _groups_of(named: Mapping[str, CrossValidation]) -> tuple[np.ndarray, str]:
+    first = next(iter(named.values()))
+    for name, one in named.items():
+        if not np.array_equal(one.groups, first.groups):
+            raise InputError(
+                f"compare_models: the cross-validation of {name!r} left out other groups; use the same leave_out and "
+                "blocks for all models"
+            )
+    return first.groups, first.left_out
+
+
+def _check_same_data(fits: Mapping[str, Fit]) -> None:
+    (first, reference), *others = fits.items()
+    for name, fit in others:
+        if fit.provenance["data"] != reference.provenance["data"]:
+            raise InputError(
+                f"compare_models: {name!r} was fitted to other data than {first!r}; fit both models to the same "
+                "samples and channels"
+            )
+        if not np.array_equal(fit.weights, reference.weights) or fit.noise_is_known != reference.noise_is_known:
+            raise InputError(
+                f"compare_models: {name!r} was fitted with other weights or other held-out samples than {first!r}; "
+                "use the same for both"
+            )
+
+
+def _correlation_time(fit: Fit) -> float:
+    return max((item.time for item in fit.correlated.processes), default=0.0) if fit.correlated is not None else 0.0
+
+
+def _compared_draws(known: Mapping[str, Predictive]) -> ModelComparison:
+    """Compare posterior draws."""
+    (first, reference), *others = known.items()
+    for name, one in others:
+        if not np.array_equal(one.observed, reference.observed, equal_nan=True):
+            raise InputError(f"compare_models: the draws of {name!r} are of other data than those of {first!r}")
+    found = {name: Criteria(-1, np.nan, np.nan, one.densities, one.waic) for name, one in known.items()}
+    unreliable = {name: one.unreliable for name, one in known.items() if one.unreliable}
+    how = "Pareto-smoothed importance sampling of posterior draws"
+    return _result(found, len(reference.densities), how, LEFT_OUT["values"], {}, (), unreliable)
+
+
+def _result(
+    found: Mapping[str, Criteria],
+    number: int,
+    how: str,
+    left_out: str,
+    provenance: Mapping[str, Any],
+    correlated: Sequence[str],
+    unreliable: Mapping[str, int] | None = None,
+) -> ModelComparison:
+    names = sorted(found, key=lambda name: -float(np.sum(found[name].densities)))
+    ordered = [found[name] for name in names]
+    densities = np.array([one.densities for one in ordered])
+    size = np.sqrt(densities.shape[1])
+    apart = densities - densities[0]
+    count = np.array([one.parameters for one in ordered])
+    logs = np.array([one.log_likelihood for one in ordered])
+    aic = 2 * count - 2 * logs
+    left = number - count - 1
+    aicc = np.where(left > 0, aic + 2 * count * (count + 1) / np.where(left > 0, left, 1), np.nan)
+    made = ModelComparison(
+        models=tuple(names),
+        parameters=count,
+        rms=np.array([one.rms for one in ordered]),
+        log_likelihood=logs,
+        aic=aic,
+        aicc=aicc,
+        bic=count * np.log(number) - 2 * logs,
+        elpd=np.sum(densities, axis=1),
+        elpd_deviation=size * np.std(densities, axis=1, ddof=1),
+        difference=np.sum(apart, axis=1),
+        difference_deviation=size * np.std(apart, axis=1, ddof=1),
+        waic=np.array([one.waic for one in ordered]),
+        densities=densities,
+        values=number,
+        how=how,
+        left_out=left_out,
+        provenance=dict(provenance),
+    )
+    return comparison_findings(made, correlated, unreliable or {})

@@ -1,0 +1,192 @@
+"""Cross-validation: a model is fitted again without blocks of its data, and predicts them."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from dalembert.data import Measurements
+from dalembert.errors import InputError
+from dalembert.forward import Executor, ForwardModel
+from dalembert.inverse.comparison.left_out import counted_groups, groups
+from dalembert.inverse.comparison.predictive import linearised, log_density
+from dalembert.inverse.experiments.experiment import Experiment
+from dalembert.inverse.fit.fit import Fit
+from dalembert.inverse.identify import identify
+from dalembert.inverse.least_squares.estimate import UNSEEN
+from dalembert.inverse.misfit.residuals import off_bounds
+from dalembert.inverse.problem.prior import prior_slopes
+
+
+@dataclass(frozen=True, eq=False)
+class CrossValidation:
+    """How a model predicts blocks of data that it was not fitted to.
+
+    Parameters
+    ----------
+    fit : Fit
+        Of all data.
+    left_out : {"values", "blocks", "experiments"}
+    groups : array, shape (samples, channels)
+        Number of the group of each value; −1 where it was not fitted.
+    errors : array, shape (samples, channels)
+        Predicted minus measured values, each predicted by the fit without its group; NaN where it was not fitted.
+    log_densities : array, shape (groups,)
+        Logarithm of the predictive density of each group.
+    values : array, shape (groups, parameters)
+        Identified values without each group.
+    converged : array of bool, shape (groups,)
+        Whether each of these fits converged.
+    """
+
+    fit: Fit
+    left_out: str
+    groups: np.ndarray
+    errors: np.ndarray
+    log_densities: np.ndarray
+    values: np.ndarray
+    converged: np.ndarray
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the weighted prediction errors W^½ (R − data)."""
+        kept = self.groups >= 0
+        return float(np.sqrt(np.mean(self.fit.weights[kept] * self.errors[kept] ** 2)))
+
+
+def cross_validate(
+    model: ForwardModel | Sequence[Experiment],
+    data: Measurements | None = None,
+    *,
+    fit: Fit,
+    leave_out: str = "blocks",
+    blocks: int | None = None,
+    executor: Executor = None,
+) -> CrossValidation:
+    """Fit a model again without each group of its data, and predict the group.
+
+    Parameters
+    ----------
+    model : ForwardModel or sequence of Experiment
+    data : Measurements, optional
+        Left out with experiments, which have their own.
+    fit : Fit
+        Of all data, with which each search begins.
+    leave_out : {"blocks", "experiments", "values"}
+        Blocks of neighbouring samples with all their channels, whole experiments, or single values.
+    blocks : int, optional
+        Number of blocks of each record; without it ten, or fewer where residuals are correlated.
+    executor : str or distributed.Client, optional
+        Where batches are computed.
+
+    Returns
+    -------
+    CrossValidation
+
+    Raises
+    ------
+    InputError
+        For a fit of segments, with a robust loss or without a Jacobian; where a group alone determines a parameter.
+    SolveError
+        If the model cannot be simulated.
+
+    Notes
+    -----
+    The density of a group is that of the linearised model at the values identified without it: normal, or Student's t
+    where the noise is estimated from the residuals. It includes the uncertainty of the parameters.
+
+    Source: S. Arlot, A. Celisse, A survey of cross-validation procedures for model selection, Statistics Surveys 4
+    (2010); P. Burman, E. Chow, D. Nolan, A cross-validatory method for dependent data, Biometrika 81 (1994).
+
+    Examples
+    --------
+    >>> from dalembert import Measurements, PythonModel, identify
+    >>> times = np.linspace(0.0, 1.0, 40)
+    >>> line = PythonModel(lambda slope: slope * times, {"slope": (0.0, 3.0)}, ["x"], times)
+    >>> data = Measurements.of(times, {"x": 2 * times + 0.1 * np.random.default_rng(0).standard_normal(40)})
+    >>> found = cross_validate(line, data, fit=identify(line, data), blocks=5)
+    >>> found.values.shape, round(found.rms, 2)
+    ((5, 1), 0.09)
+    """
+    linearised("cross_validate", fit)  # refuses what has no predictive density
+    numbers = groups(fit, leave_out, blocks)
+    places = counted_groups(numbers)
+    errors = np.full(numbers.size, np.nan)
+    found = [np.zeros(0)] * len(places)
+    densities, converged = np.zeros(len(places)), np.zeros(len(places), dtype=bool)
+    for number, rows in enumerate(places):
+        again = _again(model, data, fit, rows, leave_out, executor)
+        errors[rows] = again.residuals.ravel()[rows]
+        densities[number] = predicted_density(again, fit, rows)
+        found[number], converged[number] = again.values, again.success
+    return CrossValidation(
+        fit, leave_out, numbers, errors.reshape(numbers.shape), densities, np.array(found), converged
+    )
+
+
+def _again(
+    model: ForwardModel | Sequence[Experiment],
+    data: Measurements | None,
+    fit: Fit,
+    rows: np.ndarray,
+    leave_out: str,
+    executor: Executor,
+) -> Fit:
+    """Return the fit without the values at ``rows``."""
+    weights, without = fit.weights.ravel().copy(), None
+    if leave_out == "experiments":
+        without = next(
+            part.name
+            for part in fit.parts
+            if rows[0] // fit.weights.shape[1] in part.rows and rows[0] % fit.weights.shape[1] in part.columns
+        )
+    else:
+        weights[rows] = 0.0
+    table = weights.reshape(fit.weights.shape)
+    given = {part.name: table[part.block] for part in fit.parts} if fit.parts else table
+    return identify(
+        model, data, weights=given, validation=without, start=fit.values, starts=1, horizon=None, executor=executor
+    )
+
+
+def predicted_density(again: Fit, fit: Fit, rows: np.ndarray) -> float:
+    """Return the log predictive density of the values at ``rows``, which ``again`` was not fitted to.
+
+    Raises
+    ------
+    InputError
+        Where the other values do not determine the parameters.
+    """
+    assert again.jacobian is not None
+    known = fit.noise_is_known
+    scale, free = again.parameters.scale, off_bounds(again.parameters, again.values)
+    slopes = (again.jacobian.reshape(-1, len(scale)) * scale)[:, free]
+    roots, kept = np.sqrt(fit.weights).ravel(), again.weights.ravel() > 0
+    prior = prior_slopes(again.parameters, again.values, scale)[:, free]
+    _, singular, directions = np.linalg.svd(
+        np.concatenate([roots[kept, None] * slopes[kept], prior]), full_matrices=False
+    )
+    if len(singular) and (len(singular) < slopes.shape[1] or singular[-1] <= UNSEEN * singular[0]):
+        raise InputError(
+            "cross_validate: without one group, the other data do not determine all parameters; leave out smaller "
+            "blocks, or fix the parameters that only this group determines"
+        )
+    own = roots[rows, None] * slopes[rows] @ (directions.T / singular)
+    values, vectors = np.linalg.eigh(np.eye(len(rows)) + own @ own.T)
+    residual = roots[rows] * again.residuals.ravel()[rows]
+    square = float(np.sum((vectors.T @ residual) ** 2 / values))
+    logs = float(np.sum(np.log(roots[rows]))) - 0.5 * float(np.sum(np.log(values)))
+    if known:
+        return logs + log_density(square, len(rows), 1.0, None)
+    freedom = np.count_nonzero(kept) + len(prior) - np.count_nonzero(free)
+    squares = float(np.sum((roots[kept] * again.residuals.ravel()[kept]) ** 2))
+    return logs + log_density(square, len(rows), squares / freedom, float(freedom))
+
+
+Compared = Fit | CrossValidation
+"""What models are compared by."""
+
+
+def fits_of(models: Mapping[str, Compared]) -> dict[str, Fit]:
+    """Return the fits of all data, by name."""
+    return {name: one.fit if isinstance(one, CrossValidation) else one for name, one in models.items()}

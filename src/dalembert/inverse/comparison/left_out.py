@@ -1,0 +1,78 @@
+"""Which values are left out together, to be predicted from all others."""
+
+import numpy as np
+
+from dalembert.errors import InputError, require_known
+from dalembert.inverse.fit.fit import Fit
+
+WAYS = ("values", "blocks", "experiments")
+
+CORRELATION_TIMES = 4.0
+"""Length of a block in correlation times of the residuals, so that blocks are nearly independent."""
+
+FEWEST = 5
+"""Fewest blocks of a record."""
+
+USUAL = 10
+"""Blocks of a record whose residuals are not correlated."""
+
+
+def groups(fit: Fit, leave_out: str, blocks: int | None = None) -> np.ndarray:
+    """Return the number of the group of each value, from 0, shape (samples, channels); −1 where it was not fitted.
+
+    Parameters
+    ----------
+    fit : Fit
+    leave_out : {"values", "blocks", "experiments"}
+        Single values; blocks of neighbouring samples with all their channels; whole experiments.
+    blocks : int, optional
+        Blocks of each record; without it as many as are longer than four correlation times of the residuals.
+
+    Raises
+    ------
+    InputError
+        For another word, a number of blocks that leaves none, experiments where there are none.
+    """
+    require_known("way", leave_out, WAYS, "leave_out")
+    fitted = fit.weights > 0
+    found = np.full(fitted.shape, -1)
+    if leave_out == "values":
+        found[fitted] = np.arange(np.count_nonzero(fitted))
+        return found
+    if leave_out == "experiments" and len(fit.experiments) < 2:
+        raise InputError("leave_out is 'experiments', but the fit has one experiment; use 'blocks'")
+    records = [part.block for part in fit.parts] or [np.ix_(*map(np.arange, fitted.shape))]
+    begin = 0
+    for record in records:
+        rows = np.flatnonzero(np.any(fitted[record], axis=1))
+        if not len(rows):
+            continue
+        count = 1 if leave_out == "experiments" else _count(fit, len(rows), blocks)
+        numbers = np.full(len(record[0]), -1)
+        for number, own in enumerate(np.array_split(rows, count)):
+            numbers[own] = begin + number
+        found[record] = np.where(fitted[record], numbers[:, None], -1)
+        begin += count
+    return found
+
+
+def _count(fit: Fit, samples: int, blocks: int | None) -> int:
+    """Blocks of a record of samples."""
+    if blocks is not None:
+        if not 2 <= blocks <= samples:
+            raise InputError(f"blocks is {blocks}; expected at least 2, and at most the {samples} samples of a record")
+        return blocks
+    processes = () if fit.correlated is None else fit.correlated.processes
+    if not processes:
+        return min(USUAL, samples)
+    along = fit.data.coordinate.values if not fit.parts else fit.parts[0].coordinate.values
+    length = CORRELATION_TIMES * max(item.time for item in processes) / max(float(np.median(np.diff(along))), 1e-300)
+    return int(np.clip(samples // max(length, 1.0), min(FEWEST, samples), samples))
+
+
+def counted_groups(numbers: np.ndarray) -> list[np.ndarray]:
+    """Return the flat places of the values of each group of :func:`groups`."""
+    flat = numbers.ravel()
+    order = np.argsort(flat, kind="stable")
+    order = order[flat[order] >= 0]
+    return np.split(order, np.flatnonzero(np.diff(flat[order])) + 1) if len(order) else []

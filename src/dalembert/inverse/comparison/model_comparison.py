@@ -1,0 +1,86 @@
+"""The result of a comparison of models, its text and its file."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+
+from dalembert.findings import Finding
+from dalembert.results import Result, fact_lines, text_table
+from dalembert.stored_fields import Labels, Over
+
+
+@dataclass(frozen=True, eq=False)
+class ModelComparison(Result):
+    """Models of the same data, the one that predicts best first, as :func:`compare_models` returns them.
+
+    Parameters
+    ----------
+    models : tuple of str
+    parameters : array of int, shape (models,)
+        Free parameters, an unknown variance of the noise among them; −1 where only draws are known.
+    rms : array, shape (models,)
+        Root mean square of the weighted residuals.
+    log_likelihood, aic, aicc, bic : array, shape (models,)
+        Largest log-likelihood, Akaike's criterion, the same corrected for few values, and Schwarz's criterion.
+        NaN where only draws are known.
+    elpd, elpd_deviation : array, shape (models,)
+        Expected log predictive density: sum of the log densities of groups that were left out, and its standard
+        deviation. Larger is better.
+    difference, difference_deviation : array, shape (models,)
+        Difference to the elpd of the first model, and its standard deviation from the differences of the groups.
+    waic : array, shape (models,)
+        elpd by the widely applicable information criterion; NaN without draws.
+    densities : array, shape (models, groups)
+        Log predictive density of each group.
+    values : int
+        Number of fitted values.
+    how : str
+        How the predictive densities were computed.
+    left_out : str
+        What was left out together.
+    provenance : mapping
+    findings : tuple of Finding
+    """
+
+    FORMAT: ClassVar[str] = "dalembert model comparison 1"
+
+    models: Annotated[tuple[str, ...], Labels("model")]
+    parameters: Annotated[np.ndarray, Over("model", name="free_parameters")]
+    rms: Annotated[np.ndarray, Over("model")]
+    log_likelihood: Annotated[np.ndarray, Over("model")]
+    aic: Annotated[np.ndarray, Over("model")]
+    aicc: Annotated[np.ndarray, Over("model")]
+    bic: Annotated[np.ndarray, Over("model")]
+    elpd: Annotated[np.ndarray, Over("model")]
+    elpd_deviation: Annotated[np.ndarray, Over("model")]
+    difference: Annotated[np.ndarray, Over("model")]
+    difference_deviation: Annotated[np.ndarray, Over("model")]
+    waic: Annotated[np.ndarray, Over("model")]
+    densities: Annotated[np.ndarray, Over("model", "group")]
+    values: int
+    how: str
+    left_out: str
+    provenance: Mapping[str, Any]
+    findings: tuple[Finding, ...] = ()
+
+    @property
+    def akaike_weights(self) -> np.ndarray:
+        """Share of each model by exp(−ΔAICc/2), (models,).
+
+        Source: K. P. Burnham, D. R. Anderson, Model Selection and Multimodel Inference (2002), section 2.9.
+        """
+        shares = np.exp(-(self.aicc - np.min(self.aicc)) / 2)
+        return shares / np.sum(shares)
+
+    def summary(self) -> str:
+        """Return a table of the models, the best one first, then the findings."""
+        rows = [("model", "parameters", "rms", "AICc", "BIC", "elpd", "difference", "± deviation")]
+        for k, name in enumerate(self.models):
+            known = str(self.parameters[k]) if self.parameters[k] >= 0 else ""
+            numbers = (self.rms[k], self.aicc[k], self.bic[k], self.elpd[k])
+            apart = ("", "") if k == 0 else (f"{self.difference[k]:.3g}", f"{self.difference_deviation[k]:.3g}")
+            rows.append((name, known, *("" if np.isnan(number) else f"{number:.6g}" for number in numbers), *apart))
+        facts = fact_lines(elpd=f"{self.how}; left out: {self.left_out}", values=self.values)
+        return "\n".join([*text_table(rows), "", *facts, *map(str, self.findings)])

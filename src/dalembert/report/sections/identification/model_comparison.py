@@ -1,0 +1,56 @@
+"""Models of the same data: their criteria, and by how much one predicts better."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from dalembert.inverse import ModelComparison
+from dalembert.inverse.comparison.conclusions import alike
+from dalembert.report import charts
+from dalembert.report.asked import Asked
+from dalembert.report.digits import counted
+from dalembert.report.headline import Headline
+from dalembert.report.registry import sections_of
+from dalembert.report.section import Listed, Plot, Row, Section
+from dalembert.report.table import Cell, Table, cell, cells
+
+HOW = "Differences to the best model, with two standard deviations. A difference below 4 means nothing."
+WHERE = "The sum over the groups in the order of the data. A step is a part of the data that a model predicts worse."
+
+
+@sections_of(ModelComparison)
+def model_comparison(found: ModelComparison, asked: Asked) -> list[Section]:
+    """The ranking, and its section."""
+    facts = {"best": found.models[0], "models": counted(len(found.models)), "values": counted(found.values)}
+    verdict = "equal models" if alike(found)[1] else "ranked"
+    headline = Headline(title="Models compared", verdict=verdict, facts=facts, findings=found.findings)
+    return [headline, compared_models(found)]
+
+
+def compared_models(found: ModelComparison, *, findings: bool = False) -> Section:
+    """The section on the models; with their findings where no headline has them."""
+    sentences = [str(item) for item in found.findings] if findings else []
+    plots = [
+        Plot("model-differences", charts.model_differences(found), HOW),
+        Plot("difference-by-group", charts.difference_by_group(found), WHERE),
+    ]
+    how = f"Log predictive densities (elpd): {found.how}. Left out together: {found.left_out}."
+    return Section("Model comparison", (Listed(sentences), how, _table(found), Row(plots, beside=False)))
+
+
+def _table(found: ModelComparison) -> Table:
+    known = found.parameters >= 0
+    columns: dict[str, Iterable[object]] = {
+        "model": found.models,
+        "parameters": [int(count) if one else Cell("", "") for count, one in zip(found.parameters, known, strict=True)],
+        "rms residual": cells(found.rms, 4),
+        "AIC": cells(found.aic),
+        "AICc": cells(found.aicc),
+        "BIC": cells(found.bic),
+        "elpd": cells(found.elpd),
+        "difference": [cell(float(one), digits=4) for one in found.difference],
+        "deviation of the difference": cells(found.difference_deviation, 2),
+    }
+    if np.any(np.isfinite(found.waic)):
+        columns["WAIC (elpd)"] = cells(found.waic)
+    return Table.of("model-comparison", "Models, the one that predicts best first", columns)

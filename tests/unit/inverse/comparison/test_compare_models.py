@@ -1,0 +1,201 @@
+"""Which of several models predicts best, when the difference means nothing, and what cannot be compared."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from inline_snapshot import snapshot
+
+import dalembert as da
+from correlated_noise import autoregressive
+from dalembert.data import Measurements
+from dalembert.errors import InputError
+from dalembert.forward import PythonModel
+from dalembert.inverse import Experiment, ModelComparison, compare_models, cross_validate, identify
+from support import says
+
+TIMES = np.linspace(0, 2, 81)
+BOX = (-9.0, 9.0)
+LINE = PythonModel(lambda a, b: a + b * TIMES, {"a": BOX, "b": BOX}, ["x"], TIMES)
+PARABOLA = PythonModel(lambda a, b, c: a + b * TIMES + c * TIMES**2, {"a": BOX, "b": BOX, "c": BOX}, ["x"], TIMES)
+ALONE = (
+    "compare_models: 'late' cannot predict values that are left out, as they alone determine a parameter; leave out "
+    "smaller groups"
+)
+UNDETERMINED = (
+    "cross_validate: without one group, the other data do not determine all parameters; leave out smaller blocks, or fix "
+    "the parameters that only this group determines"
+)
+MODELS = {"line": LINE, "parabola": PARABOLA}
+
+
+def recorded(bend, noise=None, deviations=None):
+    noise = np.random.default_rng(0).standard_normal(81) if noise is None else noise
+    return Measurements.of(TIMES, {"x": 1 + 2 * TIMES + bend * TIMES**2 + 0.1 * noise}, deviations)
+
+
+def fitted(data, **options):
+    return {name: identify(model, data, starts=1, horizon=None, **options) for name, model in MODELS.items()}
+
+
+def codes(found):
+    return [(item.code, item.severity) for item in found.findings]
+
+
+def test_the_model_of_the_data_predicts_best():
+    found = compare_models(fitted(recorded(0.5)))
+    assert found.models == ("parabola", "line")
+    assert codes(found)[0] == ("best-model", "note")
+    assert found.akaike_weights[0] > 0.99
+    assert found.difference[1] < -2 * found.difference_deviation[1]
+    assert found.summary() == snapshot("""\
+model     parameters  rms        AICc      BIC       elpd      difference  ± deviation
+──────────────────────────────────────────────────────────────────────────────────────
+parabola  4           0.0944369  -143.897  -134.846  70.3005
+line      3           0.176296   -44.9856  -38.114   -8.46516  -78.8       24
+
+elpd         leave-out predictions of the linearised models; left out: blocks of neighbouring samples
+values       81
+'parabola' predicts best: its log predictive density is larger than that of the next, 'line', by 78.8 ± 24.
+The residuals of 'line' are correlated. AIC, AICc and BIC take values for independent, so their differences are too large.
+Only 5 groups were left out: the standard deviation of a difference is uncertain. Leave out more, smaller groups.\
+""")
+
+
+def test_a_difference_that_means_nothing_is_said():
+    found = compare_models(fitted(recorded(0.0)))
+    assert codes(found) == [("equal-models", "warning")]
+    assert str(found.findings[0]) == snapshot(
+        "The data do not distinguish 'line' and 'parabola': the log predictive density of 'line' is larger by 0.95 ± 0.43, which means nothing. Prefer the simplest, 'line', or measure where their responses differ."
+    )
+
+
+def test_correlated_residuals_are_left_out_in_blocks():
+    noise = autoregressive(1, 81, 0.8)
+    fits = fitted(recorded(0.0, noise))
+    assert fits["line"].correlated is not None
+    found = compare_models(fits)
+    assert found.left_out == "blocks of neighbouring samples"
+    assert ("correlated-comparison", "note") in codes(found)
+    assert found.densities.shape[1] < 20
+    alone = compare_models(fits, leave_out="values")
+    assert ("correlated-comparison", "warning") in codes(alone)
+
+
+def test_few_groups_are_noted():
+    assert ("few-groups", "note") in codes(compare_models(fitted(recorded(0.5)), leave_out="blocks", blocks=4))
+
+
+def test_a_criterion_that_prefers_a_worse_prediction_is_a_doubt():
+    found = compare_models(fitted(recorded(0.5)))
+    from dalembert.inverse.comparison.conclusions import comparison_findings
+
+    made = comparison_findings(replace(found, bic=found.bic[::-1]), (), {})
+    (finding,) = (item for item in made.findings if item.code == "criteria-disagree")
+    assert finding.values == {"BIC": "line"}
+
+
+def test_a_file_gives_back_the_comparison(tmp_path):
+    found = compare_models(fitted(recorded(0.5)))
+    found.save(tmp_path / "comparison.nc")
+    loaded = ModelComparison.load(tmp_path / "comparison.nc")
+    assert loaded.summary() == found.summary()
+    np.testing.assert_array_equal(loaded.densities, found.densities)
+
+
+def test_experiments_are_left_out_as_a_whole():
+    experiments = {
+        name: [Experiment(str(k), model, recorded(0.5, np.random.default_rng(k).standard_normal(81))) for k in range(4)]
+        for name, model in MODELS.items()
+    }
+    fits = {name: identify(own, starts=1, horizon=None) for name, own in experiments.items()}
+    linear = compare_models(fits, leave_out="experiments")
+    assert linear.densities.shape == (2, 4)
+    again = {name: cross_validate(experiments[name], fit=fit, leave_out="experiments") for name, fit in fits.items()}
+    found = compare_models(again)
+    assert found.how == "cross-validation by fits without each group"
+    np.testing.assert_allclose(found.densities, linear.densities, rtol=1e-6)
+    assert again["line"].rms > again["parabola"].rms
+
+
+def test_models_that_cannot_be_compared():
+    fits = fitted(recorded(0.5))
+    other = identify(LINE, recorded(0.4), starts=1, horizon=None)
+    robust = identify(LINE, recorded(0.5), starts=1, horizon=None, loss="huber", loss_scale=0.2)
+    weighted = identify(LINE, recorded(0.5), starts=1, horizon=None, weights=[2.0])
+    line = fits["line"]
+    for models, sentence in (
+        ({"line": line}, "compare_models: 1 model was given; expected at least two, by their names"),
+        (
+            {"line": line, "b": other},
+            "compare_models: 'b' was fitted to other data than 'line'; fit both models to the same samples and channels",
+        ),
+        (
+            {"line": line, "b": weighted},
+            "compare_models: 'b' was fitted with other weights or other held-out samples than 'line'; use the same for both",
+        ),
+        (
+            {"line": line, "b": robust},
+            "'b' was fitted with a robust loss, which is not a likelihood; fit it with loss='linear', without the outliers",
+        ),
+        (
+            {"line": line, "b": replace(line, jacobian=None)},
+            "'b' has no Jacobian: its model gives no derivatives, or a former version stored it; identify again",
+        ),
+        (
+            {"line": line, "b": 3.0},
+            "compare_models: 'b' is 3.0; expected fits alone, cross-validations alone, or InferenceData alone",
+        ),
+    ):
+        with pytest.raises(InputError, match=says(sentence)):
+            compare_models(models)
+    with pytest.raises(
+        InputError, match=says("leave_out is 'experiments', but the fit has one experiment; use 'blocks'")
+    ):
+        compare_models(fits, leave_out="experiments")
+    with pytest.raises(
+        InputError, match=says("blocks is 1; expected at least 2, and at most the 81 samples of a record")
+    ):
+        compare_models(fits, leave_out="blocks", blocks=1)
+
+
+def test_values_that_nothing_else_determines_cannot_be_left_out():
+    step = np.where(TIMES > 1.5, 1.0, 0.0)
+    late = PythonModel(lambda a, b: a * TIMES + b * step, {"a": BOX, "b": BOX}, ["x"], TIMES)
+    data = recorded(0.0)
+    fits = {"late": identify(late, data, starts=1, horizon=None), "line": identify(LINE, data, starts=1, horizon=None)}
+    with pytest.raises(InputError, match=says(ALONE)):
+        compare_models(fits, leave_out="blocks", blocks=2)
+    with pytest.raises(InputError, match=says(UNDETERMINED)):
+        cross_validate(late, data, fit=fits["late"], blocks=2)
+
+
+def test_draws_are_compared_by_importance_sampling():
+    arviz = pytest.importorskip("arviz")
+    data, rng = recorded(0.5, deviations=0.1), np.random.default_rng(3)
+    fits, draws = fitted(data), {}
+    for name, fit in fits.items():
+        slopes = fit.jacobian[:, 0]
+        vectors = (
+            fit.values
+            + rng.standard_normal((4, 500, len(fit.values)))
+            @ np.linalg.cholesky(np.linalg.inv(slopes.T @ slopes / 0.01)).T
+        )
+        apart = (data.values[:, 0] - vectors @ slopes.T) / 0.1
+        logs = -0.5 * apart**2 - np.log(0.1) - 0.5 * np.log(2 * np.pi)
+        draws[name] = arviz.from_dict(
+            posterior={"p": vectors}, log_likelihood={"x": logs}, observed_data={"x": data.values[:, 0]}
+        )
+    found, exact = compare_models(draws), compare_models(fits, leave_out="values")
+    assert found.models == exact.models == ("parabola", "line")
+    np.testing.assert_allclose(found.elpd, exact.elpd, atol=0.5)
+    np.testing.assert_allclose(found.waic, exact.elpd, atol=0.5)
+    del draws["line"]["log_likelihood"]
+    with pytest.raises(
+        InputError, match=says("compare_models: the draws of 'line' have no group log_likelihood; sample again with it")
+    ):
+        compare_models(draws)
+
+
+def test_it_is_in_the_package():
+    assert da.compare_models is compare_models

@@ -1,0 +1,135 @@
+"""Criteria and predictive densities of models against closed forms, exact refits and other code."""
+
+import numpy as np
+import pytest
+from scipy.stats import multivariate_t, norm, t
+
+from dalembert.data import Measurements
+from dalembert.forward import PythonModel
+from dalembert.inverse import compare_models, cross_validate, identify
+from dalembert.inverse.comparison.left_out import counted_groups, groups
+from dalembert.inverse.comparison.predictive import linearised
+from stack_loss import STACK
+
+TOPIC = "Model comparison"
+TIMES = np.linspace(0, 3, 30)
+COLUMNS = np.stack([np.ones(30), TIMES, np.sin(4 * TIMES)], axis=1)
+BOX = (-9.0, 9.0)
+
+
+def model(columns, times=TIMES):
+    names = [f"p{k}" for k in range(columns.shape[1])]
+    return PythonModel(
+        lambda **values: columns @ np.array([values[name] for name in names]), dict.fromkeys(names, BOX), ["x"], times
+    )
+
+
+def recorded(deviations=None, seed=2):
+    noise = 0.2 * np.random.default_rng(seed).standard_normal(30)
+    return Measurements.of(TIMES, {"x": COLUMNS @ [1.0, 0.5, 0.3] + noise}, deviations)
+
+
+def fitted(columns, data):
+    return identify(model(columns), data, starts=1, horizon=None)
+
+
+@pytest.mark.parametrize("deviations", [None, 0.2], ids=["unknown noise", "known noise"])
+def test_values_left_out_are_predicted_as_by_exact_refits(deviations, record_evidence, request):
+    data = recorded(deviations)
+    y, expected = data.values[:, 0], []
+    for k in range(30):
+        kept = np.arange(30) != k
+        own, x = COLUMNS[kept], COLUMNS[k]
+        found, squares, *_ = np.linalg.lstsq(own, y[kept], rcond=None)
+        width = 1 + x @ np.linalg.solve(own.T @ own, x)
+        if deviations is None:
+            expected.append(t(26).logpdf((y[k] - x @ found) / np.sqrt(width * squares[0] / 26))
+                            - 0.5 * np.log(width * squares[0] / 26))  # fmt: skip
+        else:
+            expected.append(norm(x @ found, deviations * np.sqrt(width)).logpdf(y[k]))
+    at = linearised("x", fitted(COLUMNS, data))
+    ours = [at.without(np.array([k])) for k in range(30)]
+    record_evidence(
+        f"linear model, {request.node.callspec.id}: log predictive densities of single values", expected, ours,
+        tolerance=1e-7, topic=TOPIC, kind="closed form", source="refit without each value by NumPy", noisy=True,
+    )  # fmt: skip
+
+
+def test_blocks_left_out_have_the_multivariate_density_of_refits(record_evidence):
+    data = recorded()
+    fit = fitted(COLUMNS, data)
+    places = counted_groups(groups(fit, "blocks", 5))
+    y, expected = data.values[:, 0], []
+    for rows in places:
+        kept = np.setdiff1d(np.arange(30), rows)
+        own, x = COLUMNS[kept], COLUMNS[rows]
+        found, squares, *_ = np.linalg.lstsq(own, y[kept], rcond=None)
+        width = np.eye(len(rows)) + x @ np.linalg.solve(own.T @ own, x.T)
+        freedom = len(kept) - 3
+        expected.append(multivariate_t(x @ found, width * squares[0] / freedom, freedom).logpdf(y[rows]))
+    at = linearised("x", fit)
+    record_evidence(
+        "linear model: log predictive densities of five blocks", expected, [at.without(rows) for rows in places],
+        tolerance=1e-7, topic=TOPIC, kind="closed form", source="refit without each block, Student's t of SciPy",
+        noisy=True,
+    )  # fmt: skip
+    again = cross_validate(model(COLUMNS), data, fit=fit, blocks=5)
+    record_evidence(
+        "linear model: log predictive densities by cross-validation", expected, again.log_densities, tolerance=1e-6,
+        topic=TOPIC, kind="closed form", source="refit without each block, Student's t of SciPy", noisy=True,
+    )  # fmt: skip
+    hat = COLUMNS @ np.linalg.solve(COLUMNS.T @ COLUMNS, COLUMNS.T)
+    press = np.concatenate(
+        [np.linalg.solve(np.eye(len(rows)) - hat[np.ix_(rows, rows)], (y - hat @ y)[rows]) for rows in places]
+    )
+    record_evidence(
+        "linear model: prediction errors of blocks, PRESS formula", press, -again.errors[:, 0], tolerance=1e-7,
+        topic=TOPIC, kind="closed form", source="(I − H)⁻¹ e (Allen 1974)", noisy=True,
+    )  # fmt: skip
+
+
+def test_criteria_of_a_published_regression(record_evidence):
+    days = np.arange(21.0)
+    data = Measurements.of(days, {"loss": STACK[:, 3]})
+    fits = {}
+    for name, count in (("all", 4), ("without acid", 3)):
+        columns = np.column_stack([np.ones(21), STACK[:, :3]])[:, :count]
+        own = PythonModel(
+            lambda columns=columns, **values: columns @ np.array([values[f"p{k}"] for k in range(columns.shape[1])]),
+            {f"p{k}": (-100.0, 100.0) for k in range(count)}, ["loss"], days,
+        )  # fmt: skip
+        fits[name] = identify(own, data, starts=1, horizon=None)
+    found = compare_models(fits)
+    place = found.models.index("all")
+    for quantity, reference, ours in (
+        ("log-likelihood", -52.28779550239973, found.log_likelihood[place]),
+        ("AIC", 112.57559100479946 + 2, found.aic[place]),
+        ("BIC", 116.75368075569315 + np.log(21), found.bic[place]),
+    ):
+        record_evidence(
+            f"stack loss: {quantity}, the variance of the noise counted as a parameter", reference, ours,
+            tolerance=1e-9, topic=TOPIC, kind="other code", source="statsmodels 0.15: OLS, plus one parameter",
+        )  # fmt: skip
+
+
+def test_the_right_model_is_chosen_over_many_seeds(record_evidence):
+    """Where the third column acts, it is chosen; where it does not, the models are equal or the simple one is."""
+    chosen, alike = 0, 0
+    for seed in range(60):
+        noise = 0.2 * np.random.default_rng(seed).standard_normal(30)
+        for amplitude in (0.3, 0.0):
+            data = Measurements.of(TIMES, {"x": COLUMNS @ [1.0, 0.5, amplitude] + noise})
+            fits = {"sine": fitted(COLUMNS, data), "line": fitted(COLUMNS[:, :2], data)}
+            found = compare_models(fits)
+            if amplitude:
+                chosen += found.models[0] == "sine"
+            else:
+                alike += found.models[0] == "line" or found.findings[0].code == "equal-models"
+    record_evidence(
+        "share of 60 records whose model with a sine is ranked first", 1.0, chosen / 60, tolerance=0.05, topic=TOPIC,
+        kind="known truth", source="sine of 1.5 times the noise",
+    )  # fmt: skip
+    record_evidence(
+        "share of 60 records without a sine in which no difference is claimed for it", 1.0, alike / 60, tolerance=0.05,
+        topic=TOPIC, kind="known truth", source="no sine",
+    )  # fmt: skip

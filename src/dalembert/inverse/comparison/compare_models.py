@@ -158,7 +158,7 @@ def _compared_draws(known: Mapping[str, Predictive]) -> ModelComparison:
             raise InputError(f"compare_models: the draws of {name!r} are of other data than those of {first!r}")
     found = {name: Criteria(-1, np.nan, np.nan, one.densities, one.waic) for name, one in known.items()}
     unreliable = {name: one.unreliable for name, one in known.items() if one.unreliable}
-    how = "Pareto-smoothed importance sampling of posterior draws"
+    how = "PSIS-LOO of posterior draws"
     return _result(found, len(reference.densities), how, LEFT_OUT["values"], {}, (), unreliable)
 
 

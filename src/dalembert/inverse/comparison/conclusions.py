@@ -104,7 +104,7 @@ def _few(made: ModelComparison) -> Iterator[Finding]:
 def _unreliable(counts: Mapping[str, int]) -> Iterator[Finding]:
     if counts:
         what = listed([f"{counted(count, 'value')} of {name!r}" for name, count in counts.items()])
-        message = f"Importance sampling does not predict {what} reliably (Pareto shape above 0.7)."
+        message = f"PSIS-LOO does not predict {what} reliably (Pareto shape above 0.7)."
         yield Finding(
             "unreliable-densities", "warning", dict(counts), message, "Compare by cross-validation: cross_validate."
         )

@@ -76,7 +76,9 @@ class ModelComparison(Result):
 
     def summary(self) -> str:
         """Return a table of the models, the best one first, then the findings."""
-        rows = [("model", "parameters", "rms", "AICc", "BIC", "elpd", "difference", "± deviation")]
+        rows: list[tuple[str, ...]] = [
+            ("model", "parameters", "rms", "AICc", "BIC", "elpd", "difference", "± deviation")
+        ]
         for k, name in enumerate(self.models):
             known = str(self.parameters[k]) if self.parameters[k] >= 0 else ""
             numbers = (self.rms[k], self.aicc[k], self.bic[k], self.elpd[k])

@@ -110,7 +110,7 @@ def linearised(name: str, fit: Fit) -> Linearised:
     Raises
     ------
     InputError
-        For a fit without a Jacobian, of segments, or with a robust loss.
+        For a fit without a Jacobian, of segments, with a robust loss, or with unknown parameters of the noise.
     """
     if fit.nodes is not None and fit.nodes.segments > 1:
         raise InputError(
@@ -121,6 +121,11 @@ def linearised(name: str, fit: Fit) -> Linearised:
         raise InputError(
             f"{name!r} was fitted with a robust loss, which is not a likelihood; fit it with loss='linear', without "
             "the outliers"
+        )
+    if fit.noise is not None and not fit.noise.known:
+        raise InputError(
+            f"{name!r} was fitted with a noise model, for which predictive densities are not available; fit it without "
+            "`noise`"
         )
     if fit.jacobian is None:
         raise InputError(

@@ -52,11 +52,11 @@ def test_the_model_of_the_data_predicts_best():
 model     parameters  rms        AICc      BIC       elpd      difference  ± deviation
 ──────────────────────────────────────────────────────────────────────────────────────
 parabola  4           0.0944369  -143.897  -134.846  70.3005
-line      3           0.176296   -44.9856  -38.114   -8.46516  -78.8       24
+line      3           0.176296   -44.9856  -38.114   -8.46516  -78.8       23.6
 
 elpd         leave-out predictions of the linearised models; left out: blocks of neighbouring samples
 values       81
-'parabola' predicts best: its log predictive density is larger than that of the next, 'line', by 78.8 ± 24.
+'parabola' predicts best: its log predictive density is larger than that of the next, 'line', by 78.8 ± 23.6.
 The residuals of 'line' are correlated. AIC, AICc and BIC take values for independent, so their differences are too large.
 Only 5 groups were left out: the standard deviation of a difference is uncertain. Leave out more, smaller groups.\
 """)
@@ -66,7 +66,7 @@ def test_a_difference_that_means_nothing_is_said():
     found = compare_models(fitted(recorded(0.0)))
     assert codes(found) == [("equal-models", "warning")]
     assert str(found.findings[0]) == snapshot(
-        "The data do not distinguish 'line' and 'parabola': the log predictive density of 'line' is larger by 0.95 ± 0.43, which means nothing. Prefer the simplest, 'line', or measure where their responses differ."
+        "The data do not distinguish 'line' and 'parabola': the log predictive density of 'line' is larger by 0.945 ± 0.429, which means nothing. Prefer the simplest, 'line', or measure where their responses differ."
     )
 
 

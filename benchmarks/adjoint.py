@@ -52,7 +52,7 @@ def _row(count: int) -> dict[str, object]:
     def gradient() -> np.ndarray:
         return pullback(model, vector, "adjoint")[1](response)
 
-    times = timing.interleaved({"run": lambda: model.evaluate(vector[None]).only(), "adjoint": gradient}, repeats=9)
+    times = timing.interleaved({"run": lambda: model.evaluate(vector[None]).only(), "adjoint": gradient}, repeats=25)
     jacobian = model.jacobian(vector)  # the first time with the comparison of the complex step
     direct = timing.seconds(lambda: model.linearise(vector))
     exact = np.einsum("sc,scp->p", response, jacobian)

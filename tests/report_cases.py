@@ -24,6 +24,7 @@ from free_oscillations import TIMES as OSCILLATING
 from frequency_cases import FREQUENCY_CASES
 from inertial_cases import INERTIAL_CASES
 from posterior_cases import POSTERIOR_CASES
+from regularised_cases import REGULARISED_CASES
 from report_case import Case
 from sensitivity_cases import SENSITIVITY_CASES
 from small_models import DECAY, LINE, TIMES, banded, measured
@@ -1027,5 +1028,6 @@ CASES: dict[str, Case] = {
     **INERTIAL_CASES,
     **POSTERIOR_CASES,
     **SENSITIVITY_CASES,
+    **REGULARISED_CASES,
     **SPECIMEN_CASES,
 }

@@ -78,6 +78,7 @@ from dalembert.inverse import Posterior as Posterior
 from dalembert.inverse import Prediction as Prediction
 from dalembert.inverse import Profiles as Profiles
 from dalembert.inverse import ProportionalNoise as ProportionalNoise
+from dalembert.inverse import RegularisedFit as RegularisedFit
 from dalembert.inverse import ResidualDiagnostics as ResidualDiagnostics
 from dalembert.inverse import ShootingState as ShootingState
 from dalembert.inverse import compare_models as compare_models
@@ -92,6 +93,7 @@ from dalembert.inverse import likelihood as likelihood
 from dalembert.inverse import population as population
 from dalembert.inverse import predict as predict
 from dalembert.inverse import profile as profile
+from dalembert.inverse import regularise as regularise
 from dalembert.inverse import sample as sample
 from dalembert.multibody import AncfBeam as AncfBeam
 from dalembert.multibody import AncfCable as AncfCable

@@ -14,7 +14,7 @@ from scipy.sparse import csc_array, csr_array
 Along = Callable[[np.ndarray], np.ndarray]
 """Derivative of all numbers (numbers,) along a direction (parameters,), exact."""
 
-FEW = 12
+FEW = 6
 """Parameters up to which each is moved alone."""
 
 _STRIDES = 1, 2, 4  # of the first groups: neighbours, as coefficients of a spline, often move the same number

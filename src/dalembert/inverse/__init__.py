@@ -49,6 +49,8 @@ from dalembert.inverse.posterior.sample import sample
 from dalembert.inverse.posterior.samplers.affine_invariant import AffineInvariant
 from dalembert.inverse.posterior.samplers.delayed_acceptance import DelayedAcceptance
 from dalembert.inverse.posterior.samplers.nuts import NUTS
+from dalembert.inverse.regularised.regularise import regularise
+from dalembert.inverse.regularised.regularised_fit import RegularisedFit
 from dalembert.inverse.sets.identify_set import identify_set
 from dalembert.inverse.sets.parameter_set import ParameterSet
 from dalembert.inverse.shooting.nodes import Nodes
@@ -99,6 +101,7 @@ __all__ = [
     "Profiled",
     "Profiles",
     "ProportionalNoise",
+    "RegularisedFit",
     "ResidualDiagnostics",
     "Sampled",
     "Screened",
@@ -121,5 +124,6 @@ __all__ = [
     "population",
     "predict",
     "profile",
+    "regularise",
     "sample",
 ]

@@ -108,7 +108,7 @@ class NumberPulls:
         blocks = []
         for number, kind in enumerate(lowered.data):
             columns = np.ascontiguousarray(np.argwhere(gradient.active_kind(kind)))
-            reads = readers(lowered.structure.meta[kind] if kind.integers else None, signals)
+            reads = readers(None if kind.quadratic else lowered.structure.meta[kind], signals)
             if len(columns) + len(reads) and kind.has("pullback"):
                 own = np.zeros(len(columns))
                 self._parts[kind] = columns, own

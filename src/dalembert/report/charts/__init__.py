@@ -39,6 +39,7 @@ _NAMES = {
     "identification.residual_diagnostics": "residual_diagnostics",
     "identification.responses": "responses",
     "identification.search": "convergence starts",
+    "identification.smooth_parameters": "penalty_curve smooth_parameters",
     "identification.specimens": "specimens",
     "identification.torques": "torques",
     "motion.diagnostics": "energies newton violations",

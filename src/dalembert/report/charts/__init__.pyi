@@ -48,6 +48,8 @@ from dalembert.report.charts.identification.residual_diagnostics import residual
 from dalembert.report.charts.identification.responses import responses as responses
 from dalembert.report.charts.identification.search import convergence as convergence
 from dalembert.report.charts.identification.search import starts as starts
+from dalembert.report.charts.identification.smooth_parameters import penalty_curve as penalty_curve
+from dalembert.report.charts.identification.smooth_parameters import smooth_parameters as smooth_parameters
 from dalembert.report.charts.identification.specimens import specimens as specimens
 from dalembert.report.charts.identification.torques import torques as torques
 from dalembert.report.charts.motion.diagnostics import energies as energies

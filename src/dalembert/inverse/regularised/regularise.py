@@ -1,0 +1,231 @@
+"""Identify many parameters that are smooth: unknown histories and fields."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.linalg import cho_factor, cho_solve, solve_triangular
+
+from dalembert.arguments import check_whole, names_of
+from dalembert.data import Measurements
+from dalembert.errors import InputError, SolveError, require_known
+from dalembert.findings import Finding
+from dalembert.forward import ForwardModel
+from dalembert.forward.adjoint import AUTO, GRADIENTS
+from dalembert.forward.provenance import provenance
+from dalembert.inverse.problem.journal import Journal
+from dalembert.inverse.problem.problem import Problem, pose
+from dalembert.inverse.regularised.regularised_fit import RegularisedFit
+from dalembert.inverse.regularised.smoothness import Smoothed, differences
+from dalembert.optimize import Minimiser
+
+L_CURVE, DISCREPANCY, GIVEN = "l-curve", "discrepancy", "given"
+_SETTLED = 0.05  # relative change of the weight at which the rounds end
+_HALVINGS = 8  # of the way to the linear solution
+_REACH = 1e3  # standard deviations from the linear solution that the minimiser may go
+_STEPS = {"maxiter": 30, "ftol": 1e-10, "gtol": 1e-6}
+
+
+def regularise(
+    model: ForwardModel,
+    data: Measurements,
+    *,
+    smooth: Sequence[str] | None = None,
+    order: int = 2,
+    weight: float | str = L_CURVE,
+    start: Mapping[str, float] | ArrayLike | None = None,
+    derivative: str = AUTO,
+    rounds: int = 8,
+) -> RegularisedFit:
+    """Parameters p that explain data, and are smooth: least Σ W (R(p) − data)² + μ² ‖D p/scale‖².
+
+    Parameters
+    ----------
+    model : ForwardModel
+        Bounds of its parameters give their scale; they do not limit the values.
+    data : Measurements
+        With their deviations, W = 1/deviation²; else W = 1.
+    smooth : sequence of str, optional
+        Names of the parameters whose differences D are penalised, in the order of the history or of the field; all if
+        not given. Others are not penalised.
+    order : int
+        Of the differences: 2 for a history without a preferred value or slope.
+    weight : float, "l-curve" or "discrepancy"
+        μ, or how it is chosen: at the corner of the L-curve, or so that the residuals are as large as the noise, which
+        the deviations of the data then must state.
+    start : mapping or array, optional
+        First guess; that of the parameters if not given.
+    derivative : {"auto", "direct", "adjoint"}
+        How gradients are computed, see :func:`dalembert.forward.pullback`.
+    rounds : int
+        Linearisations at most, after each of which the weight is chosen again.
+
+    Returns
+    -------
+    RegularisedFit
+
+    Raises
+    ------
+    InputError
+        For an unknown name or rule, fewer smooth parameters than differences need, and the discrepancy principle
+        without deviations.
+    SolveError
+        If the model cannot be simulated.
+
+    Notes
+    -----
+    All sensitivities are computed once a round, for the L-curve of the linearised problem and as a preconditioner. With
+    it the minimiser L-BFGS-B needs few gradients, which come from the adjoint where the model has one. Rounds end when
+    the weight no longer changes. Source: Hansen, Discrete Inverse Problems (2010).
+
+    Examples
+    --------
+    >>> from dalembert.forward import PythonModel
+    >>> times = np.linspace(0.0, 1.0, 41)
+    >>> names = [f"c{k}" for k in range(12)]
+    >>> def summed(**c):  # the integral of a history by pieces
+    ...     return np.cumsum(np.interp(times, np.linspace(0, 1, 12), np.real(list(c.values())))
+    ...                      + 1j * np.interp(times, np.linspace(0, 1, 12), np.imag(list(c.values())))) / 40
+    >>> model = PythonModel(summed, dict.fromkeys(names, (-2.0, 2.0)), ["x"], times)
+    >>> truth = np.sin(np.linspace(0, 3, 12))
+    >>> noise = 1e-3 * np.random.default_rng(0).normal(size=(41, 1))
+    >>> measured = model.evaluate(truth[None]).values[0] + noise
+    >>> fit = regularise(model, Measurements.of(times, {"x": measured[:, 0]}, deviations={"x": 1e-3}))
+    >>> bool(np.abs(fit.values - truth).max() < 0.05)
+    True
+    """
+    require_known("derivative", derivative, GRADIENTS, "regularise")
+    if isinstance(weight, str):
+        require_known("weight", weight, (L_CURVE, DISCREPANCY), "regularise")
+        if weight == DISCREPANCY and data.deviations is None:
+            raise InputError(
+                "regularise: the discrepancy principle needs the noise of the data. Give their deviations, or take "
+                "weight='l-curve'"
+            )
+    problem = replace(pose(model, data, None, Journal(len(data.coordinate.values))), derivative=derivative)
+    names = model.parameters.names
+    chosen = tuple(names if smooth is None else names_of(smooth, "regularise", "smooth"))
+    for name in chosen:
+        require_known("parameter", name, names, "regularise")
+    if len(chosen) <= order:
+        raise InputError(
+            f"regularise: {len(chosen)} smooth parameters have no differences of order {order}. "
+            "Name more of them, or lower the order"
+        )
+    penalty = differences(np.array([names.index(name) for name in chosen]), len(names), order)
+    first = model.parameters.start if start is None else start
+    vector = model.parameters.real_vector(first)  # pyright: ignore[reportArgumentType]
+    check_whole("regularise", "rounds", rounds, 1)
+    return _identified(problem, vector, penalty, chosen, weight, rounds)
+
+
+def _identified(
+    problem: Problem, vector: np.ndarray, penalty: np.ndarray, smooth: tuple[str, ...], weight: float | str,
+    rounds: int,
+) -> RegularisedFit:  # fmt: skip
+    scale, before, settled = problem.model.parameters.scale, np.nan, False
+    many, corner, discrepancy = _linearised(problem, vector, penalty)
+    mu = _weight(weight, corner, discrepancy)
+    for _ in range(rounds):
+        vector = scale * _minimised(problem, many, mu, vector / scale)
+        many, corner, discrepancy = _linearised(problem, vector, penalty)
+        before, mu = mu, _weight(weight, corner, discrepancy)
+        settled = abs(mu - before) <= _SETTLED * before
+        if settled:
+            break
+    residual = many.matrix @ (vector / scale) - many.right
+    effective = many.effective(mu)
+    variance = 1.0 if problem.data.deviations is not None else residual @ residual / max(1.0, len(residual) - effective)
+    covariance = cho_solve(cho_factor(many.normal(mu)), np.eye(len(vector)))
+    curve = many.standard.weights
+    parameters = problem.model.parameters
+    return RegularisedFit(
+        names=parameters.names,
+        units=tuple(item.unit for item in parameters),
+        smooth=smooth,
+        values=vector,
+        deviations=scale * np.sqrt(variance * np.diag(covariance)),
+        weight=mu,
+        rule=weight if isinstance(weight, str) else GIVEN,
+        corner=corner,
+        discrepancy=discrepancy,
+        weights=curve,
+        residual_norms=many.standard.residual_norms(curve),
+        penalty_norms=many.standard.step_norms(curve),
+        residual_norm=float(np.linalg.norm(residual)),
+        penalty_norm=float(np.linalg.norm(penalty @ (vector / scale))),
+        effective=effective,
+        simulations=problem.journal.simulations,
+        provenance=provenance(problem.model, None, data=problem.data.fingerprint, weight=weight),
+        findings=() if settled else (_unsettled(before, mu),),
+    )
+
+
+def _unsettled(before: float, mu: float) -> Finding:
+    return Finding(
+        "weight-not-settled",
+        "warning",
+        {"before": before, "weight": mu},
+        f"The weight of the penalty still changed from {before:.3g} to {mu:.3g} in the last round.",
+        "Start from these values, or give the weight.",
+    )
+
+
+def _linearised(problem: Problem, vector: np.ndarray, penalty: np.ndarray) -> tuple[Smoothed, float, float]:
+    """The linearised problem, the corner of its L-curve, and the weight by the discrepancy principle."""
+    scale = problem.model.parameters.scale
+    at = problem.linearise(vector)
+    residual = problem.residual(at.response)
+    counted = problem.weights.ravel() > 0
+    matrix = problem.weighted(at.jacobian, at.response).reshape(len(residual), -1)[counted] * scale
+    many = Smoothed(matrix, matrix @ (vector / scale) - residual[counted], penalty)
+    known = problem.data.deviations is not None
+    discrepancy = many.standard.discrepancy(np.sqrt(counted.sum())) if known else np.nan
+    return many, many.standard.corner(), float(discrepancy)
+
+
+def _weight(asked: float | str, corner: float, discrepancy: float) -> float:
+    return {L_CURVE: corner, DISCREPANCY: discrepancy}[asked] if isinstance(asked, str) else float(asked)
+
+
+def _minimised(problem: Problem, many: Smoothed, mu: float, near: np.ndarray) -> np.ndarray:
+    """z of the least nonlinear fitness, by L-BFGS-B in coordinates in which the linearised fitness is round.
+
+    z = z₁ + C⁻ᵀ u, with C Cᵀ the normal matrix of the linearised problem, and z₁ on the way from the last values,
+    ``near``, to its minimum: the whole way if that lowers the fitness, else a part of it.
+    """
+    scale, penalty = problem.model.parameters.scale, mu * many.penalty
+    factor, goal = np.linalg.cholesky(many.normal(mu)), many.solution(mu)
+
+    def fitness_of(places: np.ndarray) -> np.ndarray:
+        squares = problem.squares(problem.responses(places * scale))
+        return np.sum(squares, axis=(1, 2)) + np.sum((places @ penalty.T) ** 2, axis=1)
+
+    shares = np.concatenate([[0.0], 0.5 ** np.arange(_HALVINGS)])
+    before, *others = fitness_of(near + shares[:, None] * (goal - near))
+    lower = [share for share, value in zip(shares[1:], others, strict=True) if value < before]
+    base = near + (lower[0] if lower else 0.0) * (goal - near)
+
+    def place(u: np.ndarray) -> np.ndarray:
+        return base + solve_triangular(factor, u, lower=True, trans=1)
+
+    def gradient(u: np.ndarray) -> np.ndarray:
+        z = place(u)
+        try:
+            slope = problem.slope(z * scale) * scale
+        except SolveError:  # the minimiser turns back from there
+            return np.zeros_like(u)
+        return solve_triangular(factor, slope + 2 * penalty.T @ (penalty @ z), lower=True)
+
+    reach = np.full(len(base), _REACH)
+    found = Minimiser("L-BFGS-B", _STEPS).minimise(
+        lambda batch: fitness_of(np.array([place(u) for u in batch])), -reach, reach, 0,
+        start=np.zeros(len(base)), gradient=gradient,
+    )  # fmt: skip
+    if not np.isfinite(found.fitness):
+        raise SolveError(
+            f"the model cannot be simulated near the start: {problem.journal.failures[0]}. "
+            "Start from other values, or give a larger weight"
+        )
+    return place(found.x)

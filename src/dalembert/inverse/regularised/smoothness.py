@@ -1,0 +1,82 @@
+"""Linear least squares with a penalty on differences, for all weights at once."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve, null_space
+
+from dalembert.optimize.tikhonov import Regularised
+
+
+def differences(places: np.ndarray, count: int, order: int) -> np.ndarray:
+    """Return the matrix D (rows, count) of differences of an order of the entries at ``places``, in their order.
+
+    Examples
+    --------
+    >>> differences(np.array([0, 2, 3]), 4, 2).tolist()
+    [[1.0, 0.0, -2.0, 1.0]]
+    """
+    chosen = np.eye(count)[places]
+    return np.diff(chosen, n=order, axis=0)
+
+
+@dataclass(frozen=True, eq=False)
+class Smoothed:
+    """All minima of ‖A z − b‖² + μ² ‖D z‖².
+
+    Parameters
+    ----------
+    matrix : array, shape (values, parameters)
+        A.
+    right : array, shape (values,)
+        b.
+    penalty : array, shape (rows, parameters)
+        D.
+
+    Notes
+    -----
+    In standard form, z = D⁺_A y + z₀ with z₀ in the null space of D and D⁺_A its A-weighted pseudoinverse, it is
+    ‖Ā y − b̄‖² + μ² ‖y‖² with y = D z (Elden 1977).
+
+    Examples
+    --------
+    A line through noisy values is what a large weight leaves:
+
+    >>> values = np.array([0.0, 1.2, 1.8, 3.0])
+    >>> many = Smoothed(np.eye(4), values, differences(np.arange(4), 4, 2))
+    >>> many.solution(1e6).round(3).tolist()
+    [0.06, 1.02, 1.98, 2.94]
+    >>> many.solution(1e-6).round(3).tolist()
+    [0.0, 1.2, 1.8, 3.0]
+    """
+
+    matrix: np.ndarray
+    right: np.ndarray
+    penalty: np.ndarray
+
+    @cached_property
+    def _free(self) -> np.ndarray:
+        """Basis of what the penalty does not see, (parameters, -)."""
+        return null_space(self.penalty)
+
+    @cached_property
+    def standard(self) -> Regularised:
+        """The problem in standard form."""
+        a = self.matrix
+        seen, _ = np.linalg.qr(a @ self._free)
+        images = a @ np.linalg.pinv(self.penalty)
+        project = images - seen @ (seen.T @ images)
+        return Regularised.of(project, self.right - seen @ (seen.T @ self.right))
+
+    def solution(self, weight: float) -> np.ndarray:
+        """z of a weight μ, (parameters,)."""
+        return cho_solve(cho_factor(self.normal(weight)), self.matrix.T @ self.right)
+
+    def normal(self, weight: float) -> np.ndarray:
+        """AᵀA + μ² DᵀD, (parameters, parameters)."""
+        return self.matrix.T @ self.matrix + weight**2 * self.penalty.T @ self.penalty
+
+    def effective(self, weight: float) -> float:
+        """Number of parameters that the data determine: trace of A (AᵀA + μ² DᵀD)⁻¹ Aᵀ."""
+        return float(np.trace(cho_solve(cho_factor(self.normal(weight)), self.matrix.T @ self.matrix)))

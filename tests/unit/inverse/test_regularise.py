@@ -1,0 +1,117 @@
+"""Smooth parameters by regularised least squares."""
+
+import numpy as np
+import pytest
+from inline_snapshot import snapshot
+
+import dalembert as da
+from dalembert.errors import InputError
+from dalembert.inverse.regularised.smoothness import Smoothed, differences
+from refusals import refused
+from regularised_cases import COUNT, MODEL, TIMES, TRUTH, measured
+
+HATS = np.array([np.interp(TIMES, np.linspace(0.0, 1.0, COUNT), unit) for unit in np.eye(COUNT)])
+MATRIX = np.cumsum(HATS.T, axis=0) / 40
+BOX = {f"c{k}": (-2.0, 2.0) for k in range(COUNT)}
+LINEAR = da.PythonModel(lambda **c: MATRIX @ np.array(list(c.values())), BOX, ["x"], TIMES)
+
+
+def noisy(deviations: float | None = 1e-3) -> da.Measurements:
+    """The linear response to a half wave, with noise of a thousandth."""
+    values = MATRIX @ TRUTH + 1e-3 * np.random.default_rng(0).normal(size=len(TIMES))
+    return da.Measurements.of(TIMES, {"x": values}, deviations=None if deviations is None else {"x": deviations})
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_a_linear_model_has_the_solution_of_the_normal_equations(order: int) -> None:
+    fit = da.regularise(LINEAR, noisy(), order=order, weight=3.0)
+    scale = LINEAR.parameters.scale
+    d = np.diff(np.eye(COUNT), n=order, axis=0) / scale
+    normal = MATRIX.T @ MATRIX * 1e6 + 9.0 * d.T @ d
+    expected = np.linalg.solve(normal, MATRIX.T @ noisy().values[:, 0] * 1e6)
+    np.testing.assert_allclose(fit.values, expected, rtol=0, atol=1e-6)
+    np.testing.assert_allclose(fit.deviations, np.sqrt(np.diag(np.linalg.inv(normal))), rtol=1e-6)
+    assert fit.rule == "given"
+    assert not fit.findings
+
+
+def test_norms_of_the_standard_form_are_those_of_the_solutions() -> None:
+    matrix = np.random.default_rng(0).normal(size=(20, 7))
+    many = Smoothed(matrix, np.arange(20.0), differences(np.arange(7), 7, 2))
+    for weight in (0.1, 1.0, 30.0):
+        z = many.solution(weight)
+        residual, step = np.linalg.norm(matrix @ z - many.right), np.linalg.norm(many.penalty @ z)
+        assert many.standard.residual_norms(weight) == pytest.approx(residual, rel=1e-10)
+        assert many.standard.step_norms(weight) == pytest.approx(step, rel=1e-10)
+
+
+def test_a_large_weight_leaves_the_line_that_explains_the_data_best() -> None:
+    fit = da.regularise(LINEAR, noisy(), weight=1e7)
+    lines = np.stack([np.ones(COUNT), np.arange(COUNT)], axis=1)
+    line, *_ = np.linalg.lstsq(MATRIX @ lines, noisy().values[:, 0])
+    np.testing.assert_allclose(fit.values, lines @ line, rtol=0, atol=1e-4)
+    assert fit.effective == pytest.approx(2.0, abs=1e-3)
+
+
+def test_the_discrepancy_principle_leaves_residuals_as_large_as_the_noise() -> None:
+    fit = da.regularise(MODEL, measured(), weight="discrepancy")
+    assert fit.residual_norm == pytest.approx(np.sqrt(len(TIMES)), rel=0.02)
+    assert fit.weight == fit.discrepancy
+
+
+def test_both_rules_come_near_the_truth() -> None:
+    for rule in ("l-curve", "discrepancy"):
+        fit = da.regularise(MODEL, measured(), weight=rule)
+        assert np.abs(fit.values - TRUTH).max() < 0.06
+        assert fit.vector["c3"] == fit.values[3]
+
+
+def test_parameters_that_are_not_smooth_are_not_penalised() -> None:
+    def response(gain: complex, **c: complex) -> np.ndarray:
+        return gain + MATRIX @ np.array(list(c.values()))
+
+    model = da.PythonModel(response, {"gain": (-1.0, 1.0), **BOX}, ["x"], TIMES)
+    data = da.Measurements.of(TIMES, {"x": 0.5 + MATRIX @ TRUTH}, deviations={"x": 1e-3})
+    fit = da.regularise(model, data, smooth=list(BOX), weight=0.1)
+    assert fit.values[0] == pytest.approx(0.5, abs=1e-3)
+    assert fit.smooth == tuple(BOX)
+
+
+def test_without_deviations_the_noise_is_estimated() -> None:
+    known, unknown = da.regularise(LINEAR, noisy(), weight=1.0), da.regularise(LINEAR, noisy(None), weight=1e-3)
+    np.testing.assert_allclose(known.values, unknown.values, rtol=0, atol=1e-6)
+    np.testing.assert_allclose(unknown.deviations / known.deviations, 0.87, rtol=0.2)
+    assert np.isnan(unknown.discrepancy)
+
+
+def test_it_is_stored_and_read(tmp_path) -> None:
+    fit = da.regularise(MODEL, measured())
+    fit.save(tmp_path / "fit.nc")
+    again = da.RegularisedFit.load(tmp_path / "fit.nc")
+    np.testing.assert_array_equal(again.values, fit.values)
+    assert again.summary() == fit.summary()
+
+
+def test_what_cannot_be_meant_is_refused() -> None:
+    with refused(
+        InputError,
+        snapshot(
+            "regularise: the discrepancy principle needs the noise of the data. Give their deviations, or take "
+            "weight='l-curve'"
+        ),
+    ):
+        da.regularise(MODEL, measured(deviations=False), weight="discrepancy")
+    with refused(
+        InputError,
+        snapshot(
+            "regularise: 2 smooth parameters have no differences of order 2. Name more of them, or lower the order"
+        ),
+    ):
+        da.regularise(MODEL, measured(), smooth=["c1", "c2"])
+    with refused(
+        InputError,
+        snapshot("regularise: unknown parameter 'cc'; known: c0, c1, c10, c11, c2, c3, c4, c5, c6, c7, c8, c9"),
+    ):
+        da.regularise(MODEL, measured(), smooth=["c1", "c2", "cc"])
+    with refused(InputError, snapshot("regularise: unknown weight 'corner'; known: discrepancy, l-curve")):
+        da.regularise(MODEL, measured(), weight="corner")

@@ -72,12 +72,21 @@ def test_a_study_is_sampled_and_reported(tmp_path: Path) -> None:
     assert folder.report.is_file()
 
 
+def test_the_parameters_of_the_noise_are_sampled_too(tmp_path: Path) -> None:
+    task = "[sample]\nchains = 2\ndraws = 40\nwarmup = 40\nprofile = true\nnoise = 'constant'\n"
+    _, outcome = run_study(load(study(tmp_path, task)), tmp_path / "run")
+    assert outcome.result.parameters.names == ("rate", "height", "noise.x.deviation")
+    assert 0.02 < outcome.result.estimates["noise.x.deviation"] < 0.2  # 0.05 in the data
+
+
 MISTAKES = {
     "no data": ("[sample]\n", HEAD.partition("[data]")[0]),
     "both": ("[sample]\nsampler = 'nuts'\nsurrogate = true\n", HEAD),
     "start": ("[sample]\nstart = { rates = 1.0 }\n", HEAD),
     "sampler": ("[sample]\nsampler = 'nut'\n", HEAD),
     "weights": ("[sample]\nweights = { y = 1.0 }\n", HEAD),
+    "noise": ("[sample.noise.channels.y]\nmodel = 'constant'\n", HEAD),
+    "noise and weights": ("[sample]\nnoise = 'mixed'\nweights = { x = 1.0 }\n", HEAD),
 }
 
 
@@ -97,5 +106,7 @@ def test_mistakes_are_explained(tmp_path: Path) -> None:
 study.toml: [sample], weights: no weight is given for channel 'x'
 study.toml: [sample], weights: unknown channel 'y'; known: x\
 """,
+            "noise": "study.toml: [sample.noise], channels: unknown channel 'y'; known: x",
+            "noise and weights": "study.toml: [sample.noise] cannot be used with weights, which follow from it; leave one of them out",
         }
     )

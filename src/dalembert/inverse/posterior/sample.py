@@ -281,7 +281,10 @@ def _start(
 ) -> np.ndarray:
     """Where the posterior is searched, (parameters,)."""
     own, noise = likely.problem.model.parameters, likely.noise_parameters
+    sizes = dict(zip(noise.names, noise.start.tolist(), strict=True))
     if isinstance(start, Fit):
+        estimated = {} if start.noise is None else start.noise.estimates
+        sizes |= {name: value for name, value in estimated.items() if name in sizes}
         start.needs_one_run("sample")
         vector = own.real_vector({name: start.parameters.mapping(start.values)[name] for name in own.names})
     elif start is not None:
@@ -290,7 +293,7 @@ def _start(
         known = weights is not None or likely.problem.data.deviations is not None
         posed = model if known else without_priors(model)
         vector = identify(posed, data, weights=weights, seed=seed, on_event=on_event, executor=executor).values
-    return np.concatenate([own.clip(vector), noise.start])
+    return np.concatenate([own.clip(vector), noise.clip(noise.vector(sizes))])
 
 
 def _announced(on_event: OnEvent | None) -> OnDraws:

@@ -191,7 +191,8 @@ class Identify(Task):
                 f"[identify], profile: the minimum of the loss {file.identify.loss!r} is no likelihood; leave one of "
                 "the keys out"
             )
-        return [*wrong, *wrong_noise(file, channels, unmatched), *_wrong_population(file), *_wrong_shooting(file)]
+        wrong += wrong_noise(file.identify, self.name, channels)
+        return [*wrong, *_wrong_population(file), *_wrong_shooting(file)]
 
     def plan(self, study: Study) -> str:
         model, data = posed(study)

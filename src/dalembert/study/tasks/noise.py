@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
+from dalembert.errors import unknown
 from dalembert.study.numbers import Number, Seconds
 from dalembert.study.table import StudyTable, checked
 
@@ -76,7 +77,7 @@ class NoiseTable(ChannelNoiseTable):
         return super()._wrong()
 
     def noise(self) -> Any:
-        """The noise as :func:`~dalembert.identify` takes it."""
+        """The noise as :func:`~dalembert.identify` and :func:`~dalembert.sample` take it."""
         if self.channels is None:
             return self.settings()
         return {name: table.settings() for name, table in self.channels.items()}
@@ -91,16 +92,17 @@ Noise = Annotated[NoiseTable | None, BeforeValidator(_table, json_schema_input_t
 """The key ``noise``: the name of a noise model, or a table."""
 
 
-def wrong_noise(file: Any, channels: Collection[str], unmatched: Any) -> list[str]:
-    """Sentences about noise that cannot be."""
-    table = file.identify
+def wrong_noise(table: Any, place: str, channels: Collection[str]) -> list[str]:
+    """Sentences about the noise of a task's table that cannot be; ``place`` is the name of that table."""
     if table.noise is None:
         return []
-    wrong = unmatched(table.noise.channels, channels, "noise", "[identify.noise], channels") if channels else []
+    names = table.noise.channels if channels and table.noise.channels else ()
+    where = f"[{place}.noise], channels"
+    wrong = [unknown("channel", name, channels, where) for name in names if name not in channels]
     if table.weights is not None:
-        wrong.append("[identify.noise] cannot be used with weights, which follow from it; leave one of them out")
-    if table.loss != "linear":
-        wrong.append(f"[identify.noise] cannot be used with the loss {table.loss!r}; leave one of them out")
-    if table.shooting is not None:
-        wrong.append("[identify.noise] cannot be used with [identify.shooting]; leave one of them out")
+        wrong.append(f"[{place}.noise] cannot be used with weights, which follow from it; leave one of them out")
+    if getattr(table, "loss", "linear") != "linear":
+        wrong.append(f"[{place}.noise] cannot be used with the loss {table.loss!r}; leave one of them out")
+    if getattr(table, "shooting", None) is not None:
+        wrong.append(f"[{place}.noise] cannot be used with [{place}.shooting]; leave one of them out")
     return wrong

@@ -16,6 +16,7 @@ from dalembert.study.posing import posed, unknown_names
 from dalembert.study.study import Study
 from dalembert.study.table import StudyTable
 from dalembert.study.tasks import telling
+from dalembert.study.tasks.noise import Noise, wrong_noise
 from dalembert.study.tasks.task import Outcome, Task, loaded_beside
 from dalembert.study.tasks.wrong import needs_parameters, needs_solver, unmatched, unnamed
 
@@ -33,6 +34,11 @@ class SampleTable(StudyTable):
     warmup: int = Field(500, ge=1, description="draws of each chain before them")
     seed: int = Field(0, ge=0, description="of all random numbers")
     weights: dict[str, Number] | None = Field(None, description="weight of each channel; from deviations if not given")
+    noise: Noise = Field(
+        None,
+        description="noise model, or a table: noise whose parameters are sampled too; by default the deviations of the "
+        "data, or a constant one for each channel",
+    )
     start: dict[str, Number] = Field({}, description="where the posterior is large; identified first if not given")
     profile: bool = Field(False, description="whether to make the profile likelihood of each parameter too")
 
@@ -65,8 +71,10 @@ class Sample(Task):
         wrong, table = super().wrong(file), file.sample
         if file.data is None and not file.experiments:
             wrong.append("[sample] needs a [data] table")
-        if channels := measured_channels(file):
+        channels = measured_channels(file)
+        if channels:
             wrong += unmatched(table.weights, channels, "weight", "[sample], weights")
+        wrong += wrong_noise(table, self.name, channels)
         if table.sampler is not None and table.surrogate and table.sampler.kind != "delayed-acceptance":
             wrong.append(
                 f"[sample]: sampler {table.sampler.kind!r} and surrogate are given; a surrogate proposes draws of the "
@@ -102,15 +110,17 @@ class Sample(Task):
         table, tell = study.table, teller(emit, as_record)
         model, data = posed(study)
         weights = telling.weights(table.weights, model, data)
+        noise = None if table.noise is None else table.noise.noise()
         start: Any = {**_starts(model), **table.start} if table.start else None
         told = {}
         if table.profile:
-            start = identify(model, data, weights=weights, seed=table.seed, start=start, on_event=tell)
+            start = identify(model, data, weights=weights, noise=noise, seed=table.seed, start=start, on_event=tell)
             told[telling.PROFILES] = profile(model, data, start, on_event=tell)
         posterior = sample(
             model,
             data,
             weights=weights,
+            noise=noise,
             start=start,
             sampler=None if table.sampler is None else table.sampler.settings(),
             surrogate=getattr(table.surrogate, "settings", lambda: table.surrogate)(),

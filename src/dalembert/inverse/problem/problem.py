@@ -237,7 +237,7 @@ class Problem:
 
     def _gradient_by_adjoint(self, vector: np.ndarray) -> np.ndarray:
         parameters, unit = self.model.parameters, self.search.slope(vector)
-        priors = prior_slopes(parameters, unit).T @ prior_residual(parameters, vector) if self.priors else 0.0
+        priors = prior_slopes(parameters, vector, unit).T @ prior_residual(parameters, vector) if self.priors else 0.0
         return self.slope(vector) * unit + 2 * priors
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 import dalembert.multibody as mb
+from dalembert.parameters import Parameter
 from mechanisms import SECTION
 
 BETWEEN = np.array([0.0, 0.02, 0.0333, 0.08])  # s; the third lies between steps
@@ -21,13 +22,13 @@ def pushed(*, kind: str, **values: complex) -> mb.System:
     return system
 
 
-def pushed_model(kind: str, count: int, **changed) -> mb.TimeResponse:
-    """Its response to the values of the table."""
+def pushed_model(kind: str, count: int, *, deviation: float | None = None, **changed) -> mb.TimeResponse:
+    """Its response to the values of the table, which may have priors of a standard deviation."""
 
     def build(**values: complex) -> mb.System:
         return pushed(kind=kind, **values)
 
-    box = {f"c{k}": (-90.0 + k, 99.0 + 2 * k) for k in range(count)}
+    box = [Parameter(f"c{k}", -90.0 + k, 99.0 + 2 * k, deviation=deviation) for k in range(count)]
     channels = ["rope.end.y", "rope.end.vx", "pin.force_x"]
     given = {"times": BETWEEN, "solver": mb.GeneralizedAlpha(1e-3)} | changed
     return mb.TimeResponse(build, box, channels, **given)

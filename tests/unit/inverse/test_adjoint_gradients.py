@@ -18,6 +18,7 @@ from unknown_loads import pushed_model
 
 TIMES = np.linspace(0.002, 0.07, 20)
 MODEL = pushed_model("spline", 12, times=TIMES)
+WITH_PRIORS = pushed_model("spline", 12, times=TIMES, deviation=3.0)
 VECTOR = MODEL.parameters.start
 
 
@@ -37,14 +38,15 @@ def agree(given: np.ndarray, expected: np.ndarray) -> None:
     np.testing.assert_allclose(given, expected, rtol=0, atol=1e-10 * np.abs(expected).max())
 
 
-def posed() -> Problem:
-    return pose(MODEL, measured(), None, Journal(len(TIMES)))
+def posed(model: da.ForwardModel = MODEL) -> Problem:
+    return pose(model, measured(), None, Journal(len(TIMES)))
 
 
-def test_the_gradient_of_the_fitness() -> None:
-    problem = posed()
+@pytest.mark.parametrize("model", [MODEL, WITH_PRIORS], ids=["data", "data and priors"])
+def test_the_gradient_of_the_fitness(model: da.TimeResponse) -> None:
+    problem = posed(model)
     assert problem.by_adjoint
-    point = problem.search.points(VECTOR)
+    point = problem.search.points(VECTOR + 1.0)
     agree(problem.gradient(point), replace(problem, derivative="direct").gradient(point))
 
 

@@ -130,7 +130,7 @@ class Objects:
     def __init__(self) -> None:
         self._codes: dict[str, bytes] = {}  # by symbol, before they are loaded
         self._loaded: set[str] = set()
-        self._engine: Any = None
+        self._engines: list[Any] = []
         self._lock = threading.RLock()
         self._packaged = False
 
@@ -140,8 +140,7 @@ class Objects:
             self._packaged = True
             own = packaged()
             if own is not None:
-                self._load(own.code)
-                self._loaded.update(own.symbols)
+                self._load(own.code, own.symbols)
 
     def missing(self, kernels: Iterable[Any]) -> list[Any]:
         """Kernels that must be compiled, among these and those that they call."""
@@ -164,10 +163,9 @@ class Objects:
         with self._lock:
             for other in reversed(self._reached([kernel])):
                 code = self._code(other)
-                self._load(self.make(other) if code is None else code)
-                self._loaded.add(other.symbol)
+                self._load(self.make(other) if code is None else code, [other.symbol])
                 self._codes.pop(other.symbol, None)
-            return self._engine.get_function_address(kernel.symbol)
+            return ll.address_of_symbol(kernel.symbol)
 
     def _reached(self, kernels: Iterable[Compilable]) -> list[Compilable]:
         """Kernels that are not loaded among these and those that they call; callers first."""
@@ -187,14 +185,23 @@ class Objects:
             self._codes[kernel.symbol] = code
         return self._codes.get(kernel.symbol)
 
-    def _load(self, code: bytes) -> None:
-        if self._engine is None:
+    def _load(self, code: bytes, symbols: Iterable[str]) -> None:
+        """Load an object, and let others call its symbols.
+
+        Each object has an engine, so that its sections are allocated together: an engine would put some of them into
+        what former objects left, and relative addresses between sections reach only 2 GB.
+        """
+        if not self._engines:
             ll.initialize_native_target()
             ll.initialize_native_asmprinter()
-            machine = ll.Target.from_triple(ll.get_process_triple()).create_target_machine(reloc="pic", jit=True)
-            self._engine = ll.create_mcjit_compiler(ll.parse_assembly(""), machine)
-        self._engine.add_object_file(ll.object_file.ObjectFileRef.from_data(code))
-        self._engine.finalize_object()
+        machine = ll.Target.from_triple(ll.get_process_triple()).create_target_machine(reloc="pic", jit=True)
+        engine = ll.create_mcjit_compiler(ll.parse_assembly(""), machine)
+        engine.add_object_file(ll.object_file.ObjectFileRef.from_data(code))
+        engine.finalize_object()
+        for symbol in symbols:
+            ll.add_symbol(symbol, engine.get_function_address(symbol))
+            self._loaded.add(symbol)
+        self._engines.append(engine)
 
 
 OBJECTS = Objects()

@@ -91,10 +91,10 @@ def test_explanations():
     def at_word(word):
         return explanation(TEXT, TEXT.index(word) + 1)
 
-    assert at_word("viscous").detail == "in N*m*s"
-    assert at_word("viscous").info.startswith("Friction torque per relative angular velocity")
+    assert at_word("viscous =").detail == "in N*m*s"
+    assert at_word("viscous =").info.startswith("Friction torque per relative angular velocity")
     assert at_word("RigidBar").info == "A rigid bar from its start to its end."
-    assert at_word("every").detail == "in s"
+    assert at_word("every =").detail == "in s"
     assert at_word("solver]").info == "Chooses the integrator by the mechanism."
     assert at_word("rod.start") is None
     assert explanation("", 0) is None

@@ -6,7 +6,6 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import log_ndtr, ndtr, ndtri  # scipy.stats takes long to load
 
 from dalembert.priors.prior import SquarePrior, finite, positive, positive_bound
 
@@ -52,9 +51,13 @@ class Normal(SquarePrior):
         return -self.residual(values) / self.deviation
 
     def cumulative(self, values: ArrayLike) -> np.ndarray:
+        from scipy.special import ndtr  # parameters are imported without SciPy
+
         return ndtr(self.residual(values))
 
     def quantile(self, parts: ArrayLike) -> np.ndarray:
+        from scipy.special import ndtri  # parameters are imported without SciPy
+
         return self.mean + self.deviation * ndtri(parts)
 
 
@@ -107,9 +110,13 @@ class LogNormal(SquarePrior):
         return -(self.residual(values) / self.log_deviation + 1) / np.asarray(values)
 
     def cumulative(self, values: ArrayLike) -> np.ndarray:
+        from scipy.special import ndtr  # parameters are imported without SciPy
+
         return ndtr(self.residual(values))
 
     def quantile(self, parts: ArrayLike) -> np.ndarray:
+        from scipy.special import ndtri  # parameters are imported without SciPy
+
         return self.median * np.exp(self.log_deviation * ndtri(parts))
 
 
@@ -158,7 +165,11 @@ class HalfNormal(SquarePrior):
         return -self.residual(values) / self.deviation
 
     def cumulative(self, values: ArrayLike) -> np.ndarray:
+        from scipy.special import log_ndtr  # parameters are imported without SciPy
+
         return -np.expm1(np.log(2) + log_ndtr(-np.maximum(self.residual(values), 0)))
 
     def quantile(self, parts: ArrayLike) -> np.ndarray:
+        from scipy.special import ndtri  # parameters are imported without SciPy
+
         return -self.deviation * ndtri((1 - np.asarray(parts)) / 2)

@@ -253,7 +253,7 @@ class Rod(Joint):
     def lower(self, lowering):
         pair = lowering.pair(self.a, self.b, self.name)
         index = [*pair.slots[:2], *pair.slots[4:6], *lowering.multipliers(self.name, 1)]
-        lowering.add(of(ROD, self.full), index, [pair.distance])
+        lowering.add(of(ROD, self.full), index, [pair.distance], name=self.name)
 
 
 INERTIA = (0.234375, 0.46875, 0.234375)

@@ -203,6 +203,10 @@ SCENES: dict[type, tuple[Callable[..., mb.System], dict]] = {
         lambda v0, v1, v2, v3, **own: driven(mb.Table)(times=[-0.02, 0.03, 0.05, 0.1], values=[v0, v1, v2, v3], **own),
         {"v0": 1.0, "v1": 2.0, "v2": -1.0, "v3": 0.5, "scale": 3.0, "offset": 0.8, "delay": 0.004},
     ),
+    mb.BSpline: (
+        lambda **c: driven(mb.BSpline)(coefficients=list(c.values()), start=-0.01, end=0.12),
+        {"c0": 2.0, "c1": -1.0, "c2": 3.0, "c3": 0.5, "c4": 1.0},
+    ),
     mb.Custom: (pinned, {}),
     mb.GroundPoint: (grounded, {"x": 0.3, "y": -0.4, "angle": 0.2}),
     mb.System: (in_a_field, {"gravity": (0.7, -9.81)}),

@@ -89,7 +89,7 @@ def test_a_fit_with_a_fixed_parameter(dalembert, tmp_path):
 
 def test_a_study_from_a_template(dalembert, tmp_path):
     listed = dalembert("new").stdout.splitlines()
-    assert listed[1].startswith("identify  Parameters from a measured motion: The drag of")
+    assert listed[1].startswith("identify  Parameters from a measured motion: Identify the friction")
     assert listed[-1] == "Begin with one of them by: dalembert new TEMPLATE FOLDER"
     begun = dalembert("new", "identify", "mine/rod")
     assert (begun.returncode, begun.stdout) == (0, "run it by: dalembert run mine/rod/rod.toml\n")

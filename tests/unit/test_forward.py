@@ -121,6 +121,8 @@ def test_a_response_of_another_shape_is_refused() -> None:
         (lambda rate, height: ["a"] * 5, InputError, "{named} returned a list; expected an array of numbers"),
         (lambda rate, height: 1.0, InputError,
          "{named} returned an array of shape (); expected (samples, channels) = (5, 2)"),
+        (lambda rate, height: np.full((5, 2), 1j), InputError,
+         "{named} returned complex numbers for real parameters. Return their real parts"),
         (lambda rate, height: sys.exit(3), SolveError, "SystemExit: 3 ({place})"),
         (lambda rate, height: {}["stiff"], SolveError, "KeyError: 'stiff' ({place})"),
         (lambda rates: None, SolveError,

@@ -131,6 +131,15 @@ class MechanismLowering(ABC):
                 ):
                     raise ModelError(f"{owner}: {name} is {value}; expected finite numbers")
 
+    def _refuse_unnamed_rows(self) -> None:
+        """Raise for a joint without the row by which its forces and its place are known."""
+        for joint in self._system.joints:
+            if joint.name not in self._rows:
+                raise ModelError(
+                    f"joint {joint.name!r}: its 'lower' adds no row of the joint's name. Call lowering.add with "
+                    "name=self.name"
+                )
+
     def _since(self, time: float) -> float:
         """Time from the start of the motion; zero where the two differ by rounding alone."""
         since = time - self._begin
@@ -158,6 +167,7 @@ class MechanismLowering(ABC):
         for component in (*system.joints, *system.loads):
             self._component = component.name
             component.lower(self)
+        self._refuse_unnamed_rows()
         size = len(self._owners)
         tail = np.zeros(size + 1 - n)
         places = list(self._coordinates.values())

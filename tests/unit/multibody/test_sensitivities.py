@@ -20,7 +20,7 @@ OTHERS = {
     "second", "kind", "formulation", "integrals",
 }  # fmt: skip
 #: Times of jumps and of tables, which are fixed numbers.
-FIXED = {(mb.Step, "start"), (mb.Step, "end"), (mb.Table, "times")}
+FIXED = {(mb.Step, "start"), (mb.Step, "end"), (mb.Table, "times"), (mb.BSpline, "start"), (mb.BSpline, "end")}
 #: Fields of a sequence or a mapping, by the values that stand for them in the scene.
 INSIDE = {"points": ["tip"], "coefficients": ["c0", "c1", "c2"], "values": ["v0", "v1", "v2", "v3"]}
 

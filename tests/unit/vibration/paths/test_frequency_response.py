@@ -271,7 +271,7 @@ def test_matrices_of_points_that_are_past_are_let_go() -> None:
 
     def count(point: FollowedPoint) -> None:
         if point.done in (0.1, 1.0):
-            alive[point.done] = sum(isinstance(one, Solution) for one in gc.get_objects())
+            alive[point.done] = sum(type(one) is Solution for one in gc.get_objects())
 
     frequency_response(two_masses(), frequencies, METHOD, on_point=count)
     assert alive[1.0] - alive[0.1] < 5

@@ -25,6 +25,9 @@ INSTALL := $(PIP) install --no-compile $(QUIETLY)
 
 BENCH_PIP := .venv-bench/bin/python -m pip install --quiet --disable-pip-version-check --constraint .venv-bench/constraints.txt
 
+# The tests start hundreds of processes, which would all compile what they import.
+unexport PYTHONDONTWRITEBYTECODE
+
 help:
 	@echo "make demo        identify a flexible double pendulum from measured motion, and write its report"
 	@echo "make names       write the index of components and the stubs of public names from the sources"

@@ -138,13 +138,17 @@ class Worker:
         def turn() -> None:
             if not answer.set_running_or_notify_cancel():
                 return
+            self._computed = mine
+            result, failure = None, None
             try:
-                self._computed = mine
-                answer.set_result(self._exchange(request) if self._newest.get(subject) is mine else None)
+                result = self._exchange(request) if self._newest.get(subject) is mine else None
             except Exception as error:
-                answer.set_exception(error)
-            finally:
-                self._computed = None
+                failure = error
+            self._computed = None  # before the answer, so that an answered request holds up no other one
+            if failure is None:
+                answer.set_result(result)
+            else:
+                answer.set_exception(failure)
 
         self._turns.put(turn)
         return await asyncio.wrap_future(answer)

@@ -61,4 +61,4 @@ class JointState(Joint):
         kind = STATED_ANGLE if self.coordinate == ANGLE[0][0] else STATED_DISPLACEMENT
         pair = lowering.pair(self.a, self.b, self.name, self.axes)
         index = pair.slots + lowering.multipliers(self.name, 1)
-        lowering.add(kind, index, pair.data, [*pair.integers, lowering.signal(self.course)])
+        lowering.add(kind, index, pair.data, [*pair.integers, lowering.signal(self.course)], self.name)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from numba.core import types
+from numba.core import event, ir, types
 from numba.core.base import BaseContext
 from numba.core.compiler import CompilerBase, Flags
 from numba.core.compiler_machinery import PassManager
@@ -126,9 +126,37 @@ def _lifetimes(self: Any, emit_dels: bool = False, extend_lifetimes: bool = Fals
         self._insert_var_dels(extend_lifetimes=extend_lifetimes)
 
 
+_ATOMS = frozenset({str, int, float, bool, type(None), ir.Loc})
+_list_variables: Any = ir.Inst._rec_list_vars
+_start_event, _end_event = event.start_event, event.end_event
+
+
+def _variables(self: Any, value: Any) -> list[Any]:
+    """Variables in an instruction or in its parts. Numba's tries each part against five types."""
+    found: list[Any] = []
+    _collect(value, found)
+    return found
+
+
+def _collect(value: Any, found: list[Any]) -> None:
+    kind = type(value)
+    if kind is ir.Var:
+        found.append(value)
+    elif kind in (dict, list, tuple):
+        for part in value.values() if kind is dict else value:
+            if type(part) not in _ATOMS:
+                _collect(part, found)
+    elif isinstance(value, ir.Inst):
+        found += value.list_vars()
+
+
+def _no_event(kind: Any, data: Any = None, exc_details: Any = None) -> None:
+    """Numba reports each call of LLVM to listeners: there are none."""
+
+
 @contextmanager
 def hastened() -> Iterator[None]:
-    """Compare flags, resolve calls, read arrays and analyse lifetimes at less cost in this block.
+    """Compare flags, resolve calls, read arrays, list variables and analyse lifetimes at less cost in this block.
 
     The optimised code stays the same.
     """
@@ -137,9 +165,14 @@ def hastened() -> Iterator[None]:
     flags.__eq__, flags.__hash__ = _same_flags, _flags_hash
     BaseFunction.get_call_type, arrayobj.make_array = _call_type, _array_fields
     BaseContext.make_complex, PostProcessor.run = _complex_parts, _lifetimes
+    instructions: Any = ir.Inst
+    instructions._rec_list_vars = _variables
+    event.start_event = event.end_event = _no_event
     try:
         yield
     finally:
         flags.__eq__, flags.__hash__ = usual
         BaseFunction.get_call_type, arrayobj.make_array = _resolve, _make_array
         BaseContext.make_complex, PostProcessor.run = _make_complex, _post_process
+        instructions._rec_list_vars = _list_variables
+        event.start_event, event.end_event = _start_event, _end_event

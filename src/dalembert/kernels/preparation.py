@@ -9,10 +9,11 @@ import tempfile
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from itertools import groupby
+from itertools import chain, groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from dalembert.kernels.garbage import rarely_collected
 from dalembert.kernels.objects import OBJECTS, cached_path, is_writable
 
 if TYPE_CHECKING:
@@ -48,13 +49,11 @@ def _compile(missing: list["Compiled"], progress: Progress) -> None:
         threads = [threading.Thread(target=_serve, args=(tasks, folder, done)) for _ in range(workers)]
         for thread in threads:
             thread.start()
-        for kernel in own:
-            OBJECTS.make(kernel)
-            done(kernel)
-        while (group := _next(tasks)) is not None:
-            for kernel in group:
+        with rarely_collected() as compiled:
+            for kernel in chain(own, _taken(tasks)):
                 OBJECTS.make(kernel)
                 done(kernel)
+                compiled()
         for thread in threads:
             thread.join()
 
@@ -69,6 +68,11 @@ class _Counter:
         with self._lock:
             self._count += 1
             self._progress(self._count, self._total, kernel.symbol)
+
+
+def _taken(tasks: "queue.SimpleQueue[list[Compiled]]") -> "Iterator[Compiled]":
+    while (group := _next(tasks)) is not None:
+        yield from group
 
 
 def _next(tasks: "queue.SimpleQueue[list[Compiled]]") -> "list[Compiled] | None":
@@ -115,20 +119,22 @@ def _serve(tasks: "queue.SimpleQueue[list[Compiled]]", folder: Path | None, done
 
 def work() -> None:
     """Read kernels and files from the standard input, a pair a line, and compile each kernel into its file."""
-    from dalembert.kernels.kernel import find
-    from dalembert.kernels.objects import write_object
+    with rarely_collected() as compiled:
+        from dalembert.kernels.kernel import find
+        from dalembert.kernels.objects import write_object
 
-    for line in sys.stdin:
-        origin, digest, path = json.loads(line)
-        try:
-            kernel = find(origin)
-            assert kernel.digest == digest, "the source has changed since the other process read it"
-            write_object(Path(path), kernel.object_code())
-            answer = "done"
-        except Exception:  # whatever it is: the process that asked compiles it itself, and reports the reason
-            answer = "failed"
-        sys.stdout.write(answer + "\n")
-        sys.stdout.flush()
+        for line in sys.stdin:
+            origin, digest, path = json.loads(line)
+            try:
+                kernel = find(origin)
+                assert kernel.digest == digest, "the source has changed since the other process read it"
+                write_object(Path(path), kernel.object_code())
+                answer = "done"
+            except Exception:  # whatever it is: the process that asked compiles it itself, and reports the reason
+                answer = "failed"
+            sys.stdout.write(answer + "\n")
+            sys.stdout.flush()
+            compiled()
 
 
 def _cores() -> int:

@@ -9,7 +9,6 @@ from functools import lru_cache
 from typing import Any, Protocol
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from dalembert.arguments import Checked
 from dalembert.errors import InputError, require_known
@@ -212,7 +211,7 @@ class Table(Signal):
         ends = times[[0, -1]]
         slopes = np.array([0.0, np.inf])
         if self.integrals == 0:
-            slopes = np.abs(CubicSpline(times, values, bc_type="natural")(ends, 1)) * (ends[1] - ends[0])
+            slopes = np.abs(_natural_spline(times, values)(ends, 1)) * (ends[1] - ends[0])
         steep = slopes > 1e-6 * np.ptp(values)
         return tuple(float(end + np.real(self.delay)) for end in ends[steep])
 
@@ -302,6 +301,12 @@ class Measured(Protocol):
     def continuous(self) -> np.ndarray: ...
 
 
+def _natural_spline(x: np.ndarray, y: np.ndarray) -> Any:
+    from scipy.interpolate import CubicSpline  # mechanisms without tables start without it
+
+    return CubicSpline(x, y, bc_type="natural")
+
+
 @lru_cache(maxsize=32)
 def _pieces(times: bytes, values: bytes, char: str, kind: str, integrals: int) -> np.ndarray:
     """Coefficients of a table's polynomials, from each knot on, rising powers first, shape (points - 1, order).
@@ -310,7 +315,7 @@ def _pieces(times: bytes, values: bytes, char: str, kind: str, integrals: int) -
     """
     x, y = np.frombuffer(times), np.frombuffer(values, dtype=char)
     if kind == "cubic":
-        pieces = CubicSpline(x, y, bc_type="natural").c[::-1].T
+        pieces = _natural_spline(x, y).c[::-1].T
     elif kind == "linear":
         pieces = np.stack([y[:-1], np.diff(y) / np.diff(x)], axis=1)
     else:

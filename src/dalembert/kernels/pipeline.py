@@ -8,9 +8,12 @@ from contextlib import contextmanager
 from typing import Any
 
 from numba.core import event, ir, types
+from numba.core import lowering as _lowering
+from numba.core import typeinfer as _typeinfer
 from numba.core.base import BaseContext
 from numba.core.compiler import CompilerBase, Flags
 from numba.core.compiler_machinery import PassManager
+from numba.core.errors import NumbaError
 from numba.core.postproc import PostProcessor, VariableLifetime
 from numba.core.transforms import canonicalize_cfg
 from numba.core.typed_passes import (
@@ -37,6 +40,8 @@ from numba.np import arrayobj as _arrayobj
 from dalembert.kernels.powers import IntegerPowers
 
 arrayobj: Any = _arrayobj
+lowering: Any = _lowering
+typeinfer: Any = _typeinfer
 _PASSES = (
     TranslateByteCode, FixupArgs, IRProcessing, IntegerPowers, RewriteSemanticConstants, DeadBranchPrune,
     GenericRewrites, ReconstructSSA, NopythonTypeInference, PreLowerStripPhis, InlineOverloads, IRLegalization,
@@ -150,6 +155,25 @@ def _collect(value: Any, found: list[Any]) -> None:
         found += value.list_vars()
 
 
+_error_context = lowering.new_error_context
+
+
+class _ErrorContext:
+    """What Numba adds to the message of an error, without a generator for each instruction."""
+
+    __slots__ = ("_arguments", "_text")
+
+    def __init__(self, text: str, *arguments: Any, **named: Any) -> None:
+        self._text, self._arguments = text, (arguments, named)
+
+    def __enter__(self) -> None: ...
+
+    def __exit__(self, kind: Any, error: Any, trace: Any) -> None:
+        if isinstance(error, NumbaError):
+            positional, named = self._arguments
+            error.add_context(self._text.format(*positional, **named))
+
+
 def _no_event(kind: Any, data: Any = None, exc_details: Any = None) -> None:
     """Numba reports each call of LLVM to listeners: there are none."""
 
@@ -168,6 +192,7 @@ def hastened() -> Iterator[None]:
     instructions: Any = ir.Inst
     instructions._rec_list_vars = _variables
     event.start_event = event.end_event = _no_event
+    lowering.new_error_context = typeinfer.new_error_context = _ErrorContext
     try:
         yield
     finally:
@@ -176,3 +201,4 @@ def hastened() -> Iterator[None]:
         BaseContext.make_complex, PostProcessor.run = _make_complex, _post_process
         instructions._rec_list_vars = _list_variables
         event.start_event, event.end_event = _start_event, _end_event
+        lowering.new_error_context = typeinfer.new_error_context = _error_context

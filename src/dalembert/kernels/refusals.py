@@ -4,6 +4,7 @@ import dis
 import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from types import CodeType
 
@@ -47,14 +48,22 @@ def refusals(function: Callable) -> Iterator[None]:
 def _refuse_statements(function: Callable) -> None:
     """Raise for statements that compiled code could only ignore, in a function or in one that it calls."""
     for own in inner_functions(function):  # type: ignore[arg-type] - a Python function
-        for code in _codes(own.__code__):
-            for instruction in dis.get_instructions(code):
-                line = instruction.positions.lineno if instruction.positions else code.co_firstlineno
-                where = f"{code.co_filename}, line {line}, in {own.__name__}"
-                if instruction.opname == "RAISE_VARARGS":
-                    raise ModelError(f"{where}: {_RAISES}")
-                if instruction.opname == "LOAD_GLOBAL" and instruction.argval in _TALKS:
-                    raise ModelError(f"{where}: {_PRINTS.format(instruction.argval)}")
+        if refused := _refused(own.__code__, own.__name__):
+            raise ModelError(refused)
+
+
+@cache
+def _refused(function: CodeType, name: str) -> str:
+    """What is wrong with the first such statement of a function, or an empty text."""
+    for code in _codes(function):
+        for instruction in dis.get_instructions(code):
+            line = instruction.positions.lineno if instruction.positions else code.co_firstlineno
+            where = f"{code.co_filename}, line {line}, in {name}"
+            if instruction.opname == "RAISE_VARARGS":
+                return f"{where}: {_RAISES}"
+            if instruction.opname == "LOAD_GLOBAL" and instruction.argval in _TALKS:
+                return f"{where}: {_PRINTS.format(instruction.argval)}"
+    return ""
 
 
 def _codes(code: CodeType) -> Iterator[CodeType]:

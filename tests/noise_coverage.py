@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -53,13 +54,29 @@ METHODS: dict[str, Callable[[da.Measurements, da.Fit], Intervals]] = {"deviation
 """Ways to intervals by name; another one is one more function."""
 
 
+def sampled(case: Case, data: da.Measurements, seed: int) -> Intervals:
+    """Intervals of the posterior with uniform priors between the bounds."""
+    settings: dict[str, Any] = {"sampler": da.NUTS(), "chains": 1, "draws": 400, "warmup": 150}
+    return da.sample(DECAY, data, noise=case.model, start=TRUTH, seed=seed, **settings).intervals(LEVEL)
+
+
+def contains(
+    case: Case, seed: int, methods: Mapping[str, Callable] = METHODS, *, posterior: bool = False
+) -> dict[tuple[str, str], bool]:
+    """Whether the interval of each method and parameter contains the truth, for the noise of a seed."""
+    data = da.Measurements.of(TIMES, {"x": EXACT + case.noise(seed)})
+    fit = da.identify(DECAY, data, noise=case.model, starts=1, horizon=None, start=TRUTH)
+    found = {method: intervals(data, fit) for method, intervals in methods.items()}
+    if posterior:
+        found["posterior"] = sampled(case, data, seed)
+    return {
+        (method, name): intervals[name][0] <= TRUTH[name] <= intervals[name][1]
+        for method, intervals in found.items()
+        for name in TRUTH
+    }
+
+
 def covered(case: Case, seeds: range, methods: Mapping[str, Callable] = METHODS) -> dict[tuple[str, str], float]:
     """Return the share of seeds in which the interval of each method and parameter contains the truth."""
-    hits = {(method, name): 0 for method in methods for name in TRUTH}
-    for seed in seeds:
-        data = da.Measurements.of(TIMES, {"x": EXACT + case.noise(seed)})
-        fit = da.identify(DECAY, data, noise=case.model, starts=1, horizon=None, start=TRUTH)
-        for method, intervals in methods.items():
-            for name, (lower, upper) in intervals(data, fit).items():
-                hits[method, name] += lower <= TRUTH[name] <= upper
-    return {key: count / len(seeds) for key, count in hits.items()}
+    found = [contains(case, seed, methods) for seed in seeds]
+    return {key: float(np.mean([one[key] for one in found])) for key in found[0]}

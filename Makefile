@@ -10,6 +10,7 @@ DEMO_STUDY := studies/flexible-pendulum/identify.toml
 DEMO_RUN := runs/demo
 EVIDENCE := build/evidence.json
 ALL := slow or not slow
+RECORDING = $(shell grep -rl record_evidence tests --include='test_*.py')
 
 # The first of these that runs, is new enough and can make an environment; PYTHON=... on the command line wins.
 CANDIDATES := python3.13 python3.12 python3.11 python3 python
@@ -78,7 +79,7 @@ verify: .venv/verify.stamp checked
 	$(BIN)/python docs/validation.py $(EVIDENCE) --check
 
 validation: .venv/verify.stamp kernels
-	$(BIN)/pytest -n auto --dist loadfile tests -m "$(ALL)" --evidence=$(EVIDENCE)
+	$(BIN)/pytest -n auto --dist loadfile $(RECORDING) -m "$(ALL)" --evidence=$(EVIDENCE)
 	$(BIN)/python docs/validation.py $(EVIDENCE)
 
 docs: .venv/docs.stamp

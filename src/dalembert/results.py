@@ -8,6 +8,7 @@ from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from dalembert.contents import Contents
+from dalembert.errors import DataError
 from dalembert.files import read_dataset, write_contents
 from dalembert.findings import Finding, stored_findings, unclassified
 from dalembert.notebook_display import Displayed
@@ -72,9 +73,16 @@ class Result(Displayed):
         Raises
         ------
         DataError
-            For a file that is not there, or holds something else.
+            For a file that is not there, holds something else, or was written by another version.
         """
-        return cls.from_xarray(read_dataset(path, form=cls.FORMAT, expected=f"a result written by {cls.__name__}.save"))
+        dataset = read_dataset(path, form=cls.FORMAT, expected=f"a result written by {cls.__name__}.save")
+        try:
+            return cls.from_xarray(dataset)
+        except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:  # fields of other code
+            raise DataError(
+                f"{path}: this version cannot read the result ({type(error).__name__}: {error}). Run the study again, "
+                "or read the file by the version that wrote it"
+            ) from error
 
     def figures(self, *beside: object, **options: Any) -> dict[str, Any]:
         """Plotly figures by name; arguments as those of :func:`dalembert.report.figures`."""

@@ -158,7 +158,7 @@ def curves_of(folder: RunFolder) -> Iterator[Curve]:
         with h5py.File(folder.result) as file:
             is_fit = file.attrs.get("format") == Fit.FORMAT
         yield from _of_fit(Fit.load(folder.result)) if is_fit else _of_dataset(folder.result)
-    except (DalembertError, OSError):  # no result, or a damaged one
+    except (DalembertError, OSError, ValueError, KeyError):  # no result, or a damaged one
         return
 
 

@@ -2,9 +2,14 @@
 
 import csv
 import io
+import json
+import shutil
 
+import h5py
 import pytest
 
+from dalembert.errors import DataError
+from dalembert.inverse import Fit
 from dalembert.report import report
 from dalembert.studio.runs.compare_page import comparison_file
 from dalembert.studio.runs.comparison import RunComparison, curves_of
@@ -56,3 +61,16 @@ def test_the_values_as_csv(root):
 @pytest.mark.parametrize("names", [[], ["nothing"]])
 def test_runs_that_are_not_there(root, names):
     assert comparison_file(Workspace(root), names).status_code == 404
+
+
+def test_a_run_of_other_code_leaves_the_page_of_the_others(root):
+    shutil.copytree(root / "runs" / "coarse", root / "runs" / "foreign")
+    folder = Workspace(root).run("foreign")
+    with h5py.File(folder.result, "a") as file:
+        file.attrs["settings"] = json.dumps({**json.loads(file.attrs["settings"]), "parameters": [{"other": 1}]})
+    with pytest.raises(DataError, match=r"this version cannot read the result .*\. Run the study again, or read"):
+        Fit.load(folder.result)
+    answer = comparison_file(Workspace(root), ["coarse", "foreign"])
+    assert answer.status_code == 200
+    assert "responses-1" in bytes(answer.body).decode()
+    shutil.rmtree(folder.path)

@@ -74,6 +74,9 @@ def unchanged(error: Exception) -> str:
     return str(error).replace(_BEGUN, _UNCHANGED)
 
 
+_MOST_SHOWN, _FEW_SHOWN = 60, 12  # names in a sentence: all of them, or the first ones of many
+
+
 def unknown(what: str, given: object, known: Iterable[str], where: str = "") -> str:
     """Sentence for an unknown name, with the closest known ones.
 
@@ -90,7 +93,8 @@ def unknown(what: str, given: object, known: Iterable[str], where: str = "") -> 
     prefix = f"{where}: " if where else ""
     if close:
         return f"{prefix}unknown {what} {given!r}; did you mean {' or '.join(map(repr, close))}?"
-    return f"{prefix}unknown {what} {given!r}; known: {', '.join(names) or 'none'}"
+    shown = names if len(names) <= _MOST_SHOWN else [*names[:_FEW_SHOWN], f"and {len(names) - _FEW_SHOWN} more"]
+    return f"{prefix}unknown {what} {given!r}; known: {', '.join(shown) or 'none'}"
 
 
 def require_known(what: str, given: object, known: Iterable[str], where: str = "") -> None:

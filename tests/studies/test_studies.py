@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.interpolate import BSpline
 
 from dalembert.data import read_bands
 from dalembert.study import Study, load, plan, run_study
@@ -61,6 +62,11 @@ def found(study: Study, outcome: Outcome, row: dict[str, Any]) -> float:
             return float(np.abs(getattr(outcome, "told")["time_comparison"].differences).max())  # noqa: B009
         case "frequency_response" | "backbone" | "track_resonance":
             return outcome.best["values"][quantity]
+        case "regularise" if quantity == "rms of history":
+            truth = np.loadtxt(study.path.parent / row["table"], delimiter=",", skiprows=1)
+            return history_error(getattr(outcome, "result").values, truth)  # noqa: B009
+        case "regularise":
+            return outcome.best["values"][quantity]
         case "propagate":
             return bounded(study, getattr(outcome, "result"), row)  # noqa: B009
         case "simulate":
@@ -74,6 +80,13 @@ def found(study: Study, outcome: Outcome, row: dict[str, Any]) -> float:
             assert curve.values[sample] == pytest.approx(row["at"], abs=1e-9)
             return float(curve.responses[sample, curve.channels.index(quantity)])
     raise AssertionError(study.task)
+
+
+def history_error(coefficients: np.ndarray, truth: np.ndarray) -> float:
+    """Rms difference of a history from 0 to 2 s from a table of times and values, without its ends."""
+    knots = (np.arange(len(coefficients) + 4) - 3) * 2.0 / (len(coefficients) - 3)
+    error = BSpline(knots, coefficients, 3)(truth[:, 0]) - truth[:, 1]
+    return float(np.sqrt(np.mean(error[10:-10] ** 2)))
 
 
 def bounded(study: Study, result: Any, row: dict[str, Any]) -> float:

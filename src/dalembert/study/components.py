@@ -15,14 +15,25 @@ from operator import or_
 from types import MappingProxyType
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import AfterValidator, Discriminator, Field, Tag, create_model
+from pydantic import (
+    AfterValidator,
+    Discriminator,
+    Field,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    Tag,
+    ValidationInfo,
+    create_model,
+)
+from pydantic_core import CoreSchema, core_schema
 
+from dalembert.study.context import Context
 from dalembert.study.functions import FunctionName
 from dalembert.study.meanings import explained, meanings
 from dalembert.study.numbers import fixed, number
 from dalembert.study.places import JOINT_KEY
 from dalembert.study.places import place as planar_place
-from dalembert.study.table import Name, StudyTable, checked, told_apart
+from dalembert.study.table import Name, StudyTable, checked, problem, told_apart
 
 FORM = "form"  # the key for an argument that is called kind, since the key kind names the dataclass
 _PLACES = {"Point", "GroundPoint", "Ground"}
@@ -205,8 +216,27 @@ def _plain(hint: Any, numeric: Any, part: Callable[[str], Any]) -> Any:
     if _is_mapping(origin):
         return dict[str, _plain(arguments[1], numeric, part)]
     if _is_list(hint):
-        return list[_plain(arguments[0], numeric, part)]
+        entry = _plain(arguments[0], numeric, part)
+        return Annotated[list[entry], _OrSeries()] if entry is numeric else list[entry]
     return part(getattr(hint, "__name__", "")) or hint
+
+
+class _OrSeries:
+    """A list of numbers may also be the name of a series of parameters."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        def read(value: Any, info: ValidationInfo) -> Any:
+            series = info.context.series if isinstance(info.context, Context) else {}
+            if isinstance(value, str) and value not in series:
+                raise problem(
+                    f"{value!r} was given; expected a list of numbers, or the name of a series: a parameter with count"
+                )
+            return list(series[value]) if isinstance(value, str) else value
+
+        return core_schema.with_info_before_validator_function(read, handler(source))
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"anyOf": [handler(schema), {"type": "string"}]}
 
 
 def _either(kinds: list[Any], lists: list[bool]) -> Any:

@@ -16,6 +16,8 @@ class Context:
         Files named in the study are relative to it.
     names : frozenset of str
         Parameters and constants, which an expression may use.
+    series : mapping of str to tuple of str
+        Names of the parameters of each series, which a list of numbers may name as a whole.
     files : mapping of str to Path
         Where a file named in the study lies if not relative to the folder: a run folder keeps copies.
     used : dict of str to Path
@@ -24,6 +26,7 @@ class Context:
 
     folder: Path = field(default_factory=Path)
     names: frozenset[str] = frozenset()
+    series: dict[str, tuple[str, ...]] = field(default_factory=dict)
     files: dict[str, Path] = field(default_factory=dict)
     used: dict[str, Path] = field(default_factory=dict)
     _keys: dict[int, tuple[str, ...]] = field(default_factory=dict)

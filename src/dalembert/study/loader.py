@@ -11,6 +11,7 @@ from pydantic import ValidationError
 from dalembert.errors import InputError, no_text, unknown
 from dalembert.study.basics import LARGEST
 from dalembert.study.context import Context
+from dalembert.study.parameters import series_in
 from dalembert.study.schema import study_file, words_of
 from dalembert.study.sentences import mistakes
 from dalembert.study.spaces import elsewhere, is_in_space
@@ -69,7 +70,8 @@ def load(
     _refuse_parts(document, path)
     shared = _with_model_file(document, context, path)
     names = {name for table in ("parameters", "constants") for name in _table(document, table)}
-    context.names = frozenset(names)
+    context.series = series_in(_table(document, "parameters"))
+    context.names = frozenset(names - set(context.series)).union(*context.series.values())
     try:
         file = _validated(document, context)
     except ValidationError as error:

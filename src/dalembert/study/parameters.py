@@ -16,6 +16,8 @@ from dalembert.study.priors import CorrelationTable, PriorTable, prior
 from dalembert.study.table import StudyTable, problem
 from dalembert.units import is_quantity, is_si, symbol
 
+MOST = 10_000
+"""Parameters of a series."""
 _NUMBERS = ("lower", "upper", "start", "scale", "deviation")
 
 
@@ -42,6 +44,13 @@ class ParameterTable(StudyTable):
     )
     prior: PriorTable | None = Field(
         None, description="distribution of the true value, known before the measurement; uniform if not given"
+    )
+    count: int | None = Field(
+        None,
+        ge=2,
+        le=MOST,
+        description="makes a series of parameters NAME_1, NAME_2 and so on, for a list of numbers that has the name: "
+        "coefficients = 'NAME'",
     )
 
     def _wrong(self) -> list[str]:
@@ -86,6 +95,32 @@ class ParameterTable(StudyTable):
         numbers: dict[str, Any] = {key: self.number(key) for key in _NUMBERS}
         known = self.prior and prior(self.prior, (numbers["lower"], numbers["upper"]), self._quantity)
         return Parameter(name, unit=self.symbol or "", log=self.log, prior=known, **numbers)
+
+
+def series_in(tables: Mapping[str, Any]) -> dict[str, tuple[str, ...]]:
+    """Names of the parameters of each series, from the tables of a document.
+
+    >>> series_in({"force": {"lower": -9, "upper": 9, "count": 3}, "mass": {"lower": 1, "upper": 2}})
+    {'force': ('force_1', 'force_2', 'force_3')}
+    """
+    counts = {name: table.get("count") for name, table in tables.items() if isinstance(table, dict)}
+    return {
+        name: tuple(f"{name}_{k + 1}" for k in range(count))
+        for name, count in counts.items()
+        if isinstance(count, int) and 2 <= count <= MOST
+    }
+
+
+def with_series(tables: dict[str, ParameterTable]) -> dict[str, ParameterTable]:
+    """The tables of single parameters, those of a series in place of its own."""
+    found: dict[str, ParameterTable] = {}
+    for name, table in tables.items():
+        own = [name] if table.count is None else [f"{name}_{k + 1}" for k in range(table.count)]
+        both = [one for one in own if one in found or (one != name and one in tables)]
+        if both:
+            raise problem(f"{both[0]!r} is a parameter and one of the series {name!r}; rename one of the two")
+        found |= dict.fromkeys(own, table.model_copy(update={"count": None}))
+    return found
 
 
 def parameters_of(tables: Mapping[str, ParameterTable], correlations: Sequence[CorrelationTable]) -> Parameters:

@@ -10,7 +10,7 @@ from dalembert.study.data_table import BandsTable, DataTable
 from dalembert.study.experiments import ExperimentTable, SensorTable, expanded, wrong_experiments
 from dalembert.study.inputs import InputTable, wrong_inputs
 from dalembert.study.model_table import ModelTable
-from dalembert.study.parameters import ParameterTable, check_names, parameters_of, read_constants
+from dalembert.study.parameters import ParameterTable, check_names, parameters_of, read_constants, with_series
 from dalembert.study.priors import CorrelationTable
 from dalembert.study.table import Name, StudyTable, problem
 
@@ -36,7 +36,7 @@ class StudyFile(StudyTable):
         BeforeValidator(check_names),
         WithJsonSchema({"type": "object", "additionalProperties": {"type": ["number", "string"]}}),
     ] = Field({}, description="named numbers: '400 mm', or expressions of parameters and of constants before them")
-    parameters: Annotated[dict[str, ParameterTable], BeforeValidator(check_names)] = Field(
+    parameters: Annotated[dict[str, ParameterTable], BeforeValidator(check_names), AfterValidator(with_series)] = Field(
         {}, description="numbers that a task varies, by name"
     )
     prior_correlations: list[CorrelationTable] = Field([], description="of normal priors of several parameters")

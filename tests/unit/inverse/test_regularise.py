@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from inline_snapshot import snapshot
+from scipy.optimize import least_squares
 
 import dalembert as da
 from dalembert.errors import InputError
@@ -32,6 +33,20 @@ def test_a_linear_model_has_the_solution_of_the_normal_equations(order: int) -> 
     np.testing.assert_allclose(fit.values, expected, rtol=0, atol=1e-6)
     np.testing.assert_allclose(fit.deviations, np.sqrt(np.diag(np.linalg.inv(normal))), rtol=1e-6)
     assert fit.rule == "given"
+    assert not fit.findings
+
+
+def test_a_given_weight_has_the_minimum_of_the_nonlinear_problem() -> None:
+    """Against SciPy's least squares of the residuals with the rows of the penalty below them."""
+    rows = 0.5 * np.diff(np.eye(COUNT), n=2, axis=0) / MODEL.parameters.scale
+
+    def residuals(vector: np.ndarray) -> np.ndarray:
+        response = MODEL.evaluate(vector[None]).values[0, :, 0]
+        return np.concatenate([(response - measured().values[:, 0]) / 1e-3, rows @ vector])
+
+    other = least_squares(residuals, np.zeros(COUNT), xtol=1e-14, ftol=1e-14, gtol=1e-10)
+    fit = da.regularise(MODEL, measured(), weight=0.5)
+    np.testing.assert_allclose(fit.values, other.x, rtol=0, atol=0.05 * fit.deviations.max())
     assert not fit.findings
 
 

@@ -287,7 +287,7 @@ horizon = "growin"
             ("[solver]", "[sweep]\nat=1\nchannels=['x']\nover.theta=[1.0]\n[solver]"),
             [
                 "study.toml: [simulate] and [sweep] are given; a study has one task, one of "
-                "[simulate], [identify], [sample], [sweep], [identify_inertias], [propagate], [global_sensitivity], [identify_bands], [screening], "
+                "[simulate], [identify], [sample], [sweep], [identify_inertias], [propagate], [regularise], [global_sensitivity], [identify_bands], [screening], "
                 "[identify_set], [design], [exciting_trajectory], "
                 "[work_precision], [frequency_response], [track_resonance], [backbone], [modes]"
             ],
@@ -296,7 +296,7 @@ horizon = "growin"
             ('[simulate]\nend = "1 s"', ""),
             [
                 "study.toml: no task is given; a study has one task, one of "
-                "[simulate], [identify], [sample], [sweep], [identify_inertias], [propagate], [global_sensitivity], [identify_bands], [screening], "
+                "[simulate], [identify], [sample], [sweep], [identify_inertias], [propagate], [regularise], [global_sensitivity], [identify_bands], [screening], "
                 "[identify_set], [design], [exciting_trajectory], "
                 "[work_precision], [frequency_response], [track_resonance], [backbone], [modes]"
             ],

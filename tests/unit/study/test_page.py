@@ -59,6 +59,7 @@ TABLES = {
     "CorrelationTable": ["prior_correlations"],
     "GlobalSensitivityTable": ["global_sensitivity"],
     "ScreeningTable": ["screening"],
+    "RegulariseTable": ["regularise"],
     "SampleTable": ["sample"],
     "nuts": ["sample"],
     "affine-invariant": ["sample"],

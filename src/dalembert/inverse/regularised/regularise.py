@@ -22,6 +22,7 @@ from dalembert.optimize import Minimiser
 
 L_CURVE, DISCREPANCY, GIVEN = "l-curve", "discrepancy", "given"
 _SETTLED = 0.05  # relative change of the weight at which the rounds end
+_CONVERGED = 1e-3  # relative decrease of the penalised misfit that the linearised problem promises
 _HALVINGS = 8  # of the way to the linear solution
 _REACH = 1e3  # standard deviations from the linear solution that the minimiser may go
 _STEPS = {"maxiter": 30, "ftol": 1e-10, "gtol": 1e-6}
@@ -77,7 +78,8 @@ def regularise(
     -----
     All sensitivities are computed once a round, for the L-curve of the linearised problem and as a preconditioner. With
     it the minimiser L-BFGS-B needs few gradients, which come from the adjoint where the model has one. Rounds end when
-    the weight no longer changes. Source: Hansen, Discrete Inverse Problems (2010).
+    the weight no longer changes, and the linearised problem would lower the sum by less than 0.1 %. Source: Hansen,
+    Discrete Inverse Problems (2010).
 
     Examples
     --------
@@ -124,15 +126,15 @@ def _identified(
     problem: Problem, vector: np.ndarray, penalty: np.ndarray, smooth: tuple[str, ...], weight: float | str,
     rounds: int,
 ) -> RegularisedFit:  # fmt: skip
-    scale, before, settled = problem.model.parameters.scale, np.nan, False
+    scale, before, settled, left = problem.model.parameters.scale, np.nan, False, np.inf
     many, corner, discrepancy = _linearised(problem, vector, penalty)
     mu = _weight(weight, corner, discrepancy)
     for _ in range(rounds):
         vector = scale * _minimised(problem, many, mu, vector / scale)
         many, corner, discrepancy = _linearised(problem, vector, penalty)
         before, mu = mu, _weight(weight, corner, discrepancy)
-        settled = abs(mu - before) <= _SETTLED * before
-        if settled:
+        settled, left = abs(mu - before) <= _SETTLED * before, many.decrease(vector / scale, mu)
+        if settled and left <= _CONVERGED:
             break
     residual = many.matrix @ (vector / scale) - many.right
     effective = many.effective(mu)
@@ -158,18 +160,34 @@ def _identified(
         effective=effective,
         simulations=problem.journal.simulations,
         provenance=provenance(problem.model, None, data=problem.data.fingerprint, weight=weight),
-        findings=() if settled else (_unsettled(before, mu),),
+        findings=_findings(before, mu, left) if not settled or left > _CONVERGED else (),
     )
 
 
-def _unsettled(before: float, mu: float) -> Finding:
-    return Finding(
-        "weight-not-settled",
-        "warning",
-        {"before": before, "weight": mu},
-        f"The weight of the penalty still changed from {before:.3g} to {mu:.3g} in the last round.",
-        "Start from these values, or give the weight.",
-    )
+def _findings(before: float, mu: float, left: float) -> tuple[Finding, ...]:
+    """What was still moving in the last round."""
+    found = []
+    if abs(mu - before) > _SETTLED * before:
+        found.append(
+            Finding(
+                "weight-not-settled",
+                "warning",
+                {"before": before, "weight": mu},
+                f"The weight of the penalty still changed from {before:.3g} to {mu:.3g} in the last round.",
+                "Start from these values, or give the weight.",
+            )
+        )
+    if left > _CONVERGED:
+        found.append(
+            Finding(
+                "values-not-settled",
+                "warning",
+                {"decrease": left},
+                f"Another round would still lower the sum that is minimised by about {100 * left:.2g} %.",
+                "Take more rounds, or start from these values.",
+            )
+        )
+    return tuple(found)
 
 
 def _linearised(problem: Problem, vector: np.ndarray, penalty: np.ndarray) -> tuple[Smoothed, float, float]:

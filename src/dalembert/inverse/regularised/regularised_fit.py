@@ -63,6 +63,16 @@ class RegularisedFit(Result):
     findings: tuple[Finding, ...] = ()
 
     @property
+    def success(self) -> bool:
+        """Whether weight and values no longer changed in the last round."""
+        return not self.findings
+
+    @property
+    def status(self) -> str:
+        """How many parameters were identified, and how many of them the data determine."""
+        return f"{len(self.names)} parameters are identified; the data determine {self.effective:.3g} of them."
+
+    @property
     def vector(self) -> dict[str, float]:
         """Values by name."""
         return dict(zip(self.names, self.values.tolist(), strict=True))

@@ -73,6 +73,15 @@ class Smoothed:
         """z of a weight μ, (parameters,)."""
         return cho_solve(cho_factor(self.normal(weight)), self.matrix.T @ self.right)
 
+    def decrease(self, z: np.ndarray, weight: float) -> float:
+        """Part of the sum at z (parameters,) by which that of the minimum is lower.
+
+        The sum is quadratic: f(z) − f(z*) = (z − z*)ᵀ (AᵀA + μ² DᵀD) (z − z*).
+        """
+        away = z - self.solution(weight)
+        total = np.sum((self.matrix @ z - self.right) ** 2) + weight**2 * np.sum((self.penalty @ z) ** 2)
+        return float(away @ self.normal(weight) @ away / total) if total else 0.0
+
     def normal(self, weight: float) -> np.ndarray:
         """AᵀA + μ² DᵀD, (parameters, parameters)."""
         return self.matrix.T @ self.matrix + weight**2 * self.penalty.T @ self.penalty

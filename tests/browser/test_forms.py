@@ -80,11 +80,11 @@ def test_a_spring_and_a_parameter_by_forms(study):
 
 def test_the_selected_table_is_edited_and_changes_are_undone(study):
     page, path = study
-    page.locator(".cm-line", has_text="viscous").click()
+    page.locator(".cm-line", has_text="viscous =").click()
     expect(page.get_by_role("heading", name="Joint 'pin'")).to_be_visible()
     page.get_by_label("viscous, N*m*s").fill("0.4 N*m*s")
     page.keyboard.press("Tab")
-    expect(page.locator(".cm-line", has_text="viscous")).to_have_text('viscous = "0.4 N*m*s"')
+    expect(page.locator(".cm-line", has_text="viscous =")).to_have_text('viscous = "0.4 N*m*s"')
     page.get_by_role("button", name="Undo").click()
     expect(page.get_by_label("viscous, N*m*s")).to_have_value("drag")
     page.get_by_role("button", name="Redo").click()
@@ -116,7 +116,7 @@ def test_text_is_completed_and_explained(study):
     page.keyboard.press("End")
     choose("\nfol", "follower")
     choose("tr", "true")
-    page.locator(".cm-line", has_text="viscous").get_by_text("viscous").hover()
+    page.locator(".cm-line", has_text="viscous =").get_by_text("viscous").hover()
     hint = page.locator(".study-hint")
     expect(hint).to_contain_text("viscous in N*m*s")
     expect(hint).to_contain_text("Friction torque per relative angular velocity")

@@ -169,9 +169,9 @@ class PythonModel:
         if not np.all(np.isfinite(response)):
             raise SolveError(f"{self._named} returned a value that is not finite")
         if np.iscomplexobj(response) and not np.iscomplexobj(vector):
-            if np.any(response.imag):
+            if np.any(np.imag(response)):
                 raise InputError(f"{self._named} returned complex numbers for real parameters. Return their real parts")
-            return response.real
+            return np.real(response)
         return response
 
     @property

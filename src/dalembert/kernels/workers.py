@@ -1,0 +1,106 @@
+"""Processes that compile kernels for this one: a copy of this process where that is safe, else a new one."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, TextIO
+
+from dalembert.kernels.garbage import rarely_collected
+
+if TYPE_CHECKING:
+    from dalembert.kernels.kernel import Compiled
+
+IN_WORKER = "DALEMBERT_WORKER"  # set in a worker process, which must not start workers
+
+
+class Worker:
+    """Another process, which compiles one kernel after the other into files."""
+
+    def __init__(self) -> None:
+        start = _forked if _can_fork() else _started
+        self._requests, self._answers, self._wait = start()
+
+    def compile(self, kernel: "Compiled", path: Path) -> bool:
+        """Whether the process wrote the object of this kernel; it cannot if it has ended, for example."""
+        try:
+            self._requests.write(json.dumps([kernel.origin, kernel.digest, str(path)]) + "\n")
+            self._requests.flush()
+            return self._answers.readline().strip() == "done"
+        except OSError:
+            return False
+
+    def close(self) -> None:
+        for stream in (self._requests, self._answers):
+            try:
+                stream.close()
+            except OSError:  # a request is left that the process did not read
+                pass
+        self._wait()
+
+
+def work(requests: Iterable[str], answers: TextIO) -> None:
+    """Compile the kernel of each request, a line of JSON with origin, digest and file, and answer with a line."""
+    with rarely_collected() as compiled:
+        from dalembert.kernels.kernel import find
+        from dalembert.kernels.objects import write_object
+
+        for line in requests:
+            origin, digest, path = json.loads(line)
+            try:
+                kernel = find(origin)
+                assert kernel.digest == digest, "the source has changed since the other process read it"
+                write_object(Path(path), kernel.object_code())
+                answer = "done"
+            except Exception:  # whatever it is: the process that asked compiles it itself, and reports the reason
+                answer = "failed"
+            answers.write(answer + "\n")
+            answers.flush()
+            compiled()
+
+
+_Process = tuple[TextIO, TextIO, Callable[[], object]]  # its input, its output, a function that waits for its end
+
+
+def _can_fork() -> bool:
+    """A copy of a process has one thread only, and lacks what the others were about to finish."""
+    return sys.platform == "linux" and threading.active_count() == 1
+
+
+def _forked() -> _Process:
+    """A copy of this process: it has imported the compiler already, which takes a new one a second."""
+    (requests, ours), (theirs, answers) = os.pipe(), os.pipe()
+    process = os.fork()
+    if process == 0:
+        try:
+            for number in (signal.SIGINT, signal.SIGTERM):
+                signal.signal(number, signal.SIG_DFL)
+            os.environ[IN_WORKER] = "1"
+            os.close(ours)
+            os.close(theirs)
+            work(os.fdopen(requests), os.fdopen(answers, "w"))
+        finally:
+            os._exit(0)  # without what this process has registered for its end
+    os.close(requests)
+    os.close(answers)
+    return os.fdopen(ours, "w"), os.fdopen(theirs), lambda: os.waitpid(process, 0)
+
+
+def _started() -> _Process:
+    command = [sys.executable, "-c", "import sys; from dalembert.kernels.workers import work; work(sys.stdin, sys.stdout)"]
+    environment = {**os.environ, IN_WORKER: "1", "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    process = subprocess.Popen(
+        command,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+        env=environment,
+    )
+    assert process.stdin is not None
+    assert process.stdout is not None
+    return process.stdin, process.stdout, process.wait

@@ -41,17 +41,22 @@ def _compile(missing: list["Compiled"], progress: Progress) -> None:
     for _, group in groupby(sorted(others, key=lambda kernel: kernel.family), key=lambda kernel: kernel.family):
         tasks.put(list(group))
     done = _Counter(len(missing), progress)
-    with tempfile.TemporaryDirectory() as spare:
-        folder = None if is_writable() else Path(spare)
+    kernels = chain(own, _taken(tasks))
+    with tempfile.TemporaryDirectory() as spare, rarely_collected() as compiled:
+
+        def make(kernel: "Compiled") -> None:
+            OBJECTS.make(kernel)
+            done(kernel)
+            compiled()
+
+        make(next(kernels))  # a copy of this process then has a compiler that is ready
         workers = list(_workers(min(_cores() - 1, len(others) // _FEW)))  # before there are threads
+        folder = None if is_writable() else Path(spare)
         threads = [threading.Thread(target=_serve, args=(worker, tasks, folder, done)) for worker in workers]
         for thread in threads:
             thread.start()
-        with rarely_collected() as compiled:
-            for kernel in chain(own, _taken(tasks)):
-                OBJECTS.make(kernel)
-                done(kernel)
-                compiled()
+        for kernel in kernels:
+            make(kernel)
         for thread in threads:
             thread.join()
 

@@ -7,8 +7,9 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
+from typing import IO, TYPE_CHECKING
 
 from dalembert.kernels.garbage import rarely_collected
 
@@ -23,7 +24,7 @@ class Worker:
 
     def __init__(self) -> None:
         start = _forked if _can_fork() else _started
-        self._requests, self._answers, self._wait = start()
+        self.process, self._requests, self._answers, self._wait = start()
 
     def compile(self, kernel: "Compiled", path: Path) -> bool:
         """Whether the process wrote the object of this kernel; it cannot if it has ended, for example."""
@@ -36,14 +37,12 @@ class Worker:
 
     def close(self) -> None:
         for stream in (self._requests, self._answers):
-            try:
+            with suppress(OSError):  # a request may be left that the process did not read
                 stream.close()
-            except OSError:  # a request is left that the process did not read
-                pass
         self._wait()
 
 
-def work(requests: Iterable[str], answers: TextIO) -> None:
+def work(requests: Iterable[str], answers: IO[str]) -> None:
     """Compile the kernel of each request, a line of JSON with origin, digest and file, and answer with a line."""
     with rarely_collected() as compiled:
         from dalembert.kernels.kernel import find
@@ -63,7 +62,8 @@ def work(requests: Iterable[str], answers: TextIO) -> None:
             compiled()
 
 
-_Process = tuple[TextIO, TextIO, Callable[[], object]]  # its input, its output, a function that waits for its end
+# Its number, its input, its output, a function that waits for its end.
+_Process = tuple[int, IO[str], IO[str], Callable[[], object]]
 
 
 def _can_fork() -> bool:
@@ -87,14 +87,14 @@ def _forked() -> _Process:
             os._exit(0)  # without what this process has registered for its end
     os.close(requests)
     os.close(answers)
-    return os.fdopen(ours, "w"), os.fdopen(theirs), lambda: os.waitpid(process, 0)
+    return process, os.fdopen(ours, "w"), os.fdopen(theirs), lambda: os.waitpid(process, 0)
 
 
 def _started() -> _Process:
-    command = [sys.executable, "-c", "import sys; from dalembert.kernels.workers import work; work(sys.stdin, sys.stdout)"]
+    code = "import sys; from dalembert.kernels.workers import work; work(sys.stdin, sys.stdout)"
     environment = {**os.environ, IN_WORKER: "1", "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     process = subprocess.Popen(
-        command,
+        [sys.executable, "-c", code],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
@@ -103,4 +103,4 @@ def _started() -> _Process:
     )
     assert process.stdin is not None
     assert process.stdout is not None
-    return process.stdin, process.stdout, process.wait
+    return process.pid, process.stdin, process.stdout, process.wait

@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
-from scipy.stats import multivariate_t, norm, t
+from scipy.stats import multivariate_normal, multivariate_t, norm, t
 
+from correlated_noise import autoregressive
 from dalembert.data import Measurements
 from dalembert.forward import PythonModel
-from dalembert.inverse import compare_models, cross_validate, identify
+from dalembert.inverse import AutoregressiveNoise, ConstantNoise, compare_models, cross_validate, identify
 from dalembert.inverse.comparison.left_out import counted_groups, groups
-from dalembert.inverse.comparison.predictive import linearised
+from dalembert.inverse.comparison.linearisation import linearised
 from stack_loss import STACK
 
 TOPIC = "Model comparison"
@@ -85,6 +86,59 @@ def test_blocks_left_out_have_the_multivariate_density_of_refits(record_evidence
     record_evidence(
         "linear model: prediction errors of blocks, PRESS formula", press, -again.errors[:, 0], tolerance=1e-7,
         topic=TOPIC, kind="closed form", source="(I − H)⁻¹ e (Allen 1974)", noisy=True,
+    )  # fmt: skip
+
+
+def covariance(times, coefficient, sigma):
+    """Of an autoregressive process of order 1 on an even grid."""
+    lags = np.abs(times[:, None] - times) / (times[1] - times[0])
+    return sigma**2 * coefficient**lags
+
+
+@pytest.mark.parametrize("size", [1, 5])
+def test_values_are_predicted_from_correlated_neighbours_as_by_exact_refits(size, record_evidence):
+    """Known AR(1) noise: generalised least squares without a group, and the conditional density of the group."""
+    data, coefficient, sigma = recorded(), 0.6, 0.2
+    fit = identify(
+        model(COLUMNS), data, noise=AutoregressiveNoise(deviation=ConstantNoise(deviation=sigma), order=1, partial=[coefficient]),
+        starts=1, horizon=None,
+    )  # fmt: skip
+    y, whole = data.values[:, 0], covariance(TIMES, coefficient, sigma)
+    places, expected = np.split(np.arange(30), 30 // size), []
+    for rows in places:
+        kept = np.setdiff1d(np.arange(30), rows)
+        precision = np.linalg.inv(whole[np.ix_(kept, kept)])
+        spread = np.linalg.inv(COLUMNS[kept].T @ precision @ COLUMNS[kept])
+        found = spread @ COLUMNS[kept].T @ precision @ y[kept]
+        pull = whole[np.ix_(rows, kept)] @ precision
+        mean = COLUMNS[rows] @ found + pull @ (y[kept] - COLUMNS[kept] @ found)
+        lever = COLUMNS[rows] - pull @ COLUMNS[kept]
+        width = whole[np.ix_(rows, rows)] - pull @ whole[np.ix_(kept, rows)] + lever @ spread @ lever.T
+        expected.append(multivariate_normal(mean, width).logpdf(y[rows]))
+    at = linearised("x", fit)
+    record_evidence(
+        f"linear model, known AR(1) noise: log predictive densities of groups of {size}", expected,
+        [at.without(rows) for rows in places], tolerance=1e-7, topic=TOPIC, kind="closed form",
+        source="generalised least squares and the normal density given the other values, by NumPy and SciPy", noisy=True,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("noise", "tolerance"), [(ConstantNoise(), 0.05), (AutoregressiveNoise(order=1), 0.25)], ids=["constant", "AR(1)"]
+)
+def test_estimated_noise_is_left_out_to_first_order(noise, tolerance, record_evidence, request):
+    """The sum of log densities beside refits of model and noise without each value; a difference of 4 counts."""
+    times = np.linspace(0, 3, 90)
+    columns = np.stack([np.ones(90), times], axis=1)
+    data = Measurements.of(times, {"x": columns @ [1.0, 0.5] + 0.2 * autoregressive(3, 90, 0.5)})
+    fit = identify(model(columns, times), data, noise=noise, starts=1, horizon=None)
+    at = linearised("x", fit)
+    ours = sum(at.without(np.array([row])) for row in range(90))
+    again = cross_validate(model(columns, times), data, fit=fit, leave_out="values")
+    record_evidence(
+        f"linear model, estimated noise, {request.node.callspec.id}: expected log predictive density",
+        float(np.sum(again.log_densities)), ours, tolerance=tolerance, topic=TOPIC, kind="other method",
+        source="90 refits of model and noise", noisy=True,
     )  # fmt: skip
 
 

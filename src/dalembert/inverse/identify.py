@@ -28,7 +28,7 @@ from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.fit.integration import integration_bias, integration_findings
 from dalembert.inverse.fit.outcome import outcome, too_few_findings
 from dalembert.inverse.fit.settings import settings, weights_source
-from dalembert.inverse.fit.with_noise import check_noise, whole_noise, whole_weights, with_noise
+from dalembert.inverse.fit.with_noise import check_noise, counted_values, whole_noise, whole_weights, with_noise
 from dalembert.inverse.fit.with_noise import noise_findings as estimated_noise_findings
 from dalembert.inverse.least_squares.descent import End
 from dalembert.inverse.least_squares.estimate import Estimate, estimate, estimate_of, unknown_estimate
@@ -96,7 +96,7 @@ def identify(
         Where the first start begins; for a swarm its first particle. Mechanisms are first built there.
     weights : array, shape (channels,) or (samples, channels), optional
         W; 1/deviation² of each channel if the data have deviations, else 1. With experiments a mapping from their
-        names to such arrays; 1 for those that it leaves out.
+        names to such arrays; 1 for those that it leaves out. With ``noise`` each is 1, or 0 for a value to leave out.
     noise : NoiseModel, its name, or mapping of channel to NoiseModel, optional
         Noise that is estimated with the parameters, from the minimum of the search on. If not given, the noise is
         independent, and correlated residuals are allowed for after the fit.
@@ -188,8 +188,9 @@ def identify(
     require_known("spread", str(spread), SPREADS)
     require_known("derivative", str(derivative), GRADIENTS)
     model, data, weights, parts = joined("identify", begun(placed(model, executor), start), data, weights)
+    counted, weights = (None, weights) if noise is None else (counted_values(weights, data), None)
     given = data.deviations is not None and weights is None
-    check_noise(noise, weights=weights, loss=loss, shooting=shooting)
+    check_noise(noise, loss=loss, shooting=shooting)
     smoothing = shooting is not None or (noise is not None and len(priors(model.parameters)) > 0)
     smooth = smooth_noise(data, parts) if smoothing and not given and weights is None else None
     journal = Journal(len(data.coordinate.values), on_event)
@@ -199,6 +200,7 @@ def identify(
         loss=loss_of(loss, loss_scale, known=given),
         derivative=derivative,
     )
+    posed = posed if counted is None else replace(posed, weights=posed.weights * counted)
     parted = split(posed, validation)
     problem, journal.samples = parted.part, parted.part.samples
     origin = None if start is None else _origin(problem, start)

@@ -232,8 +232,8 @@ def test_the_noise_at_a_bound_is_a_finding():
     ("settings", "message"),
     [
         (
-            {"weights": [1.0]},
-            "weights: a noise model was given, from which the weights follow; leave one of the two out",
+            {"weights": [0.5]},
+            "weights: 0.5 was given beside a noise model, from which the weights follow; expected 1, or 0 for a value to leave out",
         ),
         (
             {"loss": "huber", "loss_scale": 1.0},

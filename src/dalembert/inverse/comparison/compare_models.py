@@ -10,9 +10,9 @@ from dalembert.errors import InputError, shown
 from dalembert.inverse.comparison.conclusions import comparison_findings
 from dalembert.inverse.comparison.cross_validation import CrossValidation, fits_of
 from dalembert.inverse.comparison.draws import Predictive, is_inference_data, of_draws
-from dalembert.inverse.comparison.left_out import counted_groups, groups
+from dalembert.inverse.comparison.left_out import correlation_time, counted_groups, groups
+from dalembert.inverse.comparison.linearisation import linearised
 from dalembert.inverse.comparison.model_comparison import ModelComparison
-from dalembert.inverse.comparison.predictive import linearised
 from dalembert.inverse.fit.fit import Fit
 
 LEFT_OUT = {"values": "single values", "blocks": "blocks of neighbouring samples", "experiments": "experiments"}
@@ -59,7 +59,8 @@ def compare_models(
     AIC = 2k − 2 log L, AICc = AIC + 2k (k + 1)/(n − k − 1), BIC = k log n − 2 log L for k parameters and n values. They
     take values for independent. elpd is the sum of the log predictive densities of groups that were left out. The
     standard deviation of a difference over G groups is √G times that of the groups' differences. A difference below 4,
-    or below two of its standard deviations, means nothing.
+    or below two of its standard deviations, means nothing. Fits with an estimated noise model are compared with it:
+    values that are left out are predicted from their correlated neighbours too.
 
     Source: H. Akaike, A new look at the statistical model identification, IEEE Transactions on Automatic Control 19
     (1974); A. Vehtari, A. Gelman, J. Gabry, Practical Bayesian model evaluation using leave-one-out cross-validation
@@ -95,9 +96,8 @@ def compare_models(
         densities = {name: one.log_densities for name, one in named.items()}
         how = "cross-validation by fits without each group"
     else:
-        correlated = [fit for fit in fits.values() if fit.correlated is not None]
-        left_out = leave_out or ("blocks" if correlated else "values")
-        slowest = max(fits.values(), key=_correlation_time)
+        slowest = max(fits.values(), key=correlation_time)
+        left_out = leave_out or ("blocks" if correlation_time(slowest) > 0 else "values")
         numbers = groups(slowest, left_out, blocks)
         places = counted_groups(numbers)
         densities = {
@@ -139,15 +139,15 @@ def _check_same_data(fits: Mapping[str, Fit]) -> None:
                 f"compare_models: {name!r} was fitted to other data than {first!r}; fit both models to the same "
                 "samples and channels"
             )
-        if not np.array_equal(fit.weights, reference.weights) or fit.noise_is_known != reference.noise_is_known:
+        if fit.noise is not None or reference.noise is not None:  # the deviations are a part of the models
+            alike = np.array_equal(fit.weights > 0, reference.weights > 0)
+        else:
+            alike = np.array_equal(fit.weights, reference.weights) and fit.noise_is_known == reference.noise_is_known
+        if not alike:
             raise InputError(
                 f"compare_models: {name!r} was fitted with other weights or other held-out samples than {first!r}; "
                 "use the same for both"
             )
-
-
-def _correlation_time(fit: Fit) -> float:
-    return max((item.time for item in fit.correlated.processes), default=0.0) if fit.correlated is not None else 0.0
 
 
 def _compared_draws(known: Mapping[str, Predictive]) -> ModelComparison:

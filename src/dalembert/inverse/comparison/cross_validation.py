@@ -8,14 +8,21 @@ import numpy as np
 from dalembert.data import Measurements
 from dalembert.errors import InputError
 from dalembert.forward import Executor, ForwardModel
+from dalembert.inverse.comparison.conditional import WithNoise
 from dalembert.inverse.comparison.left_out import counted_groups, groups
-from dalembert.inverse.comparison.predictive import linearised, log_density
+from dalembert.inverse.comparison.linearisation import linearised
+from dalembert.inverse.comparison.predictive import log_density
 from dalembert.inverse.experiments.experiment import Experiment
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.identify import identify
 from dalembert.inverse.least_squares.estimate import UNSEEN
 from dalembert.inverse.misfit.residuals import off_bounds
 from dalembert.inverse.problem.prior import prior_slopes
+
+UNDETERMINED = (
+    "cross_validate: without one group, the other data do not determine all parameters; leave out smaller blocks, or "
+    "fix the parameters that only this group determines"
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +140,8 @@ def _again(
     executor: Executor,
 ) -> Fit:
     """Return the fit without the values at ``rows``."""
-    weights, without = fit.weights.ravel().copy(), None
+    counted = fit.weights if fit.noise is None else np.where(fit.weights > 0, 1.0, 0.0)
+    weights, without = counted.ravel().copy(), None
     if leave_out == "experiments":
         without = next(
             part.name
@@ -145,7 +153,15 @@ def _again(
     table = weights.reshape(fit.weights.shape)
     given = {part.name: table[part.block] for part in fit.parts} if fit.parts else table
     return identify(
-        model, data, weights=given, validation=without, start=fit.values, starts=1, horizon=None, executor=executor
+        model,
+        data,
+        weights=given,
+        validation=without,
+        noise=None if fit.noise is None else fit.noise.models,
+        start=fit.values,
+        starts=1,
+        horizon=None,
+        executor=executor,
     )
 
 
@@ -158,6 +174,11 @@ def predicted_density(again: Fit, fit: Fit, rows: np.ndarray) -> float:
         Where the other values do not determine the parameters.
     """
     assert again.jacobian is not None
+    if again.noise is not None:
+        found = WithNoise(again, fit.weights).predicted(rows)
+        if not np.isfinite(found):
+            raise InputError(UNDETERMINED)
+        return found
     known = fit.noise_is_known
     scale, free = again.parameters.scale, off_bounds(again.parameters, again.values)
     slopes = (again.jacobian.reshape(-1, len(scale)) * scale)[:, free]
@@ -167,10 +188,7 @@ def predicted_density(again: Fit, fit: Fit, rows: np.ndarray) -> float:
         np.concatenate([roots[kept, None] * slopes[kept], prior]), full_matrices=False
     )
     if len(singular) and (len(singular) < slopes.shape[1] or singular[-1] <= UNSEEN * singular[0]):
-        raise InputError(
-            "cross_validate: without one group, the other data do not determine all parameters; leave out smaller "
-            "blocks, or fix the parameters that only this group determines"
-        )
+        raise InputError(UNDETERMINED)
     own = roots[rows, None] * slopes[rows] @ (directions.T / singular)
     values, vectors = np.linalg.eigh(np.eye(len(rows)) + own @ own.T)
     residual = roots[rows] * again.residuals.ravel()[rows]

@@ -3,7 +3,9 @@
 import numpy as np
 
 from dalembert.errors import InputError, require_known
+from dalembert.inverse.correlation.series import Series, series_of_record
 from dalembert.inverse.fit.fit import Fit
+from dalembert.inverse.likelihood.estimated_noise import EstimatedNoise
 
 WAYS = ("values", "blocks", "experiments")
 
@@ -62,12 +64,36 @@ def _count(fit: Fit, samples: int, blocks: int | None) -> int:
         if not 2 <= blocks <= samples:
             raise InputError(f"blocks is {blocks}; expected at least 2, and at most the {samples} samples of a record")
         return blocks
-    processes = () if fit.correlated is None else fit.correlated.processes
-    if not processes:
+    time = correlation_time(fit)
+    if not time > 0:
         return min(USUAL, samples)
     along = fit.data.coordinate.values if not fit.parts else fit.parts[0].coordinate.values
-    length = CORRELATION_TIMES * max(item.time for item in processes) / max(float(np.median(np.diff(along))), 1e-300)
+    length = CORRELATION_TIMES * time / max(float(np.median(np.diff(along))), 1e-300)
     return int(np.clip(samples // max(length, 1.0), min(FEWEST, samples), samples))
+
+
+def correlation_time(fit: Fit) -> float:
+    """Return the longest correlation time of the residuals, or of an estimated noise model; 0 where there is none."""
+    if fit.noise is not None:
+        series = series_of_record(fit.data, fit.weights, fit.parts, fewest=1)
+        return max((_time_of(fit.noise, own) for own in series), default=0.0)
+    return max((item.time for item in fit.correlated.processes), default=0.0) if fit.correlated is not None else 0.0
+
+
+def _time_of(noise: EstimatedNoise, series: Series) -> float:
+    """The lag up to which a value depends on one before: the first at which their correlation is below 1/e."""
+    process = noise.models[series.name].whitening(series)
+    if process is None or len(series.rows) < 2:
+        return 0.0
+    from scipy.sparse.linalg import splu
+
+    matrix = process.matrix(noise.of_channel(series.name, noise.estimates)).tocsc()
+    first = np.zeros(len(series.rows))
+    first[0] = 1.0
+    # the first column of the correlation C = (AᵀA)⁻¹
+    column = splu(matrix).solve(splu(matrix.T.tocsc()).solve(first))
+    below = np.flatnonzero(np.abs(column) < np.exp(-1))
+    return float(series.along[below[0] if len(below) else -1] - series.along[0])
 
 
 def counted_groups(numbers: np.ndarray) -> list[np.ndarray]:

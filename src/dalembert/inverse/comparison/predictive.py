@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import gammaln
 
-from dalembert.errors import InputError
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.least_squares.estimate import UNSEEN
 from dalembert.inverse.misfit.residuals import off_bounds
@@ -41,6 +40,20 @@ class Linearised:
     freedom: float
     squares: float
     known: bool
+
+    @classmethod
+    def of(cls, fit: Fit) -> "Linearised":
+        """Return the linearisation of a fit with independent noise, with a Jacobian."""
+        assert fit.jacobian is not None
+        roots = np.sqrt(fit.weights).ravel()
+        scale, free = fit.parameters.scale, off_bounds(fit.parameters, fit.values)
+        residual = np.where(roots > 0, -roots * np.nan_to_num(fit.residuals.ravel()), 0.0)
+        slopes = np.where(roots[:, None] > 0, roots[:, None] * fit.jacobian.reshape(-1, len(scale)) * scale, 0.0)
+        slopes = np.concatenate([slopes, prior_slopes(fit.parameters, fit.values, scale)])[:, free]
+        left, singular, _ = np.linalg.svd(slopes, full_matrices=False)
+        basis = left[: len(roots), singular > UNSEEN * (singular[0] if len(singular) else 1.0)]
+        freedom = float(np.count_nonzero(roots) + len(slopes) - len(roots) - basis.shape[1])
+        return cls(residual, basis, roots, freedom, float(residual @ residual), fit.noise_is_known)
 
     @property
     def fitted(self) -> np.ndarray:
@@ -102,41 +115,3 @@ def log_density(square: float, count: int, variance: float, freedom: float | Non
         return float(-0.5 * (square / variance + count * np.log(2 * np.pi * variance)))
     shape = gammaln((freedom + count) / 2) - gammaln(freedom / 2) - count / 2 * np.log(np.pi * freedom * variance)
     return float(shape - (freedom + count) / 2 * np.log1p(square / (freedom * variance)))
-
-
-def linearised(name: str, fit: Fit) -> Linearised:
-    """Return the linearisation of a fit.
-
-    Raises
-    ------
-    InputError
-        For a fit without a Jacobian, of segments, with a robust loss, or with unknown parameters of the noise.
-    """
-    if fit.nodes is not None and fit.nodes.segments > 1:
-        raise InputError(
-            f"{name!r} is a fit of {fit.nodes.segments} segments, which predict nothing; fit fewer samples, so that "
-            "they merge into one run"
-        )
-    if "loss" in fit.provenance:
-        raise InputError(
-            f"{name!r} was fitted with a robust loss, which is not a likelihood; fit it with loss='linear', without "
-            "the outliers"
-        )
-    if fit.noise is not None and not fit.noise.known:
-        raise InputError(
-            f"{name!r} was fitted with a noise model, for which predictive densities are not available; fit it without "
-            "`noise`"
-        )
-    if fit.jacobian is None:
-        raise InputError(
-            f"{name!r} has no Jacobian: its model gives no derivatives, or a former version stored it; identify again"
-        )
-    roots = np.sqrt(fit.weights).ravel()
-    scale, free = fit.parameters.scale, off_bounds(fit.parameters, fit.values)
-    residual = np.where(roots > 0, -roots * np.nan_to_num(fit.residuals.ravel()), 0.0)
-    slopes = np.where(roots[:, None] > 0, roots[:, None] * fit.jacobian.reshape(-1, len(scale)) * scale, 0.0)
-    slopes = np.concatenate([slopes, prior_slopes(fit.parameters, fit.values, scale)])[:, free]
-    left, singular, _ = np.linalg.svd(slopes, full_matrices=False)
-    basis = left[: len(roots), singular > UNSEEN * (singular[0] if len(singular) else 1.0)]
-    freedom = float(np.count_nonzero(roots) + len(slopes) - len(roots) - basis.shape[1])
-    return Linearised(residual, basis, roots, freedom, float(residual @ residual), fit.noise_is_known)

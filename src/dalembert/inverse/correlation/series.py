@@ -67,16 +67,18 @@ def series_of(problem: Problem, weights: np.ndarray | None = None, *, fewest: in
         yield from _of_record(track.name, track.data, *where, problem.data.channels, weights, fewest)
 
 
-def series_of_record(data: Measurements, weights: np.ndarray, parts: Sequence[Part]) -> Iterator[Series]:
+def series_of_record(
+    data: Measurements, weights: np.ndarray, parts: Sequence[Part], *, fewest: int = 2
+) -> Iterator[Series]:
     """Yield the series of the data of a fit, whose ``parts`` are those of several experiments; empty for a single one.
 
-    ``weights`` have the shape (samples, channels).
+    ``weights`` have the shape (samples, channels). Series of less than ``fewest`` values are left out.
     """
     if not parts:
         rows, columns = (np.arange(size) for size in data.values.shape)
-        yield from _of_record("", data, rows, columns, data.channels, weights)
+        yield from _of_record("", data, rows, columns, data.channels, weights, fewest)
     for part in parts:
-        yield from _of_record(part.name, part.data(data), part.rows, part.columns, data.channels, weights)
+        yield from _of_record(part.name, part.data(data), part.rows, part.columns, data.channels, weights, fewest)
 
 
 def _of_record(
@@ -86,7 +88,7 @@ def _of_record(
     columns: np.ndarray,
     names: tuple[str, ...],
     weights: np.ndarray,
-    fewest: int = 2,
+    fewest: int,
 ) -> Iterator[Series]:
     """Yield the series of one record, which stands in ``rows`` and ``columns`` of the joint one."""
     for column, channel in zip(columns, own.channels, strict=True):

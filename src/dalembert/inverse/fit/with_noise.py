@@ -3,7 +3,9 @@
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from dalembert.data import Measurements
 from dalembert.errors import InputError, SolveError, listed
 from dalembert.findings import Finding
 from dalembert.inverse.experiments.validation import Split
@@ -14,11 +16,32 @@ from dalembert.inverse.likelihood.findings import noise_model_findings
 from dalembert.inverse.likelihood.placing import Noise, picked_models
 from dalembert.inverse.noise.correlated import AutoregressiveNoise
 from dalembert.inverse.noise.noise_model import NoiseModel
+from dalembert.inverse.problem.matching import weights_of
 from dalembert.inverse.problem.prior import prior_residual
 from dalembert.inverse.problem.problem import Problem
 
 
-def check_noise(noise: Noise | None, *, weights: object, loss: str, shooting: object) -> None:
+def counted_values(weights: ArrayLike | None, data: Measurements) -> np.ndarray | None:
+    """Return which values count, 1 or 0, beside a noise model, from which all other weights follow.
+
+    Raises
+    ------
+    InputError
+        For other weights.
+    """
+    if weights is None:
+        return None
+    found = weights_of(weights, data.values.shape)
+    other = found[(found != 0) & (found != 1)]
+    if len(other):
+        raise InputError(
+            f"weights: {other[0]:.6g} was given beside a noise model, from which the weights follow; expected 1, or 0 "
+            "for a value to leave out"
+        )
+    return found
+
+
+def check_noise(noise: Noise | None, *, loss: str, shooting: object) -> None:
     """Refuse what cannot be combined with a noise model.
 
     Raises
@@ -27,8 +50,6 @@ def check_noise(noise: Noise | None, *, weights: object, loss: str, shooting: ob
     """
     if noise is None:
         return
-    if weights is not None:
-        raise InputError("weights: a noise model was given, from which the weights follow; leave one of the two out")
     if loss != "linear":
         raise InputError(
             f"loss: a noise model was given, whose likelihood is that of normal noise; leave the loss {loss!r} or the "

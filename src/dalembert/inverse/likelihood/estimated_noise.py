@@ -80,7 +80,7 @@ class EstimatedNoise:
 
         ``given`` is the known deviation of the data.
         """
-        model, values = self.models[channel], self._values(channel)
+        model, values = self.models[channel], self.of_channel(channel, self.estimates)
         return np.asarray(model.deviations(response, np.broadcast_to(given, response.shape), values))
 
     def whiten(self, series: Iterable[Series], table: np.ndarray) -> np.ndarray:
@@ -89,11 +89,11 @@ class EstimatedNoise:
         for own in series:
             whitening = self.models[own.name].whitening(own)
             if whitening is not None:
-                found[own.rows] = whitening.matrix(self._values(own.name)) @ found[own.rows]
+                found[own.rows] = whitening.matrix(self.of_channel(own.name, self.estimates)) @ found[own.rows]
         return found
 
-    def _values(self, channel: str) -> dict[str, np.ndarray]:
-        """Return the noise parameters of a channel by their names within its model."""
+    def of_channel(self, channel: str, values: Mapping[str, float]) -> dict[str, np.ndarray]:
+        """Return the noise parameters of a channel by their names within its model, out of ``values`` of all."""
         base = f"{self.bases[channel]}."
-        named = {name.removeprefix(base): value for name, value in self.estimates.items() if name.startswith(base)}
+        named = {name.removeprefix(base): value for name, value in values.items() if name.startswith(base)}
         return {name: np.asarray(value) for name, value in named.items() if "." not in name}

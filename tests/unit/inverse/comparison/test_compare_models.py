@@ -82,6 +82,48 @@ def test_correlated_residuals_are_left_out_in_blocks():
     assert ("correlated-comparison", "warning") in codes(alone)
 
 
+def test_a_noise_model_is_judged_with_its_parameters():
+    noise = autoregressive(1, 81, 0.8)
+    data = recorded(0.0, noise)
+    plain, constant = (identify(LINE, data, starts=1, horizon=None, noise=one) for one in (None, "constant"))
+    process = fitted(data, noise=da.AutoregressiveNoise(order=1))
+    found = compare_models({"plain": plain, "constant": constant, **process}, leave_out="values")
+    assert set(found.models[:2]) == {"line", "parabola"}
+    assert found.findings[0].code == "equal-models"
+    assert "Prefer the simplest, 'line'" in str(found.findings[0])
+    elpd = dict(zip(found.models, found.elpd, strict=True))
+    assert elpd["constant"] == pytest.approx(elpd["plain"], abs=0.1)  # Student's t and the normal density
+    assert elpd["line"] > elpd["plain"] + 20
+    assert dict(zip(found.models, found.parameters, strict=True)) == {
+        "plain": 3, "constant": 3, "line": 4, "parabola": 5
+    }  # fmt: skip
+
+
+def test_correlated_noise_is_left_out_in_blocks_longer_than_its_correlation():
+    process = fitted(recorded(0.0, autoregressive(1, 81, 0.8)), noise=da.AutoregressiveNoise(order=1))
+    found = compare_models(process)
+    assert found.left_out == "blocks of neighbouring samples"
+    assert found.densities.shape[1] < 10
+    again = compare_models(
+        {name: cross_validate(MODELS[name], fit.data, fit=fit) for name, fit in process.items()}, leave_out="blocks"
+    )
+    assert again.elpd == pytest.approx(found.elpd, abs=2.0)
+
+
+def test_known_deviations_with_correlated_noise_of_several_channels():
+    times = np.linspace(0, 2, 41)
+    two = PythonModel(lambda a: np.stack([a * times, np.cos(a * times)], axis=1), {"a": (0.5, 2.0)}, ["x", "y"], times)
+    random = np.random.default_rng(2)
+    values = np.stack([times, np.cos(times)], axis=1) + [0.1, 0.3] * random.standard_normal((41, 2))
+    data = Measurements.of(times, dict(zip("xy", values.T, strict=True)), {"x": 0.1, "y": 0.3})
+    known, process = (
+        identify(two, data, starts=1, horizon=None, noise=noise)
+        for noise in (None, {"y": da.AutoregressiveNoise(deviation=da.KnownNoise(), order=1, partial=[1e-9])})
+    )
+    found = compare_models({"known": known, "process": process}, leave_out="values")
+    assert found.elpd[0] == pytest.approx(found.elpd[1], rel=1e-6)
+
+
 def test_few_groups_are_noted():
     assert ("few-groups", "note") in codes(compare_models(fitted(recorded(0.5)), leave_out="blocks", blocks=4))
 

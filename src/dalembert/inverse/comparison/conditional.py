@@ -1,0 +1,182 @@
+"""The density of some values from all others, where the noise is correlated or has estimated parameters."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dalembert.errors import InputError
+from dalembert.inverse.comparison.predictive import LEAST, log_density
+from dalembert.inverse.correlation.series import Series, series_of_record
+from dalembert.inverse.fit.fit import Fit
+from dalembert.inverse.least_squares.estimate import UNSEEN
+from dalembert.inverse.likelihood.estimated_noise import EstimatedNoise
+from dalembert.inverse.misfit.residuals import off_bounds
+from dalembert.inverse.problem.prior import prior_residual, prior_slopes
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_array
+
+STEP = 1e-3
+"""Step of differences by noise parameters, in their standard deviations."""
+
+
+@dataclass(frozen=True, eq=False)
+class Conditional:
+    """Normal noise of a known covariance, and the linearised model of its mean.
+
+    Parameters
+    ----------
+    whitening : csc_array, shape (whitened, values)
+        W with the precision WᵀW of the noise; values are flat from (samples, channels).
+    basis : array, shape (whitened, columns)
+        B, orthonormal with the rows of priors, which it leaves out; it spans W J.
+    white : array, shape (whitened,)
+        (I − B Bᵀ) W (data − R): what remains at the best parameters.
+    """
+
+    whitening: "csc_array"
+    basis: np.ndarray
+    white: np.ndarray
+
+    def without(self, rows: np.ndarray) -> float:
+        """Return the log predictive density of the values at ``rows`` from all others, exact for a linear model.
+
+        Notes
+        -----
+        Where nothing is known of the parameters beforehand, the precision of all values is P = Wᵀ (I − B Bᵀ) W. Given
+        the others, the values of the rows S are normal, with the precision P_SS and the error P_SS⁻¹ (P r)_S.
+
+        Source: C. E. Rasmussen, C. K. I. Williams, Gaussian Processes for Machine Learning (2006), sections 2.7 and
+        5.4.2; S. Sundararajan, S. S. Keerthi, Predictive approaches for choosing hyperparameters in Gaussian
+        processes, Neural Computation 13 (2001).
+        """
+        columns = self.whitening[:, rows]
+        places = np.unique(columns.indices)
+        own = columns.tocsr()[places].toarray()
+        along = self.basis[places].T @ own
+        values, vectors = np.linalg.eigh(own.T @ own - along.T @ along)
+        if np.min(values) < LEAST * np.max(np.sum(own**2, axis=0)):
+            return -np.inf  # the others do not determine all that these values depend on
+        square = float(np.sum((vectors.T @ (own.T @ self.white[places])) ** 2 / values))
+        return 0.5 * float(np.sum(np.log(values))) + log_density(square, len(rows), 1.0, None)
+
+
+@dataclass(frozen=True, eq=False)
+class WithNoise:
+    """The linearisation of a fit with a noise model, for the density of values that are left out.
+
+    Parameters
+    ----------
+    fit : Fit
+        Its values, Jacobian and noise are used.
+    weights : array, shape (samples, channels)
+        Positive where a value counts; 1/variance for known noise.
+    """
+
+    fit: Fit
+    weights: np.ndarray
+
+    @property
+    def noise(self) -> EstimatedNoise:
+        assert self.fit.noise is not None
+        return self.fit.noise
+
+    @property
+    def fitted(self) -> np.ndarray:
+        return self.weights.ravel() > 0
+
+    @property
+    def residual(self) -> np.ndarray:
+        """Standardised residuals (values,), 0 where a value does not count."""
+        return np.where(self.fitted, -np.sqrt(self.weights).ravel() * np.nan_to_num(self.fit.residuals.ravel()), 0.0)
+
+    @property
+    def parameters(self) -> int:
+        """Number of free parameters, those of the noise among them."""
+        return self._best.basis.shape[1] + len(self.noise.parameters)
+
+    def log_likelihood(self) -> float:
+        return self.noise.log_likelihood
+
+    def predicted(self, rows: np.ndarray) -> float:
+        """Return the log predictive density of the values at ``rows`` with the noise of this fit."""
+        return self._best.without(rows)
+
+    def without(self, rows: np.ndarray) -> float:
+        """Return the same with the noise that the other values alone determine, to first order.
+
+        Notes
+        -----
+        Without a group, the noise parameters η move by −C g with the gradient g of the group's log density and the
+        covariance C of η. So the log density changes by −gᵀ C g.
+
+        Source: R. Giordano, W. Stephenson, R. Liu, M. I. Jordan, T. Broderick, A Swiss army infinitesimal jackknife,
+        Proceedings of AISTATS (2019).
+        """
+        found = self._best.without(rows)
+        if self.noise.known or not np.isfinite(found):
+            return found
+        ends = np.array([[end.without(rows) for end in pair] for pair in self._moved])
+        gradient = (ends[:, 0] - ends[:, 1]) / (2 * STEP)
+        return found - float(gradient @ self.noise.correlation @ gradient)
+
+    @cached_property
+    def _best(self) -> Conditional:
+        return self._conditional(self.noise.values)
+
+    @cached_property
+    def _moved(self) -> list[tuple[Conditional, Conditional]]:
+        """With each noise parameter moved up and down by a part of its deviation, positive ones in their logarithm."""
+        if not np.all(np.isfinite(self.noise.deviations)):
+            raise InputError(
+                "compare_models: a noise parameter has no standard deviation, because the data do not determine it; "
+                "fit with a simpler noise model"
+            )
+        found = []
+        for place, (item, deviation) in enumerate(zip(self.noise.parameters, self.noise.deviations, strict=True)):
+            ends = []
+            for step in (STEP, -STEP):
+                values = self.noise.values.copy()
+                value = values[place]
+                values[place] = value * np.exp(step * deviation / value) if item.log else value + step * deviation
+                ends.append(self._conditional(values))
+            found.append((ends[0], ends[1]))
+        return found
+
+    def _conditional(self, noise: np.ndarray) -> Conditional:
+        fit, parameters = self.fit, self.fit.parameters
+        assert fit.jacobian is not None
+        whitening = self._whitening(self.noise.parameters.mapping(noise))
+        residual = np.nan_to_num(fit.residuals.ravel())
+        slopes = whitening @ np.nan_to_num(fit.jacobian.reshape(len(residual), -1))
+        prior = prior_slopes(parameters, fit.values, np.ones(len(fit.values)))
+        whole = np.concatenate([slopes, prior])[:, off_bounds(parameters, fit.values)]
+        left = np.concatenate([-(whitening @ residual), -prior_residual(parameters, fit.values)])
+        size = np.linalg.norm(whole, axis=0)
+        basis, singular, _ = np.linalg.svd(whole / np.where(size > 0, size, 1.0), full_matrices=False)
+        basis = basis[:, singular > UNSEEN * (singular[0] if len(singular) else 1.0)]
+        left -= basis @ (basis.T @ left)
+        return Conditional(whitening, basis[: len(residual)], left[: len(residual)])
+
+    def _whitening(self, values: Mapping[str, float]) -> "csc_array":
+        """Return W with a row and a column for each value, 0 where it does not count."""
+        from scipy.sparse import coo_array, eye_array
+
+        response = self.fit.response.ravel()
+        whole = coo_array((response.size, response.size))
+        for series in self._series:
+            model, own = self.noise.models[series.name], self.noise.of_channel(series.name, values)
+            given = self.weights.ravel()[series.rows] ** -0.5
+            sizes = np.broadcast_to(model.deviations(response[series.rows], given, own), given.shape)
+            process = model.whitening(series)
+            matrix = eye_array(len(given), format="csr") if process is None else process.matrix(own)
+            part = coo_array(matrix.multiply(1 / sizes))
+            whole += coo_array((part.data, (series.rows[part.row], series.rows[part.col])), shape=whole.shape)
+        return whole.tocsc()
+
+    @cached_property
+    def _series(self) -> list[Series]:
+        return list(series_of_record(self.fit.data, self.weights, self.fit.parts, fewest=1))

@@ -36,8 +36,15 @@ REGULARISED_CASES = {
             "The band is two standard deviations, with the penalty as a prior.",
             "A larger weight gives smoother parameters and a larger residual. The weight is chosen at the corner.",
             "Smooth parameters",
+            "Response and data",
+            "Download all values as CSV",
         ),
-        ("smooth-parameters", "penalty-curve"),
+        ("smooth-parameters", "penalty-curve", "responses-1"),
+    ),
+    "smooth parameters beside another one": Case(
+        lambda: da.regularise(MODEL, measured(), smooth=MODEL.parameters.names[1:], rounds=1),
+        ("Parameters without a penalty",),
+        ("smooth-parameters",),
     ),
     "smooth parameters, unknown noise": Case(
         lambda: da.regularise(MODEL, measured(deviations=False)), ("noise not known",), ()

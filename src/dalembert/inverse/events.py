@@ -80,6 +80,17 @@ class Drawn:
 
 
 @dataclass(frozen=True, eq=False)
+class Penalised:
+    """A gradient of a penalised misfit was computed, in a round of at most ``of``, with the weight of the round."""
+
+    kind: ClassVar[str] = "penalised"
+    round: int
+    of: int
+    weight: float
+    simulations: int
+
+
+@dataclass(frozen=True, eq=False)
 class Step:
     """One iteration of one start.
 
@@ -156,7 +167,7 @@ class Finished:
     simulations: int
 
 
-Event = StartBegan | Screened | Sampled | Checked | Paved | Profiled | Drawn | Step | StartEnd | Finished
+Event = StartBegan | Screened | Sampled | Checked | Paved | Profiled | Drawn | Penalised | Step | StartEnd | Finished
 OnEvent = Callable[[Event], None]
 
 

@@ -65,6 +65,8 @@ class Told:
                 return f"profile of {name} · {simulations} simulations", 0, None
             case {"event": "drawn", "draws": draws, "of": of}:
                 return f"{draws} of {of} draws", draws, of
+            case {"event": "penalised", "round": number, "of": most, "weight": weight, "simulations": simulations}:
+                return f"round {number} of at most {most} · weight {weight:.3g} · {simulations} simulations", 0, None
             case {"event": "following", "begin": begin, "end": end}:
                 return f"following the response from {begin:g} to {end:g} Hz", 0, None
             case {"event": "followed", "frequency": frequency, "amplitude": amplitude, "dof": dof, "done": part}:

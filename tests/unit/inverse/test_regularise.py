@@ -105,6 +105,7 @@ def test_it_is_stored_and_read(tmp_path) -> None:
     again = da.RegularisedFit.load(tmp_path / "fit.nc")
     np.testing.assert_array_equal(again.values, fit.values)
     assert again.summary() == fit.summary()
+    np.testing.assert_array_equal(again.residuals, fit.residuals)
 
 
 def test_what_cannot_be_meant_is_refused() -> None:
@@ -130,3 +131,15 @@ def test_what_cannot_be_meant_is_refused() -> None:
         da.regularise(MODEL, measured(), smooth=["c1", "c2", "cc"])
     with refused(InputError, snapshot("regularise: unknown weight 'corner'; known: discrepancy, l-curve")):
         da.regularise(MODEL, measured(), weight="corner")
+
+
+def test_the_response_is_that_of_the_values_and_each_round_is_an_event() -> None:
+    events = []
+    fit = da.regularise(MODEL, measured(), on_event=events.append)
+    np.testing.assert_allclose(fit.response, MODEL.evaluate(fit.values[None]).values[0], rtol=0, atol=1e-12)
+    weighted = fit.residuals / measured().deviations
+    assert np.linalg.norm(weighted) == pytest.approx(fit.residual_norm, rel=1e-9)
+    assert {event.kind for event in events} == {"penalised"}
+    rounds = [event.round for event in events]
+    assert rounds == sorted(rounds)
+    assert rounds[0] == 1

@@ -30,6 +30,10 @@ def _printed(event: dict, names: tuple[str, ...] = ()) -> str:
             {"event": "paved", "inside": 3, "boundary": 4, "waiting": 5},
             "3 boxes inside, 4 on the boundary, 5 to look at",
         ),
+        (
+            {"event": "penalised", "round": 2, "of": 8, "weight": 108.5, "simulations": 401},
+            "round 2 of at most 8 · weight 108 · 401 simulations",
+        ),
         ({"event": "simulating", "end": 2.0}, "simulating to 2 s"),
         ({"event": "run-damaged", "message": "checkpoint is damaged"}, "checkpoint is damaged"),
         (

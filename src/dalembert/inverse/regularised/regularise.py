@@ -1,7 +1,7 @@
 """Identify many parameters that are smooth: unknown histories and fields."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,8 +14,9 @@ from dalembert.findings import Finding
 from dalembert.forward import ForwardModel
 from dalembert.forward.adjoint import AUTO, GRADIENTS
 from dalembert.forward.provenance import provenance
+from dalembert.inverse.events import OnEvent, Penalised
 from dalembert.inverse.problem.journal import Journal
-from dalembert.inverse.problem.problem import Problem, pose
+from dalembert.inverse.problem.problem import Linearisation, Problem, pose
 from dalembert.inverse.regularised.regularised_fit import RegularisedFit
 from dalembert.inverse.regularised.smoothness import Smoothed, differences
 from dalembert.optimize import Minimiser
@@ -38,6 +39,7 @@ def regularise(
     start: Mapping[str, float] | ArrayLike | None = None,
     derivative: str = AUTO,
     rounds: int = 8,
+    on_event: OnEvent | None = None,
 ) -> RegularisedFit:
     """Parameters p that explain data, and are smooth: least Σ W (R(p) − data)² + μ² ‖D p/scale‖².
 
@@ -61,6 +63,8 @@ def regularise(
         How gradients are computed, see :func:`dalembert.forward.pullback`.
     rounds : int
         Linearisations at most, after each of which the weight is chosen again.
+    on_event : callable, optional
+        Called with each event (see :mod:`dalembert.inverse.events`) as it happens.
 
     Returns
     -------
@@ -105,7 +109,7 @@ def regularise(
                 "regularise: the discrepancy principle needs the noise of the data. Give their deviations, or take "
                 "weight='l-curve'"
             )
-    problem = replace(pose(model, data, None, Journal(len(data.coordinate.values))), derivative=derivative)
+    problem = replace(pose(model, data, None, Journal(len(data.coordinate.values), on_event)), derivative=derivative)
     names = model.parameters.names
     chosen = tuple(names if smooth is None else names_of(smooth, "regularise", "smooth"))
     for name in chosen:
@@ -127,11 +131,12 @@ def _identified(
     rounds: int,
 ) -> RegularisedFit:  # fmt: skip
     scale, before, settled, left = problem.model.parameters.scale, np.nan, False, np.inf
-    many, corner, discrepancy = _linearised(problem, vector, penalty)
+    at, many, corner, discrepancy = _linearised(problem, vector, penalty)
     mu = _weight(weight, corner, discrepancy)
-    for _ in range(rounds):
-        vector = scale * _minimised(problem, many, mu, vector / scale)
-        many, corner, discrepancy = _linearised(problem, vector, penalty)
+    for number in range(1, rounds + 1):
+        stage = _Stage(problem.journal, number, rounds, mu)
+        vector = scale * _minimised(problem, many, mu, vector / scale, stage)
+        at, many, corner, discrepancy = _linearised(problem, vector, penalty)
         before, mu = mu, _weight(weight, corner, discrepancy)
         settled, left = abs(mu - before) <= _SETTLED * before, many.decrease(vector / scale, mu)
         if settled and left <= _CONVERGED:
@@ -158,6 +163,8 @@ def _identified(
         residual_norm=float(np.linalg.norm(residual)),
         penalty_norm=float(np.linalg.norm(penalty @ (vector / scale))),
         effective=effective,
+        data=problem.data,
+        response=at.response,
         simulations=problem.journal.simulations,
         provenance=provenance(problem.model, None, data=problem.data.fingerprint, weight=weight),
         findings=_findings(before, mu, left) if not settled or left > _CONVERGED else (),
@@ -190,8 +197,10 @@ def _findings(before: float, mu: float, left: float) -> tuple[Finding, ...]:
     return tuple(found)
 
 
-def _linearised(problem: Problem, vector: np.ndarray, penalty: np.ndarray) -> tuple[Smoothed, float, float]:
-    """The linearised problem, the corner of its L-curve, and the weight by the discrepancy principle."""
+def _linearised(
+    problem: Problem, vector: np.ndarray, penalty: np.ndarray
+) -> tuple[Linearisation, Smoothed, float, float]:
+    """The linearised response and problem, the corner of its L-curve, and the weight by the discrepancy principle."""
     scale = problem.model.parameters.scale
     at = problem.linearise(vector)
     residual = problem.residual(at.response)
@@ -200,14 +209,27 @@ def _linearised(problem: Problem, vector: np.ndarray, penalty: np.ndarray) -> tu
     many = Smoothed(matrix, matrix @ (vector / scale) - residual[counted], penalty)
     known = problem.data.deviations is not None
     discrepancy = many.standard.discrepancy(np.sqrt(counted.sum())) if known else np.nan
-    return many, many.standard.corner(), float(discrepancy)
+    return at, many, many.standard.corner(), float(discrepancy)
 
 
 def _weight(asked: float | str, corner: float, discrepancy: float) -> float:
     return {L_CURVE: corner, DISCREPANCY: discrepancy}[asked] if isinstance(asked, str) else float(asked)
 
 
-def _minimised(problem: Problem, many: Smoothed, mu: float, near: np.ndarray) -> np.ndarray:
+@dataclass(frozen=True)
+class _Stage:
+    """A round of at most ``of``, which says when it goes on."""
+
+    journal: Journal
+    number: int
+    of: int
+    weight: float
+
+    def tell(self) -> None:
+        self.journal.tell(Penalised(self.number, self.of, self.weight, self.journal.simulations))
+
+
+def _minimised(problem: Problem, many: Smoothed, mu: float, near: np.ndarray, stage: _Stage) -> np.ndarray:
     """z of the least nonlinear fitness, by L-BFGS-B in coordinates in which the linearised fitness is round.
 
     z = z₁ + C⁻ᵀ u, with C Cᵀ the normal matrix of the linearised problem, and z₁ on the way from the last values,
@@ -230,6 +252,7 @@ def _minimised(problem: Problem, many: Smoothed, mu: float, near: np.ndarray) ->
 
     def gradient(u: np.ndarray) -> np.ndarray:
         z = place(u)
+        stage.tell()
         try:
             slope = problem.slope(z * scale) * scale
         except SolveError:  # the minimiser turns back from there

@@ -7,8 +7,9 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 
 from dalembert.findings import Finding
+from dalembert.inverse.fit.stored_data import StoredData
 from dalembert.results import Result, fact_lines
-from dalembert.stored_fields import Labels, Over
+from dalembert.stored_fields import Labels, Over, Table
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +36,9 @@ class RegularisedFit(Result):
         Of the values.
     effective : float
         Number of parameters that the data determine at this weight.
+    data : Measurements
+    response : array, shape (samples, channels)
+        Of the values.
     simulations : int
         Simulations that the identification took, gradients by the adjoint counted as four.
     provenance : mapping
@@ -58,9 +62,16 @@ class RegularisedFit(Result):
     residual_norm: float
     penalty_norm: float
     effective: float
+    data: StoredData
+    response: Table
     simulations: int
     provenance: Mapping[str, Any]
     findings: tuple[Finding, ...] = ()
+
+    @property
+    def residuals(self) -> np.ndarray:
+        """Computed minus measured values, (samples, channels)."""
+        return self.data.difference(self.response)
 
     @property
     def success(self) -> bool:

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from dalembert.study.duration import Effort, evaluated
-from dalembert.study.events import Emit
+from dalembert.study.events import Emit, teller
 from dalembert.study.posing import posed
 from dalembert.study.study import Study
 from dalembert.study.table import Read, StudyTable, told_apart
@@ -72,10 +72,12 @@ class Regularise(ResultTask):
 
     def result(self, study: Study, emit: Emit) -> Any:
         from dalembert.inverse import regularise
+        from dalembert.inverse.events import as_record
 
         model, data = posed(study)
         picked = study.table.picked("order", "weight", "rounds", "derivative")
-        return regularise(model, data, smooth=_smooth(study.file), **picked)  # type: ignore[arg-type] - one record
+        picked |= {"smooth": _smooth(study.file), "on_event": teller(emit, as_record)}
+        return regularise(model, data, **picked)  # type: ignore[arg-type] - one record
 
     def outcome(self, study: Study, result: Any) -> Outcome:
         """Outcome with the weight, and the number of parameters that the data determine."""

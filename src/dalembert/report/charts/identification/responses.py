@@ -1,12 +1,12 @@
 """Responses beside the data they were fitted to, with what is left over below."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import plotly.graph_objects as go
 
-from dalembert.inverse import ExperimentFit, Fit
+from dalembert.data import Measurements
 from dalembert.report.charts.bounds.bands import dressed, selected
 from dalembert.report.charts.drawing import colour_of, draw, stacked
 from dalembert.report.look import plain
@@ -16,16 +16,25 @@ FEW = 200
 """Samples up to which each is drawn as a circle of its own."""
 
 
-def responses(
-    fit: Fit | ExperimentFit, channels: Sequence[str] | None = None, *, title: str = "Response and data"
-) -> go.Figure:
+class Compared(Protocol):
+    """A response beside data: a fit, one of its experiments, a regularised fit."""
+
+    @property
+    def data(self) -> Measurements: ...
+    @property
+    def response(self) -> np.ndarray: ...
+    @property
+    def residuals(self) -> np.ndarray: ...
+
+
+def responses(fit: Compared, channels: Sequence[str] | None = None, *, title: str = "Response and data") -> go.Figure:
     """Computed responses as lines, data as circles, and below them computed minus measured.
 
     Dotted lines in the residuals are two standard deviations of the data, where these are known.
 
     Parameters
     ----------
-    fit : Fit, or one of its experiments
+    fit : Fit, one of its experiments, or RegularisedFit
     channels : sequence of str, optional
         Channels to draw, all if not given; they share an axis.
     title : str
@@ -45,7 +54,7 @@ def responses(
     return dressed(figure, fit.data, chosen, title, below="residual")
 
 
-def computed_line(fit: Fit | ExperimentFit, column: int) -> tuple[np.ndarray, np.ndarray]:
+def computed_line(fit: Compared, column: int) -> tuple[np.ndarray, np.ndarray]:
     """Abscissae and ordinates of the computed line of a channel."""
     measured = fit.data.values[:, column]
     computed, nearest = fit.response[:, column], measured + fit.residuals[:, column]
@@ -53,13 +62,13 @@ def computed_line(fit: Fit | ExperimentFit, column: int) -> tuple[np.ndarray, np
     return thinned(fit.data.coordinate.values, computed)
 
 
-def residual_line(fit: Fit | ExperimentFit, column: int) -> tuple[np.ndarray, np.ndarray]:
+def residual_line(fit: Compared, column: int) -> tuple[np.ndarray, np.ndarray]:
     """Abscissae and ordinates of the line of a channel's residuals."""
     taken = np.flatnonzero(fit.data.taken[:, column])
     return thinned(fit.data.coordinate.values[taken], fit.residuals[taken, column])
 
 
-def _channel(figure: go.Figure, fit: Fit | ExperimentFit, column: int, colour: str) -> None:
+def _channel(figure: go.Figure, fit: Compared, column: int, colour: str) -> None:
     at, name = fit.data.coordinate.values, plain(fit.data.channels[column])
     taken = np.flatnonzero(fit.data.taken[:, column])
     few = len(taken) <= FEW

@@ -8,12 +8,14 @@ from dalembert.report.asked import Asked
 from dalembert.report.digits import counted, shown
 from dalembert.report.headline import Headline
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Plot, Row, Section
+from dalembert.report.section import Download, Plot, Row, Section
+from dalembert.report.sections.identification.response import compared_simply
+from dalembert.report.table import Table, cells
 
 
 @sections_of(RegularisedFit)
 def regularised_fit(fit: RegularisedFit, asked: Asked) -> list[Section]:
-    """The parameters and the L-curve."""
+    """The parameters, the L-curve, and the response."""
     facts = {
         "parameters": counted(len(fit.names)),
         "effective parameters": shown(fit.effective),
@@ -29,4 +31,12 @@ def regularised_fit(fit: RegularisedFit, asked: Asked) -> list[Section]:
         Plot("smooth-parameters", charts.smooth_parameters(fit), how),
         Plot("penalty-curve", charts.penalty_curve(fit), curve),
     ]
-    return [headline, Section("Values and penalty", (Row(plots, beside=True),))]
+    columns = {"parameter": fit.names, "value": fit.values, "standard deviation": fit.deviations, "unit": fit.units}
+    values = Download(Table.of("values", "", columns), "Download all values as CSV")
+    others = [place for place, name in enumerate(fit.names) if name not in fit.smooth]
+    table = Table.of("other-values", "Parameters without a penalty", {
+        "parameter": [fit.names[place] for place in others], "value": cells(fit.values[others], 6),
+        "standard deviation": cells(fit.deviations[others], 2), "unit": [fit.units[place] for place in others],
+    })  # fmt: skip
+    blocks = (Row(plots, beside=True), *([table] if others else []), values)
+    return [headline, Section("Values and penalty", blocks), compared_simply(fit)]

@@ -23,6 +23,9 @@ TABLE = Path(__file__).parent / "verification" / "references" / "posterior_calib
 DRAWS = 99
 """Nearly independent draws with which the truth is ranked: 100 ranks."""
 
+MORE = 10
+"""Draws for intervals, in those for ranks: an interval from the 2.5 % quantile of few draws is too short."""
+
 BINS = 20
 TIMES = np.linspace(0.0, 2.0, 21)
 SIGMA = 0.02  # rad, of the angle of the pendulum
@@ -119,7 +122,8 @@ def covered(name: str, seed: int) -> list[bool]:
     case = CASES[name]
     parameters, _ = drawn(case, 0)
     vector = parameters.vector(case.truth)
-    intervals = _sampled(case, simulated(case, parameters, vector, seed), vector, seed).intervals(0.95)
+    data = simulated(case, parameters, vector, seed)
+    intervals = _sampled(case, data, vector, seed, draws=MORE * case.settings["draws"]).intervals(0.95)
     return [bool(low <= value <= high) for value, (low, high) in zip(vector, intervals.values(), strict=True)]
 
 
@@ -139,10 +143,10 @@ def repeated(function: Callable[[str, int], Any], name: str, count: int, workers
         return list(pool.map(partial(function, name), range(count), chunksize=5))
 
 
-def _sampled(case: Case, data: da.Measurements, vector: np.ndarray, seed: int) -> da.Posterior:
+def _sampled(case: Case, data: da.Measurements, vector: np.ndarray, seed: int, **settings: int) -> da.Posterior:
     model = case.model()
     start = vector[: len(model.parameters)]
-    return da.sample(model, data, noise=case.noise, start=start, seed=seed, **case.settings)
+    return da.sample(model, data, noise=case.noise, start=start, seed=seed, **(case.settings | settings))
 
 
 def _columns(model: Any, values: np.ndarray) -> dict[str, np.ndarray]:

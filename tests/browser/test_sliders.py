@@ -1,6 +1,8 @@
 """The sliders of a study: the picture follows the values, which can be written into the study."""
 
 import re
+import shutil
+from pathlib import Path
 
 import pytest
 from playwright.sync_api import Locator, Page
@@ -49,6 +51,7 @@ def root(tmp_path_factory):
     for name in ("pendulum", "written"):
         path = begin("identify", folder / "studies" / name)
         path.write_text(path.read_text().replace("start = 0.1, unit", "start = 0.1, unit", 1) + "# the end\n")
+    shutil.copytree(Path(__file__).parents[2] / "studies" / "unknown-load", folder / "studies" / "unknown-load")
     crashing = folder / "studies" / "crashing"
     crashing.mkdir()
     (crashing / "study.toml").write_text(CRASHING)
@@ -143,6 +146,18 @@ def test_values_are_typed_reset_and_written_into_the_study(sliders, root):
     assert text.endswith("# the end\n")
     assert 'angle = { lower = "-30 deg", upper = "-30 deg" }' in text
     assert [item.start for item in load(path).parameters] == [0.3]
+
+
+def test_many_parameters_leave_the_drawing_in_sight(sliders, tmp_path):
+    page = sliders("unknown-load/identify", width=1400)
+    assert page.locator("input[type=range]:visible").count() == 5  # with that of the time
+    assert page.locator(".player").bounding_box()["y"] < 700
+    before = misfit(page)
+    page.get_by_text("96 more parameters").click()
+    way(page, "push_30").press("End")
+    wait_until(page, f"!{TEXT}.includes('Misfit {before:.4g} (')")
+    assert misfit(page) != before
+    page.screenshot(path=tmp_path / "many.png")
 
 
 def test_a_value_out_of_bounds_is_refused(sliders):

@@ -23,6 +23,10 @@ STILL = 0.3
 PATIENCE = 1.0
 """Seconds of a simulation after which the page says that it is computed."""
 
+MANY = 16
+"""Parameters up to which all have their slider above the drawing; of more the first ones have."""
+FIRST = 4
+
 
 def show(draft: Draft, room: Room) -> None:
     """Build the panel."""
@@ -115,23 +119,28 @@ class Sliders:
 
     def _build_rows(self, units: dict[str, tuple[str, float]]) -> None:
         self._parameters.clear()
+        items = self._items
+        first = len(items) if len(items) <= MANY else FIRST
         with self._parameters:
-            self._rows = {
-                item.name: ParameterRow(
-                    item,
-                    self._draft.values[item.name],
-                    partial(self._draft.set_value, item.name),
-                    {
-                        "Reset": partial(self._reset_value, item.name),
-                        "Use as start": complaints()(partial(self._use_as_start, item.name)),
-                        "Use as value": complaints()(partial(self._use_as_value, item.name)),
-                    },
-                    units[item.name],
-                )
-                for item in self._items
-            }
-            if not self._rows:
+            self._rows = {item.name: self._row(item, units[item.name]) for item in items[:first]}
+            if first < len(items):
+                with (
+                    ui.expansion(f"{len(items) - first} more parameters")
+                    .classes("w-full border rounded")
+                    .props("dense")
+                ):
+                    self._rows |= {item.name: self._row(item, units[item.name]) for item in items[first:]}
+            if not items:
                 ui.label("The study has no parameters. Add one to [parameters] to get its slider.")
+
+    def _row(self, item: Parameter, unit: tuple[str, float]) -> ParameterRow:
+        kept = {
+            "Reset": partial(self._reset_value, item.name),
+            "Use as start": complaints()(partial(self._use_as_start, item.name)),
+            "Use as value": complaints()(partial(self._use_as_value, item.name)),
+        }
+        chosen = partial(self._draft.set_value, item.name)
+        return ParameterRow(item, self._draft.values[item.name], chosen, kept, unit)
 
     def _take_values(self) -> None:
         for name in self._rows.keys() & self._draft.values.keys():

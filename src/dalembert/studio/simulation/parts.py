@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 POINTS = 401
 """Samples of channels that are compared with no data."""
-FROM_DATA = ("identify", "identify_set")
+FROM_DATA = ("identify", "identify_set", "regularise", "sample")
 """Tasks whose data the channels are compared with."""
 OVER_FREQUENCY = "frequency_response"
 

@@ -1,5 +1,6 @@
 """The studies of a workspace by their folders, with what they say about themselves and their last runs."""
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,6 +11,9 @@ from dalembert.study.basics import task_names
 
 EXPECTED = "expected.toml"
 """File with the numbers that must come out of the studies of a folder: such studies are examples."""
+
+_MARKED = re.compile(r"\[([^]]+)\]\([^)]*\)|\*(\S[^*]*)\*|`([^`]*)`")
+"""Links, emphasis and code in Markdown, with their texts."""
 
 
 @dataclass(frozen=True)
@@ -101,5 +105,5 @@ def _readme(path: Path) -> tuple[str, str]:
         return "", ""
     if not heading.startswith("# "):
         return "", ""
-    first = " ".join(paragraphs[0].replace("`", "").split()) if paragraphs else ""
+    first = " ".join(_MARKED.sub(r"\1\2\3", paragraphs[0]).split()) if paragraphs else ""
     return heading.removeprefix("# ").strip(), first if first[:1].isalnum() else ""

@@ -43,6 +43,13 @@ def test_folders_have_titles_descriptions_and_their_studies(workspace):
     ]  # fmt: skip
 
 
+def test_descriptions_have_the_texts_of_links_and_no_marks(workspace):
+    readme = workspace.root / "studies" / "mine" / "README.md"
+    readme.write_text("# Bars\n\nBars of [a pendulum](../pendulum/README.md), *Multibody* dynamics, `study.toml`.\n")
+    _, own = study_folders(workspace)
+    assert own.description == "Bars of a pendulum, Multibody dynamics, study.toml."
+
+
 def test_a_search_finds_words_of_any_study_of_a_folder(workspace):
     examples, own = study_folders(workspace)
     assert examples.matches("BACKBONE duffing")

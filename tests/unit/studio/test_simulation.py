@@ -1,5 +1,6 @@
 """What the process of a study computes for its sliders."""
 
+import shutil
 from base64 import b64decode
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from dalembert.study import load
 from dalembert.study.posing import posed
 from dalembert.study.template import begin
 
+STUDIES = Path(__file__).parents[3] / "studies"
 OSCILLATOR = """
 [parameters]
 k = { lower = 3.0, upper = 5.0, unit = "N/m" }
@@ -81,10 +83,25 @@ def test_effects_are_the_changes_of_the_channels_between_the_bounds(identificati
         aside = np.zeros(len(vector))
         aside[place] = 1e-4 * (item.upper - item.lower)
         low, middle, high = model.evaluate(np.array([vector - aside, vector, vector + aside])).values
-        wanted[item.name] = np.sqrt(np.mean((high - low) ** 2, axis=0)) / 2e-4 / np.ptp(middle, axis=0)
+        wanted[item.name] = np.sqrt(np.mean((high - low) ** 2, axis=0)) / 2e-4 / ranges(middle, study.data().values)
     assert set(found.effects) == set(wanted)
     for name, effects in wanted.items():
         assert found.effects[name] == pytest.approx(effects, rel=1e-2)
+
+
+def ranges(response, measured):
+    return np.maximum(np.ptp(response, axis=0), np.ptp(measured, axis=0))
+
+
+def test_effects_on_a_channel_at_rest_are_relative_to_the_largest_one(tmp_path):
+    path = tmp_path / "identify.toml"
+    shutil.copytree(STUDIES / "unknown-load", tmp_path, dirs_exist_ok=True)
+    measured = influences(Kept(), source(path), "", {}).effects
+    assert 0 < max(effect[0] for effect in measured.values()) < 10
+    text = path.read_text()
+    path.write_text(text[: text.index("[data]")] + '[simulate]\nend = "2 s"\nchannels = ["bar.end.x"]\n')
+    alone = influences(Kept(), source(path), "", {}).effects
+    assert max(effect[0] for effect in alone.values()) == pytest.approx(1.0)
 
 
 def test_a_study_is_read_again_only_if_it_changed(identification, monkeypatch):

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from dalembert.studio.editor.outline import Outline
     from dalembert.study import Study
 
+REST = 1e-9
+"""Range of a channel, relative to the largest effect of a parameter on it, up to which it is at rest."""
+
 
 @dataclass(frozen=True)
 class Source:
@@ -122,11 +125,18 @@ def influences(kept: Kept, source: Source, name: str, values: Mapping[str, float
         value * np.log(item.upper / item.lower) if item.logarithmic else item.upper - item.lower
         for item, value in zip(parameters, vector.tolist(), strict=True)
     ]
-    ranges = np.ptp(response[:, columns], axis=0)
-    ranges = np.where(ranges > 0, ranges, np.maximum(np.abs(response[:, columns]).max(axis=0), 1e-300))
-    sizes = np.sqrt(np.mean(jacobian[:, columns] ** 2, axis=0)) * np.array(spans) / ranges[:, None]
+    moves = np.sqrt(np.mean(jacobian[:, columns] ** 2, axis=0)) * np.array(spans)
+    sizes = moves / _ranges(own, response[:, columns], np.max(moves, axis=1, initial=0.0))[:, None]
     effects = dict(zip(map(own.named, parameters.names), np.nan_to_num(sizes).T.tolist(), strict=True))
     return Influences(tuple(channels[column] for column in columns), effects)
+
+
+def _ranges(own: Part, response: np.ndarray, largest: np.ndarray) -> np.ndarray:
+    """What effects on channels are relative to: the range of response or data; of a channel at rest the largest one."""
+    ranges = np.ptp(response, axis=0)
+    if own.data is not None:
+        ranges = np.fmax(ranges, np.nanmax(own.data.values, axis=0) - np.nanmin(own.data.values, axis=0))
+    return np.where(ranges > REST * largest, ranges, np.maximum(largest, 1e-300))
 
 
 def _part(kept: Kept, source: Source, name: str) -> Part:

@@ -37,6 +37,8 @@ def found(study: Study, outcome: Outcome, row: dict[str, Any]) -> float:
         case "identify" if "of" in row:
             population = getattr(outcome, "told")["population"]  # noqa: B009
             return float(getattr(population, quantity)[population.names.index(row["of"])])
+        case "identify" if quantity.startswith("noise."):
+            return getattr(outcome, "result").noise.estimates[quantity]  # noqa: B009
         case "identify" | "sample":
             values = outcome.best["values"]
             return (

@@ -154,9 +154,17 @@ def test_a_design_ranks_sensors_and_horizons(write):
     assert len(page.table("designs")) == 5
 
 
+def test_a_design_with_correlated_noise(write):
+    noise = 'noise = { model = "autoregressive", order = 1, partial = [0.8], deviation = { model = "known" } }'
+    _, plain = run_study(write(DESIGN))
+    _, correlated = run_study(write(DESIGN.replace("deviations =", f"{noise}\ndeviations =")))
+    assert correlated.best["values"]["deviation of rate"] != plain.best["values"]["deviation of rate"]
+
+
 @pytest.mark.parametrize(
     ("old", "new", "sentence"),
     [
+        ("deviations = 0.01", "", "[design] needs the noise of what could be measured; give deviations or noise"),
         ("rate = 1.2", "raet = 1.2", "[design.at]: unknown parameter 'raet'; did you mean 'rate'?"),
         (
             "[design]",

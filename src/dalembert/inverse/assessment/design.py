@@ -11,7 +11,8 @@ from dalembert.errors import InputError, require_known
 from dalembert.forward import ForwardModel
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.assessment.designs import CRITERIA, Designs
-from dalembert.inverse.assessment.sensitivity import at_of, linearised, noise_of
+from dalembert.inverse.assessment.planned_noise import Planned, planned_channels
+from dalembert.inverse.assessment.sensitivity import at_of
 from dalembert.inverse.least_squares.estimate import UNSEEN, estimate
 from dalembert.inverse.problem.prior import prior_slopes
 
@@ -23,7 +24,8 @@ def design(
     model: ForwardModel,
     at: Mapping[str, float] | ArrayLike | None = None,
     *,
-    deviations: Mapping[str, float] | ArrayLike,
+    deviations: Mapping[str, float] | ArrayLike | None = None,
+    noise: Planned | None = None,
     sensors: str | Iterable[str | Sequence[str]] = "singles",
     horizons: Sequence[float] | None = None,
     criterion: str = "D",
@@ -36,8 +38,11 @@ def design(
         With all channels that could be measured, over the longest horizon.
     at : mapping by name, or array of shape (parameters,), optional
         Where to look; the first guesses if not given. The ranking may be another one elsewhere.
-    deviations : number, mapping by channel, or array of shape (channels,)
+    deviations : number, mapping by channel, or array of shape (channels,), optional
         Standard deviations of the noise; a mapping names the channels that can be measured.
+    noise : NoiseModel, its name, mapping of channel to NoiseModel, or EstimatedNoise, optional
+        Noise that is correlated from sample to sample, or depends on the response: with a value for each of its
+        parameters, or as a fit has estimated it (``fit.noise``). Independent noise if not given.
     sensors : {"singles", "pairs", "all"}, or channels and tuples of channels
         The sets of channels to compare: each alone, each two, all at once, or those given.
     horizons : sequence of float, optional
@@ -54,7 +59,7 @@ def design(
     Raises
     ------
     InputError
-        For an unknown channel, parameter, set or criterion, or a horizon without samples.
+        For an unknown channel, parameter, set or criterion, a horizon without samples, noise that is not known.
     SolveError
         If the simulation fails.
 
@@ -72,12 +77,13 @@ def design(
     """
     require_known("criterion", criterion, CRITERIA, "design")
     vector, parameters = at_of(model, at, "design"), model.parameters
-    names, columns, noise = noise_of(model, deviations, "design")
+    channels = planned_channels(model, vector, deviations, noise)
+    names = channels.names
     sets = _sets(sensors, names)
     along = model.coordinate
     ends = [float(along.values[-1])] if horizons is None else [float(end) for end in horizons]
     counts = [_samples(along.values, end, along.unit) for end in ends]
-    slopes = linearised(model, vector)[1][:, columns] * parameters.scale / noise[:, None]
+    slopes = channels.rows * parameters.scale
     prior = prior_slopes(parameters, vector, parameters.scale)
     rows = []
     for chosen in sets:
@@ -95,7 +101,7 @@ def design(
         parameters=parameters,
         at=vector,
         criterion=criterion,
-        noise=dict(zip(names, noise.tolist(), strict=True)),
+        noise=dict(zip(names, channels.sizes.tolist(), strict=True)),
         along=along.name,
         unit=along.unit,
         sensors=tuple(row[2] for row in rows),

@@ -10,6 +10,7 @@ from dalembert.study.events import Emit
 from dalembert.study.numbers import Frequencies, Number, NumberOfEach, Samples, Times
 from dalembert.study.study import Study
 from dalembert.study.table import Read, StudyTable, told_apart
+from dalembert.study.tasks.noise import Noise
 from dalembert.study.tasks.task import Outcome, ResultTask
 from dalembert.study.tasks.wrong import needs_parameters, needs_samples, needs_solver, response, unnamed
 
@@ -27,7 +28,14 @@ class DesignTable(StudyTable):
     channels: list[str] | None = Field(
         None, min_length=1, description="what could be measured on a mechanism or a structure"
     )
-    deviations: NumberOfEach = Field(description="standard deviation of the noise: a number, or one for each channel")
+    deviations: NumberOfEach | None = Field(
+        None, description="standard deviation of the noise: a number, or one for each channel"
+    )
+    noise: Noise = Field(
+        None,
+        description="noise model with a value for each parameter, for noise that is correlated or depends on the "
+        "response; independent if not given",
+    )
     sensors: Sets = Field("singles", description="'singles', 'pairs', 'all', or lists of channels")
     horizons: Samples | None = Field(None, description="ends of the measurement; the last sample if not given")
     criterion: Literal["D", "E"] = Field(
@@ -46,7 +54,10 @@ class Design(ResultTask):
     needs = (needs_parameters, needs_samples, needs_solver)
 
     def wrong(self, file: Any) -> list[str]:
-        return [*super().wrong(file), *unnamed(file.design.at, file.parameters, "[design.at]")]
+        wrong, table = super().wrong(file), file.design
+        if table.deviations is None and table.noise is None:
+            wrong.append("[design] needs the noise of what could be measured; give deviations or noise")
+        return [*wrong, *unnamed(table.at, file.parameters, "[design.at]")]
 
     def plan(self, study: Study) -> str:
         model = response(study)
@@ -64,7 +75,8 @@ class Design(ResultTask):
         from dalembert.inverse import design
 
         options = study.table.picked("deviations", "sensors", "horizons", "criterion")
-        return design(response(study), _at(study), **options)
+        noise = None if study.table.noise is None else study.table.noise.noise()
+        return design(response(study), _at(study), noise=noise, **options)
 
     def outcome(self, study: Study, designs: Any) -> Outcome:
         """Outcome of designs, with the best one's score and the deviations that it foresees."""

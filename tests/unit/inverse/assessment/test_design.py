@@ -8,7 +8,16 @@ from conclusions import codes, only
 from dalembert.data import Measurements
 from dalembert.errors import InputError, SolveError
 from dalembert.forward import PythonModel
-from dalembert.inverse import Designs, design, identifiability, identify
+from dalembert.inverse import (
+    AutoregressiveNoise,
+    ConstantNoise,
+    Designs,
+    KnownNoise,
+    ProportionalNoise,
+    design,
+    identifiability,
+    identify,
+)  # fmt: skip
 from dalembert.parameters import Parameter
 from small_models import LINE, TIMES, measured
 from support import says
@@ -25,6 +34,36 @@ def test_deviations_are_those_of_a_fit_of_such_data():
     fit = identify(LINE, Measurements(data.coordinate, data.channels, data.values, np.array([0.1, 0.3])))
     np.testing.assert_allclose(designs.deviations[0], fit.deviations, rtol=1e-6)
     np.testing.assert_allclose(designs.singular_values[0], fit.singular_values, rtol=1e-6)
+
+
+def test_correlated_noise_has_the_deviations_of_generalised_least_squares():
+    noise = AutoregressiveNoise(deviation=ConstantNoise(deviation=0.1), order=1, partial=[0.7])
+    designs = design(TWO, noise={"p": noise, "q": noise}, sensors=[("p", "q")], horizons=[TIMES[9], TIMES[-1]])
+    for place, end in enumerate(designs.horizons):
+        along = TIMES[end >= TIMES]
+        lags = np.abs(np.subtract.outer(np.arange(len(along)), np.arange(len(along))))
+        precision = np.linalg.inv(0.01 * 0.7**lags)
+        expected = along @ precision @ along, precision.sum()
+        np.testing.assert_allclose(designs.deviations[place], 1 / np.sqrt(expected), rtol=1e-9)
+    assert designs.noise == pytest.approx({"p": 0.1, "q": 0.1})
+
+
+def test_the_noise_of_a_fit_plans_its_repetition():
+    rng = np.random.default_rng(1)
+    values = LINE.evaluate(np.array([[1.0, -0.5]])).values[0] + [0.1, 0.3] * rng.standard_normal((len(TIMES), 2))
+    data = Measurements.of(TIMES, dict(zip("xy", values.T, strict=True)))
+    fit = identify(LINE, data, noise={"x": ConstantNoise(), "y": AutoregressiveNoise(order=1)})
+    designs = design(LINE, fit.values, noise=fit.noise, sensors="all")
+    np.testing.assert_allclose(designs.deviations[0], fit.deviations, rtol=1e-6)
+    assert designs.noise["x"] == pytest.approx(fit.noise.estimates["noise.x.deviation"])
+
+
+def test_known_deviations_may_be_correlated():
+    noise = AutoregressiveNoise(deviation=KnownNoise(), order=1, partial=[0.7])
+    plain = design(TWO, deviations={"p": 0.1, "q": 0.2}, sensors="all")
+    correlated = design(TWO, deviations={"p": 0.1, "q": 0.2}, noise={"q": noise}, sensors="all")
+    assert correlated.deviations[0][0] == pytest.approx(plain.deviations[0][0])
+    assert correlated.deviations[0][1] > 1.5 * plain.deviations[0][1]
 
 
 @pytest.mark.parametrize("criterion", ["D", "E"])
@@ -102,6 +141,16 @@ def test_a_file_gives_back_the_same_bits(tmp_path):
         (
             {"deviations": {"p": 1.0}, "sensors": "pairs"},
             "design: pairs of sensors were asked for, but 'p' is the only channel",
+        ),
+        ({"deviations": None}, "design: the noise is not known; give deviations, or noise"),
+        (
+            {"noise": {"p": "constant"}},
+            "design: the noise of channel 'p' has no value for 'deviation'; give a number, or the noise of a fit",
+        ),
+        ({"deviations": None, "noise": {"s": "constant"}}, "design: noise: unknown channel 's'; known: p, q, r"),
+        (
+            {"noise": ProportionalNoise(relative=0.1)},
+            "design: the noise of channel 'p' has no standard deviation at some samples; give its deviation, or MixedNoise where the response is 0",
         ),
     ],
 )

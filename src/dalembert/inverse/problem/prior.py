@@ -1,10 +1,10 @@
 """What is known of parameters before any data, as residuals that least squares can use."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from dalembert.errors import InputError, listed
+from dalembert.errors import InputError, counted, listed
 from dalembert.findings import Finding
 from dalembert.inverse.problem.combinations import moved, separated
 from dalembert.parameters import Parameters
@@ -12,6 +12,9 @@ from dalembert.priors import CorrelatedNormal, SquarePrior
 
 ALONE = 0.9
 """Part of a prior's variance that is left with the data, from which the prior alone is said to have decided."""
+
+MANY = 4
+"""Combinations up to which each has its finding."""
 
 
 def priors(parameters: Parameters) -> np.ndarray:
@@ -88,7 +91,11 @@ def prior_findings(parameters: Parameters, deviations: np.ndarray, correlation: 
     after = deviations[known] / before
     left, directions = np.linalg.eigh(after[:, None] * correlation[np.ix_(known, known)] * after)
     names = [parameters.names[k] for k in known]
-    for row in separated(directions.T[left > ALONE]):
+    weak = directions.T[left > ALONE]
+    if len(weak) > MANY:
+        yield _many(names, weak)
+        return
+    for row in separated(weak):
         parts = np.flatnonzero(np.abs(row) > 0.3 * np.max(np.abs(row)))
         if len(parts) == 1:
             k = parts[0]
@@ -109,3 +116,19 @@ def prior_findings(parameters: Parameters, deviations: np.ndarray, correlation: 
                 f"{moved(names, row * before, before / 0.1)} together changes the response by less than its noise.",
                 "Measure a quantity that separates them.",
             )
+
+
+def _many(names: Sequence[str], weak: np.ndarray) -> Finding:
+    """A finding on more directions than a user can read of, as errors of a measured input have."""
+    largest = np.max(np.abs(weak), axis=0)
+    among = [name for name, part in zip(names, largest.tolist(), strict=True) if part > 0.3]
+    shown = [repr(name) for name in among[:MANY]]
+    others = [] if len(among) <= MANY else [counted(len(among) - MANY, "other")]
+    return Finding(
+        "prior-dominates",
+        "warning",
+        {"parameters": ", ".join(among), "combinations": len(weak)},
+        f"The data add little to the priors of {len(weak)} combinations of the parameters {listed([*shown, *others])}.",
+        "This is usual for the coefficients of an unknown history. For other parameters, measure a quantity that "
+        "depends on them.",
+    )

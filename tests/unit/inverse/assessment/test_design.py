@@ -230,6 +230,16 @@ def test_two_that_their_priors_alone_tell_apart_are_named():
     assert any("'a' by {}0.1 and 'b' by {}0.1".format(*signs) in finding.message for signs in ("+-", "-+"))
 
 
+def test_many_combinations_that_priors_decide_are_one_finding():
+    names = [f"e{k}" for k in range(9)]
+    priors = {name: Parameter(name, -1.0, 1.0, deviation=0.1) for name in names}
+    model = PythonModel(lambda **e: sum(e.values()) * TIMES, priors, ["x"], TIMES)
+    told = identifiability(model, deviations=1e-3)
+    findings = [item for item in told.findings if item.code == "prior-dominates"]
+    assert [item.values["combinations"] for item in findings] == [8]
+    assert "8 combinations of the parameters 'e0', 'e1', 'e2', 'e3' and 5 others." in findings[0].message
+
+
 def test_a_prior_needs_data_whose_noise_is_known():
     box = {"offset": (-5.0, 5.0), "slope": Parameter("slope", -5.0, 5.0, deviation=0.1)}
     model = PythonModel(LINE.function, box, ["x", "y"], TIMES)

@@ -1,17 +1,18 @@
 """Runs of several models of the same data, ranked by how well they predict."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from dalembert.errors import DataError, InputError
 from dalembert.study.folder import RunFolder
 
 if TYPE_CHECKING:
-    from dalembert.inverse import Fit, ModelComparison
+    from dalembert.inverse import Fit, ModelComparison, Posterior
 
 
 def compare_runs(folders: Sequence[RunFolder], leave_out: str | None = None) -> "ModelComparison":
-    """Return the comparison of the fits of runs, by the names of their folders.
+    """Return the comparison of the fits or posteriors of runs, by the names of their folders.
 
     Parameters
     ----------
@@ -22,30 +23,31 @@ def compare_runs(folders: Sequence[RunFolder], leave_out: str | None = None) -> 
     Raises
     ------
     InputError
-        For a run that is no identification, two runs of one name, and fits that cannot be compared.
+        For a run that has neither, two runs of one name, and models that cannot be compared.
     """
     from dalembert.inverse import compare_models
 
-    fits: dict[str, Fit] = {}
+    found: dict[str, Fit | Posterior] = {}
     for folder in folders:
-        name = folder.path.name if folder.path.name not in fits else str(folder.path)
-        fits[name] = fit_of(folder)
-    return compare_models(fits, leave_out=leave_out)
+        name = folder.path.name if folder.path.name not in found else str(folder.path)
+        found[name] = fit_or_posterior(folder)
+    return compare_models(found, leave_out=leave_out)
 
 
-def fit_of(folder: RunFolder) -> "Fit":
-    """Return the fit of a run.
+def fit_or_posterior(folder: RunFolder) -> "Fit | Posterior":
+    """Return the fit or the posterior of a run.
 
     Raises
     ------
     InputError
         For a run without a result, or of another task.
     """
-    from dalembert.inverse import Fit
+    from dalembert.inverse import Fit, Posterior
 
-    try:
-        return Fit.load(folder.result)
-    except DataError:
-        raise InputError(
-            f"run {folder.path.name!r} has no fit to samples; compare runs of the task [identify]"
-        ) from None
+    for kind in (Fit, Posterior):
+        with suppress(DataError):
+            return kind.load(folder.result)
+    raise InputError(
+        f"run {folder.path.name!r} has no fit to samples and no posterior; compare runs of the task [identify], or of "
+        "the task [sample]"
+    )

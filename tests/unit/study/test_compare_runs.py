@@ -83,6 +83,9 @@ def test_what_is_left_out_can_be_chosen(root):
 
 def test_a_run_of_another_task_is_refused(root):
     with pytest.raises(
-        InputError, match=says("run 'sweep' has no fit to samples; compare runs of the task [identify]")
+        InputError,
+        match=says(
+            "run 'sweep' has no fit to samples and no posterior; compare runs of the task [identify], or of the task [sample]"
+        ),
     ):
         compare_runs([RunFolder(root / "runs" / "line"), RunFolder(root / "runs" / "sweep")])

@@ -14,6 +14,7 @@ from dalembert.inverse.comparison.left_out import correlation_time, counted_grou
 from dalembert.inverse.comparison.linearisation import linearised
 from dalembert.inverse.comparison.model_comparison import ModelComparison
 from dalembert.inverse.fit.fit import Fit
+from dalembert.inverse.posterior.posterior import Posterior
 
 LEFT_OUT = {"values": "single values", "blocks": "blocks of neighbouring samples", "experiments": "experiments"}
 
@@ -36,9 +37,10 @@ def compare_models(
 
     Parameters
     ----------
-    models : mapping of str to Fit, CrossValidation or InferenceData
+    models : mapping of str to Fit, CrossValidation, Posterior or InferenceData
         By the names of the models, all of one kind. Fits are judged by their linearisation, with no further
-        simulation; :func:`cross_validate` fits again; draws are those of ArviZ, with the group ``log_likelihood``.
+        simulation; :func:`cross_validate` fits again; draws are those of :func:`sample`, or of ArviZ with the group
+        ``log_likelihood``.
     leave_out : {"values", "blocks", "experiments"}, optional
         For fits: what is left out together. Without it single values, or blocks where residuals are correlated.
     blocks : int, optional
@@ -78,7 +80,9 @@ def compare_models(
     >>> found.models, found.findings[0].code
     (('line', 'bent'), 'best-model')
     """
-    named = dict(models)
+    named: dict[str, Any] = {
+        name: one.inference_data if isinstance(one, Posterior) else one for name, one in models.items()
+    }
     if len(named) < 2:
         raise InputError(f"compare_models: {len(named)} model was given; expected at least two, by their names")
     if all(map(is_inference_data, named.values())):
@@ -87,7 +91,7 @@ def compare_models(
         if not isinstance(one, Fit | CrossValidation) or type(one) is not type(next(iter(named.values()))):
             raise InputError(
                 f"compare_models: {name!r} is {shown(one)}; expected fits alone, cross-validations alone, or "
-                "InferenceData alone"
+                "posteriors alone"
             )
     fits = fits_of(named)
     _check_same_data(fits)

@@ -21,7 +21,7 @@ from dalembert.report.table import Cell, Table, cell
 from dalembert.report.thin import thinned
 from dalembert.studio.runs.differences import as_text, differences
 from dalembert.studio.runs.run_list import row, with_deviation
-from dalembert.study.compare_runs import fit_of
+from dalembert.study.compare_runs import fit_or_posterior
 from dalembert.study.folder import RunFolder
 
 MOST_FIGURES = 24
@@ -100,7 +100,7 @@ def _models(comparison: RunComparison) -> list[Section]:
     fits = {}
     for folder in comparison.folders:
         with suppress(DalembertError, OSError):  # another task, no result, or a damaged one
-            fits[folder.path.name] = fit_of(folder)
+            fits[folder.path.name] = fit_or_posterior(folder)
     if len(fits) < 2:
         return []
     try:

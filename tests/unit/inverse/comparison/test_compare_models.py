@@ -11,7 +11,15 @@ from correlated_noise import autoregressive
 from dalembert.data import Measurements
 from dalembert.errors import InputError
 from dalembert.forward import PythonModel
-from dalembert.inverse import Experiment, ModelComparison, compare_models, cross_validate, identify
+from dalembert.inverse import (
+    AffineInvariant,
+    Experiment,
+    ModelComparison,
+    compare_models,
+    cross_validate,
+    identify,
+    sample,
+)  # fmt: skip
 from support import says
 
 TIMES = np.linspace(0, 2, 81)
@@ -186,7 +194,7 @@ def test_models_that_cannot_be_compared():
         ),
         (
             {"line": line, "b": 3.0},
-            "compare_models: 'b' is 3.0; expected fits alone, cross-validations alone, or InferenceData alone",
+            "compare_models: 'b' is 3.0; expected fits alone, cross-validations alone, or posteriors alone",
         ),
     ):
         with pytest.raises(InputError, match=says(sentence)):
@@ -237,6 +245,27 @@ def test_draws_are_compared_by_importance_sampling():
         InputError, match=says("compare_models: the draws of 'line' have no group log_likelihood; sample again with it")
     ):
         compare_models(draws)
+
+
+def test_posteriors_are_compared_as_fits_of_the_same_noise():
+    data = recorded(0.5, deviations=0.1)
+    fits = fitted(data)
+    posteriors = {
+        name: sample(
+            MODELS[name],
+            data,
+            sampler=AffineInvariant(thin=2),
+            start=fit.values,
+            chains=4,
+            draws=150,
+            warmup=80,
+            seed=1,
+        )
+        for name, fit in fits.items()
+    }
+    found, exact = compare_models(posteriors), compare_models(fits, leave_out="values")
+    assert found.models == exact.models == ("parabola", "line")
+    np.testing.assert_allclose(found.elpd, exact.elpd, atol=0.6)
 
 
 def test_it_is_in_the_package():

@@ -1,5 +1,6 @@
-"""Posteriors against closed forms, by every sampler."""
+"""Posteriors against closed forms, by every sampler, and whether they are calibrated."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -10,10 +11,12 @@ from dalembert.inverse import NUTS, AffineInvariant, DelayedAcceptance, sample
 from dalembert.priors import CorrelatedNormal
 from dalembert.study import load
 from dalembert.surrogate import TotalDegree
+from posterior_calibration import DRAWS, TABLE, probability
 from posterior_models import closed_form, line, measured
 
 STUDIES = Path(__file__).parents[2] / "studies"
 TOPIC = "Posterior distributions"
+CALIBRATION = json.loads(TABLE.read_text(encoding="utf-8"))
 JOINT = CorrelatedNormal(("a", "b"), (1.0, 0.5), ((0.01, -0.003), (-0.003, 0.04)))
 SAMPLERS = {
     "No-U-Turn": NUTS(),
@@ -70,4 +73,30 @@ def test_samplers_agree_on_the_flexible_pendulum(record_evidence):
     record_evidence(
         "posterior standard deviations of the same, relative", np.ones(3), by_gradients.deviations / without.deviations,
         tolerance=0.3, topic=TOPIC, kind="other method", source=source, noisy=True,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["decay", "pendulum"])
+def test_ranks_of_truths_from_the_prior_are_uniform(record_evidence, name):
+    """Simulation-based calibration, whose ranks ``python tests/posterior_calibration.py`` writes."""
+    row = CALIBRATION[f"ranks {name}"]
+    assert row["repetitions"] >= 200
+    assert min(probability(row["ranks"])) > 0.01
+    ranks = (np.sort(np.array(row["ranks"]), axis=0) + 0.5) / (DRAWS + 1)
+    expected = (np.arange(len(ranks)) + 0.5) / len(ranks)
+    record_evidence(
+        f"simulation-based calibration of a {name}: largest distance of the ranks' distribution from the uniform one",
+        np.zeros(ranks.shape[1]), np.max(np.abs(ranks - expected[:, None]), axis=0),
+        tolerance=1.63 / np.sqrt(len(ranks)), topic=TOPIC, kind="known truth",
+        source=f"S. Talts et al. 2018, {len(ranks)} repetitions; tolerance: 1 % of the Kolmogorov–Smirnov test",
+    )  # fmt: skip
+
+
+def test_posterior_intervals_of_a_mechanism_contain_the_truth(record_evidence):
+    """The repetitions of ``python tests/posterior_calibration.py coverage pendulum 400``."""
+    row = CALIBRATION["coverage pendulum"]
+    record_evidence(
+        "coverage of 95 % posterior intervals, length and drag of a pendulum", np.full(2, 0.95), row["share"],
+        tolerance=0.03, topic=TOPIC, kind="known truth",
+        source=f"the definition of an interval, {row['repetitions']} repetitions",
     )  # fmt: skip

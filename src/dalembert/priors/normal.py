@@ -122,7 +122,7 @@ class LogNormal(SquarePrior):
 
 @dataclass(frozen=True)
 class HalfNormal(SquarePrior):
-    """Distribution of |x| where x is normal with mean 0: for a parameter that is not negative and probably small.
+    """Distribution of ``|x|`` where x is normal with mean 0: for a parameter that is not negative and probably small.
 
     Parameters
     ----------

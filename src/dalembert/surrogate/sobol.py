@@ -90,7 +90,7 @@ def sobol_indices(
     using polynomial chaos expansions, 2008).
 
     A part V_u of the variance is the square of a projection P_u f. With f = s + e, s the surrogate,
-    V_u(f) = V_u(s) + 2 E[P_u s · e] + ‖P_u e‖². Without checks |e| ≤ ε over the box bounds the root of V_u:
+    V_u(f) = V_u(s) + 2 E[P_u s · e] + ‖P_u e‖². Without checks ``|e| ≤ ε`` over the box bounds the root of V_u:
     √V_u(s) ± ε. With checks the middle term is their mean ± 3 standard errors, and the last one is at most E[e²]. The
     narrower one of both counts. An index V_u/(V_u + V_rest) has its ends where V_u and V_rest have theirs.
 

@@ -72,7 +72,7 @@ class ConstantNoise(NoiseModel):
 
 @dataclass(frozen=True)
 class ProportionalNoise(NoiseModel):
-    """Independent noise whose standard deviation is proportional to the response ŷ: σ = b |ŷ|.
+    """Independent noise whose standard deviation is proportional to the response ŷ: ``σ = b |ŷ|``.
 
     Parameters
     ----------

@@ -122,7 +122,7 @@ def test_a_killed_run_continues_with_the_same_bits(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("sampler", [NUTS(), AffineInvariant(thin=1)])
+@pytest.mark.parametrize("sampler", [NUTS(), AffineInvariant(thin=1), DelayedAcceptance(TotalDegree(4))])
 def test_a_cluster_gives_the_same_bits(sampler: Any) -> None:
     from distributed import Client
 

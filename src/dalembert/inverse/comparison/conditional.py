@@ -19,8 +19,11 @@ from dalembert.inverse.problem.prior import prior_residual, prior_slopes
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
-STEP = 1e-3
+STEP = 1e-2
 """Step of differences by noise parameters, in their standard deviations."""
+
+FAR = 1.0
+"""Largest move of a noise parameter, in its standard deviations, to which second derivatives lead."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,45 +109,75 @@ class WithNoise:
         return self._best.without(rows)
 
     def without(self, rows: np.ndarray) -> float:
-        """Return the same with the noise that the other values alone determine, to first order.
+        """Return the same with the noise that the other values alone determine, to second order.
 
         Notes
         -----
-        Without a group, the noise parameters η move by −C g with the gradient g of the group's log density and the
-        covariance C of η. So the log density changes by −gᵀ C g.
+        With the gradient g and the second derivatives H of the group's log density by the noise parameters η, and the
+        covariance C of η, the others have their maximum at η + d, d = −(C⁻¹ + H)⁻¹ g. The log density changes by
+        gᵀ d + ½ dᵀ H d; where d is larger than a standard deviation, by −gᵀ C g, to first order. Groups that hold a
+        large part of the data are predicted better by :func:`cross_validate`.
 
-        Source: R. Giordano, W. Stephenson, R. Liu, M. I. Jordan, T. Broderick, A Swiss army infinitesimal jackknife,
-        Proceedings of AISTATS (2019).
+        Source: K. R. Rad, A. Maleki, A scalable estimate of the out-of-sample prediction error via approximate
+        leave-one-out cross-validation, Journal of the Royal Statistical Society B 82 (2020).
         """
         found = self._best.without(rows)
         if self.noise.known or not np.isfinite(found):
             return found
-        ends = np.array([[end.without(rows) for end in pair] for pair in self._moved])
-        gradient = (ends[:, 0] - ends[:, 1]) / (2 * STEP)
-        return found - float(gradient @ self.noise.correlation @ gradient)
+        if any(np.all(np.isin(places, rows)) for places in self._described):
+            return -np.inf  # nothing else determines a noise parameter
+        count = len(self.noise.parameters)
+        ends = {pair: [end.without(rows) - found for end in both] for pair, both in self._moved.items()}
+        gradient = np.array([(ends[k, k][0] - ends[k, k][1]) / (2 * STEP) for k in range(count)])
+        square = np.zeros((count, count))
+        for (k, j), (up, down) in ends.items():
+            alone = 0.0 if k == j else sum(ends[k, k]) + sum(ends[j, j])
+            square[k, j] = square[j, k] = (up + down - alone) / ((1 if k == j else 2) * STEP**2)
+        left = np.linalg.inv(self.noise.correlation) + square
+        move = -np.linalg.solve(left, gradient)
+        if np.min(np.linalg.eigvalsh(left)) < LEAST or np.max(np.abs(move)) > FAR:  # to first order
+            return found - float(gradient @ self.noise.correlation @ gradient)
+        return found + float(gradient @ move + 0.5 * move @ square @ move)
+
+    @cached_property
+    def _described(self) -> list[np.ndarray]:
+        """Places of the values that each free noise parameter describes."""
+        found = []
+        for name in self.noise.parameters.names:
+            base = name.rpartition(".")[0]
+            own = [series.rows for series in self._series if self.noise.bases[series.name] == base]
+            found.append(np.concatenate([np.zeros(0, dtype=int), *own]))
+        return found
 
     @cached_property
     def _best(self) -> Conditional:
         return self._conditional(self.noise.values)
 
     @cached_property
-    def _moved(self) -> list[tuple[Conditional, Conditional]]:
-        """With each noise parameter moved up and down by a part of its deviation, positive ones in their logarithm."""
+    def _moved(self) -> dict[tuple[int, int], tuple[Conditional, ...]]:
+        """With each noise parameter, and each two, moved up and down by a part of their deviations."""
         if not np.all(np.isfinite(self.noise.deviations)):
             raise InputError(
                 "compare_models: a noise parameter has no standard deviation, because the data do not determine it; "
                 "fit with a simpler noise model"
             )
-        found = []
-        for place, (item, deviation) in enumerate(zip(self.noise.parameters, self.noise.deviations, strict=True)):
-            ends = []
-            for step in (STEP, -STEP):
-                values = self.noise.values.copy()
-                value = values[place]
-                values[place] = value * np.exp(step * deviation / value) if item.log else value + step * deviation
-                ends.append(self._conditional(values))
-            found.append((ends[0], ends[1]))
-        return found
+        units = np.eye(len(self.noise.parameters))
+        return {
+            (k, j): (
+                self._moved_by(STEP * np.maximum(units[k], units[j])),
+                self._moved_by(-STEP * np.maximum(units[k], units[j])),
+            )
+            for k in range(len(units))
+            for j in range(k, len(units))
+        }
+
+    def _moved_by(self, steps: np.ndarray) -> Conditional:
+        """With the noise parameters moved by steps in their standard deviations, positive ones in their logarithm."""
+        noise = self.noise
+        logarithmic = np.array([bool(item.log) for item in noise.parameters])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            factors = np.exp(steps * noise.deviations / noise.values)
+        return self._conditional(np.where(logarithmic, noise.values * factors, noise.values + steps * noise.deviations))
 
     def _conditional(self, noise: np.ndarray) -> Conditional:
         fit, parameters = self.fit, self.fit.parameters
@@ -180,3 +213,7 @@ class WithNoise:
     @cached_property
     def _series(self) -> list[Series]:
         return list(series_of_record(self.fit.data, self.weights, self.fit.parts, fewest=1))
+
+
+def _both(step: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return step, -step

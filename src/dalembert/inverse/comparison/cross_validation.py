@@ -1,7 +1,7 @@
 """Cross-validation: a model is fitted again without blocks of its data, and predicts them."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.identify import identify
 from dalembert.inverse.least_squares.estimate import UNSEEN
 from dalembert.inverse.misfit.residuals import off_bounds
+from dalembert.inverse.noise.noise_model import NoiseModel
 from dalembert.inverse.problem.prior import prior_slopes
 
 UNDETERMINED = (
@@ -157,12 +158,33 @@ def _again(
         data,
         weights=given,
         validation=without,
-        noise=None if fit.noise is None else fit.noise.models,
+        noise=_noise_without(fit, without),
         start=fit.values,
         starts=1,
         horizon=None,
         executor=executor,
     )
+
+
+def _noise_without(fit: Fit, experiment: str | None) -> Mapping[str, NoiseModel] | None:
+    """The noise models of a fit, less those of an experiment that is left out.
+
+    Raises
+    ------
+    InputError
+        If the experiment has noise parameters that no other has.
+    """
+    if fit.noise is None:
+        return None
+    others = {name: model for name, model in fit.noise.models.items() if name.partition(".")[0] != experiment}
+    for name in fit.noise.models.keys() - others.keys():
+        own = [item for item in fit.noise.parameters.names if item.startswith(f"{fit.noise.bases[name]}.")]
+        if own and fit.noise.bases[name] not in {fit.noise.bases[other] for other in others}:
+            raise InputError(
+                f"cross_validate: only experiment {experiment!r} has {own[0]!r}, so that its noise cannot be "
+                "predicted; share the noise of the experiments, or leave out blocks"
+            )
+    return others if experiment is not None else fit.noise.models
 
 
 def predicted_density(again: Fit, fit: Fit, rows: np.ndarray) -> float:
@@ -174,8 +196,9 @@ def predicted_density(again: Fit, fit: Fit, rows: np.ndarray) -> float:
         Where the other values do not determine the parameters.
     """
     assert again.jacobian is not None
-    if again.noise is not None:
-        found = WithNoise(again, fit.weights).predicted(rows)
+    if again.noise is not None and fit.noise is not None:
+        described = replace(again.noise, models=fit.noise.models, bases=fit.noise.bases)
+        found = WithNoise(replace(again, noise=described), fit.weights).predicted(rows)
         if not np.isfinite(found):
             raise InputError(UNDETERMINED)
         return found

@@ -118,6 +118,28 @@ def test_correlated_noise_is_left_out_in_blocks_longer_than_its_correlation():
     assert again.elpd == pytest.approx(found.elpd, abs=2.0)
 
 
+def test_noise_of_experiments_that_are_left_out():
+    experiments = [
+        Experiment(name, LINE, recorded(0.0, autoregressive(seed, 81, 0.6)))
+        for seed, name in enumerate(("one", "two", "three", "four"))
+    ]
+    shared, local = (
+        identify(experiments, starts=1, horizon=None, noise=da.AutoregressiveNoise(order=1, local=local))
+        for local in (False, True)
+    )
+    found = compare_models({"a": shared, "b": shared}, leave_out="experiments")
+    checked = cross_validate(experiments, fit=shared, leave_out="experiments")
+    assert np.sum(checked.log_densities) == pytest.approx(found.elpd[0], abs=4.0)
+    with pytest.raises(InputError, match=says(ALONE.replace("late", "a"))):
+        compare_models({"a": local, "b": shared}, leave_out="experiments")
+    with pytest.raises(InputError) as refused:
+        cross_validate(experiments, fit=local, leave_out="experiments")
+    assert str(refused.value) == (
+        "cross_validate: only experiment 'one' has 'noise.one.x.deviation', so that its noise cannot be predicted; "
+        "share the noise of the experiments, or leave out blocks"
+    )
+
+
 def test_known_deviations_with_correlated_noise_of_several_channels():
     times = np.linspace(0, 2, 41)
     two = PythonModel(lambda a: np.stack([a * times, np.cos(a * times)], axis=1), {"a": (0.5, 2.0)}, ["x", "y"], times)

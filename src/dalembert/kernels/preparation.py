@@ -55,10 +55,14 @@ def _compile(missing: list["Compiled"], progress: Progress) -> None:
         threads = [threading.Thread(target=_serve, args=(worker, tasks, folder, done)) for worker in workers]
         for thread in threads:
             thread.start()
-        for kernel in kernels:
-            make(kernel)
-        for thread in threads:
-            thread.join()
+        try:
+            for kernel in kernels:
+                make(kernel)
+        finally:
+            while _next(tasks) is not None:
+                pass  # after an interruption nobody needs the others
+            for thread in threads:
+                thread.join()
 
 
 class _Counter:

@@ -21,6 +21,7 @@ def test_what_is_missing_is_compiled_and_kept(
     nothing_compiled: Path, monkeypatch: pytest.MonkeyPatch, cores: int
 ) -> None:
     monkeypatch.setattr(preparation, "_cores", lambda: cores)
+    monkeypatch.setattr(preparation, "_FEW", 2)
     seen: list[tuple[int, int]] = []
     with observed(lambda count, total, symbol: seen.append((count, total))):
         prepare(kernels())
@@ -34,6 +35,8 @@ def test_what_is_missing_is_compiled_and_kept(
 def test_objects_do_not_depend_on_the_process_that_compiles(
     nothing_compiled: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(preparation, "_FEW", 2)
+
     def contents(cores: int) -> dict[str, bytes]:
         monkeypatch.setattr(preparation, "_cores", lambda: cores)
         monkeypatch.setattr(preparation.OBJECTS, "_codes", {})
@@ -49,11 +52,30 @@ def test_objects_do_not_depend_on_the_process_that_compiles(
 
 def test_a_folder_that_cannot_be_written_is_no_error(nothing_compiled: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(preparation, "_cores", lambda: 2)
+    monkeypatch.setattr(preparation, "_FEW", 2)
     monkeypatch.setattr(preparation, "is_writable", lambda: False)
     monkeypatch.setattr(objects, "keep", lambda *_: None)
     with observed(lambda *_: None):
         prepare(kernels())
     assert preparation.OBJECTS.missing(kernels()) == []
+
+
+def test_an_interruption_ends_the_workers_too(nothing_compiled: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(preparation, "_cores", lambda: 2)
+    monkeypatch.setattr(preparation, "_FEW", 2)
+    made: list[str] = []
+    real = preparation.OBJECTS.make
+
+    def make(kernel) -> None:
+        real(kernel)
+        made.append(kernel.symbol)
+        if len(made) == 2:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(preparation.OBJECTS, "make", make)
+    with observed(lambda *_: None), pytest.raises(KeyboardInterrupt):
+        prepare(kernels())
+    assert len(list(nothing_compiled.glob("*.o"))) < len(kernels())
 
 
 def test_progress_is_one_line_where_no_terminal_is(nothing_compiled: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -80,14 +80,21 @@ def _forked() -> _Process:
             for number in (signal.SIGINT, signal.SIGTERM):
                 signal.signal(number, signal.SIG_DFL)
             os.environ[IN_WORKER] = "1"
-            os.close(ours)
-            os.close(theirs)
+            _close_all_but(requests, answers)
             work(os.fdopen(requests), os.fdopen(answers, "w"))
         finally:
             os._exit(0)  # without what this process has registered for its end
     os.close(requests)
     os.close(answers)
     return process, os.fdopen(ours, "w"), os.fdopen(theirs), lambda: os.waitpid(process, 0)
+
+
+def _close_all_but(*kept: int) -> None:
+    """Close the files that this process has inherited: a lock on one of them lasts until all have closed it."""
+    for number in [int(path.name) for path in Path("/proc/self/fd").iterdir()]:
+        if number > 2 and number not in kept:
+            with suppress(OSError):  # that of the listing
+                os.close(number)
 
 
 def _started() -> _Process:

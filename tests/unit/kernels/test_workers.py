@@ -24,6 +24,15 @@ worker.close()
 print(answers)
 """
 
+_OPEN = """
+worker.close()
+file = open(Path(sys.argv[1]) / "lock", "w")
+worker = workers.Worker()
+assert worker.compile(POINT_MASS.all_kernels()[0], Path(sys.argv[1]) / "first.o")
+opened = [os.readlink(path) for path in Path(f"/proc/{worker.process}/fd").iterdir()]
+assert not [name for name in opened if name.endswith("lock")]
+"""
+
 
 def compiled(folder: Path, before: str = "") -> str:
     """What a process prints that has no other threads."""
@@ -41,6 +50,10 @@ def test_a_copy_of_the_process_compiles_the_same_objects(tmp_path: Path) -> None
 def test_a_worker_that_was_killed_says_no(tmp_path: Path) -> None:
     killed = "import signal; os.kill(worker.process, signal.SIGKILL)"
     assert compiled(tmp_path, killed) == str([False] * len(POINT_MASS.all_kernels()))
+
+
+def test_a_worker_keeps_no_file_of_the_process_open(tmp_path: Path) -> None:
+    assert compiled(tmp_path, _OPEN) == str([True] * len(POINT_MASS.all_kernels()))
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere every worker is a new process")

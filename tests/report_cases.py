@@ -725,6 +725,21 @@ CASES: dict[str, Case] = {
         ),
         ("Only the priors distinguish 'a' and 'b': changing 'a' by +0.1 and 'b' by -0.1 together changes",),
     ),
+    "many priors": Case(
+        lambda: identifiability(
+            PythonModel(
+                lambda **e: sum(e.values()) * TIMES,
+                {f"e{k}": Parameter(f"e{k}", -1.0, 1.0, deviation=0.1) for k in range(9)},
+                ["x"],
+                TIMES,
+            ),
+            deviations=1e-3,
+        ),
+        (
+            "The data add little to the priors of 8 combinations of the parameters 'e0', 'e1', 'e2', 'e3' and 5 others.",
+            "This is usual for the coefficients of an unknown history. For other parameters, measure a quantity that depends on them.",
+        ),
+    ),
     "no sensitivities": Case(
         _blind,
         (

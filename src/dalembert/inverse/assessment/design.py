@@ -12,7 +12,7 @@ from dalembert.forward import ForwardModel
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.assessment.designs import CRITERIA, Designs
 from dalembert.inverse.assessment.planned_noise import Planned, planned_channels
-from dalembert.inverse.assessment.sensitivity import at_of
+from dalembert.inverse.assessment.sensitivity import at_of, linearised
 from dalembert.inverse.least_squares.estimate import UNSEEN, estimate
 from dalembert.inverse.problem.prior import prior_slopes
 
@@ -77,13 +77,14 @@ def design(
     """
     require_known("criterion", criterion, CRITERIA, "design")
     vector, parameters = at_of(model, at, "design"), model.parameters
-    channels = planned_channels(model, vector, deviations, noise)
+    channels = planned_channels(model, deviations, noise)
     names = channels.names
     sets = _sets(sensors, names)
     along = model.coordinate
     ends = [float(along.values[-1])] if horizons is None else [float(end) for end in horizons]
     counts = [_samples(along.values, end, along.unit) for end in ends]
-    slopes = channels.rows * parameters.scale
+    sizes, weighted = channels.whitened(*linearised(model, vector))
+    slopes = weighted * parameters.scale
     prior = prior_slopes(parameters, vector, parameters.scale)
     rows = []
     for chosen in sets:
@@ -101,7 +102,7 @@ def design(
         parameters=parameters,
         at=vector,
         criterion=criterion,
-        noise=dict(zip(names, channels.sizes.tolist(), strict=True)),
+        noise=dict(zip(names, sizes.tolist(), strict=True)),
         along=along.name,
         unit=along.unit,
         sensors=tuple(row[2] for row in rows),

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from dalembert.errors import InputError, require_known
 from dalembert.forward import Coordinate, ForwardModel
-from dalembert.inverse.assessment.sensitivity import linearised, noise_of
+from dalembert.inverse.assessment.sensitivity import noise_of
 from dalembert.inverse.correlation.series import Series, even_grid
 from dalembert.inverse.likelihood.estimated_noise import EstimatedNoise
 from dalembert.inverse.noise.catalogue import noise_model
@@ -26,55 +26,69 @@ class PlannedChannels:
     Parameters
     ----------
     names : tuple of str
-    sizes : array, shape (channels,)
-        Standard deviation of the noise, in the root mean square over the samples.
-    rows : array, shape (samples, channels, parameters)
-        Sensitivities over the standard deviation, less their prediction from the samples before.
+    columns : array of int, shape (channels,)
+        Their places in the model.
+    deviations : array, shape (channels,)
+        Known standard deviations; NaN where they are not given.
+    noises : tuple of (NoiseModel, mapping)
+        The noise of each channel, and the values of its parameters.
+    along : Coordinate
     """
 
     names: tuple[str, ...]
-    sizes: np.ndarray
-    rows: np.ndarray
+    columns: np.ndarray
+    deviations: np.ndarray
+    noises: tuple[tuple[NoiseModel, Mapping[str, np.ndarray]], ...]
+    along: Coordinate
+
+    def whitened(self, response: np.ndarray, jacobian: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return deviations (channels,) of the noise, and weighted sensitivities (samples, channels, parameters).
+
+        The deviations are root mean squares over the samples. Sensitivities are those of the model, with the response
+        (samples, all channels), over the deviation, less their prediction from the samples before.
+
+        Raises
+        ------
+        InputError
+            For noise without a deviation at some samples.
+        """
+        sizes, rows = np.empty((len(response), len(self.names))), jacobian[:, self.columns].copy()
+        for place, (name, (model, values)) in enumerate(zip(self.names, self.noises, strict=True)):
+            own = response[:, self.columns[place]]
+            sizes[:, place] = model.deviations(own, np.full(len(own), self.deviations[place]), values)
+            if not np.all(sizes[:, place] > 0):
+                raise InputError(
+                    f"design: the noise of channel {name!r} has no standard deviation at some samples; give its "
+                    "deviation, or MixedNoise where the response is 0"
+                )
+            rows[:, place] /= sizes[:, place, None]
+            process = model.whitening(_series(name, self.along))
+            if process is not None:
+                rows[:, place] = process.matrix(values) @ rows[:, place]
+        return np.sqrt(np.mean(sizes**2, axis=0)), rows
 
 
 def planned_channels(
-    model: ForwardModel, vector: np.ndarray, deviations: Mapping[str, float] | ArrayLike | None, noise: Planned | None
+    model: ForwardModel, deviations: Mapping[str, float] | ArrayLike | None, noise: Planned | None
 ) -> PlannedChannels:
-    """Return the channels with their weighted sensitivities at a vector (parameters,).
+    """Return the channels of a model that can be measured.
 
     Raises
     ------
     InputError
         Without deviations and noise, for unknown channels, noise parameters without a value.
-    SolveError
-        If the simulation fails.
     """
     if noise is None and deviations is None:
         raise InputError("design: the noise is not known; give deviations, or noise")
     names, columns, known = _channels(model, deviations, noise)
-    response, jacobian = linearised(model, vector)
-    response, rows = response[:, columns], jacobian[:, columns].copy()
-    sizes = np.empty(response.shape)
-    for place, name in enumerate(names):
-        described, values = _described(name, noise, Extent(1.0, "", 1.0, 1.0, ""))
-        given = np.full(len(response), np.nan if known is None else known[place])
-        sizes[:, place] = described.deviations(response[:, place], given, values)
-        if not np.all(sizes[:, place] > 0):
-            raise InputError(
-                f"design: the noise of channel {name!r} has no standard deviation at some samples; give its deviation, "
-                "or MixedNoise where the response is 0"
-            )
-        rows[:, place] /= sizes[:, place, None]
-        process = described.whitening(_series(name, model.coordinate))
-        if process is not None:
-            rows[:, place] = process.matrix(values) @ rows[:, place]
-    return PlannedChannels(names, np.sqrt(np.mean(sizes**2, axis=0)), rows)
+    noises = tuple(_described(name, noise, Extent(1.0, "", 1.0, 1.0, "")) for name in names)
+    return PlannedChannels(names, columns, known, noises, model.coordinate)
 
 
 def _channels(
     model: ForwardModel, deviations: Mapping[str, float] | ArrayLike | None, noise: Planned | None
-) -> tuple[tuple[str, ...], np.ndarray, np.ndarray | None]:
-    """Names and columns of the channels, and their deviations where they are given."""
+) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
+    """Names and columns of the channels, and their deviations, NaN where they are not given."""
     if deviations is not None:
         return noise_of(model, deviations, "design")
     known = tuple(channel.name for channel in model.channels)
@@ -82,7 +96,7 @@ def _channels(
     names = tuple(named) if isinstance(named, Mapping) else known
     for name in names:
         require_known("channel", name, known, "design: noise")
-    return names, np.array([known.index(name) for name in names]), None
+    return names, np.array([known.index(name) for name in names]), np.full(len(names), np.nan)
 
 
 def _described(name: str, noise: Planned | None, extent: Extent) -> tuple[NoiseModel, Mapping[str, np.ndarray]]:

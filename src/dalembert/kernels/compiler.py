@@ -250,11 +250,15 @@ def _optimise(module: Any, cpu: str | None) -> None:
 
 @cache
 def target_machine(cpu: str | None = None) -> Any:
-    """LLVM's description of a processor: of this one, or of the named one of the same family."""
+    """LLVM's description of a processor: of this one, or of the named one of the same family.
+
+    The code model is that of code whose sections are loaded anywhere: a usual one reaches other sections by relative
+    addresses of 2 GB, and LLVM ends the process where a large process has them further apart.
+    """
     ll.initialize_native_target()
     ll.initialize_native_asmprinter()
     target = ll.Target.from_triple(ll.get_process_triple())
     features = ll.get_host_cpu_features().flatten() if cpu is None else ""
     return target.create_target_machine(
-        cpu=cpu or ll.get_host_cpu_name(), features=features, opt=_OPTIMISATION, reloc="pic", codemodel="default"
+        cpu=cpu or ll.get_host_cpu_name(), features=features, opt=_OPTIMISATION, codemodel="jitdefault", jit=True
     )

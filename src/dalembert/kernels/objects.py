@@ -188,13 +188,12 @@ class Objects:
     def _load(self, code: bytes, symbols: Iterable[str]) -> None:
         """Load an object, and let others call its symbols.
 
-        Each object has an engine, so that its sections are allocated together: an engine would put some of them into
-        what former objects left, and relative addresses between sections reach only 2 GB.
+        Each object has an engine, so that its sections are allocated together.
         """
         if not self._engines:
             ll.initialize_native_target()
             ll.initialize_native_asmprinter()
-        machine = ll.Target.from_triple(ll.get_process_triple()).create_target_machine(reloc="pic", jit=True)
+        machine = ll.Target.from_triple(ll.get_process_triple()).create_target_machine(jit=True)
         engine = ll.create_mcjit_compiler(ll.parse_assembly(""), machine)
         engine.add_object_file(ll.object_file.ObjectFileRef.from_data(code))
         engine.finalize_object()

@@ -18,6 +18,22 @@ CODE = (
 )
 
 
+FRAGMENTED = """
+import mmap
+
+pages = [mmap.mmap(-1, mmap.PAGESIZE) for _ in range(4000)]
+large = mmap.mmap(-1, 6 << 30)
+for page in pages[::2]:
+    page.close()
+import numpy as np, dalembert as da
+system = da.System()
+bar = system.add(da.RigidBar("bar", length=1.0, mass=1.0, angle=0.5))
+system.add(da.RevoluteJoint("pin", system.ground, bar.start))
+da.simulate(system, 0.1, da.GeneralizedAlpha(step=1e-2), np.linspace(0.0, 0.1, 3))
+"""
+"""Small sections fit into holes between pages, large ones only beyond 6 GB that are reserved, not used."""
+
+
 def process(folder: Path) -> subprocess.Popen:
     environment = {**os.environ, objects.FOLDER: str(folder)}
     command = [sys.executable, "-c", CODE, HERE]
@@ -63,6 +79,12 @@ def test_a_damaged_object_is_not_whole_by_accident(tmp_path: Path, monkeypatch: 
     with pytest.raises(OSError, match="no space"):
         objects.write_object(tmp_path / "folder" / "object.o", b"code")
     assert list((tmp_path / "folder").iterdir()) == []
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="how memory is fragmented depends on the system")
+def test_sections_may_be_far_apart() -> None:
+    run = subprocess.run([sys.executable, "-c", FRAGMENTED], check=False, capture_output=True, text=True, timeout=300)
+    assert run.returncode == 0, run.stderr
 
 
 def test_unused_objects_are_removed_after_thirty_days(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

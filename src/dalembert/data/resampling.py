@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
 
 from dalembert.data.labels import check_labels
 from dalembert.data.record import TURN, Recorded
@@ -42,6 +41,8 @@ def _channel(
     along: np.ndarray, values: np.ndarray, present: np.ndarray, samples: np.ndarray, close: float, gap: float | None
 ) -> np.ndarray:
     """A channel at new samples; NaN in gaps."""
+    from scipy.interpolate import make_interp_spline
+
     result = np.full(len(samples), np.nan)
     for run in stretches(present, along, gap):
         x, y = along[run], values[run]

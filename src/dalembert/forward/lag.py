@@ -1,18 +1,20 @@
 """First-order lags: y with T dy/dt + y = R(t), exact for a piecewise polynomial R, with the derivative by T."""
 
 from math import factorial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.interpolate import BSpline
 from scipy.linalg import solve_banded
+
+if TYPE_CHECKING:
+    from scipy.interpolate import BSpline
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 _SHORT = 1.0  # length relative to T below which moments are taken by quadrature; the recursion cancels there
 
 
 def lagged(
-    spline: BSpline, knots: np.ndarray, at: np.ndarray, constant: float
+    spline: "BSpline", knots: np.ndarray, at: np.ndarray, constant: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return lagged columns, their rate, and their derivative by the time constant.
 

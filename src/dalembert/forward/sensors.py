@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import make_interp_spline
 
 from dalembert.arguments import check_model, samples_of
 from dalembert.errors import InputError, require_known, shown
@@ -237,6 +236,8 @@ class Sensors:
         own, stamps = self.model.coordinate.values, self.coordinate.values
         if not self._is_late(channel) and (rows := _rows(own, stamps)) is not None:
             return table[rows], np.zeros(len(stamps)), np.zeros(len(stamps))
+        from scipy.interpolate import make_interp_spline  # models without late sensors start without it
+
         spline = make_interp_spline(own, table, k=min(DEGREE, len(own) - 1))
         asked = stamps - self._delay(vector, channel)
         before = asked < own[0]

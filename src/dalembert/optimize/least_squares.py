@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from dalembert.arguments import limited
 from dalembert.optimize.minimum import Minimum, Progress, reachable
@@ -71,6 +70,8 @@ class LeastSquares(SquaresMinimiser):
     gain: float = reachable(1e-13)
 
     def descend(self, problem: SumOfSquares, start: np.ndarray) -> Minimum:
+        from scipy.optimize import least_squares  # what does not minimise starts without it
+
         window = max(WINDOW, (10 if self.gain < COARSE else 4) * len(start))
         stopping = Stopping(self.gain, window)
         path = _Path(problem, start, stopping)

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.optimize import lsq_linear
 
 from dalembert.optimize.tikhonov import Regularised
 
@@ -54,6 +53,8 @@ class LinearModel:
         step = whole.steps(mu)
         if np.all((self.down <= step) & (step <= self.up)):
             return step
+        from scipy.optimize import lsq_linear
+
         size = len(step)
         matrix = np.vstack([whole.singular[:, None] * whole.directions, mu * np.eye(size)])
         right = np.concatenate([whole.parts, np.zeros(size)])

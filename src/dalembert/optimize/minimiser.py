@@ -4,16 +4,18 @@ import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from inspect import signature
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import scipy.optimize as so
 from numpy.typing import ArrayLike
 
 from dalembert.arguments import Checked
 from dalembert.errors import InputError, require_known, unknown
 from dalembert.intervals import corners
 from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, fitness_of
+
+if TYPE_CHECKING:
+    from scipy.optimize import OptimizeResult
 
 BOUNDED = ("Nelder-Mead", "Powell", "L-BFGS-B", "TNC", "COBYLA", "COBYQA", "SLSQP", "trust-constr")
 UNBOUNDED = ("CG", "BFGS", "Newton-CG")
@@ -65,6 +67,8 @@ class Minimiser(Checked):
             raise InputError(unknown("minimiser", self.name, NAMES))
         object.__setattr__(self, "name", spelled[self.name.lower()])
         if self.name in GLOBAL:
+            import scipy.optimize as so
+
             taken = set(signature(getattr(so, self.name)).parameters) - OWN
             for option in self.options:
                 require_known("option", option, taken, f"Minimiser({self.name!r})")
@@ -114,7 +118,9 @@ class Minimiser(Checked):
 
     def _local(
         self, watched: "_Watched", x0: np.ndarray, gradient: Callable[[np.ndarray], np.ndarray] | None
-    ) -> so.OptimizeResult:
+    ) -> "OptimizeResult":
+        import scipy.optimize as so
+
         bounds = so.Bounds(watched.low, watched.high)  # pyright: ignore[reportArgumentType]
         if self.name == "Newton-CG" and gradient is None:
             raise InputError("Minimiser('Newton-CG') needs a gradient of its objective; give gradient=, or use 'BFGS'")
@@ -133,7 +139,9 @@ class Minimiser(Checked):
             except so.OptimizeWarning as warning:  # SciPy only warns of an option that it does not know
                 raise InputError(f"Minimiser({self.name!r}), options {dict(self.options)}: {warning}") from warning
 
-    def _global(self, watched: "_Watched", x0: np.ndarray, seed: int) -> so.OptimizeResult:
+    def _global(self, watched: "_Watched", x0: np.ndarray, seed: int) -> "OptimizeResult":
+        import scipy.optimize as so
+
         bounds = so.Bounds(watched.low, watched.high)  # pyright: ignore[reportArgumentType]
         if self.batched:
             settings = {"updating": "deferred", "vectorized": True, **self.options}

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq, minimize_scalar
 
 UNSEEN = 1e-10
 """Weights go down to this fraction of the largest singular value; a smaller singular value is zero to a simulation."""
@@ -160,6 +159,8 @@ class Regularised:
 
     def _crossing(self, excess: Callable[[float], float]) -> float:
         """Weight at which an excess, which falls as the weight grows, is zero; :attr:`least` if there is none there."""
+        from scipy.optimize import brentq
+
         low, high = self.least, float(self.singular[0])
         if excess(low) <= 0:
             return low
@@ -170,6 +171,8 @@ class Regularised:
 
     def _refined(self, score: Callable[[float], float], place: int) -> float:
         """Weight of the least score between the neighbours of one of :attr:`weights`."""
+        from scipy.optimize import minimize_scalar
+
         between = np.log(self.weights[[place - 1, place + 1]])
         found = minimize_scalar(lambda at: score(np.exp(at)), bounds=tuple(between), method="bounded")
         return float(np.exp(found.x))  # pyright: ignore[reportAttributeAccessIssue]

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 from scipy.sparse import block_diag, csc_array, issparse
-from scipy.spatial import KDTree
 
 from dalembert.arguments import takes_checked
 from dalembert.errors import InputError
@@ -74,6 +73,8 @@ def pairs(structure: Structure, first: str, second: str, tolerance: float) -> Pa
     InputError
         For an unknown set, a structure without nodes, or a node of the first set without a partner of its own.
     """
+    from scipy.spatial import KDTree
+
     nodes = known_nodes(structure, "pairs")
     ours, theirs = nodes.members(first), nodes.members(second)
     distances, nearest = KDTree(nodes.places[nodes.rows(theirs)]).query(nodes.places[nodes.rows(ours)])

@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from dalembert.arguments import takes_checked
 from dalembert.errors import DataError, InputError, require_known, shown, told, unknown
@@ -174,6 +173,8 @@ def _from_file(path: str | Path) -> tuple[Any, np.ndarray, dict[str, np.ndarray]
 
 def _nodes_at(places: np.ndarray, points: np.ndarray) -> tuple[str, ...]:
     """Names of the nodes at points; points without a node, such as those of other parts of a file, have none."""
+    from scipy.spatial import KDTree
+
     near = SAME * np.ptp(places, axis=0).max()
     found = KDTree(places).query_ball_point(points, near)
     return tuple(map(str, sorted({node for own in found for node in own})))

@@ -154,6 +154,7 @@ def test_many_parameters_leave_the_drawing_in_sight(sliders, tmp_path):
     assert page.locator(".player").bounding_box()["y"] < 700
     before = misfit(page)
     page.get_by_text("96 more parameters").click()
+    way(page, "push_30").wait_for(state="visible")  # what is hidden takes no focus, and no key
     way(page, "push_30").press("End")
     wait_until(page, f"!{TEXT}.includes('Misfit {before:.4g} (')")
     assert misfit(page) != before

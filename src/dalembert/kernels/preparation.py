@@ -13,12 +13,11 @@ from typing import TYPE_CHECKING
 
 from dalembert.kernels.garbage import rarely_collected
 from dalembert.kernels.objects import OBJECTS, cached_path, is_writable
-from dalembert.kernels.workers import IN_WORKER, Worker
+from dalembert.kernels.workers import IN_WORKER, Worker, can_fork
 
 if TYPE_CHECKING:
     from dalembert.kernels.kernel import Compiled
 
-_FEW = 14  # kernels for each other process, which takes as long to begin as ten of them to compile
 Progress = Callable[[int, int, str], None]
 
 
@@ -50,7 +49,7 @@ def _compile(missing: list["Compiled"], progress: Progress) -> None:
             compiled()
 
         make(next(kernels))  # a copy of this process then has a compiler that is ready
-        workers = list(_workers(min(_cores() - 1, len(others) // _FEW)))  # before there are threads
+        workers = list(_workers(min(_cores() - 1, len(others) // _few())))  # before there are threads
         folder = None if is_writable() else Path(spare)
         threads = [threading.Thread(target=_serve, args=(worker, tasks, folder, done)) for worker in workers]
         for thread in threads:
@@ -107,6 +106,11 @@ def _workers(count: int) -> Iterator[Worker]:
             yield Worker()
         except OSError:  # no process can be started: this one compiles alone
             return
+
+
+def _few() -> int:
+    """Fewest kernels for which another process is worth its start: a new one takes as long as ten kernels."""
+    return 7 if can_fork() else 14
 
 
 def _cores() -> int:

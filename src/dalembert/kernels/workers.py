@@ -23,7 +23,7 @@ class Worker:
     """Another process, which compiles one kernel after the other into files."""
 
     def __init__(self) -> None:
-        start = _forked if _can_fork() else _started
+        start = _forked if can_fork() else _started
         self.process, self._requests, self._answers, self._wait = start()
 
     def compile(self, kernel: "Compiled", path: Path) -> bool:
@@ -66,8 +66,8 @@ def work(requests: Iterable[str], answers: IO[str]) -> None:
 _Process = tuple[int, IO[str], IO[str], Callable[[], object]]
 
 
-def _can_fork() -> bool:
-    """A copy of a process has one thread only, and lacks what the others were about to finish."""
+def can_fork() -> bool:
+    """Whether a copy of this process is safe: it has one thread only, and lacks what others were about to finish."""
     return sys.platform == "linux" and threading.active_count() == 1
 
 

@@ -77,9 +77,9 @@ def run_study(
 
 
 def resume_run(folder: RunFolder, *, listener: Listener | None = None, executor: Executor = None) -> Outcome:
-    """Go on with a run that was killed, stopped, or could not go on; it ends as if it had not been.
+    """Resume a run that was killed, stopped or failed; the result is that of a run without interruption.
 
-    The study does again what it did; whatever its model answered before comes from the checkpoint.
+    The study repeats its computations. Responses that the model returned before come from the checkpoint.
 
     Parameters
     ----------
@@ -87,12 +87,12 @@ def resume_run(folder: RunFolder, *, listener: Listener | None = None, executor:
     listener : callable, optional
         Called with each event, those of before included.
     executor : str or distributed.Client, optional
-        As of :func:`run_study`; the run need not have begun there.
+        As in :func:`run_study`; it may differ from that of the start.
 
     Raises
     ------
     InputError
-        If the run has finished, is going on, or was begun with another version of the package.
+        If the run has finished, is active, or was started with another version of the package.
     DalembertError
         What stopped the run; the folder's state says the same.
     """
@@ -134,16 +134,16 @@ def _executed(
             log.emit(beginning, **about)
             for done, total in compiled:
                 log.emit("run-compiling", done=done, total=total)
-            with (
-                connected(study.executor) as client,
-                Checkpoint(folder.checkpoint, lambda sentence: log.emit(LOST, message=sentence)) as checkpoint,
-                users_code(),
-                observed(lambda done, total, _: log.emit("run-compiling", done=done, total=total)),
-            ):
-                placed = replace(study, checkpoint=checkpoint, executor=client)
-                outcome = TASKS[study.task].run(placed, log.emit)
-            outcome.save(folder.result)
-            outcome.report(folder.report)
+            with observed(lambda done, total, _: log.emit("run-compiling", done=done, total=total)):
+                with (
+                    connected(study.executor) as client,
+                    Checkpoint(folder.checkpoint, lambda sentence: log.emit(LOST, message=sentence)) as checkpoint,
+                    users_code(),
+                ):
+                    placed = replace(study, checkpoint=checkpoint, executor=client)
+                    outcome = TASKS[study.task].run(placed, log.emit)
+                outcome.save(folder.result)
+                outcome.report(folder.report)
         except BaseException as error:
             state, message = _ending(error)
             with suppress(StorageError):  # the error itself says it, and a run without a state was killed

@@ -21,7 +21,7 @@ def test_what_is_missing_is_compiled_and_kept(
     nothing_compiled: Path, monkeypatch: pytest.MonkeyPatch, cores: int
 ) -> None:
     monkeypatch.setattr(preparation, "_cores", lambda: cores)
-    monkeypatch.setattr(preparation, "_FEW", 2)
+    monkeypatch.setattr(preparation, "_few", lambda: 2)
     seen: list[tuple[int, int]] = []
     with observed(lambda count, total, symbol: seen.append((count, total))):
         prepare(kernels())
@@ -35,7 +35,7 @@ def test_what_is_missing_is_compiled_and_kept(
 def test_objects_do_not_depend_on_the_process_that_compiles(
     nothing_compiled: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(preparation, "_FEW", 2)
+    monkeypatch.setattr(preparation, "_few", lambda: 2)
 
     def contents(cores: int) -> dict[str, bytes]:
         monkeypatch.setattr(preparation, "_cores", lambda: cores)
@@ -52,7 +52,7 @@ def test_objects_do_not_depend_on_the_process_that_compiles(
 
 def test_a_folder_that_cannot_be_written_is_no_error(nothing_compiled: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(preparation, "_cores", lambda: 2)
-    monkeypatch.setattr(preparation, "_FEW", 2)
+    monkeypatch.setattr(preparation, "_few", lambda: 2)
     monkeypatch.setattr(preparation, "is_writable", lambda: False)
     monkeypatch.setattr(objects, "keep", lambda *_: None)
     with observed(lambda *_: None):
@@ -62,7 +62,7 @@ def test_a_folder_that_cannot_be_written_is_no_error(nothing_compiled: Path, mon
 
 def test_an_interruption_ends_the_workers_too(nothing_compiled: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(preparation, "_cores", lambda: 2)
-    monkeypatch.setattr(preparation, "_FEW", 2)
+    monkeypatch.setattr(preparation, "_few", lambda: 2)
     made: list[str] = []
     real = preparation.OBJECTS.make
 

@@ -16,7 +16,7 @@ from pathlib import Path
 from dalembert.kernels import workers
 from dalembert.multibody.components.planar.point_mass import POINT_MASS
 
-assert workers._can_fork()
+assert workers.can_fork()
 worker = workers.Worker()
 {before}
 answers = [worker.compile(kernel, Path(sys.argv[1]) / f"{{kernel.symbol}}.o") for kernel in POINT_MASS.all_kernels()]

@@ -95,6 +95,11 @@ def _of_four_blocks() -> str:
     return da.compare_models(fits, leave_out="blocks", blocks=4).summary()
 
 
+def _cross_validated(*, converged: bool) -> da.CrossValidation:
+    found = da.cross_validate(PARABOLA, BENT, fit=da.identify(PARABOLA, BENT), blocks=4)
+    return replace(found, converged=np.array([True, converged, True, True]))
+
+
 def _signs_stay() -> Measurements:
     """Heavy tails hide a drift from the autocorrelation, not from the signs."""
     errors = 0.04 * np.random.default_rng(8).standard_cauchy(201).clip(-40, 40) + 0.06 * np.sign(np.sin(4.5 * LONG))
@@ -411,6 +416,15 @@ CASES: dict[str, Case] = {
             "A step is a part of the data that a model predicts worse.",
         ),
         ("model-differences", "difference-by-group"),
+    ),
+    "cross-validation": Case(
+        lambda: _cross_validated(converged=True),
+        ("Groups in the order of the data", "below, predicted minus measured", "rms of the prediction errors"),
+        ("responses-1",),
+    ),
+    "cross-validation that did not converge": Case(
+        lambda: _cross_validated(converged=False),
+        ("1 of 4 fits without a group did not converge. Do not compare their densities; leave out smaller groups.",),
     ),
     "equal models": Case(
         lambda: da.compare_models(

@@ -12,7 +12,8 @@ from dalembert.inverse.bands.global_surrogate import GlobalSurrogate
 from dalembert.inverse.bands.identify_bands import identify_bands
 from dalembert.inverse.bands.nested import Nested
 from dalembert.inverse.comparison.compare_models import compare_models
-from dalembert.inverse.comparison.cross_validation import CrossValidation, cross_validate
+from dalembert.inverse.comparison.cross_validate import cross_validate
+from dalembert.inverse.comparison.cross_validation import CrossValidation
 from dalembert.inverse.comparison.model_comparison import ModelComparison
 from dalembert.inverse.correlation.correlated import CorrelatedResiduals, NoiseProcess
 from dalembert.inverse.diagnostics.findings import Outlier

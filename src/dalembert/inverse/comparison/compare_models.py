@@ -8,7 +8,8 @@ import numpy as np
 
 from dalembert.errors import InputError, shown
 from dalembert.inverse.comparison.conclusions import comparison_findings
-from dalembert.inverse.comparison.cross_validation import CrossValidation, fits_of
+from dalembert.inverse.comparison.cross_validate import fits_of
+from dalembert.inverse.comparison.cross_validation import CrossValidation
 from dalembert.inverse.comparison.draws import Predictive, is_inference_data, of_draws
 from dalembert.inverse.comparison.left_out import correlation_time, counted_groups, groups
 from dalembert.inverse.comparison.linearisation import linearised

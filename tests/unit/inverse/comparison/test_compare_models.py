@@ -13,6 +13,7 @@ from dalembert.errors import InputError
 from dalembert.forward import PythonModel
 from dalembert.inverse import (
     AffineInvariant,
+    CrossValidation,
     Experiment,
     ModelComparison,
     compare_models,
@@ -175,7 +176,20 @@ def test_a_file_gives_back_the_comparison(tmp_path):
     np.testing.assert_array_equal(loaded.densities, found.densities)
 
 
-def test_experiments_are_left_out_as_a_whole():
+def test_a_file_gives_back_the_cross_validation(tmp_path):
+    data = recorded(0.5)
+    found = cross_validate(PARABOLA, data, fit=identify(PARABOLA, data, starts=1, horizon=None), blocks=4)
+    found.save(tmp_path / "checked.nc")
+    loaded = CrossValidation.load(tmp_path / "checked.nc")
+    assert loaded.summary() == found.summary()
+    assert loaded.fit.summary() == found.fit.summary()
+    assert found.rms == pytest.approx(np.sqrt(np.mean(found.rms_of_groups**2)), rel=1e-2)  # groups of 20 and 21 values
+    np.testing.assert_array_equal(loaded.errors, found.errors)
+    assert compare_models({"a": loaded, "b": found}).difference[1] == 0
+    assert found.summary().splitlines()[0].split() == ["group", "rms", "error", "log", "density", "a", "b", "c"]
+
+
+def test_experiments_are_left_out_as_a_whole(tmp_path):
     experiments = {
         name: [Experiment(str(k), model, recorded(0.5, np.random.default_rng(k).standard_normal(81))) for k in range(4)]
         for name, model in MODELS.items()
@@ -188,6 +202,10 @@ def test_experiments_are_left_out_as_a_whole():
     assert found.how == "cross-validation by fits without each group"
     np.testing.assert_allclose(found.densities, linear.densities, rtol=1e-6)
     assert again["line"].rms > again["parabola"].rms
+    again["line"].save(tmp_path / "line.nc")
+    assert CrossValidation.load(tmp_path / "line.nc").summary() == again["line"].summary()
+    again["line"].report(tmp_path / "report.html")
+    assert "Response and data" not in (tmp_path / "report.html").read_text(encoding="utf-8")
 
 
 def test_models_that_cannot_be_compared():

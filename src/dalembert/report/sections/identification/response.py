@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-from dalembert.inverse import ExperimentFit, Fit, RegularisedFit
+from dalembert.inverse import CrossValidation, ExperimentFit, Fit, RegularisedFit
 from dalembert.report import charts
 from dalembert.report.look import LIGHT, plain
 from dalembert.report.quantities import by_quantity, labelled, unit
@@ -23,16 +23,16 @@ def compared(fit: Fit) -> Section:
     return Section("Response and data", (_validation(fit), *_plots(fit, fit, "responses"), *_of_one_record(fit)))
 
 
-def compared_simply(fit: RegularisedFit) -> Section:
-    """Computed and measured responses where all is fitted, and how large the residuals are."""
+def compared_simply(fit: RegularisedFit | CrossValidation, how: str = HOW) -> Section:
+    """Computed and measured responses without marks, and how large the residuals are."""
     plots = [
-        Plot(f"responses-{place}", charts.responses(fit, chosen, title=", ".join(map(plain, chosen))), HOW)
+        Plot(f"responses-{place}", charts.responses(fit, chosen, title=", ".join(map(plain, chosen))), how)
         for place, chosen in enumerate(by_quantity(fit.data.channels), start=1)
     ]
     return Section("Response and data", (*plots, *_of_one_record(fit)))
 
 
-def _of_one_record(shown: Fit | RegularisedFit) -> tuple[Table, Download]:
+def _of_one_record(shown: Fit | RegularisedFit | CrossValidation) -> tuple[Table, Download]:
     """How large the residuals are, and all samples."""
     along = shown.data.coordinate
     columns = dict(zip(NAMES, _residuals(shown), strict=True))
@@ -91,7 +91,7 @@ def first_predicted(shown: Fit | ExperimentFit) -> float | None:
     return float(along[fitted[-1] : fitted[-1] + 2].mean())
 
 
-def _residuals(shown: Fit | ExperimentFit | RegularisedFit) -> tuple:
+def _residuals(shown: Fit | ExperimentFit | RegularisedFit | CrossValidation) -> tuple:
     """Columns of the channels: rms and largest residual, where that is, deviation of the data, and unit."""
     data = shown.data
     residuals = np.where(np.isfinite(shown.residuals), shown.residuals, 0.0)  # 0 where a value is missing
@@ -107,7 +107,7 @@ def _residuals(shown: Fit | ExperimentFit | RegularisedFit) -> tuple:
     )
 
 
-def _samples(shown: Fit | ExperimentFit | RegularisedFit, name: str, words: str) -> Download:
+def _samples(shown: Fit | ExperimentFit | RegularisedFit | CrossValidation, name: str, words: str) -> Download:
     """Measured and computed samples, unless they are too many for a page."""
     data = shown.data
     return samples(name, data.coordinate, data.channels, {"measured": data.values, "computed": shown.response}, words)

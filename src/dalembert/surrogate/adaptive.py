@@ -130,9 +130,5 @@ class Adaptive(Checked):
         return by_degree(exponents, coefficients)
 
     def more(self, order: int) -> str:
-        return f"allow more runs by Adaptive(most_runs=...), now {self.most_runs}"
-
-    @property
-    def less_error(self) -> str:
-        """Advice where it ended at its tolerance."""
+        """Advice where no limit ended it: it has reached its tolerance."""
         return f"allow less error by Adaptive(tolerance=...), now {self.tolerance:g}"

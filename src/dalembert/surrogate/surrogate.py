@@ -72,6 +72,11 @@ class Surrogate:
         """The order p: total degree or highest degree of a direction, as its scheme counts."""
         return max((len(shells) - 1 for shells in self._shells), default=0)
 
+    @property
+    def improvement(self) -> str:
+        """Which setting gives a surrogate with less error: the limit that ended it, or that of its scheme."""
+        return self.ended or self.scheme.more(2 * self.order)
+
     @cached_property
     def _shells(self) -> list[np.ndarray]:
         return self.scheme.shells(self.polynomial.exponents, self.polynomial.coefficients)
@@ -146,7 +151,7 @@ class Surrogate:
         slow = self.slow_directions(wanted)
         if slow:
             where = ", ".join(repr(parameters[k]) if len(parameters) else f"direction {k}" for k in slow)
-            advice = [f"use method {instead!r}"] * bool(instead) + [self.ended or self.scheme.more(2 * self.order)]
+            advice = [f"use method {instead!r}"] * bool(instead) + [self.improvement]
             raise SolveError(
                 f"{start}, after {self.runs} runs; the coefficients do not decay along {where}, as at a kink, a step "
                 f"or a fast oscillation: {', '.join(advice)}, raise the tolerance, or make the box smaller"

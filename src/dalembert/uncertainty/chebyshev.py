@@ -20,6 +20,9 @@ SCANNED, MOST_EACH = 10_000, 257
 STARTS = 5
 """Valleys of the scan that are followed to their bottom."""
 
+USUAL = 0.01
+"""Tolerance of the adaptive scheme as a part of that of the polynomial."""
+
 RELIABILITY = {
     "optimise": "right within its estimated error",
     "scan": "right within its estimated error but for peaks between the points of the scan",
@@ -34,9 +37,9 @@ class Chebyshev(Checked):
 
     Parameters
     ----------
-    scheme : TotalDegree, Tensor or Adaptive
-        Which terms the polynomial has, and at which points the model is run. The usual adaptive one aims at a hundredth
-        of ``tolerance``.
+    scheme : TotalDegree, Tensor or Adaptive, optional
+        Which terms the polynomial has, and at which points the model is run. Adaptive with a hundredth of ``tolerance``
+        if not given.
     tolerance : float
         Largest estimated error of the polynomial, as a part of the largest variation of a sample of the channel over
         the box. A worse polynomial is refused, with the order that would do.
@@ -63,7 +66,7 @@ class Chebyshev(Checked):
     """
 
     name: ClassVar[str] = "chebyshev"
-    scheme: Scheme = Adaptive()
+    scheme: Scheme | None = None
     tolerance: float = limited(1e-4, above=0)
     bounds: Literal["optimise", "scan", "bernstein"] = "optimise"
     held_out: int | None = limited(None, least=0)
@@ -81,7 +84,7 @@ class Chebyshev(Checked):
             lambda points: runs.values(points).reshape(len(points), -1),
             box.lower,
             box.upper,
-            self.scheme,
+            self.scheme or Adaptive(USUAL * self.tolerance),
             seed=seed,
             held_out=self.held_out,
             groups=np.tile(np.arange(channels), samples),

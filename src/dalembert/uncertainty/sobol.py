@@ -110,7 +110,7 @@ def global_sensitivity(
         for groups in (None, made.groups)
     )
     names = tuple(channel.name for channel in model.channels)
-    _demand(whole, names, tolerance, _improvement(made.surrogate))
+    _demand(whole, names, tolerance, made.surrogate.improvement)
     shape = samples, channels, len(inputs.box)
     result = SensitivityIndices(
         coordinate=model.coordinate,
@@ -165,14 +165,6 @@ def _surrogate(runs: Runs, inputs: Inputs, scheme: Scheme, count: int | None, se
     known = np.isfinite(errors).all(axis=1)
     checks = Checks(inputs.eta(points[known]), errors[known]) if known.sum() > 1 else None
     return _Made(surrogate, groups, checks)
-
-
-def _improvement(surrogate: Surrogate) -> str:
-    """What gives a better surrogate."""
-    scheme = surrogate.scheme
-    if isinstance(scheme, Adaptive) and not surrogate.ended:  # it ended at its tolerance
-        return scheme.less_error
-    return surrogate.ended or scheme.more(2 * surrogate.order)
 
 
 def _demand(whole: SobolIndices, names: tuple[str, ...], tolerance: float, more: str) -> None:

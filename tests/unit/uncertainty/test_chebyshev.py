@@ -5,7 +5,7 @@ import pytest
 
 from dalembert.errors import InputError, SolveError
 from dalembert.forward import PythonModel
-from dalembert.surrogate import Tensor, TotalDegree
+from dalembert.surrogate import Adaptive, Tensor, TotalDegree
 from dalembert.uncertainty import Chebyshev, propagate
 from small_models import DECAY, TIMES
 from support import says
@@ -62,6 +62,17 @@ def test_a_low_order_is_refused_with_the_order_that_would_do():
     phase = np.linspace(3 * TIMES, 7 * TIMES, 20001)
     np.testing.assert_allclose(bands.upper[:, 0], np.cos(phase).max(axis=0), atol=3e-4)
     np.testing.assert_allclose(bands.lower[:, 0], np.cos(phase).min(axis=0), atol=3e-4)
+
+
+def test_a_small_tolerance_is_met_without_further_settings():
+    bands = propagate(DECAY, BOX, Chebyshev(tolerance=1e-10))
+    assert bands.error.max() < 1e-10 * 2
+    np.testing.assert_allclose(bands.upper[:, 0], 2 * np.exp(-TIMES / 2), atol=2e-10)
+
+
+def test_a_scheme_that_ended_at_its_tolerance_is_advised_to_lower_it():
+    with pytest.raises(SolveError, match=r"allow less error by Adaptive\(tolerance=\.\.\.\), now 0\.01, raise"):
+        propagate(DECAY, BOX, Chebyshev(Adaptive(1e-2), tolerance=1e-8))
 
 
 def test_the_tolerance_is_relative_to_the_variation_of_the_channel():

@@ -164,14 +164,11 @@ def _too_inaccurate(error: float, acceptance: float, cheap: Target) -> str:
     model = cheap.problem.model
     assert isinstance(model, SurrogateModel)
     surrogate = model.surrogate
-    better = surrogate.ended or surrogate.scheme.more(2 * surrogate.order)
-    if isinstance(surrogate.scheme, Adaptive) and not surrogate.ended:
-        better = f"allow less error by Adaptive(tolerance=...), now {surrogate.scheme.tolerance:g}"
     size = f"by ±{error:.2g}" if np.isfinite(error) else "without limit"
     return (
         f"the surrogate of {surrogate.runs} runs is too inaccurate: over {PILOT} draws of its posterior, its log "
         f"density is wrong {size}, more than {LIMIT:g}, and about {100 * acceptance:.0f} % of the proposals would be "
-        f"accepted. Improve it ({better}), narrow the bounds, or sample without a surrogate"
+        f"accepted. Improve it ({surrogate.improvement}), narrow the bounds, or sample without a surrogate"
     )
 
 

@@ -101,7 +101,10 @@ REFUSED = {
         "parameter 'two.speed' belongs to experiments for validation alone",
     ),
     "validation: share": (HEAD + DATA + "[identify]\nvalidation = 0.99\n", "leaves 0 of 21 samples to be fitted"),
-    "weights": (HEAD + DATA + "[identify]\nweights = { x = -1.0 }\n", "weights must be finite and not negative"),
+    "weights": (
+        HEAD + DATA + "[identify]\nweights = { x = -1.0 }\n",
+        "weights have the value -1; expected finite numbers",
+    ),
     "prior": (
         HEAD.replace("upper = 3.0", "upper = 3.0, deviation = 0.1") + DATA + "[identify]\n",
         "deviation",
@@ -130,8 +133,11 @@ REFUSED = {
         HEAD + BANDS.replace("x.csv", "uneven.csv") + "[identify_bands]\n",
         "sample 20: the data lie at",
     ),
-    "bands: weights": (HEAD + BANDS + "[identify_bands]\nweights = { x = -1 }\n", "weights must be finite"),
-    "set: error": (HEAD + DATA + "[identify_set]\nerror = -0.1\n", "errors must be finite and positive"),
+    "bands: weights": (HEAD + BANDS + "[identify_bands]\nweights = { x = -1 }\n", "weights have the value -1"),
+    "set: error": (
+        HEAD + DATA + "[identify_set]\nerror = -0.1\n",
+        "identify_set: error has the value -0.1; expected finite positive numbers",
+    ),
     "design: horizon": (HEAD + "[design]\ndeviations = 0.1\nhorizons = [-1.0]\n", "design: horizon -1"),
     "design: channel": (HEAD + "[design]\ndeviations = { y = 0.1 }\n", "unknown channel 'y'"),
     "design: pairs": (

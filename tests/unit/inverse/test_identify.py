@@ -298,7 +298,8 @@ def test_parameters_that_cannot_be_told_apart_are_named():
             {"weights": [1.0, 1.0]},
             "weights of shape (2,) were given; expected (channels,) = (1,) or (samples, channels) = (41, 1)",
         ),
-        ({"weights": [-1.0]}, "weights must be finite and not negative, and at least one of them positive"),
+        ({"weights": [-1.0]}, "weights have the value -1; expected finite numbers that are not negative"),
+        ({"weights": [0.0]}, "all weights are 0, so that nothing is fitted; expected at least one positive weight"),
     ],
 )
 def test_what_cannot_be_meant_is_answered_in_a_sentence(options, sentence):

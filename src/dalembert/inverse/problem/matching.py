@@ -146,8 +146,11 @@ def weights_of(given: ArrayLike | None, shape: tuple[int, ...]) -> np.ndarray:
             f"weights of shape {weights.shape} were given; expected (channels,) = {shape[1:]} or "
             f"(samples, channels) = {shape}"
         )
-    if not (np.all(np.isfinite(weights)) and np.all(weights >= 0) and np.any(weights > 0)):
-        raise InputError("weights must be finite and not negative, and at least one of them positive")
+    wrong = weights[~(np.isfinite(weights) & (weights >= 0))]
+    if len(wrong):
+        raise InputError(f"weights have the value {wrong[0]:g}; expected finite numbers that are not negative")
+    if not np.any(weights > 0):
+        raise InputError("all weights are 0, so that nothing is fitted; expected at least one positive weight")
     return np.broadcast_to(weights, shape)
 
 

@@ -189,6 +189,7 @@ def _errors(given: float | Mapping[str, float] | ArrayLike, data: Measurements) 
             f"an error of shape {errors.shape} was given; expected one number, (channels,) = {data.values.shape[1:]} "
             f"or (samples, channels) = {data.values.shape}"
         )
-    if not (np.all(np.isfinite(errors)) and np.all(errors > 0)):
-        raise InputError("errors must be finite and positive")
+    wrong = errors[~(np.isfinite(errors) & (errors > 0))]
+    if len(wrong):
+        raise InputError(f"identify_set: error has the value {wrong[0]:g}; expected finite positive numbers")
     return np.array(np.broadcast_to(errors, data.values.shape))

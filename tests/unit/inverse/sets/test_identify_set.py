@@ -245,7 +245,7 @@ def test_a_file_that_holds_something_else_is_told(tmp_path):
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
-        ({"error": 0.0}, "errors must be finite and positive"),
+        ({"error": 0.0}, "identify_set: error has the value 0; expected finite positive numbers"),
         (
             {"error": [0.1, 0.2]},
             "an error of shape (2,) was given; expected one number, (channels,) = (1,) or (samples, channels) = (1, 1)",

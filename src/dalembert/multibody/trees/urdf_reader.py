@@ -223,6 +223,11 @@ def _joint(own: Element, notes: list[str]) -> TreeJoint:
     if (limit := own.child("limit")) is not None:
         if kind != "continuous":
             options |= {side: limit.limit(side, 0.0) for side in ("lower", "upper")}
+            if options["lower"] > options["upper"]:
+                raise InputError(
+                    f"{limit.place}: lower is {options['lower']:g} and upper is {options['upper']:g}; expected lower "
+                    "not above upper"
+                )
         options |= {what: limit.limit(what, np.inf) for what in ("velocity", "effort")}
     if (dynamics := own.child("dynamics")) is not None:
         for what in ("damping", "friction", "armature"):

@@ -244,6 +244,11 @@ REFUSED = {
         'axis xyz="0 0 0"',
         "arm.urdf, line 41: joint 'slide': <axis> is zero; expected a direction, such as 0 0 1",
     ),
+    "exchanged limits": (
+        'lower="-0.2"',
+        'lower="0.9"',
+        "arm.urdf, line 42: joint 'slide': <limit>: lower is 0.9 and upper is 0.4; expected lower not above upper",
+    ),
     "negative damping": (
         'damping="3"',
         'damping="-3"',

@@ -16,7 +16,6 @@ from dalembert.multibody.trees.possible_inertia import REFUSE, TREATMENTS, possi
 from dalembert.multibody.trees.tree import FIXED, PRISMATIC, REVOLUTE, Link, Shape, Tree, TreeJoint
 
 _FREE, _BALL, _SLIDE, _HINGE = range(4)  # of mjtJoint
-_SPHERE, _CYLINDER, _BOX = 2, 5, 6  # of mjtGeom
 _OTHERS = {
     "nu": "actuator", "ntendon": "tendon", "neq": "equality constraint", "nsensor": "sensor", "nflex": "flexible body",
     "nplugin": "plugin", "ncam": "camera", "nlight": "light", "nsite": "site", "nkey": "key frame",
@@ -156,15 +155,27 @@ class _Reader:
     def _shapes(self, body: int) -> tuple[Shape, ...]:
         model, found = self.model, []
         for k in range(int(model.body_geomadr[body]), int(model.body_geomadr[body] + model.body_geomnum[body])):
-            x, y, z = map(float, model.geom_size[k])
-            sizes = {_SPHERE: (x,), _CYLINDER: (x, 2 * y), _BOX: (2 * x, 2 * y, 2 * z)}.get(int(model.geom_type[k]))
-            if sizes is None:
+            solids = _solids(int(model.geom_type[k]), *map(float, model.geom_size[k]))
+            if not solids:
                 self.notes.append(f"shape {model.geom(k).name or k!r} of body {self.names[body]!r} is not drawn")
-                continue
-            kind = {1: "sphere", 2: "cylinder", 3: "box"}[len(sizes)]
             turn = Orientation.by_quaternion(*map(float, model.geom_quat[k]))
-            found.append(Shape(kind, sizes, Pose(_row(model.geom_pos[k] - self.origins[body]), turn)))
+            centre, axis = model.geom_pos[k] - self.origins[body], turn.matrix[:, 2]
+            found += [Shape(kind, sizes, Pose(_row(centre + height * axis), turn)) for kind, sizes, height in solids]
         return tuple(found)
+
+
+def _solids(kind: int, x: float, y: float, z: float) -> list[tuple[str, tuple[float, ...], float]]:
+    """Kind and sizes of the solids of a shape (mjtGeom), each with its height along the axis of the shape."""
+    match kind:
+        case 2:  # sphere
+            return [("sphere", (x,), 0.0)]
+        case 3:  # capsule
+            return [("cylinder", (x, 2 * y), 0.0), ("sphere", (x,), -y), ("sphere", (x,), y)]
+        case 5:  # cylinder
+            return [("cylinder", (x, 2 * y), 0.0)]
+        case 6:  # box
+            return [("box", (2 * x, 2 * y, 2 * z), 0.0)]
+    return []
 
 
 def _row(vector: Any) -> tuple[float, float, float]:

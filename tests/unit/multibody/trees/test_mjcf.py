@@ -72,3 +72,23 @@ def test_files_that_mujoco_refuses(tmp_path):
     path.write_text("<mujoco><worldbody><body><joint/></body></worldbody></mujoco>")
     with pytest.raises(InputError, match="MuJoCo cannot read the file"):
         read_mjcf(path)
+
+
+def test_a_capsule_is_drawn_as_a_cylinder_between_spheres(tmp_path):
+    pytest.importorskip("mujoco")
+    path = tmp_path / "arm.xml"
+    capsule = (
+        '<geom type="capsule" fromto="0.1 0 0 0.1 0 -0.4" size="0.02" mass="1"/><geom type="ellipsoid" size="1 2 3"/>'
+    )
+    path.write_text(f'<mujoco><worldbody><body name="arm"><joint axis="0 1 0"/>{capsule}</body></worldbody></mujoco>')
+    tree = read_mjcf(path)
+    (link,) = tree.links
+    assert [(shape.kind, shape.sizes) for shape in link.shapes] == [
+        ("cylinder", (0.02, 0.4)),
+        ("sphere", (0.02,)),
+        ("sphere", (0.02,)),
+    ]
+    places = np.array([shape.pose.position for shape in link.shapes])
+    np.testing.assert_allclose(places[0], [0.1, 0.0, -0.2], atol=1e-12)
+    np.testing.assert_allclose(np.sort(places[1:, 2]), [-0.4, 0.0], atol=1e-12)
+    assert "shape 1 of body 'arm' is not drawn" in tree.unsupported

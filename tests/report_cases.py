@@ -100,6 +100,15 @@ def _cross_validated(*, converged: bool) -> da.CrossValidation:
     return replace(found, converged=np.array([True, converged, True, True]))
 
 
+def _drifting() -> Measurements:
+    return Measurements.of(LONG, {"x": 1 + LONG / 2 + 0.05 * autoregressive(0, 201, 0.9)})
+
+
+SHORT = np.linspace(0.0, 2.0, 30)
+SQUARED = PythonModel(lambda a, b: a * a + b * SHORT, {"a": (-3.0, 3.0), "b": (-5.0, 5.0)}, ["x"], SHORT)
+SQUARES = Measurements.of(SHORT, {"x": 2 + SHORT + 0.1 * np.random.default_rng(0).standard_normal(30)})
+
+
 def _signs_stay() -> Measurements:
     """Heavy tails hide a drift from the autocorrelation, not from the signs."""
     errors = 0.04 * np.random.default_rng(8).standard_cauchy(201).clip(-40, 40) + 0.06 * np.sign(np.sin(4.5 * LONG))
@@ -435,6 +444,18 @@ CASES: dict[str, Case] = {
     "models of four blocks": Case(
         lambda: str(_of_four_blocks()),
         ("Only 4 groups were left out", "Leave out more, smaller groups."),
+    ),
+    "draws with correlated residuals": Case(
+        lambda: da.sample(LINE_IN_TIME, _drifting(), chains=2, draws=20, warmup=20),
+        (
+            "The residuals of 'x' are correlated (lag-1 autocorrelation",
+            "With correlated noise, deviations are up to",
+            "The draws take the noise for independent",
+        ),
+    ),
+    "draws of one of two minima": Case(
+        lambda: da.sample(SQUARED, SQUARES, chains=2, draws=20, warmup=20),
+        ("The chains start at one minimum, and the draws may miss the others.",),
     ),
     "correlated noise": Case(
         lambda: da.identify(

@@ -1,6 +1,6 @@
 """Numbers of a study file: plain, with a unit, or as an expression of parameters and constants."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
@@ -64,6 +64,35 @@ def number(unit: str | None) -> Any:
 def fixed(unit: str | None) -> Any:
     """Type of a key whose number may not depend on parameters."""
     return Annotated[float, PlainValidator(lambda value: checked(read_number, value, unit)), _Described(unit)]
+
+
+class WithUnit(float):
+    """A number in SI units that was written with its unit, for a key whose quantity is known only by the model."""
+
+    text: str
+
+    @classmethod
+    def of(cls, value: object) -> float:
+        """The number of a text or a plain number."""
+        number = read_number(value, None)
+        if not isinstance(value, str) or not is_quantity(value):
+            return number  # pyright: ignore[reportReturnType] - no names are offered to it
+        found = cls(number)  # pyright: ignore[reportArgumentType]
+        found.text = value
+        return found
+
+
+def wrong_units(given: Mapping[str, Any], units: Mapping[str, str | None], where: str) -> Iterator[str]:
+    """Yield sentences on numbers by name, or tables of them, whose unit is not that of the quantity of the name."""
+    for name, value in given.items():
+        table = vars(value) if isinstance(value, StudyTable) else {"value": value}
+        numbers = [one for key, one in table.items() if key != "relative"]
+        for one in numbers:
+            if isinstance(one, WithUnit) and units.get(name) is not None:
+                try:
+                    read_number(one.text, units[name])
+                except InputError as error:
+                    yield f"{where}, {name}: {error}"
 
 
 @dataclass(frozen=True)
@@ -140,7 +169,9 @@ def _increasing(given: Grid | list[float]) -> tuple[float, ...]:
     return tuple(numbers)
 
 
-Number = Annotated[float, Read(fixed(None))]
+Number = Annotated[
+    float, Read(Annotated[float, PlainValidator(lambda value: checked(WithUnit.of, value)), _Described(None)])
+]
 Seconds = Annotated[float, Read(fixed("s"))]
 Samples = Annotated[tuple[float, ...], Read(samples(None))]
 Times = Annotated[tuple[float, ...], Read(samples("s"))]

@@ -24,6 +24,7 @@ _EXPECTED = {
     "model": "a table",
     "greater_than": "a number greater than {gt}",
     "greater_than_equal": "a number of at least {ge}",
+    "multiple_of": "a multiple of {multiple_of}",
     "less_than": "a number less than {lt}",
     "less_than_equal": "a number of at most {le}",
     "too_short": "at least {min_length} entries",

@@ -268,3 +268,19 @@ def test_a_model_without_sensitivities_is_refused():
     model = da.PythonModel(response, {"height": (0.1, 3.0)}, ["x"], TIMES)
     with pytest.raises(da.DalembertError):
         da.identify(model, measured(normal(22)), noise="constant", method="Nelder-Mead")
+
+
+@pytest.mark.parametrize("noise", ["autoregressive", "ornstein-uhlenbeck", "mixed"])
+def test_exact_data_leave_noise_at_its_bounds(noise):
+    times = np.linspace(0.0, 5.0, 30)
+    line = da.PythonModel(lambda a, b: a + b * times, {"a": (-20.0, 20.0), "b": (-20.0, 20.0)}, ["x"], times)
+    fit = da.identify(line, da.Measurements.of(times, {"x": 2 + times}), noise=noise)
+    np.testing.assert_allclose(fit.values, [2.0, 1.0], atol=1e-9)
+
+
+def test_a_combination_that_the_data_do_not_determine_is_found_beside_noise():
+    times = np.linspace(0.0, 5.0, 60)
+    noise = 0.1 * np.random.default_rng(23).standard_normal(60)
+    both = da.PythonModel(lambda a, b: (a + b) * times, {"a": (-20.0, 20.0), "b": (-20.0, 20.0)}, ["x"], times)
+    fit = da.identify(both, da.Measurements.of(times, {"x": 2 * times + noise}), noise="autoregressive")
+    assert np.sum(fit.values) == pytest.approx(2.0, abs=0.05)

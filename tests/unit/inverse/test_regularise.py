@@ -143,3 +143,48 @@ def test_the_response_is_that_of_the_values_and_each_round_is_an_event() -> None
     rounds = [event.round for event in events]
     assert rounds == sorted(rounds)
     assert rounds[0] == 1
+
+
+BLUR = 0.1 * np.exp(-0.5 * ((np.linspace(0, 1, 60)[:, None] - np.linspace(0, 1, 20)) / 0.08) ** 2)
+COEFFICIENTS = [f"u{k}" for k in range(20)]
+
+
+def blurred(deviation: float) -> tuple[da.PythonModel, da.Measurements]:
+    """A history that the data determine after blurring only, with noise of 0.01."""
+    along, times = np.linspace(0, 1, 20), np.linspace(0, 1, 60)
+    box = dict.fromkeys(COEFFICIENTS, (-10.0, 10.0))
+    model = da.PythonModel(lambda **u: BLUR @ np.array([u[name] for name in COEFFICIENTS]), box, ["x"], times)
+    values = BLUR @ np.sin(4 * along) + 0.01 * np.random.default_rng(0).standard_normal(60)
+    return model, da.Measurements.of(times, {"x": values}, deviations=deviation)
+
+
+def test_parameters_that_nothing_determines_are_named() -> None:
+    box, times = dict.fromkeys(COEFFICIENTS, (-9.0, 9.0)), np.linspace(0, 1, 60)
+    flat = da.PythonModel(lambda **u: u["u0"] + u["u1"] * times + u["u2"] * times**2, box, ["x"], times)
+    with refused(
+        InputError,
+        snapshot(
+            "regularise: neither the data nor the penalty determine 'u3', 'u4', 'u5', 'u6' and 13 others. Name them in "
+            "smooth, fix them by equal bounds, or measure what shows them"
+        ),
+    ):
+        da.regularise(flat, blurred(0.01)[1], smooth=["u0", "u1", "u2"])
+    with refused(
+        InputError, snapshot("regularise: smooth names a parameter twice. Name each once, in the order of the series")
+    ):
+        da.regularise(*blurred(0.01), smooth=[*COEFFICIENTS, "u0"])
+
+
+def test_the_discrepancy_principle_needs_a_weight_that_balances_the_noise() -> None:
+    with refused(
+        InputError,
+        snapshot(
+            "regularise: parameters whose penalty is 0 explain the data within their standard deviations, so that the "
+            "discrepancy principle gives no weight. Correct the deviations of the data, or give a weight"
+        ),
+    ):
+        da.regularise(*blurred(100.0), weight="discrepancy")
+    (finding,) = da.regularise(*blurred(0.001), weight="discrepancy").findings
+    assert finding.code == "misfit-above-noise"
+    assert finding.values["ratio"] > 5
+    assert da.regularise(*blurred(0.01), weight="discrepancy").findings == ()

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.errors import InputError, require_known
+from dalembert.errors import InputError, require_known, unknown
 from dalembert.forward import Coordinate, ForwardModel
 from dalembert.inverse.assessment.sensitivity import noise_of
 from dalembert.inverse.correlation.series import Series, even_grid
@@ -82,6 +82,12 @@ def planned_channels(
         raise InputError("design: the noise is not known; give deviations, or noise")
     names, columns, known = _channels(model, deviations, noise)
     noises = tuple(_described(name, noise, Extent(1.0, "", 1.0, 1.0, "")) for name in names)
+    for name, (one, _) in zip(names, noises, strict=True):
+        one.whitening(_series(name, model.coordinate))  # refuses an order that is open
+    if deviations is not None and noise is not None and not any(_needs_deviations(*one) for one in noises):
+        raise InputError(
+            "design: noise and deviations were given, and noise needs no deviations; leave one of them out"
+        )
     return PlannedChannels(names, columns, known, noises, model.coordinate)
 
 
@@ -92,8 +98,11 @@ def _channels(
     if deviations is not None:
         return noise_of(model, deviations, "design")
     known = tuple(channel.name for channel in model.channels)
-    named = noise.models if isinstance(noise, EstimatedNoise) else noise
-    names = tuple(named) if isinstance(named, Mapping) else known
+    names = tuple(noise) if isinstance(noise, Mapping) else known
+    if isinstance(noise, EstimatedNoise):
+        names = tuple(name for name in known if _fitted(noise, name))
+        if not names:
+            raise InputError(unknown("channel", next(iter(noise.models), ""), known, "design: noise"))
     for name in names:
         require_known("channel", name, known, "design: noise")
     return names, np.array([known.index(name) for name in names]), np.full(len(names), np.nan)
@@ -102,8 +111,7 @@ def _channels(
 def _described(name: str, noise: Planned | None, extent: Extent) -> tuple[NoiseModel, Mapping[str, np.ndarray]]:
     """The noise model of a channel, and the values of its parameters."""
     if isinstance(noise, EstimatedNoise):
-        require_known("channel", name, noise.models, "design: noise")
-        return noise.models[name], noise.of_channel(name, noise.estimates)
+        return _estimated(name, noise)
     chosen = noise.get(name) if isinstance(noise, Mapping) else noise
     model = KnownNoise() if chosen is None else noise_model(chosen)
     parameters = model.parameters(extent)
@@ -114,6 +122,30 @@ def _described(name: str, noise: Planned | None, extent: Extent) -> tuple[NoiseM
             "fit"
         )
     return model, {item.name: np.asarray(item.lower) for item in parameters}
+
+
+def _fitted(noise: EstimatedNoise, name: str) -> list[str]:
+    """Names of a channel in a fit: its own, or those of its experiments, ``"EXPERIMENT.channel"``."""
+    return [own for own in noise.models if own == name or own.endswith(f".{name}")]
+
+
+def _estimated(name: str, noise: EstimatedNoise) -> tuple[NoiseModel, Mapping[str, np.ndarray]]:
+    """The noise of a channel in a fit, which all experiments must share."""
+    fitted = _fitted(noise, name)
+    if not fitted:
+        raise InputError(unknown("channel", name, noise.models, "design: noise"))
+    first, *others = (noise.of_channel(own, noise.estimates) for own in fitted)
+    if any(one != first for one in others):
+        raise InputError(
+            f"design: the noise of channel {name!r} differs between the experiments of the fit ({', '.join(fitted)}). "
+            "Give a noise model with numbers for it"
+        )
+    return noise.models[fitted[0]], first
+
+
+def _needs_deviations(model: NoiseModel, values: Mapping[str, np.ndarray]) -> bool:
+    """Whether noise is computed from known deviations."""
+    return not np.all(np.isfinite(model.deviations(np.ones(1), np.full(1, np.nan), values)))
 
 
 def _series(name: str, along: Coordinate) -> Series:

@@ -69,6 +69,27 @@ class ChannelNoise:
                 white, logs = (np.array(part).reshape(residual.shape) for part in zip(*rows, strict=True))
             return -0.5 * white**2 - logs - HALF_LOG_2_PI
 
+    def left_out(self, residual: np.ndarray, response: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Return the log density of each value after all others, all of shape (batch, values).
+
+        ``values`` are of shape (batch, 1) each. With the inverse K = AᵀA of the correlation of the standardised
+        residuals z, value i has the mean z_i − (K z)_i/K_ii and the variance 1/K_ii.
+
+        Source: P.-C. Bürkner, J. Gabry, A. Vehtari, Efficient leave-one-out cross-validation for Bayesian
+        non-factorized normal and Student-t models, Computational Statistics 36 (2021), equations 8 and 9.
+        """
+        if self.whitening is None:
+            return self.log_densities(residual, response, values)
+        rows = []
+        with np.errstate(divide="ignore", invalid="ignore"):
+            for k, (own, there) in enumerate(zip(residual, response, strict=True)):
+                known = {name: value[k, 0] for name, value in values.items()}
+                sizes, matrix = self.model.deviations(there, self.given, known), self.whitening.matrix(known)
+                precision = np.asarray(matrix.multiply(matrix).sum(axis=0)).ravel()
+                white = matrix.T @ (matrix @ (own / sizes)) / np.sqrt(precision)
+                rows.append(-0.5 * white**2 + 0.5 * np.log(precision) - np.log(sizes) - HALF_LOG_2_PI)
+        return np.array(rows).reshape(residual.shape)
+
     def slopes(
         self, residual: np.ndarray, response: np.ndarray, jacobian: np.ndarray, values: Mapping[str, np.ndarray]
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:

@@ -106,7 +106,7 @@ def _largest(
     """Return the likelihood with these noise models, and its maximum near a linearised response."""
     found = placed_likelihood(problem, picked, {own.name: model for own, model in picked.items()}, known=known)
     _check_response(found, at)
-    start = guessed(found.channels, found.noise_parameters, problem, at)
+    start = guessed(found.channels, found.noise_parameters, problem, at.response)
     return found, maximum(found, np.concatenate([at.vector, start]), at=at)
 
 
@@ -213,7 +213,8 @@ def _curvature(likelihood: Likelihood, found: Maximum) -> np.ndarray:
             )[0][count:]
             for way in (1, -1)
         ]
-        rows.append((ends[1] - ends[0]) / (2 * step[place]))
+        with np.errstate(invalid="ignore", divide="ignore"):  # at a bound there is no room for a step
+            rows.append((ends[1] - ends[0]) / (2 * step[place]))
     table = np.array(rows).reshape(len(rows), len(rows))
     return (table + table.T) / 2
 

@@ -5,15 +5,18 @@ from collections.abc import Sequence
 import numpy as np
 
 from dalembert.inverse.likelihood.channel_noise import ChannelNoise
-from dalembert.inverse.problem.problem import Linearisation, Problem
+from dalembert.inverse.problem.problem import Problem
 from dalembert.parameters import Parameters
 
 
 def guessed(
-    channels: Sequence[ChannelNoise], parameters: Parameters, problem: Problem, at: Linearisation
+    channels: Sequence[ChannelNoise], parameters: Parameters, problem: Problem, there: np.ndarray
 ) -> np.ndarray:
-    """Return first guesses (parameters,) of noise parameters, means over the channels that share them."""
-    residual, response = problem.misfit(at.response).ravel(), at.response.ravel()
+    """Return first guesses (parameters,) of noise parameters at a response (samples, channels).
+
+    They are means over the channels that share a parameter.
+    """
+    residual, response = problem.misfit(there).ravel(), there.ravel()
     found: dict[str, list[float]] = {name: [] for name in parameters.names}
     for channel in channels:
         places = channel.series.rows

@@ -1,6 +1,6 @@
 """The likelihood of a model's parameters and of the noise of the data."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -90,14 +90,23 @@ class Likelihood:
 
         NaN where a simulation failed.
         """
+        return self._densities(vectors, ChannelNoise.log_densities)
+
+    def left_out(self, vectors: ArrayLike) -> np.ndarray:
+        """Return the log density of each value after all others, shape (batch, values): what leave-one-out needs.
+
+        It is that of :meth:`pointwise` where the noise is independent. NaN where a simulation failed.
+        """
+        return self._densities(vectors, ChannelNoise.left_out)
+
+    def _densities(self, vectors: ArrayLike, density: Callable[..., np.ndarray]) -> np.ndarray:
         batch, responses = self._simulated(vectors)
         residuals = self.problem.misfit(responses).reshape(len(batch), -1)
         flat, known = responses.reshape(len(batch), -1), self._known(batch)
+        places = [channel.series.rows for channel in self.channels]
         found = [
-            channel.log_densities(
-                residuals[:, channel.series.rows], flat[:, channel.series.rows], channel.values(known)
-            )
-            for channel in self.channels
+            density(channel, residuals[:, rows], flat[:, rows], channel.values(known))
+            for channel, rows in zip(self.channels, places, strict=True)
         ]
         return np.concatenate(found, axis=1)
 

@@ -268,9 +268,10 @@ def _curved(
     free = [place for place in range(len(point)) if place not in objective.held]
     diagonal = np.diag(matrix)[free]
     size = np.sqrt(np.maximum(diagonal, np.finfo(float).tiny))
-    scaled = matrix[np.ix_(free, free)] / (size[:, None] * size)
-    definite = np.all(diagonal > 0) and np.linalg.eigvalsh(scaled)[0] > DEFINITE
-    return matrix if definite else information
+    with np.errstate(all="ignore"):  # the data may determine nothing along a coordinate, or all of it
+        scaled = matrix[np.ix_(free, free)] / (size[:, None] * size)
+    usable = np.all(diagonal > 0) and np.all(np.isfinite(scaled))
+    return matrix if usable and np.linalg.eigvalsh(scaled)[0] > DEFINITE else information
 
 
 def _step(

@@ -87,6 +87,6 @@ def _largest(problem: Problem, channels: tuple[ChannelNoise, ...], own: Paramete
     parameters = Parameters((*model.items, *own.items), (*model.fixed, *own.fixed))
     alone = Likelihood(problem, {}, parameters, channels)
     expansion = linear_expansion(alone, at)
-    here = expansion(np.concatenate([at.vector, guessed(channels, own, problem, at)]))
+    here = expansion(np.concatenate([at.vector, guessed(channels, own, problem, at.response)]))
     objective = Objective(parameters, model, None, frozenset(range(len(model))))
     return scored(here, objective, SearchCoordinates(parameters), expansion)[0].value

@@ -104,11 +104,17 @@ class GridWhitening:
 
 
 def _row(correlations: np.ndarray, lags: np.ndarray) -> np.ndarray:
-    """Return 1/d and −a/d, shape (1 + lags,), of the best prediction from values at some lags."""
+    """Return 1/d and −a/d, shape (1 + lags,), of the best prediction from values at some lags.
+
+    NaN where these values determine each other, so that the process has no density.
+    """
     if not len(lags):
         return np.ones(1, dtype=correlations.dtype)
     here = correlations[lags]
-    weights = np.linalg.solve(correlations[np.abs(lags[:, None] - lags)], here)
+    try:
+        weights = np.linalg.solve(correlations[np.abs(lags[:, None] - lags)], here)
+    except np.linalg.LinAlgError:
+        return np.full(1 + len(lags), np.nan, dtype=correlations.dtype)
     return np.concatenate([[1.0], -weights]) / np.sqrt(1 - weights @ here)
 
 

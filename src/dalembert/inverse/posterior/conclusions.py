@@ -1,10 +1,12 @@
 """What a posterior shows of data and priors."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from dalembert.findings import Finding
+from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.posterior.preconditioning import Centred
 from dalembert.inverse.posterior.unbounded import UnboundedCoordinates
 from dalembert.inverse.problem.prior import ALONE
@@ -19,6 +21,43 @@ CLOSE = 0.02
 
 PILED = 0.1
 """Part of the draws at a bound from which the bound decides; for a flat posterior it is 0.02."""
+
+
+ADVICE = {
+    "equal-minima": "The chains start at one minimum, and the draws may miss the others. Narrow the bounds, or measure "
+    "another channel.",
+    "correlated-residuals": "The draws take the noise for independent, so that their intervals are too narrow. Give "
+    "noise='autoregressive', or correct the model.",
+}
+"""What to do about findings of a fit that concern the draws, where it differs from that of the fit."""
+
+OF_RESIDUALS = ("correlated-residuals", "systematic-residuals", "model-misfit", "misfit-above-noise")
+"""Those that a noise model may explain."""
+
+
+def inherited(fit: Fit | None, *, independent: bool) -> Iterator[Finding]:
+    """Yield the doubts of the fit at which the chains start that concern the draws, too.
+
+    Parameters
+    ----------
+    fit : Fit, optional
+    independent : bool
+        Whether the noise of the draws is independent, as that of the fit.
+    """
+    for finding in fit.doubts if fit is not None else ():
+        if finding.code == "equal-minima" or (independent and finding.code in OF_RESIDUALS):
+            known = replace(finding, advice=ADVICE.get(finding.code, finding.advice))
+            yield replace(known, message=_correlated(finding)) if finding.code == "correlated-residuals" else known
+
+
+def _correlated(finding: Finding) -> str:
+    found = finding.values
+    message = (
+        f"The residuals of {found['channel']!r} are correlated (lag-1 autocorrelation {found['autocorrelation']:.2f})."
+    )
+    if "largest_factor" in found:
+        message += f" With correlated noise, deviations are up to {found['largest_factor']:.2g} times as large."
+    return message
 
 
 def prior_conflicts(found: Centred) -> Iterator[Finding]:

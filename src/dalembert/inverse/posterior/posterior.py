@@ -54,7 +54,8 @@ class Posterior(EndedResult):
     linear_deviations : array, shape (parameters,)
         Standard deviations from the response and the priors, linearised at the mode.
     log_likelihood : array, shape (kept draws, values)
-        Log density of each compared value, at the draws numbered by ``kept``.
+        Log density of each compared value after all others, at the draws numbered by ``kept``: what leave-one-out
+        needs. With independent noise it is that of the value alone.
     kept : array of int, shape (kept draws,)
         Numbers of draws, counted over all chains in turn: all, or evenly spaced ones where the values are very many.
     experiments, channels : tuple of str, length values

@@ -14,6 +14,12 @@ from dalembert.parameters import Parameters
 FAR = 1e3
 """Largest change of a target's value that its search takes for finite."""
 
+SEARCHES = 12
+"""Most searches of the mode."""
+
+REACH, NEAR = 8.0, 1.0
+"""Reach of a search in standard deviations, and how near to its start the last one ends."""
+
 STEP = 0.05
 """Step of second differences in coordinates without bounds, for models without a jacobian."""
 
@@ -63,10 +69,13 @@ def centred(likelihood: Likelihood, parameters: Parameters, start: np.ndarray, *
         failures = likelihood.problem.journal.failures
         reason = failures[-1] if failures else "the likelihood is not finite there"
         raise SolveError(f"the posterior cannot be sampled from its start: {reason}. Change the start or the bounds")
-    for _ in range(2):  # the second search is in the coordinates of the first one's end
+    for number in range(SEARCHES):  # each one is in the coordinates of the end of the one before
         information, _ = _information(target, point, gradients=gradients)
         target = replace(target, centre=point, factor=_factor(information))
-        point = target.points(_searched(target, gradients=gradients))
+        place = _searched(target, gradients=gradients)
+        point = target.points(place)
+        if number and np.max(np.abs(place), initial=0.0) < NEAR:
+            break
     information, data = _information(target, point, gradients=gradients)
     factor = _factor(information)
     rows = target.coordinates.slope(point)[:, None] * factor
@@ -88,7 +97,7 @@ def _searched(target: Target, *, gradients: bool) -> np.ndarray:
         return bound - value if np.isfinite(value) else FAR + float(place @ place)
 
     if gradients:
-        limits = [(-8.0, 8.0)] * len(origin)  # a search within what the curvature allows
+        limits = [(-REACH, REACH)] * len(origin)  # a search within what the curvature allows
         return minimize(squared, origin, jac=True, method="L-BFGS-B", bounds=limits, options={"maxiter": 100}).x
     size = len(origin)
     simplex = np.vstack([origin, 0.5 * np.eye(size)])

@@ -19,9 +19,10 @@ from dalembert.inverse.experiments.experiments import placed
 from dalembert.inverse.experiments.joined import joined
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.identify import identify
+from dalembert.inverse.likelihood.guesses import guessed
 from dalembert.inverse.likelihood.likelihood import Likelihood, likelihood_of
 from dalembert.inverse.likelihood.placing import Noise
-from dalembert.inverse.posterior.conclusions import findings, prior_conflicts
+from dalembert.inverse.posterior.conclusions import findings, inherited, prior_conflicts
 from dalembert.inverse.posterior.convergence import convergence
 from dalembert.inverse.posterior.posterior import Posterior
 from dalembert.inverse.posterior.preconditioning import Centred, centred, has_jacobian
@@ -144,7 +145,7 @@ def sample(
     problem = pose(whole, measured, known, journal, noise_known=True)
     likely = likelihood_of(problem, noise, weighted=weights is not None)
     parameters = with_priors(likely, priors)
-    vector = _start(model, data, weights, likely, start, seed, on_event, executor)
+    vector, fit = _start(model, data, weights, likely, start, seed, on_event, executor)
     differentiable = has_jacobian(likely, vector)
     chosen = chosen or (NUTS() if differentiable else AffineInvariant())
     chosen.check()
@@ -163,7 +164,10 @@ def sample(
     found = chosen.sampled(around.target.of(own), length, _announced(on_event))
     result = _result(around, around.target.of(own), found, chosen, length)
     simulations = problem.journal.simulations + found.simulations
-    return replace(result, simulations=simulations + (0 if remembered is None else remembered.simulations))
+    simulations += 0 if remembered is None else remembered.simulations
+    return replace(
+        result, simulations=simulations, findings=(*result.findings, *inherited(fit, independent=noise is None))
+    )
 
 
 def _result(around: Centred, target: Target, found: Chains, sampler: Sampler, length: Length) -> Posterior:
@@ -217,10 +221,10 @@ def _spaced(count: int, most: int) -> np.ndarray:
 
 
 def _pointwise(likely: Likelihood, vectors: np.ndarray) -> np.ndarray:
-    """Log density of each value at vectors, shape (vectors, values); equal vectors are simulated once."""
+    """Log density of each value after all others at vectors, (vectors, values); equal vectors are simulated once."""
     distinct, back = np.unique(vectors, axis=0, return_inverse=True)
     parts = np.array_split(distinct, max(1, len(distinct) // TOGETHER))
-    return np.concatenate([likely.pointwise(part) for part in parts])[back.ravel()]
+    return np.concatenate([likely.left_out(part) for part in parts])[back.ravel()]
 
 
 def with_priors(likely: Likelihood, priors: Mapping[str, AnyPrior] | None) -> Parameters:
@@ -278,22 +282,33 @@ def _start(
     seed: int,
     on_event: OnEvent | None,
     executor: Executor,
-) -> np.ndarray:
-    """Where the posterior is searched, (parameters,)."""
+) -> tuple[np.ndarray, Fit | None]:
+    """Where the posterior is searched, (parameters,), and the fit that it comes from."""
     own, noise = likely.problem.model.parameters, likely.noise_parameters
-    sizes = dict(zip(noise.names, noise.start.tolist(), strict=True))
+    estimated: Mapping[str, float] = {}
+    fit = None
     if isinstance(start, Fit):
-        estimated = {} if start.noise is None else start.noise.estimates
-        sizes |= {name: value for name, value in estimated.items() if name in sizes}
-        start.needs_one_run("sample")
-        vector = own.real_vector({name: start.parameters.mapping(start.values)[name] for name in own.names})
-    elif start is not None:
-        vector = own.real_vector(start)
-    else:
+        fit, estimated = start, {} if start.noise is None else start.noise.estimates
+        fit.needs_one_run("sample")
+        vector = own.real_vector({name: fit.parameters.mapping(fit.values)[name] for name in own.names})
+    elif start is None:
         known = weights is not None or likely.problem.data.deviations is not None
         posed = model if known else without_priors(model)
-        vector = identify(posed, data, weights=weights, seed=seed, on_event=on_event, executor=executor).values
-    return np.concatenate([own.clip(vector), noise.clip(noise.vector(sizes))])
+        fit = identify(posed, data, weights=weights, seed=seed, on_event=on_event, executor=executor)
+        vector = fit.values
+    else:
+        vector = own.real_vector(start)
+    vector = own.clip(vector)
+    sizes = _guesses(likely, vector)
+    sizes |= {name: value for name, value in estimated.items() if name in sizes}
+    return np.concatenate([vector, noise.clip(noise.vector(sizes))]), fit
+
+
+def _guesses(likely: Likelihood, vector: np.ndarray) -> dict[str, float]:
+    """Noise parameters by the residuals at a vector of the model (parameters,); the usual ones if it fails there."""
+    noise, response = likely.noise_parameters, likely.problem.responses(vector[None])[0]
+    values = guessed(likely.channels, noise, likely.problem, response) if np.all(np.isfinite(response)) else noise.start
+    return dict(zip(noise.names, values.tolist(), strict=True))
 
 
 def _announced(on_event: OnEvent | None) -> OnDraws:

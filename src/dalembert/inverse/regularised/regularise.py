@@ -1,6 +1,6 @@
 """Identify many parameters that are smooth: unknown histories and fields."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,7 +9,7 @@ from scipy.linalg import cho_factor, cho_solve, solve_triangular
 
 from dalembert.arguments import check_whole, names_of
 from dalembert.data import Measurements
-from dalembert.errors import InputError, SolveError, require_known
+from dalembert.errors import InputError, SolveError, listed, require_known
 from dalembert.findings import Finding
 from dalembert.forward import ForwardModel
 from dalembert.forward.adjoint import AUTO, GRADIENTS
@@ -25,6 +25,8 @@ L_CURVE, DISCREPANCY, GIVEN = "l-curve", "discrepancy", "given"
 _SETTLED = 0.05  # relative change of the weight at which the rounds end
 _CONVERGED = 1e-3  # relative decrease of the penalised misfit that the linearised problem promises
 _HALVINGS = 8  # of the way to the linear solution
+_NAMED = 4  # undetermined parameters in a message
+_SEEN = 1e-6  # part of an undetermined combination from which a parameter is named
 _REACH = 1e3  # standard deviations from the linear solution that the minimiser may go
 _STEPS = {"maxiter": 30, "ftol": 1e-10, "gtol": 1e-6}
 
@@ -119,6 +121,8 @@ def regularise(
             f"regularise: {len(chosen)} smooth parameters have no differences of order {order}. "
             "Name more of them, or lower the order"
         )
+    if len(set(chosen)) < len(chosen):
+        raise InputError("regularise: smooth names a parameter twice. Name each once, in the order of the series")
     penalty = differences(np.array([names.index(name) for name in chosen]), len(names), order)
     first = model.parameters.start if start is None else start
     vector = model.parameters.real_vector(first)  # pyright: ignore[reportArgumentType]
@@ -167,8 +171,25 @@ def _identified(
         response=at.response,
         simulations=problem.journal.simulations,
         provenance=provenance(problem.model, None, data=problem.data.fingerprint, weight=weight),
-        findings=_findings(before, mu, left) if not settled or left > _CONVERGED else (),
+        findings=(
+            *(_findings(before, mu, left) if not settled or left > _CONVERGED else ()),
+            *(_above_noise(many, residual, mu) if weight == DISCREPANCY else ()),
+        ),
     )
+
+
+def _above_noise(many: Smoothed, residual: np.ndarray, mu: float) -> Iterator[Finding]:
+    """Yield that the smallest weight leaves residuals (values,) above the noise, so that no weight balances them."""
+    ratio = float(np.sqrt(np.mean(residual**2)))
+    if mu <= many.standard.least * (1 + 1e-9) and ratio > 1:
+        yield Finding(
+            "misfit-above-noise",
+            "warning",
+            {"ratio": ratio},
+            f"The root mean square of the residuals is {ratio:.2g} times the standard deviations of the data, even at "
+            "the smallest weight. The values follow the noise.",
+            "Check the standard deviations and the model structure, or take weight='l-curve'.",
+        )
 
 
 def _findings(before: float, mu: float, left: float) -> tuple[Finding, ...]:
@@ -207,12 +228,25 @@ def _linearised(
     counted = problem.weights.ravel() > 0
     matrix = problem.weighted(at.jacobian, at.response).reshape(len(residual), -1)[counted] * scale
     many = Smoothed(matrix, matrix @ (vector / scale) - residual[counted], penalty)
+    if many.blind.size:
+        undetermined = np.any(np.abs(many.blind) > _SEEN, axis=1)
+        names = [repr(name) for name, one in zip(problem.model.parameters.names, undetermined, strict=True) if one]
+        more = [f"{len(names) - _NAMED} others"] if len(names) > _NAMED + 1 else names[_NAMED:]
+        raise InputError(
+            f"regularise: neither the data nor the penalty determine {listed([*names[:_NAMED], *more])}. Name them in "
+            "smooth, fix them by equal bounds, or measure what shows them"
+        )
     known = problem.data.deviations is not None
     discrepancy = many.standard.discrepancy(np.sqrt(counted.sum())) if known else np.nan
     return at, many, many.standard.corner(), float(discrepancy)
 
 
 def _weight(asked: float | str, corner: float, discrepancy: float) -> float:
+    if asked == DISCREPANCY and np.isinf(discrepancy):
+        raise InputError(
+            "regularise: parameters whose penalty is 0 explain the data within their standard deviations, so that the "
+            "discrepancy principle gives no weight. Correct the deviations of the data, or give a weight"
+        )
     return {L_CURVE: corner, DISCREPANCY: discrepancy}[asked] if isinstance(asked, str) else float(asked)
 
 

@@ -76,7 +76,7 @@ class RegularisedFit(Result):
     @property
     def success(self) -> bool:
         """Whether weight and values no longer changed in the last round."""
-        return not self.findings
+        return not {"weight-not-settled", "values-not-settled"} & {finding.code for finding in self.findings}
 
     @property
     def status(self) -> str:

@@ -8,6 +8,9 @@ from scipy.linalg import cho_factor, cho_solve, null_space
 
 from dalembert.optimize.tikhonov import Regularised
 
+BLIND = 1e-8
+"""Singular value, relative to the largest one, below which data do not determine a combination of parameters."""
+
 
 def differences(places: np.ndarray, count: int, order: int) -> np.ndarray:
     """Return the matrix D (rows, count) of differences of an order of the entries at ``places``, in their order.
@@ -59,6 +62,13 @@ class Smoothed:
     def _free(self) -> np.ndarray:
         """Basis of what the penalty does not see, (parameters, -)."""
         return null_space(self.penalty)
+
+    @cached_property
+    def blind(self) -> np.ndarray:
+        """What neither the data nor the penalty sees, (parameters, -): z that moves there gives the same sum."""
+        _, sizes, rows = np.linalg.svd(self.matrix @ self._free)
+        seen = np.count_nonzero(sizes > BLIND * np.max(sizes, initial=0.0))
+        return self._free @ rows[seen:].T
 
     @cached_property
     def standard(self) -> Regularised:

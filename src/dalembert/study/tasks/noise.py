@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from dalembert.inverse import NoiseModel
 
 Model = Literal["known", "constant", "proportional", "mixed", "autoregressive", "ornstein-uhlenbeck"]
+CORRELATED = ("autoregressive", "ornstein-uhlenbeck")
 
 
 class DeviationTable(StudyTable):
@@ -30,7 +31,7 @@ class ChannelNoiseTable(StudyTable):
     local: bool = Field(False, description="whether each of several experiments has its noise parameters")
     deviation: Number | list[Number] | DeviationTable | None = Field(
         None,
-        description="standard deviation: its value, or its two bounds; of correlated noise a table",
+        description="standard deviation: its value, or its two bounds; of correlated noise also a table",
     )
     relative: float | list[float] | None = Field(
         None, description="deviation as a part of the response: its value, or its two bounds"
@@ -56,6 +57,8 @@ class ChannelNoiseTable(StudyTable):
         if isinstance(self.deviation, DeviationTable):
             given = self.deviation.picked(*self.deviation.model_fields_set)
             plain["deviation"] = {"model": self.deviation.model, **given}
+        elif self.model in CORRELATED and self.deviation is not None:
+            plain["deviation"] = {"model": "constant", "deviation": self.deviation}
         return {name: value for name, value in plain.items() if value is not None}
 
 

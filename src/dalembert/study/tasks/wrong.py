@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from dalembert.errors import unknown
+from dalembert.study.numbers import wrong_units
 
 
 def needs_solver(file: Any, task: str) -> list[str]:
@@ -83,14 +84,17 @@ def unmatched(given: Mapping[str, Any] | None, channels: Collection[str], what: 
 
 
 def unnamed(given: Iterable[str], parameters: Collection[str], where: str) -> list[str]:
-    """Sentences about names that no parameter has, or only a fixed one.
+    """Sentences about names that no parameter has, or only a fixed one, and about units that are not theirs.
 
     >>> unnamed(["theta3"], ["theta1", "theta2"], "[sweep.over]")
     ["[sweep.over]: unknown parameter 'theta3'; did you mean 'theta2' or 'theta1'?"]
     """
-    given = tuple(given)
-    wrong = [unknown("parameter", name, parameters, where) for name in given if name not in parameters]
     tables = parameters if isinstance(parameters, Mapping) else {}
+    wrong = []
+    if isinstance(given, Mapping):
+        wrong += wrong_units(given, {name: table.symbol for name, table in tables.items()}, where)
+    given = tuple(given)
+    wrong += [unknown("parameter", name, parameters, where) for name in given if name not in parameters]
     return wrong + [
         f"{where}: parameter {name!r} is fixed by equal bounds; leave it out here, or give bounds that differ"
         for name in given

@@ -12,6 +12,7 @@ from dalembert.inverse import (
     AutoregressiveNoise,
     ConstantNoise,
     Designs,
+    Experiment,
     KnownNoise,
     ProportionalNoise,
     design,
@@ -56,6 +57,31 @@ def test_the_noise_of_a_fit_plans_its_repetition():
     designs = design(LINE, fit.values, noise=fit.noise, sensors="all")
     np.testing.assert_allclose(designs.deviations[0], fit.deviations, rtol=1e-6)
     assert designs.noise["x"] == pytest.approx(fit.noise.estimates["noise.x.deviation"])
+
+
+def test_the_noise_of_experiments_plans_another_one_if_they_share_it():
+    rng = np.random.default_rng(1)
+    exact = LINE.evaluate(np.array([[1.0, -0.5]])).values[0]
+    data = [exact + size * rng.standard_normal((len(TIMES), 2)) for size in (0.1, 0.5)]
+    experiments = [
+        Experiment(name, LINE, Measurements.of(TIMES, dict(zip("xy", values.T, strict=True))))
+        for name, values in zip("AB", data, strict=True)
+    ]
+    shared, local = (identify(experiments, starts=1, noise=ConstantNoise(local=own)) for own in (False, True))
+    designs = design(LINE, shared.values, noise=shared.noise, sensors="all")
+    np.testing.assert_allclose(designs.deviations[0], np.sqrt(2) * shared.deviations, rtol=1e-6)
+    sentence = (
+        "design: the noise of channel 'x' differs between the experiments of the fit (A.x, B.x). Give a noise model "
+        "with numbers for it"
+    )
+    with pytest.raises(InputError, match=says(sentence)):
+        design(LINE, local.values, noise=local.noise)
+
+
+def test_noise_that_needs_no_deviations_is_given_alone():
+    sentence = "design: noise and deviations were given, and noise needs no deviations; leave one of them out"
+    with pytest.raises(InputError, match=says(sentence)):
+        design(LINE, deviations=0.1, noise=ConstantNoise(deviation=0.2))
 
 
 def test_known_deviations_may_be_correlated():
@@ -149,7 +175,7 @@ def test_a_file_gives_back_the_same_bits(tmp_path):
         ),
         ({"deviations": None, "noise": {"s": "constant"}}, "design: noise: unknown channel 's'; known: p, q, r"),
         (
-            {"noise": ProportionalNoise(relative=0.1)},
+            {"deviations": None, "noise": ProportionalNoise(relative=0.1)},
             "design: the noise of channel 'p' has no standard deviation at some samples; give its deviation, or MixedNoise where the response is 0",
         ),
     ],

@@ -14,11 +14,14 @@ from dalembert.forward import Checkpoint, PythonModel, Recorded
 from dalembert.inverse import (
     NUTS,
     AffineInvariant,
+    AutoregressiveNoise,
+    ConstantNoise,
     DelayedAcceptance,
     Drawn,
     Experiment,
     Posterior,
     identify,
+    likelihood,
     sample,
 )  # fmt: skip
 from dalembert.inverse.posterior.convergence import convergence, ended
@@ -298,3 +301,55 @@ def test_a_missing_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     assert str(error.value) == snapshot(
         "the sampler NUTS needs nutpie, which is not installed; run: pip install 'dalembert[posterior]'"
     )
+
+
+def test_the_mode_is_found_where_the_noise_is_not_known() -> None:
+    """The mode of a line in the coordinates of the search: the deviation of least squares, √(RSS/n)."""
+    times = np.linspace(0.0, 2.0, 30)
+    model = PythonModel(lambda a, b: a + b * times, {"a": (-50.0, 50.0), "b": (-50.0, 50.0)}, ["x"], times)
+    values = 2 + times + 3.0 * np.random.default_rng(0).standard_normal(30)
+    rows = np.stack([np.ones(30), times], axis=1)
+    (residual,) = np.linalg.lstsq(rows, values, rcond=None)[1]
+    found = sample(model, Measurements.of(times, {"x": values}), chains=2, draws=20, warmup=20)
+    assert found.mode[2] == pytest.approx(np.sqrt(residual / 30), rel=0.02)
+    exact = np.sqrt(residual / 30 * np.linalg.inv(rows.T @ rows)[0, 0])
+    assert found.linear_deviations[0] == pytest.approx(exact, rel=0.03)
+
+
+def test_left_out_densities_are_those_of_refits_without_each_value() -> None:
+    times = np.linspace(0.0, 1.0, 12)
+    model = PythonModel(lambda a: a + 0 * times, {"a": (-9.0, 9.0)}, ["x"], times)
+    random = np.random.default_rng(0)
+    values, partial, size = random.standard_normal(12), 0.7, 0.4
+    likely = likelihood(
+        model,
+        Measurements.of(times, {"x": values}),
+        noise=AutoregressiveNoise(deviation=ConstantNoise(deviation=size), order=1, partial=[partial]),
+    )
+    covariance = size**2 * partial ** np.abs(np.subtract.outer(np.arange(12), np.arange(12)))
+    residual, expected = values - 0.3, np.empty(12)
+    for k in range(12):
+        others = np.delete(np.arange(12), k)
+        weights = np.linalg.solve(covariance[np.ix_(others, others)], covariance[others, k])
+        variance = covariance[k, k] - weights @ covariance[others, k]
+        expected[k] = -0.5 * (residual[k] - weights @ residual[others]) ** 2 / variance
+        expected[k] -= 0.5 * np.log(2 * np.pi * variance)
+    np.testing.assert_allclose(likely.left_out([[0.3]])[0], expected, rtol=1e-10)
+
+
+def test_findings_of_the_fit_concern_the_draws_too() -> None:
+    times = np.linspace(0.0, 2.0, 30)
+    twice = PythonModel(lambda a, b: a * a + b * times, {"a": (-3.0, 3.0), "b": (-5.0, 5.0)}, ["x"], times)
+    noise = 0.1 * np.random.default_rng(0).standard_normal(30)
+    short = {"chains": 2, "draws": 20, "warmup": 20}
+    found = sample(twice, Measurements.of(times, {"x": 2 + times + noise}), **short)
+    (rival,) = (item for item in found.findings if item.code == "equal-minima")
+    assert "The chains start at one minimum" in rival.advice
+    drift = np.cumsum(0.1 * np.random.default_rng(1).standard_normal(200))
+    times = np.linspace(0.0, 2.0, 200)
+    model = PythonModel(lambda a, b: a + b * times, {"a": (-9.0, 9.0), "b": (-9.0, 9.0)}, ["x"], times)
+    data = Measurements.of(times, {"x": 2 + times + drift})
+    codes = {item.code for item in sample(model, data, **short).findings}
+    assert "correlated-residuals" in codes
+    codes = {item.code for item in sample(model, data, noise=AutoregressiveNoise(order=1), **short).findings}
+    assert "correlated-residuals" not in codes

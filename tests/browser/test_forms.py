@@ -91,6 +91,8 @@ def test_the_selected_table_is_edited_and_changes_are_undone(study):
     expect(page.get_by_label("viscous, N*m*s")).to_have_value("0.4 N*m*s")
     page.get_by_role("button", name="Remove joint 'pin'").click()
     expect(page.locator(".cm-line", has_text="[[model.joint]]")).to_have_count(0)
+    expect(page.get_by_text("Undo brings it back.")).to_be_visible()
+    assert "met an error" not in page.inner_text("body")
     page.get_by_role("button", name="Undo").click()
     assert saved(page, path)["model"]["joint"][0]["viscous"] == "0.4 N*m*s"
 

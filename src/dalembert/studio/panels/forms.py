@@ -184,7 +184,8 @@ class Editor:
             self.inner = self.inner[:-1]
             if not self.inner:
                 self.draft.select(None)
-        ui.notify(f"Removed {form.title}. Undo brings it back.", type="info")
+        with self.body:  # the button that was pressed is gone
+            ui.notify(f"Removed {form.title}. Undo brings it back.", type="info")
 
 
 def _add(addition: Addition) -> str:

@@ -126,7 +126,7 @@ def _described(name: str, noise: Planned | None, extent: Extent) -> tuple[NoiseM
 
 def _fitted(noise: EstimatedNoise, name: str) -> list[str]:
     """Names of a channel in a fit: its own, or those of its experiments, ``"EXPERIMENT.channel"``."""
-    return [own for own in noise.models if own == name or own.endswith(f".{name}")]
+    return [name] if name in noise.models else [own for own in noise.models if own.partition(".")[2] == name]
 
 
 def _estimated(name: str, noise: EstimatedNoise) -> tuple[NoiseModel, Mapping[str, np.ndarray]]:
@@ -134,13 +134,12 @@ def _estimated(name: str, noise: EstimatedNoise) -> tuple[NoiseModel, Mapping[st
     fitted = _fitted(noise, name)
     if not fitted:
         raise InputError(unknown("channel", name, noise.models, "design: noise"))
-    first, *others = (noise.of_channel(own, noise.estimates) for own in fitted)
-    if any(one != first for one in others):
+    if len({noise.bases[own] for own in fitted}) > 1:
         raise InputError(
             f"design: the noise of channel {name!r} differs between the experiments of the fit ({', '.join(fitted)}). "
             "Give a noise model with numbers for it"
         )
-    return noise.models[fitted[0]], first
+    return noise.models[fitted[0]], noise.of_channel(fitted[0], noise.estimates)
 
 
 def _needs_deviations(model: NoiseModel, values: Mapping[str, np.ndarray]) -> bool:

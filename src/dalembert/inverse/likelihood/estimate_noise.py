@@ -213,7 +213,7 @@ def _curvature(likelihood: Likelihood, found: Maximum) -> np.ndarray:
             )[0][count:]
             for way in (1, -1)
         ]
-        with np.errstate(invalid="ignore", divide="ignore"):  # at a bound there is no room for a step
+        with np.errstate(invalid="ignore", divide="ignore"):  # at a bound the step is zero
             rows.append((ends[1] - ends[0]) / (2 * step[place]))
     table = np.array(rows).reshape(len(rows), len(rows))
     return (table + table.T) / 2

@@ -5,7 +5,7 @@ from dataclasses import fields
 from typing import Any
 
 from dalembert.errors import InputError, require_known, shown
-from dalembert.inverse.noise.correlated import AutoregressiveNoise, OrnsteinUhlenbeckNoise
+from dalembert.inverse.noise.correlated import AutoregressiveNoise, CorrelatedNoise, OrnsteinUhlenbeckNoise
 from dalembert.inverse.noise.deviations import ConstantNoise, KnownNoise, MixedNoise, ProportionalNoise
 from dalembert.inverse.noise.noise_model import NoiseModel
 
@@ -56,6 +56,10 @@ def from_table(table: Mapping[str, Any]) -> NoiseModel:
     InputError
         For an unknown model, and arguments that it does not have or allow.
 
+    The number, or the two bounds, of the deviation of correlated noise are those of constant noise.
+
+    >>> from_table({"model": "autoregressive", "deviation": 0.2}).deviation
+    ConstantNoise(local=False, deviation=0.2)
     >>> from_table({"model": "autoregressive", "order": 2, "deviation": {"model": "mixed"}}).order
     2
     """
@@ -68,4 +72,6 @@ def from_table(table: Mapping[str, Any]) -> NoiseModel:
     kind = MODELS[table["model"]]
     for name in values:
         require_known("argument", name, [part.name for part in fields(kind)], f"noise model {kind.name!r}")
+    if issubclass(kind, CorrelatedNoise) and isinstance(values.get("deviation"), int | float | tuple):
+        values["deviation"] = ConstantNoise(deviation=values["deviation"])
     return kind(**values)

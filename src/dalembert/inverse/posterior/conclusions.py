@@ -7,6 +7,7 @@ import numpy as np
 
 from dalembert.findings import Finding
 from dalembert.inverse.fit.fit import Fit
+from dalembert.inverse.likelihood.likelihood import Likelihood
 from dalembert.inverse.posterior.preconditioning import Centred
 from dalembert.inverse.posterior.unbounded import UnboundedCoordinates
 from dalembert.inverse.problem.prior import ALONE
@@ -31,21 +32,25 @@ ADVICE = {
 }
 """What to do about findings of a fit that concern the draws, where it differs from that of the fit."""
 
-OF_RESIDUALS = ("correlated-residuals", "systematic-residuals", "model-misfit", "misfit-above-noise")
-"""Those that a noise model may explain."""
+OF_INDEPENDENT_NOISE = {"correlated-residuals", "systematic-residuals", "model-misfit"}
+"""Findings that correlated noise may explain."""
 
 
-def inherited(fit: Fit | None, *, independent: bool) -> Iterator[Finding]:
+def inherited(fit: Fit | None, likelihood: Likelihood, *, usual: bool) -> Iterator[Finding]:
     """Yield the doubts of the fit at which the chains start that concern the draws, too.
 
     Parameters
     ----------
     fit : Fit, optional
-    independent : bool
-        Whether the noise of the draws is independent, as that of the fit.
+    likelihood : Likelihood
+    usual : bool
+        Whether the noise is that of the data, and no model of it is given.
     """
+    codes = {"equal-minima"} | ({"misfit-above-noise"} if usual else set())
+    if all(channel.whitening is None for channel in likelihood.channels):
+        codes |= OF_INDEPENDENT_NOISE
     for finding in fit.doubts if fit is not None else ():
-        if finding.code == "equal-minima" or (independent and finding.code in OF_RESIDUALS):
+        if finding.code in codes:
             known = replace(finding, advice=ADVICE.get(finding.code, finding.advice))
             yield replace(known, message=_correlated(finding)) if finding.code == "correlated-residuals" else known
 

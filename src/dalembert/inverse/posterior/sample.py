@@ -165,9 +165,8 @@ def sample(
     result = _result(around, around.target.of(own), found, chosen, length)
     simulations = problem.journal.simulations + found.simulations
     simulations += 0 if remembered is None else remembered.simulations
-    return replace(
-        result, simulations=simulations, findings=(*result.findings, *inherited(fit, independent=noise is None))
-    )
+    doubts = inherited(fit, likely, usual=noise is None)
+    return replace(result, simulations=simulations, findings=(*result.findings, *doubts))
 
 
 def _result(around: Centred, target: Target, found: Chains, sampler: Sampler, length: Length) -> Posterior:

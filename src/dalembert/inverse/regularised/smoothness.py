@@ -64,17 +64,21 @@ class Smoothed:
         return null_space(self.penalty)
 
     @cached_property
+    def _images(self) -> tuple[np.ndarray, np.ndarray]:
+        """Q and R of A times that basis."""
+        return np.linalg.qr(self.matrix @ self._free)
+
+    @cached_property
     def blind(self) -> np.ndarray:
         """What neither the data nor the penalty sees, (parameters, -): z that moves there gives the same sum."""
-        _, sizes, rows = np.linalg.svd(self.matrix @ self._free)
+        _, sizes, rows = np.linalg.svd(self._images[1])  # as large as the null space, not as the data
         seen = np.count_nonzero(sizes > BLIND * np.max(sizes, initial=0.0))
         return self._free @ rows[seen:].T
 
     @cached_property
     def standard(self) -> Regularised:
         """The problem in standard form."""
-        a = self.matrix
-        seen, _ = np.linalg.qr(a @ self._free)
+        a, (seen, _) = self.matrix, self._images
         images = a @ np.linalg.pinv(self.penalty)
         project = images - seen @ (seen.T @ images)
         return Regularised.of(project, self.right - seen @ (seen.T @ self.right))

@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from dalembert.inverse import NoiseModel
 
 Model = Literal["known", "constant", "proportional", "mixed", "autoregressive", "ornstein-uhlenbeck"]
-CORRELATED = ("autoregressive", "ornstein-uhlenbeck")
 
 
 class DeviationTable(StudyTable):
@@ -57,8 +56,6 @@ class ChannelNoiseTable(StudyTable):
         if isinstance(self.deviation, DeviationTable):
             given = self.deviation.picked(*self.deviation.model_fields_set)
             plain["deviation"] = {"model": self.deviation.model, **given}
-        elif self.model in CORRELATED and self.deviation is not None:
-            plain["deviation"] = {"model": "constant", "deviation": self.deviation}
         return {name: value for name, value in plain.items() if value is not None}
 
 

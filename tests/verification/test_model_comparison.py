@@ -126,7 +126,7 @@ def test_values_are_predicted_from_correlated_neighbours_as_by_exact_refits(size
 @pytest.mark.parametrize(
     ("noise", "tolerance"), [(ConstantNoise(), 0.05), (AutoregressiveNoise(order=1), 0.2)], ids=["constant", "AR(1)"]
 )
-def test_estimated_noise_is_left_out_to_second_order(noise, tolerance, record_evidence, request):
+def test_estimated_noise_without_a_value_is_that_of_a_refit(noise, tolerance, record_evidence, request):
     """The sum of log densities beside refits of model and noise without each value; a difference of 4 counts."""
     times = np.linspace(0, 3, 90)
     columns = np.stack([np.ones(90), times], axis=1)

@@ -63,7 +63,8 @@ def compare_models(
     take values for independent. elpd is the sum of the log predictive densities of groups that were left out. The
     standard deviation of a difference over G groups is √G times that of the groups' differences. A difference below 4,
     or below two of its standard deviations, means nothing. Fits with an estimated noise model are compared with it:
-    values that are left out are predicted from their correlated neighbours too.
+    values that are left out are predicted from their correlated neighbours too, and all densities are normal, with the
+    noise that the other values determine.
 
     Source: H. Akaike, A new look at the statistical model identification, IEEE Transactions on Automatic Control 19
     (1974); A. Vehtari, A. Gelman, J. Gabry, Practical Bayesian model evaluation using leave-one-out cross-validation
@@ -96,8 +97,11 @@ def compare_models(
             )
     fits = fits_of(named)
     _check_same_data(fits)
+    estimated = any(fit.noise is not None for fit in fits.values())
+    linear = {name: linearised(name, fit, normal=estimated) for name, fit in fits.items()}
     if any(isinstance(one, CrossValidation) for one in named.values()):
         numbers, left_out = _groups_of(named)
+        _check_same_densities(fits)
         densities = {name: one.log_densities for name, one in named.items()}
         how = "cross-validation by fits without each group"
     else:
@@ -105,13 +109,10 @@ def compare_models(
         left_out = leave_out or ("blocks" if correlation_time(slowest) > 0 else "values")
         numbers = groups(slowest, left_out, blocks)
         places = counted_groups(numbers)
-        densities = {
-            name: np.array([linearised(name, fit).without(rows) for rows in places]) for name, fit in fits.items()
-        }
+        densities = {name: np.array([at.without(rows) for rows in places]) for name, at in linear.items()}
         how = "leave-out predictions of the linearised models"
     found = {}
-    for name, fit in fits.items():
-        at = linearised(name, fit)
+    for name, at in linear.items():
         if not np.all(np.isfinite(densities[name])):
             raise InputError(
                 f"compare_models: {name!r} cannot predict values that are left out, as they alone determine a "
@@ -134,6 +135,22 @@ def _groups_of(named: Mapping[str, CrossValidation]) -> tuple[np.ndarray, str]:
                 "blocks for all models"
             )
     return first.groups, first.left_out
+
+
+def _check_same_densities(fits: Mapping[str, Fit]) -> None:
+    """Refuse cross-validations with Student's t and with normal densities side by side.
+
+    Raises
+    ------
+    InputError
+    """
+    plain = [name for name, fit in fits.items() if fit.noise is None and not fit.noise_is_known]
+    others = [name for name, fit in fits.items() if fit.noise is not None]
+    if plain and others:
+        raise InputError(
+            f"compare_models: {plain[0]!r} has no noise model, but {others[0]!r} has one, so that their predictive "
+            f"densities differ; identify {plain[0]!r} with noise='constant', and cross-validate it again"
+        )
 
 
 def _check_same_data(fits: Mapping[str, Fit]) -> None:

@@ -1,13 +1,15 @@
 """The linearisation of a fit, from which values that are left out are predicted."""
 
+from dataclasses import replace
+
 from dalembert.errors import InputError
 from dalembert.inverse.comparison.conditional import WithNoise
 from dalembert.inverse.comparison.predictive import Linearised
 from dalembert.inverse.fit.fit import Fit
 
 
-def linearised(name: str, fit: Fit) -> Linearised | WithNoise:
-    """Return the linearisation of a fit.
+def linearised(name: str, fit: Fit, *, normal: bool = False) -> Linearised | WithNoise:
+    """Return the linearisation of a fit; with ``normal`` densities also where the noise follows from the residuals.
 
     Raises
     ------
@@ -28,4 +30,4 @@ def linearised(name: str, fit: Fit) -> Linearised | WithNoise:
         raise InputError(
             f"{name!r} has no Jacobian: its model gives no derivatives, or a former version stored it; identify again"
         )
-    return Linearised.of(fit) if fit.noise is None else WithNoise(fit, fit.weights)
+    return replace(Linearised.of(fit), normal=normal) if fit.noise is None else WithNoise(fit, fit.weights)

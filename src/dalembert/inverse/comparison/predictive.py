@@ -32,6 +32,9 @@ class Linearised:
         Sum of squares that the variance of a weighted residual follows from.
     known : bool
         Whether that variance is 1.
+    normal : bool
+        Whether densities are normal, with the variance that the other values have, as those of fits with a noise
+        model; otherwise Student's t where the variance is not known.
     """
 
     residual: np.ndarray
@@ -40,6 +43,7 @@ class Linearised:
     freedom: float
     squares: float
     known: bool
+    normal: bool = False
 
     @classmethod
     def of(cls, fit: Fit) -> "Linearised":
@@ -100,7 +104,8 @@ class Linearised:
         if self.known:
             return 1.0, None
         freedom = self.freedom - count
-        return (max(self.squares - square, 0.0) / freedom, freedom) if freedom > 0 else (np.nan, freedom)
+        variance = max(self.squares - square, 0.0) / freedom if freedom > 0 else np.nan
+        return variance, None if self.normal else freedom
 
 
 def log_density(square: float, count: int, variance: float, freedom: float | None) -> float:

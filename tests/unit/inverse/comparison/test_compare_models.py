@@ -101,7 +101,7 @@ def test_a_noise_model_is_judged_with_its_parameters():
     assert found.findings[0].code == "equal-models"
     assert "Prefer the simplest, 'line'" in str(found.findings[0])
     elpd = dict(zip(found.models, found.elpd, strict=True))
-    assert elpd["constant"] == pytest.approx(elpd["plain"], abs=0.1)  # Student's t and the normal density
+    assert elpd["constant"] == pytest.approx(elpd["plain"], abs=0.05)
     assert elpd["line"] > elpd["plain"] + 20
     assert dict(zip(found.models, found.parameters, strict=True)) == {
         "plain": 3, "constant": 3, "line": 4, "parabola": 5
@@ -138,6 +138,41 @@ def test_noise_of_experiments_that_are_left_out():
     assert str(refused.value) == (
         "cross_validate: only experiment 'one' has 'noise.one.x.deviation', so that its noise cannot be predicted; "
         "share the noise of the experiments, or leave out blocks"
+    )
+
+
+@pytest.mark.parametrize("noise", [da.ConstantNoise(), da.MixedNoise(), da.AutoregressiveNoise(order=1)])
+def test_an_experiment_with_other_noise_is_predicted_as_by_refits(noise):
+    """Without it, the noise is many standard deviations away from that of all experiments."""
+    experiments = [
+        Experiment(name, LINE, recorded(0.0, size * np.random.default_rng(seed).standard_normal(81)))
+        for seed, (name, size) in enumerate({"one": 1.0, "two": 1.1, "three": 0.9, "loud": 5.0}.items())
+    ]
+    fit = identify(experiments, starts=1, horizon=None, noise=noise)
+    found = compare_models({"a": fit, "b": fit}, leave_out="experiments")
+    checked = cross_validate(experiments, fit=fit, leave_out="experiments")
+    assert checked.log_densities[3] < -500
+    # the size of mixed noise follows the response, which stays that of all experiments
+    near = 2e-2 if isinstance(noise, da.MixedNoise) else 5e-3
+    assert found.densities[0] == pytest.approx(checked.log_densities, rel=near, abs=0.2)
+
+
+def test_fits_with_and_without_a_noise_model_have_the_same_density():
+    experiments = [
+        Experiment(str(seed), LINE, recorded(0.0, np.random.default_rng(seed).standard_normal(81))) for seed in range(3)
+    ]
+    fits = {
+        name: identify(experiments, starts=1, horizon=None, noise=noise)
+        for name, noise in {"plain": None, "constant": "constant"}.items()
+    }
+    found = compare_models(fits, leave_out="experiments")
+    assert found.difference[1] == pytest.approx(0.0, abs=0.1)  # by Student's t it is 12
+    checked = {name: cross_validate(experiments, fit=fit, leave_out="experiments") for name, fit in fits.items()}
+    with pytest.raises(InputError) as refused:
+        compare_models(checked)
+    assert str(refused.value) == (
+        "compare_models: 'plain' has no noise model, but 'constant' has one, so that their predictive densities differ; "
+        "identify 'plain' with noise='constant', and cross-validate it again"
     )
 
 

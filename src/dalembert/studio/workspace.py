@@ -3,15 +3,15 @@
 import re
 import unicodedata
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from shutil import rmtree
 
-from dalembert.errors import InputError, no_text, require_known
+from dalembert.errors import InputError, no_text, require_known, unknown
 from dalembert.files import free_path, replacing, write_text
-from dalembert.studio.studies.documents import document_of
+from dalembert.studio.studies.documents import table_names
 from dalembert.study import schema_file
-from dalembert.study.basics import LARGEST, task_names
+from dalembert.study.basics import LARGEST, SHARED, task_names
 from dalembert.study.folder import RunFolder, find_runs
 
 NAME = re.compile(r"""(?![ .-])[^/\\:*?"<>|]{1,100}(?<![ .])""")
@@ -20,6 +20,8 @@ LONGEST = 200
 """Bytes of a name; files have at most 255, with what is added to them."""
 MOST_BYTES = 200_000_000
 """Of an uploaded file."""
+OF_A_MODEL = frozenset(("model", "constants"))
+"""Tables of a file that holds the model of several studies."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +34,8 @@ class Workspace:
     """
 
     root: Path
+    _known: set[Path] = field(default_factory=set, init=False, repr=False, compare=False)
+    """Files that were studies, or were opened as such, since the studio began; they stay listed with their errors."""
 
     @property
     def runs_folder(self) -> Path:
@@ -59,24 +63,33 @@ class Workspace:
 
     def studies(self) -> list[str]:
         """All study files as ``"folder/file"``, without ``.toml``, by name."""
+        files = self._files()
+        self._known.update(path for path in files.values() if _is_study(path))
+        return [name for name, path in files.items() if path in self._known]
+
+    def _files(self) -> dict[str, Path]:
+        """All TOML files in folders of studies, by their names without ``.toml``; hidden ones are left out."""
         found = sorted((self.root / "studies").glob("*/*.toml"))
         shown = [path for path in found if not (path.name.startswith(".") or path.parent.name.startswith("."))]
-        return [f"{path.parent.name}/{path.stem}" for path in shown if _is_study(path)]
+        return {f"{path.parent.name}/{path.stem}": path for path in shown}
 
     def free(self, name: str) -> str:
         """The name itself, or with the next number with which no study is there."""
         return free_path(self.root / "studies" / name).name
 
     def study(self, name: str) -> Path:
-        """The file of a study.
+        """The file of a study. A file that is opened in this way counts as a study, whatever it holds.
 
         Raises
         ------
         InputError
             If there is none.
         """
-        require_known("study", name, self.studies())
-        return self.root / "studies" / f"{name}.toml"
+        path = self._files().get(name)
+        if path is None:
+            raise InputError(unknown("study", name, self.studies()))
+        self._known.add(path)
+        return path
 
     def create(self, name: str, content: str, beside: Callable[[Path], object] = lambda folder: None) -> str:
         """Make a new study with its text and the schema beside it; return its name as :meth:`studies` gives it.
@@ -174,8 +187,13 @@ def as_text(content: bytes, name: str) -> str:
 
 
 def _is_study(path: Path) -> bool:
-    """Whether a TOML file asks for something, or is not yet whole; tables of expected numbers are neither."""
-    document = document_of(path)
-    if document is None:
-        return path.name == "study.toml"
-    return path.name == "study.toml" or (not document.keys().isdisjoint(task_names()) and "model" in document)
+    """Whether a TOML file is a study, possibly with mistakes; models and tables of expected numbers are none."""
+    if path.name == "study.toml":
+        return True
+    names = table_names(path)
+    if not names:  # its text was deleted, or cannot be read
+        return True
+    if names <= OF_A_MODEL:
+        return False
+    is_task_of_study = not names.isdisjoint(task_names()) and not names.isdisjoint(SHARED)
+    return "model" in names or "study" in names or is_task_of_study

@@ -96,6 +96,61 @@ def test_a_study_and_what_lies_beside_it(workspace, tmp_path):
         workspace.run("nothing")
 
 
+STUDY = '[study]\ntitle = "A"\n[model]\nfile = "model.toml"\n[simulate]\n'
+MODEL = '[constants]\ndrag = 1\n[model]\n[[model.body]]\nkind = "PointMass"\n'
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        STUDY,
+        STUDY.replace('"A"', '"A'),
+        STUDY.replace("[simulate]", "[simulate"),
+        STUDY.replace("[simulate]", ""),
+        "[model]\n[simulat]\n",
+        "[parameters]\n[identify]\nstarts = \n",
+        "",
+        "=",
+    ],
+)
+def test_a_study_with_mistakes_in_a_file_of_any_name_stays_listed(tmp_path, text):
+    file = tmp_path / "studies" / "mine" / "motion.toml"
+    file.parent.mkdir(parents=True)
+    file.write_text(text)
+    assert Workspace(tmp_path).studies() == ["mine/motion"]
+    assert Workspace(tmp_path).study("mine/motion") == file
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        MODEL,
+        MODEL.replace("drag = 1", "drag = "),
+        '[project]\nname = "mine"\n[tool.ruff]\n',
+        '[project]\nname = "mine\n',
+        '["identify.toml"]\ndrag = 0.2\n',
+        "[identify]\ndrag = 0.2\n[simulate]\n",
+    ],
+)
+def test_other_toml_files_are_no_studies_until_they_are_opened_as_one(workspace, tmp_path, text):
+    study = workspace.create("mine", STUDY)
+    (tmp_path / "studies" / "mine" / "other.toml").write_text(text)
+    assert workspace.studies() == [study]
+    assert workspace.study("mine/other").name == "other.toml"
+    assert workspace.studies() == ["mine/other", study]
+
+
+def test_a_file_that_was_a_study_stays_listed(workspace, tmp_path):
+    study = workspace.create("mine", STUDY)
+    file = tmp_path / "studies" / "mine" / "motion.toml"
+    file.write_text(STUDY)
+    assert workspace.studies() == ["mine/motion", study]
+    file.write_text(MODEL)
+    assert workspace.studies() == ["mine/motion", study]
+    file.unlink()
+    assert workspace.studies() == [study]
+
+
 @pytest.mark.parametrize("name", ["model.py", "a.PY", "study.toml", "lib.so"])
 def test_programs_and_studies_are_not_taken_for_data(workspace, name):
     study = workspace.create("mine", "")

@@ -5,6 +5,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from dalembert.studio.editor.cursor import tolerant
+
 KEPT = 4096
 """Files whose contents are kept."""
 
@@ -16,6 +18,18 @@ def document_of(path: Path) -> dict[str, Any] | None:
     except OSError:
         return None
     return _read(path, about.st_mtime_ns, about.st_size)
+
+
+def table_names(path: Path) -> frozenset[str]:
+    """Return the names at the top of a TOML file, also of one with mistakes; none if no line of it can be read."""
+    document = document_of(path)
+    if document is not None:
+        return frozenset(document)
+    try:
+        about = path.stat()
+    except OSError:
+        return frozenset()
+    return _names(path, about.st_mtime_ns, about.st_size)
 
 
 def name_in(path: Path) -> str:
@@ -31,3 +45,12 @@ def _read(path: Path, changed: int, size: int) -> dict[str, Any] | None:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except (ValueError, OSError, RecursionError):
         return None
+
+
+@lru_cache(KEPT)
+def _names(path: Path, changed: int, size: int) -> frozenset[str]:
+    """The names in a file with mistakes as it was at its last change."""
+    try:
+        return frozenset(tolerant(path.read_text(encoding="utf-8")))
+    except (ValueError, OSError):
+        return frozenset()

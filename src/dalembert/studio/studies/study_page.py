@@ -29,10 +29,12 @@ PANELS = (
 
 def study_page(workspace: Workspace, jobs: Jobs, name: str) -> None:
     """Edit, check and run a study."""
+    path = None
     try:
-        draft = Draft(workspace.study(name))
+        path = workspace.study(name)
+        draft = Draft(path)
     except InputError as error:
-        with frame("No such study"):
+        with frame("No such study" if path is None else name.removesuffix("/study")):
             ui.label(str(error)).props("role=alert")
         return
     room = Room(workspace, jobs, Worker())

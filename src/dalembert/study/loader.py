@@ -17,7 +17,6 @@ from dalembert.study.sentences import mistakes
 from dalembert.study.spaces import elsewhere, is_in_space
 from dalembert.study.study import Study
 from dalembert.study.study_file import StudyFile
-from dalembert.study.table import placed
 from dalembert.study.tasks import TASKS
 
 
@@ -44,6 +43,7 @@ def load(
     folder: Path | None = None,
     files: Mapping[str, Path] | None = None,
     content: bytes | None = None,
+    used: dict[str, Path] | None = None,
 ) -> Study:
     """Read and check a study file.
 
@@ -58,6 +58,8 @@ def load(
         Files that it names and that lie elsewhere.
     content : bytes, optional
         Of the file, in place of what is on the disk.
+    used : dict of str to Path, optional
+        Takes the files that the study names, also those of a study with mistakes.
 
     Raises
     ------
@@ -65,7 +67,7 @@ def load(
         With one line a mistake.
     """
     path = Path(path)
-    context = Context(folder or path.parent, files=dict(files or {}))
+    context = Context(folder or path.parent, files=dict(files or {}), used={} if used is None else used)
     content, document = _read(path) if content is None else _document(path, content)
     _refuse_parts(document, path)
     shared = _with_model_file(document, context, path)
@@ -146,20 +148,23 @@ def _with_model_file(document: dict[str, Any], context: Context, path: Path) -> 
     if given is None:
         return ""
     if not isinstance(given, str) or len(document["model"]) > 1:
-        raise InputError(
-            f"{path.name}: [model], file: {given!r} was given; expected the name of a TOML file, "
-            "and no other key beside it in [model]"
+        raise _wrong_file(
+            path,
+            f"{given!r} was given; expected the name of a TOML file, and no other key beside it in [model]",
         )
-    with placed(f"{path.name}: [model], file"):
+    try:
         _, shared = _read(context.file(given))
+    except InputError as error:
+        raise _wrong_file(path, str(error)) from None
     for table in shared:
         if table not in ("model", "constants"):
-            raise InputError(
+            raise _wrong_file(
+                path,
                 f"{given}: [{table}] is in a model file; expected [model] and [constants] there, "
-                "and the rest in the study file"
+                "and the rest in the study file",
             )
     if "file" in _table(shared, "model") or "model" not in shared:
-        raise InputError(f"{given}: expected a [model] table with the model itself")
+        raise _wrong_file(path, f"{given}: expected a [model] table with the model itself")
     document["model"] = shared["model"]
     own = _table(document, "constants")  # first, so that the model's constants may use the study's
     taken = {*own, *_table(document, "parameters")}
@@ -167,6 +172,12 @@ def _with_model_file(document: dict[str, Any], context: Context, path: Path) -> 
     if constants:
         document["constants"] = constants
     return given
+
+
+def _wrong_file(path: Path, sentence: str) -> StudyError:
+    """The error of a model file, which belongs to the key that names it."""
+    sentence = f"[model], file: {sentence}"
+    return StudyError(f"{path.name}: {sentence}", [(("model", "file"), sentence)])
 
 
 def _table(document: Mapping[str, Any], name: str) -> dict[str, Any]:

@@ -7,8 +7,9 @@ from typing import Any
 
 from dalembert.studio.editor.cursor import tolerant
 from dalembert.studio.editor.editing import with_table, with_value, without
-from dalembert.studio.editor.fields import KIND, child, fields_at, kinds_at, tables_of
+from dalembert.studio.editor.fields import KIND, fields_at, kinds_at, tables_of
 from dalembert.studio.editor.lines import Place
+from dalembert.studio.editor.model_kind import model_elsewhere, model_kind
 from dalembert.study.basics import task_names
 
 _MECHANISM = {"body": "Body", "joint": "Joint", "load": "Force"}
@@ -32,12 +33,15 @@ class Addition:
         Kinds, or tables, with their meanings; empty where a name is asked for instead.
     names : str
         What the name is one of: "channel" where it must be that of a channel; empty for a new name.
+    elsewhere : str
+        Where it must be added instead, as a sentence; empty if it can be added here.
     """
 
     label: str
     place: Place
     kinds: Mapping[str, str] = field(default_factory=dict)
     names: str = ""
+    elsewhere: str = ""
 
 
 def additions(text: str) -> tuple[Addition, ...]:
@@ -51,10 +55,12 @@ def additions(text: str) -> tuple[Addition, ...]:
     'A pin: both points coincide.'
     """
     document = tolerant(text)
-    model = child(document, ("model",)) or {}
-    is_structure = any(key in model for key in (*_STRUCTURE, "structure"))
-    parts = _STRUCTURE if is_structure else _MECHANISM
-    found = [Addition(label, ("model", key, 0), kinds_at(document, ("model", key, 0))) for key, label in parts.items()]
+    parts = _STRUCTURE if model_kind(document) == "structure" else _MECHANISM
+    elsewhere = model_elsewhere(document)
+    found = [
+        Addition(label, ("model", key, 0), kinds_at(document, ("model", key, 0)), elsewhere=elsewhere)
+        for key, label in parts.items()
+    ]
     found += [Addition(label, (key,), names="channel" if key == "sensors" else "") for key, label in _NAMED.items()]
     tables = {place[0]: meaning for place, meaning in tables_of(document).items() if len(place) == 1}
     rest = {key: meaning for key, meaning in tables.items() if key not in (*task_names(), *_NAMED, *document)}

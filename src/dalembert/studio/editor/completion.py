@@ -8,6 +8,7 @@ from typing import Any
 from dalembert.studio.editor.cursor import Cursor, cursor_at, tolerant
 from dalembert.studio.editor.fields import KIND, child, field_at, fields_at, keys_named, kinds_at, tables_of
 from dalembert.studio.editor.lines import Place
+from dalembert.studio.editor.model_kind import fits_model
 from dalembert.studio.editor.names import Names, names_in
 
 _OF_MODELS = ("model", "constants", "inputs")
@@ -100,6 +101,8 @@ an angle such as '45 deg' or 0.785398 in rad.")
 
 def _headers(document: Any, cursor: Cursor, names: Names) -> Iterator[Option]:
     for place, meaning in tables_of(document).items():
+        if place[:1] == ("model",) and not all(fits_model(document, key) for key in place[1:2]):
+            continue
         if isinstance(place[-1], int):
             yield Option(f"[[{_name(place)}]]", f"[[{_name(place)}]]", info=meaning)
         elif child(document, place) is None:
@@ -110,7 +113,7 @@ def _keys(document: Any, cursor: Cursor, names: Names) -> Iterator[Option]:
     given = child(document, cursor.place)
     taken = set(given) - {cursor.typed} if isinstance(given, Mapping) else set()
     for field in fields_at(document, cursor.place):
-        if field.key not in taken:
+        if field.key not in taken and (cursor.place != ("model",) or fits_model(document, field.key)):
             yield Option(field.key, f"{field.key} = ", field.facts, field.meaning)
     for name in names.get(keys_named(cursor.place), ()):
         if name not in taken:

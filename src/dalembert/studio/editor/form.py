@@ -8,6 +8,7 @@ from dalembert.studio.editor.cursor import tolerant
 from dalembert.studio.editor.editing import text_of, value_of, with_value, without
 from dalembert.studio.editor.fields import KIND, Field, child, field_at, fields_at, kinds_at
 from dalembert.studio.editor.lines import Place, is_within, table_of
+from dalembert.studio.editor.model_kind import fits_model
 from dalembert.studio.editor.reading import Mistake
 
 
@@ -93,6 +94,8 @@ def form_at(text: str, selection: Place | None, mistakes: Iterable[Mistake] = ()
     values = values if isinstance(values, Mapping) else {}
     own = (field_at(document, (*place, key)) for key in values)
     fields = fields_at(document, place) or tuple(filter(None, own))
+    if place == ("model",):
+        fields = tuple(field for field in fields if field.key in values or fits_model(document, field.key))
     if not place or not fields:
         return None
     keys = {field.key for field in fields}

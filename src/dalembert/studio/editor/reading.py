@@ -2,12 +2,15 @@
 
 import re
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from dalembert.errors import DalembertError
+from dalembert.studio.editor.cursor import tolerant
 from dalembert.studio.editor.lines import Place, line_of
+from dalembert.studio.editor.model_kind import model_file
 from dalembert.studio.editor.outline import Outline
 from dalembert.studio.worker import Kept
 
@@ -16,6 +19,8 @@ if TYPE_CHECKING:
 
 _PLACE = re.compile(r"\[{1,2}([\w.]+)\]{1,2}(?: '([^']+)')?(?:, (\w+))?")
 """Beginning of a sentence about a table and a key."""
+_CONSTANT = re.compile(r"\[constants\](?:,|:) ([\w-]+): ")
+"""Beginning of a sentence about a constant."""
 
 
 @dataclass(frozen=True)
@@ -72,9 +77,10 @@ def reading(kept: Kept, path: Path, text: str) -> Reading:
         does = f"It {plan(study)}."
         return Reading(text, Outline.of(study, text), does)
     except StudyError as error:
-        return Reading(text, mistakes=tuple(mistake(text, *found) for found in error.mistakes))
+        found = ((place, sentence.replace(f"{path.parent}/", "")) for place, sentence in error.mistakes)
+        return Reading(text, mistakes=tuple(mistake(text, *one) for one in found))
     except DalembertError as error:
-        sentence = str(error).replace(f"{path}: ", "").replace(f"{path}", path.name)
+        sentence = str(error).replace(f"{path}: ", "").replace(f"{path.parent}/", "")
         return Reading(text, mistakes=(mistake(text, (), sentence),))
 
 
@@ -108,20 +114,35 @@ def _stamps(study: "Study") -> dict[Path, int]:
 def mistake(text: str, place: Place, sentence: str) -> Mistake:
     """Return a mistake at the place that its sentence begins with, such as ``[[model.joint]] 'pin', b``, or at a place.
 
+    A mistake of a model in a file of its own is at the key that names the file.
+
     Examples
     --------
     >>> mistake('[model]\\n[[model.joint]]\\nname = "pin"\\nb = 1\\n', ("model",), "[[model.joint]] 'pin', b: wrong")
     Mistake(place=('model', 'joint', 0, 'b'), line=4, sentence="[[model.joint]] 'pin', b: wrong")
     """
     place = max(place, _named(text, sentence), key=len)
+    document = tolerant(text)
+    if (file := model_file(document)) and _is_of_file(document, place, sentence):
+        place, sentence = ("model", "file"), f"{file}: {sentence}"
     return Mistake(place, line_of(text, place) if place else _line_in(sentence, text), sentence)
+
+
+def _is_of_file(document: Mapping[str, Any], place: Place, sentence: str) -> bool:
+    """Whether a mistake is one of the tables that a model file holds, and not of the key that names it."""
+    found = _PLACE.match(sentence)
+    named = place or (tuple(found[1].split(".")) if found else ())
+    if constant := _CONSTANT.match(sentence):
+        own = document.get("constants")
+        return not (isinstance(own, Mapping) and constant[1] in own)
+    return named[:1] == ("model",) and not sentence.startswith("[model], file: ")
 
 
 def _line_in(sentence: str, text: str) -> int:
     """The line that a sentence of the TOML reader names."""
     if "(at end of document)" in sentence:
         return max(1, len(text.splitlines()))
-    found = re.search(r"\bline (\d+)", sentence)
+    found = re.search(r"\(at line (\d+), column \d+\)", sentence)
     return int(found[1]) if found else 1
 
 

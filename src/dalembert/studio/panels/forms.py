@@ -44,12 +44,17 @@ class Additions:
         with self.bar:
             for addition in found:
                 self._button(addition)
+            for sentence in dict.fromkeys(addition.elsewhere for addition in found if addition.elsewhere):
+                ui.label(sentence).classes("text-sm break-words")
 
     def _button(self, addition: Addition) -> None:
         made = ui.button(addition.label, icon="add", color=None).props(
             "outline dense no-caps size=sm padding='4px 8px'"
         )
         made.props["aria-label"] = _add(addition)
+        if addition.elsewhere:
+            made.disable()
+            return
         if not addition.kinds:
             made.on_click(partial(self._ask, addition))
             return

@@ -43,6 +43,30 @@ def test_keys_kinds_and_tables(text, typed, first):
     assert found[1][: len(first)] == first
 
 
+@pytest.mark.parametrize(
+    ("model", "offered"),
+    [
+        ('[[model.body]]\nname = "a"', {"body", "joint", "load"}),
+        ("[model]\ngravity = [0, 0]", {"body", "joint", "load"}),
+        ("[model]\nspace = true", {"body", "joint", "load", "robot"}),
+        ('[[model.mass]]\nname = "a"', {"mass", "spring", "force", "contact", "structure"}),
+        ('[model.structure]\nfixed = ["a"]', {"mass", "spring", "force", "contact"}),
+        ('[model]\nfile = "model.toml"', set()),
+        ('[model]\nfunction = "model.py:arm"', set()),
+        ("", {"body", "joint", "load", "mass", "spring", "force", "contact", "structure"}),
+    ],
+)
+def test_tables_of_the_kind_of_the_model_are_offered(model, offered):
+    labels = at(f"{model}\n[[model.|")[1] + at(f"{model}\n[model.|")[1]
+    assert {label.strip("[]").removeprefix("model.") for label in labels} == offered
+
+
+def test_keys_of_the_kind_of_the_model_are_offered():
+    labels = at('[model]\nstart = "placed"\n|\n[[model.body]]\n')[1]
+    assert "gravity" in labels
+    assert not {"file", "function", "contact"} & set(labels)
+
+
 def test_keys_that_are_there_are_not_offered():
     assert "name" not in at('[[model.body]]\nkind = "RigidBar"\nname = "a"\n|\n')[1]
 

@@ -130,3 +130,24 @@ def test_another_task_replaces_the_first():
     text, place = added(TEXT, addition(TEXT, "Task"), "identify")
     assert place == ("identify",)
     assert "simulate" not in tomllib.loads(text)
+
+
+@pytest.mark.parametrize(
+    ("model", "where"),
+    [('file = "pendulum.toml"', "are in pendulum.toml"), ('function = "model.py:arm"', "The function model.py:arm")],
+)
+def test_parts_of_a_model_are_not_added_beside_the_file_or_function_that_has_them(model, where):
+    text = f"[model]\n{model}\n[simulate]\n"
+    for label in ("Body", "Joint", "Force"):
+        assert where in addition(text, label).elsewhere
+    assert addition(text, "Parameter").elsewhere == ""
+    form = form_at(text, ("model",))
+    assert form is not None
+    assert set(form.keys) in ({"file"}, {"function", "forward", "arguments"})
+
+
+def test_the_form_of_a_model_has_the_keys_of_its_kind():
+    form = form_at("[model]\n[[model.body]]\n", ("model",))
+    assert form is not None
+    assert "gravity" in form.keys
+    assert not {"contact", "structure", "file"} & set(form.keys)

@@ -1,7 +1,9 @@
 """What a text is as a study, and the places in it."""
 
+import pytest
+
 from dalembert.studio.editor.lines import line_of, lines_of, place_at, table_of
-from dalembert.studio.editor.reading import read
+from dalembert.studio.editor.reading import mistake, read
 from dalembert.study.template import templates
 
 TEXT = templates()["motion"].text
@@ -42,6 +44,32 @@ def test_what_is_no_toml_stands_at_its_line(tmp_path):
         ((line, sentence),) = mistakes_of(tmp_path, TEXT.replace('length = "800 mm"', wrong))
         assert line == wrong
         assert sentence.startswith("no valid TOML: ")
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "sentence"),
+    [
+        ('mass = "1.5 kg"', 'mass = "1.5 m"', "[[model.body]] 'rod', mass: "),
+        ('b = "rod.start"', 'b = "rod.strat"', "[[model.joint]] 'pin', b: "),
+        ('drag = "0.2 N*m*s"', 'drag = "0.2 N*m*"', "[constants]: drag: "),
+        ("[model]", "[model", ""),
+        ("[model]", "[data]\n[model]", ""),
+        ("[model]", "[modell]", ""),
+    ],
+)
+def test_a_mistake_of_a_model_file_stands_where_the_file_is_named(tmp_path, right, wrong, sentence):
+    title, _, rest = TEXT.partition("[constants]")
+    model, _, task = f"[constants]{rest}".partition("[simulate]")
+    (tmp_path / "pendulum.toml").write_text(model.partition("[solver]")[0].replace(right, wrong))
+    solver = f"[solver]{model.partition('[solver]')[2]}" if "[solver]" in model else ""
+    study = f'{title}[model]\nfile = "pendulum.toml"\n{solver}[simulate]{task}'
+    ((line, said),) = mistakes_of(tmp_path, study)
+    assert line == 'file = "pendulum.toml"'
+    assert said.startswith(f"pendulum.toml: {sentence}" if sentence else "[model], file: pendulum.toml: ")
+
+
+def test_a_line_of_another_file_is_no_line_of_the_study():
+    assert mistake("a = 1\nb = 2\nc = 3\n", (), "data.csv, line 3: a number is missing").line == 1
 
 
 def test_places_in_the_text():

@@ -48,6 +48,7 @@ def disk_notice(draft: Draft) -> None:
     draft.follow("disk", show)
     show()
     ui.timer(EVERY, draft.check_disk)
+    ui.timer(EVERY, draft.check_files)
 
 
 def _copy(draft: Draft) -> None:

@@ -16,9 +16,10 @@ from dalembert.studio.editor.history import History
 from dalembert.studio.editor.lines import Place
 from dalembert.studio.editor.outline import Outline
 from dalembert.studio.editor.reading import Mistake, Reading, mistake, read
+from dalembert.studio.editor.watched_files import WatchedFiles
 from dalembert.study.basics import LARGEST
 
-Topic = Literal["text", "study", "mistakes", "values", "selection", "disk"]
+Topic = Literal["text", "study", "mistakes", "values", "selection", "disk", "files"]
 Disk = Literal["same", "changed", "gone"]
 
 
@@ -52,6 +53,8 @@ class Draft:
         A place in the file, such as ``("model", "body", 0)``.
     disk : "same", "changed" or "gone"
         What the file is, compared with what was read or saved.
+    beside : WatchedFiles
+        The files that the text names; :meth:`check_files` tells "files" after changes of them.
     """
 
     def __init__(self, path: Path, clock: Callable[[], float] = time.monotonic) -> None:
@@ -66,6 +69,7 @@ class Draft:
         self.starts: dict[str, float] = {}
         self.selection: Place | None = None
         self.disk: Disk = "same"
+        self.beside = WatchedFiles()
         self._found: tuple[Mistake, ...] = ()
 
     @property
@@ -165,6 +169,7 @@ class Draft:
         if reading.text != self.text:
             return
         self.reading, self._found = reading, ()
+        self.beside.take(reading.files)
         if reading.study is not None:
             self._start_values(reading.study)
             self.good = reading.study
@@ -239,6 +244,11 @@ class Draft:
                 self._note("same")
         except OSError:
             self._note("gone")
+
+    def check_files(self) -> None:
+        """Look whether a file that the text names has changed."""
+        if self.beside.have_changed():
+            self._tell("files")
 
     def reload(self) -> None:
         """Take the text from the file. The former text can be brought back by :meth:`undo`."""

@@ -3,7 +3,7 @@
 import re
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +12,7 @@ from dalembert.studio.editor.cursor import tolerant
 from dalembert.studio.editor.lines import Place, line_of
 from dalembert.studio.editor.model_kind import model_file
 from dalembert.studio.editor.outline import Outline
+from dalembert.studio.editor.watched_files import Stamp, stamps_of
 from dalembert.studio.worker import Kept
 
 if TYPE_CHECKING:
@@ -21,6 +22,8 @@ _PLACE = re.compile(r"\[{1,2}([\w.]+)\]{1,2}(?: '([^']+)')?(?:, (\w+))?")
 """Beginning of a sentence about a table and a key."""
 _CONSTANT = re.compile(r"\[constants\](?:,|:) ([\w-]+): ")
 """Beginning of a sentence about a constant."""
+_OF_FILES = ("study", "channels", "comparison", "measured positions")
+"""Kinds of things that a process keeps and that depend on files which a text names; user's functions are among them."""
 
 
 @dataclass(frozen=True)
@@ -53,12 +56,15 @@ class Reading:
     does : str
         What a run of the study does, as a sentence; empty if there are mistakes.
     mistakes : tuple of Mistake
+    files : mapping of Path to Stamp
+        The other files that the text names, also one with mistakes, as they were.
     """
 
     text: str
     study: Outline | None = None
     does: str = ""
     mistakes: tuple[Mistake, ...] = ()
+    files: Mapping[Path, Stamp] = field(default_factory=dict)
 
 
 def read(path: Path, text: str) -> Reading:
@@ -68,12 +74,20 @@ def read(path: Path, text: str) -> Reading:
 
 def reading(kept: Kept, path: Path, text: str) -> Reading:
     """Read a text as :func:`read` does, in the process of the study's page, where the study is kept."""
+    for kind in _OF_FILES:
+        kept.drop(kind)
+    used: dict[str, Path] = {}
+    found = _read(kept, path, text, used)
+    return replace(found, files=stamps_of(used.values()))
+
+
+def _read(kept: Kept, path: Path, text: str, used: dict[str, Path]) -> Reading:
+    """Read a text, and note the other files that it names."""
     from dalembert.study import plan
     from dalembert.study.loader import StudyError
 
-    kept.drop("study")  # the user's functions, which its files do not name, may have changed too
     try:
-        study = study_of(kept, path, text)
+        study = study_of(kept, path, text, used)
         does = f"It {plan(study)}."
         return Reading(text, Outline.of(study, text), does)
     except StudyError as error:
@@ -84,26 +98,31 @@ def reading(kept: Kept, path: Path, text: str) -> Reading:
         return Reading(text, mistakes=(mistake(text, (), sentence),))
 
 
-def study_of(kept: Kept, path: Path, text: str) -> "Study":
+def study_of(kept: Kept, path: Path, text: str, used: dict[str, Path] | None = None) -> "Study":
     """Return the study of a text, read once as long as the files that it names are the same.
+
+    Parameters
+    ----------
+    used : dict of str to Path, optional
+        Takes the other files that the text names, if it is read now.
 
     Raises
     ------
     DalembertError
         If the text has mistakes.
     """
-    study, stamps = kept.newest("study", (path, text), lambda: _loaded(path, text))
+    study, stamps = kept.newest("study", (path, text), lambda: _loaded(path, text, used))
     if stamps != _stamps(study):
         kept.drop("study")
-        study, _ = kept.newest("study", (path, text), lambda: _loaded(path, text))
+        study, _ = kept.newest("study", (path, text), lambda: _loaded(path, text, used))
     return study
 
 
-def _loaded(path: Path, text: str) -> "tuple[Study, dict[Path, int]]":
+def _loaded(path: Path, text: str, used: dict[str, Path] | None) -> "tuple[Study, dict[Path, int]]":
     """The study, and when its other files were changed."""
     from dalembert.study import load
 
-    study = load(path, name=path.stem, content=text.encode())
+    study = load(path, name=path.stem, content=text.encode(), used=used)
     return study, _stamps(study)
 
 

@@ -6,6 +6,7 @@ from nicegui import background_tasks, ui
 
 from dalembert.studio.editor.draft import Draft
 from dalembert.studio.editor.reading import Reading, mistake, reading
+from dalembert.studio.editor.watched_files import stamps_of
 from dalembert.studio.worker import Worker, WorkerError
 
 AFTER = 0.4
@@ -15,7 +16,7 @@ PATIENCE = 3.0
 
 
 class Checking:
-    """Reads the text of a draft at first, and after changes.
+    """Reads the text of a draft at first, and after changes of it or of a file that it names.
 
     Parameters
     ----------
@@ -29,6 +30,7 @@ class Checking:
         self._waiting: ui.timer | None = None
         background_tasks.create(self.check())  # while the browser still loads the page
         draft.follow("text", self._later)
+        draft.follow("files", self._later)
 
     async def check(self) -> None:
         """Read the text now."""
@@ -42,7 +44,8 @@ class Checking:
         try:
             return await self._worker.ask("reading", reading, self._draft.path, text)
         except WorkerError as error:
-            return Reading(text, mistakes=(mistake(text, (), str(error)),))
+            files = stamps_of(self._draft.reading.files)  # the next change of one of them may correct it
+            return Reading(text, mistakes=(mistake(text, (), str(error)),), files=files)
 
     def _later(self) -> None:
         if self._waiting is not None:

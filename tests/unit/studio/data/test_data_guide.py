@@ -10,6 +10,7 @@ from dalembert.errors import InputError
 from dalembert.studio.data.figure import columns_figure, drawn_columns
 from dalembert.studio.data.guide import DataGuide
 from dalembert.studio.editor.draft import Draft
+from dalembert.studio.editor.reading import reading
 from dalembert.studio.worker import Kept
 from dalembert.study.template import begin
 
@@ -105,3 +106,19 @@ def test_columns_are_drawn_without_the_times(guide):
     figure = columns_figure(guide.examined)
     assert [trace.name for trace in figure.data] == ["angle_deg"]
     assert figure.data[0].x[0] == 0.0
+
+
+def test_the_channels_of_a_model_file_that_changed_are_those_that_it_has_now(guide):
+    draft = guide.draft
+    head, _, rest = draft.text.partition("[model]")
+    model, at, task = f"[model]{rest}".partition("[solver]")
+    other = draft.path.with_name("pendulum.toml")
+    other.write_text(model)
+    draft.set_text(f'{head}[model]\nfile = "pendulum.toml"\n{at}{task}')
+    kept = guide._worker.kept
+    draft.take(reading(kept, draft.path, draft.text))
+    guide.follow()
+    assert "rod.end.x" in looked(guide).examined.channels
+    other.write_text(model.replace('"rod"', '"bar"').replace("rod.", "bar."))
+    draft.take(reading(kept, draft.path, draft.text))
+    assert "bar.end.x" in looked(guide).examined.channels

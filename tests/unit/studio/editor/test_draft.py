@@ -268,3 +268,54 @@ def test_what_cannot_be_read_or_written_is_a_sentence(draft, path, monkeypatch):
     path.unlink()
     with pytest.raises(InputError, match=says("study.toml cannot be read: No such file or directory.")):
         Draft(path)
+
+
+def test_changes_of_the_files_that_a_text_names_are_noticed(draft, path):
+    data = path.with_name("motion.csv")
+    content, heard = data.read_text(), followed(draft, "files")
+    draft.check()
+    draft.check_files()
+    assert heard == []
+    written_elsewhere(data, content + "\n")
+    draft.check_files()
+    draft.check_files()
+    assert heard == ["files"]
+    data.unlink()
+    draft.check_files()
+    draft.check()
+    assert "motion.csv" in draft.mistakes[0].sentence
+    data.write_text(content)
+    draft.check_files()
+    assert heard == ["files"] * 3
+    draft.check()
+    assert draft.study is not None
+
+
+def test_the_repair_of_a_model_file_is_noticed(path):
+    whole = path.read_text()
+    head, _, rest = whole.partition("[model]")
+    model, at, task = f"[model]{rest}".partition("[solver]")
+    path.write_text(f'{head}[model]\nfile = "pendulum.toml"\n{at}{task}')
+    other = path.with_name("pendulum.toml")
+    other.write_text("[model")
+    draft = Draft(path)
+    draft.check()
+    assert draft.study is None
+    heard = followed(draft, "files")
+    written_elsewhere(other, model)
+    draft.check_files()
+    assert heard == ["files"]
+    draft.check()
+    assert draft.mistakes == ()
+
+
+def test_a_file_that_a_panel_shows_is_watched_too(draft, path):
+    draft.check()
+    other = path.with_name("other.csv")
+    draft.beside.show(other)
+    heard = followed(draft, "files")
+    other.write_text("t,x\n")
+    draft.check_files()
+    draft.beside.show(other)
+    draft.check_files()
+    assert heard == ["files"]

@@ -158,6 +158,7 @@ PAGES = (
         "document.querySelector('.q-field--error')",
         _then(_tab("Forms", "document.querySelector('.cm-line.wrong')"), _choose_line("kilo")),
     ),
+    Shown("model-file", "/study/shared/shared/model", VALID),
     Shown("live", "/run/live", CURVES),
     Shown("finished", "/run/first", "document.querySelector('iframe')"),
     Shown("failed", "/run/failed", f"{TEXT}.includes('failed')"),
@@ -177,6 +178,7 @@ def filled(root: Path) -> Iterator[Path]:
     """A workspace with studies of three kinds, one with mistakes, and runs: two finished ones, a failed and a live one."""
     for name in ("identify", "spatial", "response", "wrong"):
         begin(name if name != "wrong" else "motion", root / "studies" / name)
+    _with_model_file(root)
     wrong = root / "studies" / "wrong" / "wrong.toml"
     wrong.write_text(wrong.read_text().replace("kg", "kilo", 1))
     study, runs = root / "studies" / "identify" / "identify.toml", root / "runs"
@@ -201,6 +203,15 @@ def _slow(root: Path, module: str, name: str = "slow") -> Path:
     (folder / "decay.csv").write_text("\n".join(["t,x", *rows]))
     (folder / "study.toml").write_text(LIVE)
     return folder / "study.toml"
+
+
+def _with_model_file(root: Path) -> None:
+    """A study whose model is in a file of its own."""
+    study = begin("motion", root / "studies" / "shared")
+    head, _, rest = study.read_text().partition("[constants]")
+    model, _, task = f"[constants]{rest}".partition("[solver]")
+    study.with_name("pendulum.toml").write_text(model)
+    study.write_text(f'{head}[model]\nfile = "pendulum.toml"\n\n[solver]{task}')
 
 
 def _failing(root: Path) -> Path:

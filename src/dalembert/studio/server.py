@@ -20,6 +20,7 @@ from dalembert.studio.runs.continue_page import continue_page
 from dalembert.studio.runs.run_list import RunList
 from dalembert.studio.runs.run_page import FILES, run_page
 from dalembert.studio.runs.runs_page import runs_page
+from dalembert.studio.studies.model_page import model_page
 from dalembert.studio.studies.new_page import new_page
 from dalembert.studio.studies.pictures import Pictures
 from dalembert.studio.studies.studies_page import studies_page
@@ -64,6 +65,10 @@ def application(root: Path, *, far: bool = False) -> FastAPI:
     @ui.page("/study/{folder}/{file}")
     def study(folder: str, file: str) -> None:
         study_page(workspace, jobs, f"{folder}/{file}")
+
+    @ui.page("/study/{folder}/{file}/model")
+    def model(folder: str, file: str) -> None:
+        model_page(workspace, f"{folder}/{file}")
 
     @ui.page("/run/{name}")
     def run(name: str) -> Any:

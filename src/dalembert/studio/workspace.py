@@ -1,5 +1,6 @@
 """The folder that the studio works in: its studies, their files, and their runs."""
 
+import os
 import re
 import unicodedata
 from collections.abc import Callable
@@ -9,6 +10,8 @@ from shutil import rmtree
 
 from dalembert.errors import InputError, no_text, require_known, unknown
 from dalembert.files import free_path, replacing, write_text
+from dalembert.studio.editor.cursor import tolerant
+from dalembert.studio.editor.model_kind import model_file
 from dalembert.studio.studies.documents import table_names
 from dalembert.study import schema_file
 from dalembert.study.basics import LARGEST, SHARED, task_names
@@ -90,6 +93,26 @@ class Workspace:
             raise InputError(unknown("study", name, self.studies()))
         self._known.add(path)
         return path
+
+    def model_of(self, name: str) -> Path:
+        """The file of its own that the saved text of a study names for its model.
+
+        Raises
+        ------
+        InputError
+            If there is no such study, if it names no file, or one that is no TOML file below ``studies/``.
+        """
+        path = self.study(name)
+        try:
+            file = model_file(tolerant(path.read_text(encoding="utf-8")))
+        except (OSError, ValueError):
+            file = ""
+        if not file:
+            raise InputError(f"{path.name} names no model file; its model is in the study itself")
+        found = Path(os.path.normpath(path.parent / file))
+        if not found.is_relative_to(self.root / "studies") or found.suffix != ".toml":
+            raise InputError(f"{file} is no TOML file in the folder of the studies; edit it with another program")
+        return found
 
     def create(self, name: str, content: str, beside: Callable[[Path], object] = lambda folder: None) -> str:
         """Make a new study with its text and the schema beside it; return its name as :meth:`studies` gives it.

@@ -43,6 +43,7 @@ def load(
     folder: Path | None = None,
     files: Mapping[str, Path] | None = None,
     content: bytes | None = None,
+    model: bytes | None = None,
     used: dict[str, Path] | None = None,
 ) -> Study:
     """Read and check a study file.
@@ -58,6 +59,8 @@ def load(
         Files that it names and that lie elsewhere.
     content : bytes, optional
         Of the file, in place of what is on the disk.
+    model : bytes, optional
+        Content of the model file that it names, in place of what is on the disk.
     used : dict of str to Path, optional
         Takes the files that the study names, also those of a study with mistakes.
 
@@ -70,7 +73,7 @@ def load(
     context = Context(folder or path.parent, files=dict(files or {}), used={} if used is None else used)
     content, document = _read(path) if content is None else _document(path, content)
     _refuse_parts(document, path)
-    shared = _with_model_file(document, context, path)
+    shared = _with_model_file(document, context, path, model)
     names = {name for table in ("parameters", "constants") for name in _table(document, table)}
     context.series = series_in(_table(document, "parameters"))
     context.names = frozenset(names - set(context.series)).union(*context.series.values())
@@ -142,7 +145,7 @@ def _refuse_parts(document: Mapping[str, Any], path: Path) -> None:
         raise StudyError(f"{path.name}: {sentence}", [((), sentence)])
 
 
-def _with_model_file(document: dict[str, Any], context: Context, path: Path) -> str:
+def _with_model_file(document: dict[str, Any], context: Context, path: Path, content: bytes | None) -> str:
     """Put the tables of ``[model] file = "..."`` in their place; the other file's name, or none."""
     given = _table(document, "model").get("file")
     if given is None:
@@ -153,7 +156,8 @@ def _with_model_file(document: dict[str, Any], context: Context, path: Path) -> 
             f"{given!r} was given; expected the name of a TOML file, and no other key beside it in [model]",
         )
     try:
-        _, shared = _read(context.file(given))
+        file = context.file(given)
+        _, shared = _read(file) if content is None else _document(file, content)
     except InputError as error:
         raise _wrong_file(path, str(error)) from None
     for table in shared:

@@ -151,6 +151,23 @@ def test_a_file_that_was_a_study_stays_listed(workspace, tmp_path):
     assert workspace.studies() == [study]
 
 
+def test_the_model_file_of_a_study(workspace, tmp_path):
+    study = workspace.create("mine", STUDY)
+    folder = tmp_path / "studies"
+    assert workspace.model_of(study) == folder / "mine" / "model.toml"
+    for file, found in (("../shared.toml", folder / "shared.toml"), ("../../other.toml", None), ("/etc/a.toml", None)):
+        (folder / "mine" / "study.toml").write_text(STUDY.replace("model.toml", file))
+        if found is not None:
+            assert workspace.model_of(study) == found
+            continue
+        sentence = f"{file} is no TOML file in the folder of the studies; edit it with another program"
+        with pytest.raises(InputError, match=says(sentence)):
+            workspace.model_of(study)
+    (folder / "mine" / "study.toml").write_text("[model]\n[simulate]\n")
+    with pytest.raises(InputError, match=says("study.toml names no model file; its model is in the study itself")):
+        workspace.model_of(study)
+
+
 @pytest.mark.parametrize("name", ["model.py", "a.PY", "study.toml", "lib.so"])
 def test_programs_and_studies_are_not_taken_for_data(workspace, name):
     study = workspace.create("mine", "")

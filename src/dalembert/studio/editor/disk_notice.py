@@ -1,6 +1,6 @@
 """The notice on a study's page that its file was changed by somebody else, and what can be done then."""
 
-from urllib.parse import quote
+from collections.abc import Callable
 
 from nicegui import ui
 
@@ -14,10 +14,16 @@ SAYS = {
 }
 
 
-def disk_notice(draft: Draft) -> None:
+def disk_notice(draft: Draft, copied: Callable[[], object]) -> None:
     """Build the notice, which is hidden while the file is what was read or saved.
 
     A text without unsaved changes follows the file; undo brings the earlier text back.
+
+    Parameters
+    ----------
+    draft : Draft
+    copied : callable
+        Saves the text as a copy.
     """
     with ui.row().classes("w-full items-center gap-2 p-2 rounded border disk-notice").props("role=alert") as notice:
         ui.icon("sync_problem", size="sm")
@@ -30,8 +36,8 @@ def disk_notice(draft: Draft) -> None:
             button("Keep mine", complaints()(draft.keep), icon="edit").tooltip(
                 "Keep the text that is here. The next Save replaces the file."
             )
-            button("Save as a copy", complaints()(lambda: _copy(draft)), icon="content_copy").tooltip(
-                "Write the text that is here to a new file in the same folder, and open it."
+            button("Save as a copy", copied, icon="content_copy").tooltip(
+                "Write the text that is here to a new file in the same folder."
             )
 
     def show() -> None:
@@ -49,10 +55,3 @@ def disk_notice(draft: Draft) -> None:
     show()
     ui.timer(EVERY, draft.check_disk)
     ui.timer(EVERY, draft.check_files)
-
-
-def _copy(draft: Draft) -> None:
-    """Write the text to a new file and go to its page; the page that is left has the text of its file."""
-    copy = draft.save_copy()
-    draft.reload()
-    ui.navigate.to(f"/study/{quote(copy.parent.name)}/{quote(copy.stem)}")

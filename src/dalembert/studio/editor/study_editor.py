@@ -27,6 +27,8 @@ class StudyEditor(ui.codemirror, component="study_editor.js", esm={"dalembert-co
         Called with a text that was typed when the browser had not yet received the present one.
     kept : function
         Called with a text that the browser kept when its page was lost, and the saved text that it was based on.
+    label : str
+        What a screen reader says.
     """
 
     def __init__(
@@ -35,10 +37,11 @@ class StudyEditor(ui.codemirror, component="study_editor.js", esm={"dalembert-co
         names: Callable[[], Awaitable[Names]],
         late: Callable[[str], object] = lambda text: None,
         kept: Callable[[str, str], object] = lambda text, saved: None,
+        label: str = "The study as text",
     ) -> None:
         super().__init__(text, language="TOML", theme="vscodeLight", line_wrapping=True)
         self._names, self._late = names, late
-        self._props["revision"], self._props["label"], self._props["saved"] = 0, "The study as text", text
+        self._props["revision"], self._props["label"], self._props["saved"] = 0, label, text
         self.on("question", self._answer)
         self.on("kept", lambda event: kept(event.args["text"], event.args["saved"]))
 

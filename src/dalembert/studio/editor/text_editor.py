@@ -30,11 +30,13 @@ class TextEditor:
     Parameters
     ----------
     draft : Draft
+    label : str
+        What a screen reader says.
     """
 
-    def __init__(self, draft: Draft) -> None:
+    def __init__(self, draft: Draft, label: str = "The study as text") -> None:
         self.draft, self._line = draft, 1
-        self.element = StudyEditor(draft.text, Channels(draft), self._recall, self._restore)
+        self.element = StudyEditor(draft.text, Channels(draft), self._recall, self._restore, label)
         self.element.classes("w-full h-full border rounded")
         self.element.on_value_change(self._typed)
         for event in ("keyup", "mouseup"):

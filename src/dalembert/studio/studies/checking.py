@@ -1,13 +1,15 @@
 """Checks the text of a study in the study's process, which a user's function may hang or end."""
 
 import asyncio
+from collections.abc import Callable
+from pathlib import Path
 
 from nicegui import background_tasks, ui
 
 from dalembert.studio.editor.draft import Draft
 from dalembert.studio.editor.reading import Reading, mistake, reading
 from dalembert.studio.editor.watched_files import stamps_of
-from dalembert.studio.worker import Worker, WorkerError
+from dalembert.studio.worker import Kept, Worker, WorkerError
 
 AFTER = 0.4
 """Seconds after the last change of the text until it is checked."""
@@ -22,10 +24,21 @@ class Checking:
     ----------
     draft : Draft
     worker : Worker
+    function : callable
+        Reads a text, as :func:`reading` does.
+    path : Path, optional
+        Of the study; that of the draft if not given.
     """
 
-    def __init__(self, draft: Draft, worker: Worker) -> None:
-        self._draft, self._worker = draft, worker
+    def __init__(
+        self,
+        draft: Draft,
+        worker: Worker,
+        function: Callable[[Kept, Path, str], Reading] = reading,
+        path: Path | None = None,
+    ) -> None:
+        self._draft, self._worker, self._function = draft, worker, function
+        self._path = draft.path if path is None else path
         self._place = ui.context.slot
         self._waiting: ui.timer | None = None
         background_tasks.create(self.check())  # while the browser still loads the page
@@ -42,7 +55,7 @@ class Checking:
 
     async def _read(self, text: str) -> Reading | None:
         try:
-            return await self._worker.ask("reading", reading, self._draft.path, text)
+            return await self._worker.ask("reading", self._function, self._path, text)
         except WorkerError as error:
             files = stamps_of(self._draft.reading.files)  # the next change of one of them may correct it
             return Reading(text, mistakes=(mistake(text, (), str(error)),), files=files)

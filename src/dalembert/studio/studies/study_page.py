@@ -6,15 +6,18 @@ from urllib.parse import quote
 from nicegui import ui
 
 from dalembert.errors import InputError
-from dalembert.studio.editor.disk_notice import disk_notice
+from dalembert.studio.editor.cursor import tolerant
 from dalembert.studio.editor.draft import Draft
+from dalembert.studio.editor.model_kind import model_file
 from dalembert.studio.editor.text_editor import TextEditor
-from dalembert.studio.frame import button, complaints, frame, icon_button
+from dalembert.studio.frame import button, complaints, frame
 from dalembert.studio.jobs import Jobs
 from dalembert.studio.panels import data, forms, model, sliders
 from dalembert.studio.room import Room
 from dalembert.studio.splitter import splitter
 from dalembert.studio.studies.checking import Checking
+from dalembert.studio.studies.model_page import model_address
+from dalembert.studio.studies.text_head import save_text, text_head
 from dalembert.studio.worker import Worker
 from dalembert.studio.workspace import Workspace
 
@@ -66,42 +69,29 @@ def _panels(draft: Draft, room: Room) -> None:
 
 def _head(draft: Draft, room: Room, editor: TextEditor, checking: Checking) -> None:
     """Build the buttons, what the study does, and its mistakes."""
-    with ui.row().classes("gap-2 items-center"):
-        start = button("Run", lambda: _start(draft, room, checking), icon="play_arrow")
-        save = button("Save", complaints()(lambda: _save(draft)), icon="save")
-        undo, redo = icon_button("undo", "Undo", draft.undo), icon_button("redo", "Redo", draft.redo)
-        verdict = ui.label("").props("role=status aria-live=polite")
-    disk_notice(draft)  # after the buttons, which come first by keyboard
-    does = ui.label("").classes("break-words")
-    wrong = ui.column().classes("gap-1 w-full")
-    editor.element.map_key("Mod-s", complaints()(lambda: _save(draft)))
+    text_head(draft, editor, partial(_run_button, draft, room, checking), complaints()(partial(_copy, draft)))
+    way = ui.link("", model_address(draft.name)).classes("break-all")
 
-    def show_text() -> None:
-        undo.set_enabled(draft.can_undo)
-        redo.set_enabled(draft.can_redo)
-        save.set_text("Save" if draft.is_saved else "Save •")
+    def show_way() -> None:
+        file = model_file(tolerant(draft.saved))
+        way.set_text(f"Open the model file {file}")
+        way.set_visibility(bool(file))
 
-    def show_study() -> None:
-        count = len(draft.mistakes)
-        verdict.set_text(f"{count} error{'s' if count > 1 else ''}:" if count else "Valid.")
-        does.set_text(draft.reading.does)
-        start.set_enabled(draft.study is not None)
-        wrong.clear()
-        with wrong:
-            for mistake in draft.mistakes:
-                with ui.row().classes("items-start gap-2 flex-nowrap").props("role=alert"):
-                    go = ui.button(f"line {mistake.line}", on_click=partial(editor.go, mistake.line), color="negative")
-                    go.props("dense no-caps unelevated size=sm").classes("shrink-0")
-                    ui.label(mistake.sentence).classes("text-sm break-words")
-
-    draft.follow("text", show_text)
-    draft.follow("mistakes", show_study)
-    show_text()
+    draft.follow("text", show_way)
+    show_way()
 
 
-def _save(draft: Draft) -> None:
-    draft.save()
-    ui.notify("Saved.", type="positive")
+def _run_button(draft: Draft, room: Room, checking: Checking) -> None:
+    """Build the button that runs the study, while it has no mistakes."""
+    start = button("Run", lambda: _start(draft, room, checking), icon="play_arrow")
+    draft.follow("mistakes", lambda: start.set_enabled(draft.study is not None))
+
+
+def _copy(draft: Draft) -> None:
+    """Write the text to a new file and go to its page; the page that is left has the text of its file."""
+    copy = draft.save_copy()
+    draft.reload()
+    ui.navigate.to(f"/study/{quote(copy.parent.name)}/{quote(copy.stem)}")
 
 
 async def _start(draft: Draft, room: Room, checking: Checking) -> None:
@@ -109,7 +99,7 @@ async def _start(draft: Draft, room: Room, checking: Checking) -> None:
     if draft.reading.text != draft.text:
         await checking.check()
     with complaints():
-        _save(draft)
+        save_text(draft)
         if draft.study is not None:
             name = draft.study.name if draft.path.stem != "study" else draft.path.parent.name
             folder = room.workspace.new_run(name)

@@ -1,0 +1,59 @@
+"""What a text is as the model of a study that names its file."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from dalembert.errors import DalembertError
+from dalembert.studio.editor.cursor import tolerant
+from dalembert.studio.editor.outline import Outline
+from dalembert.studio.editor.reading import Mistake, Reading, mistake
+from dalembert.studio.editor.watched_files import stamps_of
+from dalembert.studio.worker import Kept
+
+if TYPE_CHECKING:
+    from dalembert.study.loader import StudyError
+
+_AT_FILE = "[model], file: "
+
+
+def model_reading(kept: Kept, study: Path, text: str) -> Reading:
+    """Read a text as the model of a study, in the process of the model's page.
+
+    Parameters
+    ----------
+    kept : Kept
+    study : Path
+        The study file, as it is on the disk.
+    text : str
+        Of the model file, which is not written.
+    """
+    used: dict[str, Path] = {}
+    return replace(_read(study, text, used), files=stamps_of([study, *used.values()]))
+
+
+def _read(study: Path, text: str, used: dict[str, Path]) -> Reading:
+    from dalembert.study import load, plan
+    from dalembert.study.loader import StudyError
+
+    try:
+        found = load(study, name=study.stem, model=text.encode(), used=used)
+        return Reading(text, Outline.of(found, text), f"As the model of {study.name}, it {plan(found)}.")
+    except StudyError as error:
+        return Reading(text, mistakes=tuple(_mistakes(error, study, text)))
+    except DalembertError as error:
+        return Reading(text, mistakes=(mistake(text, (), str(error).replace(f"{study.parent}/", "")),))
+
+
+def _mistakes(error: "StudyError", study: Path, text: str) -> Iterator[Mistake]:
+    """Mistakes of the text at their lines; those of the study at the first line, with its name."""
+    tables = tolerant(text)
+    for place, sentence in error.mistakes:
+        shown = sentence.replace(f"{study.parent}/", "")
+        if shown.startswith(_AT_FILE):
+            yield mistake(text, (), shown.removeprefix(_AT_FILE))
+        elif place[:1] == ("model",) or (place[:1] == ("constants",) and "constants" in tables):
+            yield mistake(text, place, shown)
+        else:
+            yield Mistake((), 1, f"{study.name}: {shown}")

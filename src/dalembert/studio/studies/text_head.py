@@ -1,0 +1,61 @@
+"""What stands above a text: its buttons, what it does, and its mistakes."""
+
+from collections.abc import Callable
+from functools import partial
+
+from nicegui import ui
+
+from dalembert.studio.editor.disk_notice import disk_notice
+from dalembert.studio.editor.draft import Draft
+from dalembert.studio.editor.text_editor import TextEditor
+from dalembert.studio.frame import button, complaints, icon_button
+
+
+def text_head(draft: Draft, editor: TextEditor, first: Callable[[], object], copied: Callable[[], object]) -> None:
+    """Build the buttons, what the text does, and its mistakes.
+
+    Parameters
+    ----------
+    draft : Draft
+    editor : TextEditor
+    first : callable
+        Builds what comes before the buttons.
+    copied : callable
+        Saves the text as a copy, after a conflict.
+    """
+    with ui.row().classes("gap-2 items-center"):
+        first()
+        save = button("Save", complaints()(lambda: save_text(draft)), icon="save")
+        undo, redo = icon_button("undo", "Undo", draft.undo), icon_button("redo", "Redo", draft.redo)
+        verdict = ui.label("").props("role=status aria-live=polite")
+    disk_notice(draft, copied)  # after the buttons, which come first by keyboard
+    does = ui.label("").classes("break-words")
+    wrong = ui.column().classes("gap-1 w-full")
+    editor.element.map_key("Mod-s", complaints()(lambda: save_text(draft)))
+
+    def show_text() -> None:
+        undo.set_enabled(draft.can_undo)
+        redo.set_enabled(draft.can_redo)
+        save.set_text("Save" if draft.is_saved else "Save •")
+
+    def show_study() -> None:
+        count = len(draft.mistakes)
+        verdict.set_text(f"{count} error{'s' if count > 1 else ''}:" if count else "Valid.")
+        does.set_text(draft.reading.does)
+        wrong.clear()
+        with wrong:
+            for mistake in draft.mistakes:
+                with ui.row().classes("items-start gap-2 flex-nowrap").props("role=alert"):
+                    go = ui.button(f"line {mistake.line}", on_click=partial(editor.go, mistake.line), color="negative")
+                    go.props("dense no-caps unelevated size=sm").classes("shrink-0")
+                    ui.label(mistake.sentence).classes("text-sm break-words")
+
+    draft.follow("text", show_text)
+    draft.follow("mistakes", show_study)
+    show_text()
+
+
+def save_text(draft: Draft) -> None:
+    """Write the text to its file, and say so."""
+    draft.save()
+    ui.notify("Saved.", type="positive")

@@ -60,6 +60,14 @@ def test_a_search_shows_what_has_its_words(chromium, address):
     assert "inertial" in page.get_by_role("listitem").inner_text()
 
 
+def test_a_search_finds_templates_too(chromium, address):
+    page = open_studies(chromium, address)
+    page.get_by_label("Search studies").fill("friction frequency")
+    wait_until(page, "document.querySelectorAll('[role=listitem]').length === 1")
+    assert page.get_by_role("heading", name="Templates").is_visible()
+    assert page.get_by_role("button", name="A response over frequency, with friction").is_visible()
+
+
 def test_a_template_begins_a_study_by_keyboard(chromium, address, root):
     page = open_studies(chromium, address, width=768)
     page.get_by_role("button", name="A response over frequency").focus()

@@ -170,3 +170,9 @@ def test_values_of_experiments_and_sensors_act(tmp_path):
 def test_a_task_without_a_simulation_says_so():
     with pytest.raises(InputError, match=r"^There is nothing to simulate for \[backbone\]\. Run the study"):
         part(load(Path("studies/duffing/backbone.toml")), "")
+
+
+def test_nothing_to_simulate_is_a_hint_and_no_error():
+    found = simulated(Kept(), source(Path("studies/duffing/backbone.toml")), "", {})
+    assert found.hint.startswith("There is nothing to simulate for [backbone].")
+    assert (found.film, found.curves) == (None, ())

@@ -11,6 +11,9 @@ from dalembert.studio.editor.lines import Place, is_within, table_of
 from dalembert.studio.editor.model_kind import fits_model
 from dalembert.studio.editor.reading import Mistake
 
+AXES = ("x", "y", "z")
+"""Keys of components along axes: those of a force are what it is about, though each may be left out."""
+
 
 @dataclass(frozen=True)
 class Row:
@@ -42,7 +45,7 @@ class Row:
     @property
     def is_usual(self) -> bool:
         """Whether a form shows the key at once, and not among further ones."""
-        return self.field.required or self.value is not None
+        return self.field.required or self.value is not None or self.field.key in AXES
 
 
 @dataclass(frozen=True)

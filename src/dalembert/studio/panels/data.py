@@ -6,6 +6,7 @@ from functools import partial
 from nicegui import events, run, ui
 
 from dalembert.findings import Finding
+from dalembert.studio.code_text import code_text
 from dalembert.studio.data.choices import Choices
 from dalembert.studio.data.columns import ColumnTable
 from dalembert.studio.data.examined import Examined
@@ -153,7 +154,7 @@ class DataPanel:
         icon, colour = LOOKS[finding.severity]
         with ui.row().classes("w-full items-start gap-2 flex-nowrap"):
             ui.icon(icon, color=colour, size="sm").props(f'role=img aria-label="{finding.severity}"')
-            ui.label(str(finding)).classes("text-sm grow break-words min-w-0")
+            code_text(str(finding)).classes("text-sm grow break-words min-w-0")
             if label := self.guide.remedy(finding):
                 fix = ui.button(label, on_click=partial(self._fix, finding)).props("no-caps outline dense size=sm")
                 fix.classes("shrink-0 px-2")

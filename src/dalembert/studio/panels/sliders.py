@@ -197,6 +197,8 @@ class Sliders:
         if figures:
             self._drawn = source, name
         self._show(found, received)
+        if found.hint:
+            return
         self._wait(STILL, lambda: background_tasks.create(self._weigh(source, name, values)))
 
     async def _weigh(self, source: Source, name: str, values: dict[str, float]) -> None:
@@ -229,7 +231,7 @@ class Sliders:
 
     def _show(self, found: Simulated, received: float) -> None:
         self._show_problem("")
-        self._told.set_text(self._facts(found))
+        self._told.set_text(found.hint or self._facts(found))
         self._scene.set_visibility(found.film is not None)
         if found.film is not None:
             own = {"received": received, "simulated": found.seconds, "computed": found.computed}

@@ -8,6 +8,7 @@ from nicegui import ui
 from tomlkit import TOMLDocument
 
 from dalembert.errors import InputError
+from dalembert.studio.code_text import code_text
 from dalembert.studio.runs.advice import Change, changes
 from dalembert.studio.runs.run_changes import study_text
 from dalembert.study.folder import RunFolder
@@ -42,8 +43,8 @@ def _show(finding: dict, offered: list[tuple[int, Change]], run: str) -> None:
     with ui.row().classes("w-full items-start gap-3 no-wrap border rounded p-3").props("role=listitem"):
         ui.icon(icon, color=colour, size="sm").props(f'role=img aria-label="{severity}"')
         with ui.column().classes("gap-1 grow min-w-0"):
-            ui.label(str(finding.get("message", ""))).classes("break-words")
-            ui.label(str(finding.get("advice", ""))).classes("text-sm opacity-80 break-words")
+            code_text(str(finding.get("message", ""))).classes("break-words")
+            code_text(str(finding.get("advice", ""))).classes("text-sm opacity-80 break-words")
             with ui.row().classes("gap-2"):
                 for number, change in offered:
                     asked = urlencode({"code": change.code, "number": number})

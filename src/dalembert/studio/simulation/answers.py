@@ -12,7 +12,7 @@ from dalembert.errors import SolveError
 from dalembert.report.player import Film, film_of, frames
 from dalembert.studio.editor.reading import study_of
 from dalembert.studio.simulation.curves import Curves, curves, on_page
-from dalembert.studio.simulation.parts import OVER_FREQUENCY, Part, part
+from dalembert.studio.simulation.parts import OVER_FREQUENCY, NothingToSimulateError, Part, part
 from dalembert.studio.worker import Kept
 
 if TYPE_CHECKING:
@@ -62,6 +62,8 @@ class Simulated:
         Root mean square of each channel's.
     seconds, computed : float
         Time of the simulation, and with film and curves.
+    hint : str
+        Why nothing is simulated, though the study is in order.
     """
 
     film: Film | None = None
@@ -70,6 +72,7 @@ class Simulated:
     residuals: dict[str, float] = field(default_factory=dict)
     seconds: float = 0.0
     computed: float = 0.0
+    hint: str = ""
 
 
 @dataclass(frozen=True)
@@ -98,7 +101,10 @@ def simulated(
     figures : bool
         Whether to make the figures of the curves too, not their lines alone.
     """
-    own = _part(kept, source, name)
+    try:
+        own = _part(kept, source, name)
+    except NothingToSimulateError as error:
+        return Simulated(hint=str(error))
     began = perf_counter()
     if own.model is None and own.study.task == OVER_FREQUENCY:
         return _followed(own, values, began)

@@ -62,6 +62,10 @@ class Part:
         return self.study.motion(self.end, self.vector(values, self.study.parameters), times)
 
 
+class NothingToSimulateError(InputError):
+    """A study in order whose task names nothing that a page can simulate."""
+
+
 def parameters_of(study: "Study") -> dict[str, tuple[Parameter, ...]]:
     """Return the parameters that can be moved, by the names of the parts: one that is empty without experiments."""
     from dalembert.study.posing import fitted_parameters
@@ -74,7 +78,7 @@ def part(study: "Study", name: str) -> Part:
 
     Raises
     ------
-    InputError
+    NothingToSimulateError
         If the task names nothing that can be simulated.
     """
     if study.task in FROM_DATA:
@@ -86,7 +90,7 @@ def part(study: "Study", name: str) -> Part:
         return Part(study, model, None, 0.0)
     if study.task == OVER_FREQUENCY:
         return Part(study, None, None, 0.0)
-    raise InputError(f"There is nothing to simulate for [{study.task}]. Run the study to see its result.")
+    raise NothingToSimulateError(f"There is nothing to simulate for [{study.task}]. Run the study to see its result.")
 
 
 def _measured(study: "Study", name: str) -> Part:
@@ -108,7 +112,9 @@ def _moving(study: "Study") -> Part:
     """A mechanism without data: until the last time that the task names, with its channels."""
     table, end = study.table, last_time(study)
     if end is None:
-        raise InputError(f"[{study.task}] names no time until which the motion lasts. Run the study to see its result.")
+        raise NothingToSimulateError(
+            f"[{study.task}] names no time until which the motion lasts. Run the study to see its result."
+        )
     points = [f"{point}.{axis}" for point in getattr(table, "points", ()) for axis in "xy"]
     channels = tuple(getattr(table, "channels", None) or points)
     model = study.forward(channels, np.linspace(0.0, end, POINTS)) if channels else None

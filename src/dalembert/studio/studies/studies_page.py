@@ -5,9 +5,10 @@ from urllib.parse import quote
 from nicegui import run, ui
 
 from dalembert.studio.frame import badge, button, frame
-from dalembert.studio.studies.study_list import Entry, StudyFolder, study_folders
+from dalembert.studio.studies.study_list import Entry, StudyFolder, has_words, study_folders
 from dalembert.studio.studies.template_cards import template_cards
 from dalembert.studio.workspace import Workspace
+from dalembert.study.template import Template, templates
 
 SHOWN = 24
 """Cards of a section at first; a button shows more."""
@@ -21,6 +22,9 @@ def studies_page(workspace: Workspace) -> None:
             search = ui.input("Search studies").classes("grow max-w-md").props("outlined dense clearable type=search")
             button("New study", lambda: ui.navigate.to("/new"), icon="add")
 
+        def is_found(one: Template) -> bool:
+            return has_words((one.name, one.title, one.description), search.value or "")
+
         @ui.refreshable
         def listed(folders: list[StudyFolder] | None) -> None:
             if folders is None:
@@ -32,9 +36,9 @@ def studies_page(workspace: Workspace) -> None:
             heading("Your studies")
             none = "No study matches the search." if search.value else "None yet. Start from a template."
             _cards(own, none)
-            if not search.value:
+            if any(map(is_found, templates().values())):
                 heading("Templates")
-                template_cards(workspace, lambda: "")
+                template_cards(workspace, lambda: "", is_found)
             if examples:
                 heading("Examples")
                 ui.label("Studies with known results, which tests check.").classes("text-sm")

@@ -1,6 +1,7 @@
 """The studies of a workspace by their folders, with what they say about themselves and their last runs."""
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -66,8 +67,17 @@ class StudyFolder:
         """Return True if the folder or one of its studies has all words of a search."""
         texts = [self.name, self.title, self.description]
         texts += [text for entry in self.entries for text in (entry.name, entry.title, entry.description, entry.task)]
-        known = " ".join(texts).casefold()
-        return all(word in known for word in words.casefold().split())
+        return has_words(texts, words)
+
+
+def has_words(texts: Iterable[str], words: str) -> bool:
+    """Return True if some of the texts have each word of a search.
+
+    >>> has_words(["A motion of a mechanism", "A pendulum"], "PENDULUM motion"), has_words([], "x")
+    (True, False)
+    """
+    known = " ".join(texts).casefold()
+    return all(word in known for word in words.casefold().split())
 
 
 def study_folders(workspace: Workspace) -> list[StudyFolder]:

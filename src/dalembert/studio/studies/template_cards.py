@@ -13,7 +13,9 @@ from dalembert.studio.workspace import Workspace
 from dalembert.study.template import Template, templates
 
 
-def template_cards(workspace: Workspace, name: Callable[[], str]) -> None:
+def template_cards(
+    workspace: Workspace, name: Callable[[], str], shown: Callable[[Template], bool] = lambda one: True
+) -> None:
     """A card for each template, with a button that begins a study from it.
 
     Parameters
@@ -21,12 +23,14 @@ def template_cards(workspace: Workspace, name: Callable[[], str]) -> None:
     workspace : Workspace
     name : callable
         Returns the name of the study; the template's, with a number if it is taken, if empty.
+    shown : callable
+        Says whether a template is shown.
     """
     with ui.element("div").classes("grid grid-cols-1 sm:grid-cols-2 lg:grid-cols-3 gap-4 w-full").props("role=list"):
-        for one in templates().values():
+        for one in filter(shown, templates().values()):
             with ui.column().classes("border rounded p-3 gap-2 min-w-0").props("role=listitem"):
-                shown = ui.element("img").props(f'src="/picture-of-template/{one.name}" alt="" loading=lazy')
-                shown.props("width=360 height=225").classes("w-full h-40 object-contain")
+                picture = ui.element("img").props(f'src="/picture-of-template/{one.name}" alt="" loading=lazy')
+                picture.props("width=360 height=225").classes("w-full h-40 object-contain")
                 button(one.title, partial(_begin, workspace, one, name), icon="add").classes("w-full")
                 ui.label(one.description).classes("text-sm break-words")
 

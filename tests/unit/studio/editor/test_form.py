@@ -151,3 +151,9 @@ def test_the_form_of_a_model_has_the_keys_of_its_kind():
     assert form is not None
     assert "gravity" in form.keys
     assert not {"contact", "structure", "file"} & set(form.keys)
+
+
+def test_the_components_of_a_force_are_shown_at_once():
+    form = form_at('[[model.load]]\nkind = "Force"\n', ("model", "load", 0))
+    assert form is not None
+    assert [row.field.key for row in form.rows if row.is_usual] == ["kind", "name", "at", "x", "y"]

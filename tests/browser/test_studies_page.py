@@ -55,7 +55,7 @@ def test_cards_have_pictures_titles_and_states(chromium, address, tmp_path):
 
 def test_a_search_shows_what_has_its_words(chromium, address):
     page = open_studies(chromium, address)
-    page.get_by_label("Search studies").fill("robot")
+    page.get_by_label("Search studies").fill("six-joint")
     wait_until(page, "document.querySelectorAll('[role=listitem]').length === 1")
     assert "inertial" in page.get_by_role("listitem").inner_text()
 

@@ -25,6 +25,7 @@ LOOKS = """
 .parameter-row .effects { grid-column: 1 / -1; display: flex; flex-wrap: wrap; gap: 0 14px; font-size: 12px }
 .parameter-row .effect { display: inline-flex; align-items: center; gap: 5px }
 .parameter-row .track { width: 44px; height: 6px; border-radius: 3px; background: rgba(118, 129, 143, 0.25) }
+.body--dark .parameter-row .track { box-shadow: 0 0 0 1px rgba(170, 180, 192, 0.6) }
 .parameter-row .bar { height: 6px; border-radius: 3px; min-width: 1px }
 @media (max-width: 599px) {
   .parameter-row { grid-template-columns: 1fr 9.5rem auto }

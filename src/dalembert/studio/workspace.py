@@ -95,7 +95,7 @@ class Workspace:
         return path
 
     def model_of(self, name: str) -> Path:
-        """The file of its own that the saved text of a study names for its model.
+        """The file that the saved text of a study names for its model.
 
         Raises
         ------

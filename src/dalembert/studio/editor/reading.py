@@ -133,7 +133,7 @@ def _stamps(study: "Study") -> dict[Path, int]:
 def mistake(text: str, place: Place, sentence: str) -> Mistake:
     """Return a mistake at the place that its sentence begins with, such as ``[[model.joint]] 'pin', b``, or at a place.
 
-    A mistake of a model in a file of its own is at the key that names the file.
+    A mistake of a model in a separate file is at the key that names the file.
 
     Examples
     --------

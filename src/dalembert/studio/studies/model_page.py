@@ -1,4 +1,4 @@
-"""The model of a study in a file of its own: its text, checked as the model of this study."""
+"""The model of a study in a separate file: its text, checked as the model of this study."""
 
 from functools import partial
 from urllib.parse import quote

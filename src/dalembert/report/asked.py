@@ -23,7 +23,7 @@ class Asked:
         Paragraphs.
     study : str, optional
         Text of the study file.
-    points, dofs : tuple of str
+    points, channels, dofs : tuple of str
     truth : mapping
     amplitude : str
     """
@@ -33,6 +33,7 @@ class Asked:
     notes: Sequence[str] = ()
     study: str | None = None
     points: tuple[str, ...] = ()
+    channels: tuple[str, ...] = ()
     truth: Mapping[str, Any] = field(default_factory=dict)
     dofs: tuple[str, ...] = ()
     amplitude: str = "peak"
@@ -91,6 +92,6 @@ def asked(beside: tuple[Any, ...], **options: Any) -> Asked:
     for name in options:
         if name not in known:
             raise InputError(unknown("option", name, sorted(known), "report"))
-    lists = {name: tuple(options[name]) for name in ("points", "dofs") if name in options}
+    lists = {name: tuple(options[name]) for name in ("points", "channels", "dofs") if name in options}
     given = tuple(one for one in beside if one is not None)
     return Asked(given, **{**options, **lists, "truth": options.get("truth") or {}})

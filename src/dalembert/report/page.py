@@ -45,7 +45,8 @@ def report(
         Paragraphs under the headline. In one text, empty lines separate them.
     **options
         ``title``, a text. ``study``, the text of the study file, for the provenance. ``points`` whose paths are drawn,
-        such as ``["AB.end"]``; the measured points or the free ends if not given. ``truth``, what is known of the
+        such as ``["AB.end"]``; the measured points or the free ends if not given. A motion is drawn over time at the
+        ``points``, and with the ``channels``, such as ``["AB.angle"]``. ``truth``, what is known of the
         parameters by their names, to be drawn with what was identified: (lower, upper) for intervals identified from
         bands, a number for a set of parameters. ``dofs``, degrees of freedom that a response over frequency is drawn
         for; those that move most if not given. ``amplitude``, what is drawn over frequency: ``"peak"``, ``"rms"``, or

@@ -44,6 +44,7 @@ _NAMES = {
     "identification.torques": "torques",
     "motion.diagnostics": "energies newton violations",
     "motion.mechanism": "mechanism",
+    "motion.outputs": "outputs",
     "motion.sweep": "sweep",
     "motion.work_precision": "work_precision",
 }

@@ -21,7 +21,7 @@ def samples(
         return Download(None, words)
     columns = {labelled(along.name, along.unit): along.values}
     columns |= {
-        f"{channel} {word}": values[:, column]
+        f"{channel} {word}".rstrip(): values[:, column]
         for column, channel in enumerate(channels)
         for word, values in series.items()
     }

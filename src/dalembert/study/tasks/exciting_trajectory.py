@@ -10,6 +10,7 @@ from dalembert.errors import unknown
 from dalembert.study.duration import Effort, whole
 from dalembert.study.events import Emit
 from dalembert.study.numbers import Number, NumberOfEach, Seconds, fixed, pair
+from dalembert.study.samples_file import write_samples
 from dalembert.study.study import Study
 from dalembert.study.table import Read, StudyTable
 from dalembert.study.tasks.identify_inertias import kept_names, prior_of, regressor_of
@@ -49,14 +50,10 @@ class Excited(Outcome):
         return True
 
     def save(self, path: Path) -> None:
-        from dalembert.files import write_text
-
         super().save(path)
         times, *motion = self.result.sampled(self.study.table.rate)
         names = [f"{joint}.{what}" for what in ("position", "velocity", "acceleration") for joint in self.result.joints]
-        rows = np.column_stack([times, *motion])
-        lines = [",".join(["t", *names]), *(",".join(f"{value:.9g}" for value in row) for row in rows)]
-        write_text(path.with_name(MOTION), "\n".join(lines) + "\n")
+        write_samples(path.with_name(MOTION), names, times, np.column_stack(motion))
 
 
 class ExcitingTrajectoryTask(ResultTask):

@@ -10,10 +10,13 @@ from pydantic import Field
 from dalembert.study.duration import Effort, shortest_of
 from dalembert.study.events import Emit
 from dalembert.study.numbers import Seconds, Times
+from dalembert.study.samples_file import write_samples
 from dalembert.study.study import Study
 from dalembert.study.table import StudyTable, placed, problem
 from dalembert.study.tasks.task import Outcome, ResultTask, silent
 from dalembert.study.tasks.wrong import needs_mechanism
+
+OUTPUTS = "outputs.csv"
 
 
 class SimulateTable(StudyTable):
@@ -21,8 +24,11 @@ class SimulateTable(StudyTable):
 
     end: Seconds | None = Field(None, description="last time; that of times if not given")
     times: Times | None = Field(None, description="output times; every step if not given")
-    channels: list[str] = Field([], description="what the result keeps: 'AB.end.x'; every channel if not given")
-    points: list[str] = Field([], description="points whose paths the report draws: 'AB.end'")
+    channels: list[str] = Field(
+        [],
+        description="what the result keeps (all if not given) and the report draws over time: 'AB.end.x'",
+    )
+    points: list[str] = Field([], description="points whose paths and coordinates over time the report draws: 'AB.end'")
 
     def _wrong(self) -> list[str]:
         if self.end is None and self.times is None:
@@ -43,7 +49,7 @@ class SimulateTable(StudyTable):
 
 
 class Motion(Outcome):
-    """A simulated motion."""
+    """A simulated motion, and a file with the channels and points that the study asks for."""
 
     @property
     def success(self) -> bool:
@@ -55,6 +61,13 @@ class Motion(Outcome):
 
     def save(self, path: Path) -> None:
         self.result.save(path, self.study.table.channels or None)
+        if outputs := self._outputs():
+            write_samples(path.with_name(OUTPUTS), outputs, self.result.times, self.result.channels(outputs))
+
+    def _outputs(self) -> list[str]:
+        """Names of the channels, then of the coordinates of the points, each once."""
+        table, axes = self.study.table, self.result.system.AXES
+        return list(dict.fromkeys((*table.channels, *(f"{point}.{axis}" for point in table.points for axis in axes))))
 
 
 class Simulate(ResultTask):
@@ -108,7 +121,7 @@ class Simulate(ResultTask):
         return study.motion(study.table.last, times=None if times is None else np.array(times))
 
     def outcome(self, study: Study, result: Any) -> Outcome:
-        return Motion(study, result, options={"points": study.table.points})
+        return Motion(study, result, options={"points": study.table.points, "channels": study.table.channels})
 
     def load(self, study: Study, path: Path) -> Outcome:
         """The motion again: a result does not keep all that a drawing needs, and the same study moves the same."""

@@ -10,13 +10,20 @@ from dalembert.report.registry import sections_of
 from dalembert.report.section import Section
 from dalembert.report.sections.motion.diagnostics import diagnostics, largest
 from dalembert.report.sections.motion.mechanism import mechanisms
+from dalembert.report.sections.motion.outputs import asked_channels, outputs
 
 
 @sections_of(Trajectory)
 def trajectory(result: Trajectory, asked: Asked) -> list[Section]:
-    """The mechanism in motion, and its diagnostics."""
+    """The mechanism in motion, the asked channels over time, and the diagnostics."""
     moving = {"": result}
-    return [motion_headline(result), *mechanisms(moving, asked.points), diagnostics(moving)]
+    channels = asked_channels(result, asked.channels, asked.points)
+    return [
+        motion_headline(result),
+        *mechanisms(moving, asked.points),
+        *outputs(result, channels),
+        diagnostics(moving),
+    ]
 
 
 def motion_headline(result: Trajectory) -> Headline:

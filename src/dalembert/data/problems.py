@@ -251,7 +251,7 @@ def _of_channel(
         yield Finding(
             "outliers",
             "warning",
-            named | {"samples": len(far), "time": first, "value": float(values[far[0]])},
+            named | {"samples": len(far), "time": first, "value": float(values[far[0]]), "noise": _noise(values)},
             f"{_count(len(far), 'value')} of the column {str(column.key)!r} {'lies' if len(far) == 1 else 'lie'} far "
             f"from the values around {'it' if len(far) == 1 else 'them'}, the first at {first:.4g} s.",
             "Empty these cells in the file and leave missing values out, or use a robust loss: loss = 'huber'.",
@@ -293,6 +293,17 @@ def outliers(values: np.ndarray) -> np.ndarray:
     span = np.ptp(np.quantile(values, [0.01, 0.99]))
     limit = SCATTER * scatter + 0.5 * AROUND * slope + SMALL * span
     return np.flatnonzero(np.minimum(from_cubic, from_median) > limit)
+
+
+def _noise(values: np.ndarray) -> float:
+    """Standard deviation of the noise of a smooth motion, robust to outliers.
+
+    >>> noise = np.random.default_rng(0).standard_normal(4000)
+    >>> round(_noise(noise), 1)
+    1.0
+    """
+    differences = values[2:-2] - np.convolve(values, CUBIC, mode="valid")
+    return float(1.4826 * np.median(np.abs(differences)) / np.sqrt(1 + CUBIC @ CUBIC))
 
 
 def _jumps(values: np.ndarray) -> int:

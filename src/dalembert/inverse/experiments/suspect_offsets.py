@@ -9,6 +9,7 @@ from dalembert.findings import Finding
 from dalembert.forward import ForwardModel
 from dalembert.inverse.correlation.series import series_of
 from dalembert.inverse.experiments.suspect_units import suspect_units, unit_finding
+from dalembert.inverse.experiments.without_outliers import without_outliers
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import Problem, pose
 
@@ -39,7 +40,7 @@ def _offsets(problem: Problem, response: np.ndarray, judged: set[str]) -> Iterat
     units = {channel.name: channel.unit for channel in problem.model.channels}
     for series in series_of(problem):
         rows, columns = np.divmod(series.rows, response.shape[1])
-        data, computed = problem.data.continuous[rows, columns], response[rows, columns]
+        data, computed = without_outliers(problem.data.continuous[rows, columns], response[rows, columns])
         difference, span = float(np.mean(data) - np.mean(computed)), max(np.ptp(data), np.ptp(computed))
         if series.name in judged or problem.data.wrapping[columns[0]] or not abs(difference) > FAR * span > 0:
             continue

@@ -11,6 +11,7 @@ from dalembert.findings import Finding
 from dalembert.forward import ForwardModel
 from dalembert.inverse.correlation.series import Series, series_of
 from dalembert.inverse.experiments.explained import GOOD, explained
+from dalembert.inverse.experiments.without_outliers import without_outliers
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import Problem, pose
 
@@ -121,6 +122,7 @@ def _ratio(problem: Problem, response: np.ndarray, series: Series) -> float:
     data, computed = problem.data.continuous[rows, column], response[rows, column]
     if problem.data.wrapping[column]:
         computed = np.unwrap(computed)
+    data, computed = without_outliers(data, computed)
     ranges = np.array([np.ptp(data), np.ptp(computed)])
     if np.any(ranges <= FLAT * np.array([np.max(np.abs(data)), np.max(np.abs(computed))])):
         return np.nan

@@ -24,6 +24,8 @@ LIKE = {
     "N*m": ("N*m", "N*mm", "kN*m"),
 }
 """Units of quantities by their SI units."""
+SPELLINGS = str.maketrans({"°": "deg", "º": "deg", "µ": "u", "μ": "u", "²": "^2"})
+"""Signs in units of files, as the menu of units spells them."""
 CELL = "px-2 py-0.5 text-left align-top border-t"
 
 
@@ -138,8 +140,11 @@ def uses(channels: Mapping[str, str], unit: str) -> dict[str, str]:
 
     >>> list(uses({"A.x": "m", "A.angle": "rad"}, "deg").values())
     ['not used', 'times', 'A.angle (rad)', 'A.x (m)']
+    >>> list(uses({"A.x": "m", "A.angle": "rad"}, "°").values())
+    ['not used', 'times', 'A.angle (rad)', 'A.x (m)']
     """
-    fits = next((si for si, units in LIKE.items() if unit in units), None)
+    spelt = unit.translate(SPELLINGS)
+    fits = next((si for si, units in LIKE.items() if spelt in units), None)
     ordered = sorted(channels, key=lambda name: channels[name] != fits)
     shown = {name: f"{name} ({channels[name].replace('**', '^')})" if channels[name] else name for name in ordered}
     return {NOTHING: "not used", TIMES: "times", **shown}

@@ -1,6 +1,7 @@
 """The way from a data file to the `[data]` table of a draft: what is chosen, what that gives, and what is doubtful."""
 
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,9 @@ Place = tuple[str | int, ...]
 DATA: Place = ("data",)
 UNITS = {("rad", 1e3): "mrad", ("m", 1e3): "mm", ("N", 1e-3): "kN", ("m/s", 1e3): "mm/s", ("m/s**2", 1e3): "mm/s^2"}
 """Units by which data may differ from a channel's, by that unit and the ratio of their numbers."""
+
+LARGE = 1.345
+"""Standard deviations of noise from which a residual is large: usual for Huber's loss."""
 
 
 class DataGuide:
@@ -176,6 +180,8 @@ class DataGuide:
             return fix.label
         if finding.code == "suspect-offset":
             return "Estimate the offset"
+        if finding.code == "outliers" and self._takes_loss(values):
+            return "Use a robust loss"
         return f"Use {unit}" if finding.code == "suspect-unit" and (unit := self._unit(values)) else ""
 
     def apply(self, finding: Finding) -> None:
@@ -192,6 +198,10 @@ class DataGuide:
             self.choices = fix.change(self.choices, values)
         elif finding.code == "suspect-unit":
             self.choices = self.choices.with_unit(self.choices.channels[values["channel"]], self._unit(values))
+        elif finding.code == "outliers":
+            self.write()
+            scale = None if self._deviations else LARGE * values["noise"]
+            self.draft.edit(lambda document: _use_robust_loss(document, scale))
         else:
             self.write()
             self.draft.edit(lambda document: _estimate_offset(document, values))
@@ -202,6 +212,18 @@ class DataGuide:
         if unit.startswith("rad") and 50 < values["factor"] < 60:
             return unit.replace("rad", "deg").replace("**", "^")
         return UNITS.get((unit, values["factor"]), "")
+
+    def _takes_loss(self, values: Any) -> bool:
+        """Whether the study identifies by squares, and it is known which residuals are large for a robust loss."""
+        table = _document(self.draft.text).get("identify")
+        if not isinstance(table, Mapping) or table.get("loss", "linear") != "linear" or table.get("profile"):
+            return False
+        alone = self.choices is not None and len(self.choices.channels) == 1 and "weights" not in table
+        return self._deviations or (alone and self.place == DATA and values["noise"] > 0)
+
+    @property
+    def _deviations(self) -> bool:
+        return bool((self._table() or {}).get("deviations"))
 
     def _table(self) -> dict[str, Any] | None:
         """The table of data in the text; None if there is none."""
@@ -220,6 +242,13 @@ def _document(text: str) -> dict[str, Any]:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError:
         return {}
+
+
+def _use_robust_loss(document: tomlkit.TOMLDocument, scale: float | None) -> None:
+    identify: Any = document["identify"]
+    identify["loss"] = "huber"
+    if scale is not None and "loss_scale" not in identify:
+        identify["loss_scale"] = float(f"{scale:.2g}")
 
 
 def _estimate_offset(document: tomlkit.TOMLDocument, values: Any) -> None:

@@ -42,3 +42,11 @@ def test_other_motions_have_no_offset():
 def test_wrapping_and_constant_channels_are_not_judged():
     assert findings(0.6 * SWING, wraps=["angle"]) == ()
     assert [one.code for one in findings(np.zeros(81))] == ["suspect-offset"]
+
+
+def test_an_outlier_does_not_hide_an_offset():
+    values = 0.6 * SWING
+    values[40] = 30.0
+    (finding,) = findings(values)
+    assert finding.code == "suspect-offset"
+    assert finding.values["difference"] == pytest.approx(np.pi / 2, abs=0.02)

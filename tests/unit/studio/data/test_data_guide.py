@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from dalembert.errors import InputError
+from dalembert.studio.data.columns import uses
 from dalembert.studio.data.figure import columns_figure, drawn_columns
 from dalembert.studio.data.guide import DataGuide
 from dalembert.studio.editor.draft import Draft
@@ -74,6 +75,41 @@ def test_a_file_is_mapped_written_and_its_offset_estimated(guide):
     guide.draft.check()
     assert guide.draft.mistakes == ()
     assert [finding.code for finding in looked(guide).findings] == ["late-times"]
+
+
+def test_outliers_are_fitted_by_a_robust_loss(guide):
+    guide.follow()
+    file = guide.draft.path.parent / "own.txt"
+    lines = file.read_text().splitlines()
+    lines[80] = lines[80].split()[0] + " 3000.0"
+    file.write_text("\n".join(lines))
+    guide.choose_file("own.txt")
+    looked(guide)
+    guide.choices = guide.choices.mapped(ANGLE, "angle_deg")
+    looked(guide)
+    remedies = {finding.code: guide.remedy(finding) for finding in guide.findings}
+    assert remedies == {
+        "late-times": "", "outliers": "Use a robust loss", "suspect-offset": "Estimate the offset"
+    }  # fmt: skip
+    outlier = next(finding for finding in guide.findings if finding.code == "outliers")
+    guide.apply(outlier)
+    identify = tomllib.loads(guide.draft.text)["identify"]
+    assert identify["loss"] == "huber"
+    assert 0 < identify["loss_scale"] < 1e-3  # rad; the angles are rounded to thousandths of a degree
+    guide.draft.check()
+    assert guide.draft.mistakes == ()
+    assert guide.remedy(outlier) == ""
+
+
+@pytest.mark.parametrize("head", ["angle [°]", "angle (°)"])
+def test_a_column_in_degrees_by_their_sign_fits_angles(guide, head):
+    guide.follow()
+    (guide.draft.path.parent / "sign.csv").write_text(f"t [s],{head}\n" + "".join(f"{k},{k}\n" for k in range(9)))
+    guide.choose_file("sign.csv")
+    curve = looked(guide).examined.curves[1]
+    assert curve.unit.name == "°"
+    first = list(uses(guide.examined.channels, curve.unit.name))[2]
+    assert guide.examined.channels[first] == "rad"
 
 
 def test_a_wrong_unit_is_put_right(guide):

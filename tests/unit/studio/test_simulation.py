@@ -3,6 +3,7 @@
 import shutil
 from base64 import b64decode
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from dalembert.studio.simulation.parts import parameters_of, part
 from dalembert.studio.worker import Kept
 from dalembert.study import load
 from dalembert.study.posing import posed
+from dalembert.study.tasks.frequency_response import drawn_dofs
 from dalembert.study.template import begin
 
 STUDIES = Path(__file__).parents[3] / "studies"
@@ -176,3 +178,18 @@ def test_nothing_to_simulate_is_a_hint_and_no_error():
     found = simulated(Kept(), source(Path("studies/duffing/backbone.toml")), "", {})
     assert found.hint.startswith("There is nothing to simulate for [backbone].")
     assert (found.film, found.curves) == (None, ())
+
+
+def test_all_observed_degrees_of_freedom_are_drawn_and_have_effects(tmp_path):
+    path = tmp_path / "study.toml"
+    path.write_text(OSCILLATOR)
+    found = influences(Kept(), source(path), "", {"k": 3.0})
+    assert len(found.channels) == 1
+    ((effect,),) = found.effects.values()
+    omega = 2 * np.pi * np.array([0.2, 0.25, 0.3, 0.35, 0.4])
+    stiff, lost = 3.0 - omega**2, 0.1 * omega
+    size, slope = 1 / np.hypot(stiff, lost), -stiff * np.hypot(stiff, lost) ** -3.0
+    assert effect == pytest.approx(2.0 * np.sqrt(np.mean(slope**2)) / np.ptp(size), rel=0.01)
+    result = SimpleNamespace(dofs=("a.x", "b.x"))
+    table = SimpleNamespace(dof="b.x", observe=["a.x", "b.x"])
+    assert drawn_dofs(table, result) == ("b.x", "a.x")

@@ -19,9 +19,15 @@ if TYPE_CHECKING:
     from dalembert.multibody import Drawing, Trajectory
     from dalembert.studio.editor.outline import Outline
     from dalembert.study import Study
+    from dalembert.vibration import FrequencyCurve
 
 REST = 1e-9
 """Range of a channel, relative to the largest effect of a parameter on it, up to which it is at rest."""
+
+DIFFERENCE = 1e-4
+"""Step of differences, as a part of the distance between the bounds of a parameter."""
+LONG = 5.0
+"""Seconds of curves over frequency above which no effects are computed: the next simulation would wait."""
 
 
 @dataclass(frozen=True)
@@ -123,7 +129,7 @@ def influences(kept: Kept, source: Source, name: str, values: Mapping[str, float
     """Return how strongly the parameters act on the channels of a part at values of them by name."""
     own = _part(kept, source, name)
     if own.model is None:
-        return Influences((), {})
+        return _over_frequency(own, values) if own.study.task == OVER_FREQUENCY else Influences((), {})
     vector, parameters = own.vector(values), own.model.parameters
     response, jacobian = own.model.linearise(vector)
     columns, channels = _columns(own), tuple(channel.name for channel in own.model.channels)
@@ -214,11 +220,54 @@ def _misfit(own: Part, response: np.ndarray) -> tuple[float, dict[str, float]]:
 def _followed(own: Part, values: Mapping[str, float], began: float) -> Simulated:
     """The curve of a structure over frequency."""
     from dalembert.report.charts import frequency_curve
-    from dalembert.study.tasks.frequency_response import curve_options, drawn_dofs
-    from dalembert.vibration import frequency_response
+    from dalembert.study.tasks.frequency_response import drawn_dofs
 
-    study, table = own.study, own.study.table
-    curve = frequency_response(study.system(own.vector(values)), table.along, study.balance, **curve_options(study))
+    table, curve = own.study.table, _curve_at(own, own.vector(values))
     seconds = perf_counter() - began
     figure = frequency_curve(curve, drawn_dofs(table, curve) or None, kind=table.amplitude, title="")
     return Simulated(curves=(Curves(figure=on_page(figure)),), seconds=seconds)
+
+
+def _curve_at(own: Part, vector: np.ndarray) -> "FrequencyCurve":
+    from dalembert.study.tasks.frequency_response import curve_options
+    from dalembert.vibration import frequency_response
+
+    study = own.study
+    return frequency_response(study.system(vector), study.table.along, study.balance, **curve_options(study))
+
+
+def _over_frequency(own: Part, values: Mapping[str, float]) -> Influences:
+    """Effects on amplitudes over given frequencies, by differences; none where the curves would take long.
+
+    A curve that is followed by arc length has other points at other values, and no effects.
+    """
+    from dalembert.report.focus import movers
+    from dalembert.study.tasks.frequency_response import drawn_dofs
+
+    vector, table, began = own.vector(values), own.study.table, perf_counter()
+    first = _curve_at(own, vector)
+    if (perf_counter() - began) * len(vector) > LONG or not first.converged.any():
+        return Influences((), {})
+    dofs = drawn_dofs(table, first) or movers(first)
+    sizes, effects = _sizes(first, dofs, table.amplitude), {}
+    ranges = np.nanmax(sizes, axis=0) - np.nanmin(sizes, axis=0)
+    for place, item in enumerate(own.parameters):
+        span = item.upper - item.lower
+        step = DIFFERENCE * span * (-1.0 if vector[place] > (item.lower + item.upper) / 2 else 1.0)
+        moved = vector.copy()
+        moved[place] += step
+        other = _curve_at(own, moved)
+        if not np.array_equal(other.frequencies, first.frequencies):
+            return Influences((), {})
+        across = vector[place] * np.log(item.upper / item.lower) if item.logarithmic else span
+        slopes = (_sizes(other, dofs, table.amplitude) - sizes) / step
+        both = first.converged & other.converged
+        moves = across * np.sqrt(np.mean(slopes[both] ** 2, axis=0)) if both.any() else np.zeros(len(dofs))
+        effects[own.named(item.name)] = np.nan_to_num(moves / np.maximum(ranges, 1e-300)).tolist()
+    return Influences(tuple(dofs), effects)
+
+
+def _sizes(curve: "FrequencyCurve", dofs: tuple[str, ...], kind: str) -> np.ndarray:
+    """Amplitudes (points, dofs); NaN where there are none."""
+    columns = [np.where(curve.converged, curve.amplitude(dof, kind), np.nan) for dof in dofs]
+    return np.stack(columns, axis=1)

@@ -115,15 +115,18 @@ def _best(table: FrequencyResponseTable, result: Any) -> dict[str, Any]:
 
 
 def drawn_dofs(table: FrequencyResponseTable, result: Any) -> tuple[str, ...]:
-    """The degrees of freedom that figures show: the one whose peak is told, or those that were asked for."""
-    if table.dof is not None:
-        return tuple(name for name in result.dofs if table.dof in (name, name.rpartition(".")[0]))
-    return () if table.observe is None or len(result.dofs) > MOST_DRAWN else result.dofs
+    """The degrees of freedom that figures show: the one whose peak is told first, then those that were asked for."""
+    told = tuple(name for name in result.dofs if table.dof in (name, name.rpartition(".")[0]))
+    asked = () if table.observe is None or len(result.dofs) > MOST_DRAWN else result.dofs
+    return tuple(dict.fromkeys((*told, *asked)))
 
 
 def _response(study: Study, result: Any, told: Mapping[str, Any]) -> Response:
     """The outcome, with the numbers of its peak."""
-    options = {"dofs": drawn_dofs(study.table, result), "amplitude": study.table.amplitude}
+    dofs = drawn_dofs(study.table, result)
+    if study.table.dof is not None and study.table.sweep is None:  # else its peak might be that of another one
+        dofs = tuple(name for name in dofs if study.table.dof in (name, name.rpartition(".")[0]))
+    options = {"dofs": dofs, "amplitude": study.table.amplitude}
     return Response(study, result, _best(study.table, result), options, told)
 
 

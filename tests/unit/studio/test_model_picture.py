@@ -142,6 +142,21 @@ def test_a_robot_belongs_to_its_table(draw):
     assert any(shape["kind"] == "mesh" for shape in picture.scene["shapes"])
 
 
+def test_the_parts_of_a_robot_are_chosen_by_its_table(draw):
+    picture = draw(templates()["robot"].text, "robot")
+    whole = parts_at(picture.places, ("model", "robot"), picture.parts)
+    assert {"body upper", "joint shoulder"} <= set(whole)
+    assert "ground" not in whole
+    one = parts_at(picture.places, ("model", "robot", "positions", "shoulder"), picture.parts)
+    assert one == ["joint shoulder"]
+
+
+def test_drives_of_a_robot_do_not_crowd_its_joints(draw):
+    names = draw(templates()["robot"].text, "robot").scene["names"]
+    places = [tuple(np.round(name["at"], 6)) for name in names if not name["part"].startswith("channel ")]
+    assert len(set(places)) == len(places)
+
+
 def test_what_cannot_be_assembled_is_drawn_as_placed(draw):
     assert draw(LOOP).mistake == ""
     picture = draw(LOOP, wire=5.0)

@@ -39,17 +39,30 @@ def place_of(places: Mapping[str, Place], part: str) -> Place:
     return places.get(part) or places.get("", ("model",))
 
 
-def parts_at(places: Mapping[str, Place], place: Place | None) -> list[str]:
+def parts_at(places: Mapping[str, Place], place: Place | None, drawn: Collection[str] = ()) -> list[str]:
     """Return the parts whose tables a place lies in, or that lie in it: all joints in ``("model", "joint")``.
+
+    In the table of a robot or a function these are the drawn parts without tables: the one that a key names, or all.
 
     Examples
     --------
     >>> parts_at({"body rod": ("model", "body", 0), "joint pin": ("model", "joint", 0)}, ("model", "body", 0, "mass"))
     ['body rod']
+    >>> robot = {"": ("model", "robot")}
+    >>> parts_at(robot, ("model", "robot", "positions", "elbow"), ["body arm", "joint elbow"])
+    ['joint elbow']
+    >>> parts_at(robot, ("model", "robot"), ["body arm", "joint elbow"])
+    ['body arm', 'joint elbow']
     """
     if place is None or len(place) < 2:
         return []
-    return [name for name, table in places.items() if name and (is_within(place, table) or is_within(table, place))]
+    own = [name for name, table in places.items() if name and (is_within(place, table) or is_within(table, place))]
+    other = places.get("")
+    if own or other is None or not is_within(place, other):
+        return own
+    loose = [part for part in dict.fromkeys(drawn) if part not in places and part.partition(" ")[2]]
+    key = str(place[-1])
+    return [part for part in loose if part.partition(" ")[2] in (key, key.rpartition(".")[0])] or loose
 
 
 def absent_parts(places: Mapping[str, Place], drawn: Collection[str]) -> list[str]:

@@ -58,6 +58,11 @@ class Picture:
     message: str = ""
     mistake: str = ""
 
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """Parts that are drawn."""
+        return tuple(_parts(self.svg) | {shape["part"] for shape in (self.scene or {}).get("shapes", ())})
+
 
 def model_picture(
     kept: Kept, path: Path, text: str, values: Mapping[str, float], box: np.ndarray | None = None
@@ -115,7 +120,10 @@ def _mechanism(
     draw_mechanism(canvas, view, drawn)
     channels = _channels(study, drawn)
     draw_names(canvas, view, drawn, channels)
-    svg, scene = canvas.svg("Drawing of the mechanism"), None if view.flat else mechanism_scene(drawn, channels, near)
+    svg, scene = (
+        canvas.svg("Drawing of the mechanism"),
+        None if view.flat else mechanism_scene(drawn, channels, near, places),
+    )
     seen = [name for _, own in channels.values() for name in own]
     return Picture(svg, scene, places, corners, _absent(places, svg, scene, seen), message, mistake)
 
@@ -135,10 +143,15 @@ def _absent(
     places: Mapping[str, Place], svg: str, scene: Mapping[str, Any] | None, channels: Iterable[str] = ()
 ) -> tuple[str, ...]:
     """Parts that have tables and no shape in one of the drawings; channels that share a mark are there."""
-    drawn = {f"{role} {unescape(name)}" for role, name in re.findall(r'<g class="(\w+)" data-part="([^"]*)"', svg)}
+    drawn = _parts(svg)
     if scene is not None:
         drawn &= {shape["part"] for shape in scene["shapes"]}
     return tuple(absent_parts(places, drawn | {f"channel {name}" for name in channels}))
+
+
+def _parts(svg: str) -> set[str]:
+    """Parts of a drawing by their roles and names."""
+    return {f"{role} {unescape(name)}" for role, name in re.findall(r'<g class="(\w+)" data-part="([^"]*)"', svg)}
 
 
 def _marks(study: "Study", system: Any) -> list[str]:

@@ -1,6 +1,6 @@
 """A model in space as a browser draws it in three dimensions: shapes of its parts, and names."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,9 +22,16 @@ MOST_NAMES = 24
 
 
 def mechanism_scene(
-    sketch: "Sketch", channels: Mapping[str, tuple[np.ndarray, list[str]]], measured: Mapping[str, np.ndarray]
+    sketch: "Sketch",
+    channels: Mapping[str, tuple[np.ndarray, list[str]]],
+    measured: Mapping[str, np.ndarray],
+    tables: Collection[str] | None = None,
 ) -> Scene:
-    """Return a mechanism: bodies as surfaces or lines, joints, loads, gravity, points with channels, measured ones."""
+    """Return a mechanism: bodies as surfaces or lines, joints, loads, gravity, points with channels, measured ones.
+
+    ``tables`` are the parts that have tables. A load at the place of another name is named only if it is among them:
+    the drives of a robot would crowd its joints.
+    """
     from dalembert.multibody.components.points import Point
     from dalembert.multibody.sketch import is_grounded
 
@@ -53,7 +60,10 @@ def mechanism_scene(
     for load in sketch.system.loads:
         if load.name in sketch.ends:
             shapes.append(_load(load, sketch))
-            names.append(_name(f"load {load.name}", sketch.ends[load.name].mean(axis=0)))
+            name = _name(f"load {load.name}", sketch.ends[load.name].mean(axis=0))
+            named = tables is None or name["part"] in tables
+            if named or not any(np.allclose(name["at"], other["at"], atol=1e-9) for other in names):
+                names.append(name)
     for owner, (position, own) in channels.items():
         outputs = ", ".join(channel.rpartition(".")[2] for channel in own)
         shapes.append(_shape("ring", f"channel {own[0]}", position[None], COLOURS[1]))

@@ -117,7 +117,7 @@ class _Panel:
 
     def _mark(self) -> None:
         wrong = [part for mistake in self.draft.mistakes for part in self._parts_of(mistake)]
-        chosen = parts_at(self.places, self.draft.selection)
+        chosen = parts_at(self.places, self.draft.selection, self.picture.parts)
         self.view.mark(chosen, wrong)
         for part, link in self.links.items():
             link.props(f"aria-pressed={str(part in chosen).lower()}")

@@ -128,14 +128,16 @@ def _keep(path: Path, plate: ReducedStructure, forced: dict[str, str], pairs: tu
     rows = [row for row, name in enumerate(plate.full_dofs.names) if name.rpartition(".")[0] in set(names)]
     called = {node: name for name, node in forced.items()}  # nodes and degrees of freedom, so that forces have places
     called |= {f"{node}.{axis}": f"{name}.{axis}" for node, name in called.items() for axis in "xyz"}
+    full_names = [called.get(name, name) for name in np.array(plate.full_dofs.names)[rows].tolist()]
     path.parent.mkdir(parents=True, exist_ok=True)
     handle, part = tempfile.mkstemp(dir=path.parent, suffix=".part")
     with os.fdopen(handle, "wb") as file:
         np.savez(
             file, mass=plate.mass, stiffness=plate.stiffness, pairs=pairs,
             names=[called.get(name, name) for name in plate.dofs.names],
-            basis=plate.basis[rows], full_names=[called.get(one, one) for one in np.array(plate.full_dofs.names)[rows].tolist()],
-            node_names=[called.get(name, name) for name in names.tolist()], places=plate.nodes.places[shown], faces=np.searchsorted(shown, plate.nodes.faces),
+            basis=plate.basis[rows], full_names=full_names,
+            node_names=[called.get(name, name) for name in names.tolist()],
+            places=plate.nodes.places[shown], faces=np.searchsorted(shown, plate.nodes.faces),
         )  # fmt: skip
     Path(part).replace(path)
 

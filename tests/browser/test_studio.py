@@ -292,6 +292,26 @@ def test_ten_thousand_events_do_not_slow_it(visit, root):
     assert page.evaluate("document.querySelectorAll('*').length") < 3000
 
 
+def test_a_stage_with_fewer_points_than_the_last_one_is_drawn(visit, root):
+    folder = root / "runs" / "stages"
+    folder.mkdir(parents=True)
+    (folder / "state.json").write_text(json.dumps({"state": "failed", "task": "identify", "message": "stopped"}))
+
+    def steps(*numbers: int, samples: int) -> str:
+        event = {"event": "iteration", "start": 0, "values": [1.0], "samples": samples}
+        return "".join(json.dumps(event | {"simulations": n, "best": 100.0 - n}) + "\n" for n in numbers)
+
+    (folder / "events.jsonl").write_text(steps(*range(50), samples=9))
+    page = visit("/run/stages")
+    drawn = "document.querySelector('.js-plotly-plot')?._fullData?.[0]?.x"
+    wait_until(page, f"{drawn}?.length === 50")
+    for numbers in ((50,), (51, 52)):
+        with (folder / "events.jsonl").open("a") as file:
+            file.write(steps(*numbers, samples=18))
+        wait_until(page, f"{drawn}?.at(-1) === {numbers[-1]}")
+    assert page.evaluate(f"[...{drawn}]") == [50, 51, 52]
+
+
 def fetched(url, **headers):
     """Status of an answer."""
     try:

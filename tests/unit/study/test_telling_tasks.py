@@ -1,5 +1,7 @@
 """What data can tell, in study files: profiles and predictions of a fit, designs, priors, the look before solving."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from inline_snapshot import snapshot
@@ -204,3 +206,9 @@ def test_friction_that_does_not_suit_the_motion_is_foreseen():
     assert len(noted) == 1
     assert "crosses the smoothed friction" in noted[0]
     assert not [sentence for sentence in telling.foreseen(pendulum(0.3), data) if "'pin'" in sentence]
+
+
+def test_only_a_swarm_has_a_settled_number_of_simulations():
+    swarm = {"kind": "standard-swarm", "particles": 5, "iterations": 8}
+    tables = [TASKS["identify"].table()(**table) for table in ({}, {"method": swarm}, {"method": swarm, "starts": 3})]
+    assert [TASKS["identify"].planned(SimpleNamespace(table=table)) for table in tables] == [None, 40, 120]

@@ -31,7 +31,8 @@ def convergence(curves: Mapping[str, Sequence[tuple[float, float]]]) -> go.Figur
     for place, (name, points) in enumerate(curves.items()):
         x, y = np.array(points, dtype=float).reshape(-1, 2).T
         line = {"color": LIGHT.series[place % len(LIGHT.series)], "width": 2}
-        figure.add_scatter(x=x, y=positive(y), name=plain(name), mode="lines", line=line)
+        mode = "lines" if len(x) > 1 else "markers"  # a line through one point is not seen
+        figure.add_scatter(x=x, y=positive(y), name=plain(name), mode=mode, line=line)
     themed(figure, "", height=320)
     figure.update_xaxes(title="simulations", rangemode="tozero")
     figure.update_yaxes(title="best fitness so far", **logarithmic(figure))

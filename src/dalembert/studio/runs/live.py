@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from dalembert.studio.runs.remaining import Remaining
-from dalembert.study.events import Event, event_of
+from dalembert.study.events import OF_THE_RUN, Event, event_of
 from dalembert.study.progress import Told
 
 SHOWN = 200
@@ -81,14 +81,17 @@ class Live:
     def _take(self, event: Event) -> None:
         self.count += 1
         self.recent.append(event)
-        self._told.take(event)
-        self.remaining.take(event, *self.progress[1:])
+        if event["event"].startswith(OF_THE_RUN):
+            self.remaining.begin()
+        if self._told.take(event):
+            self.remaining.take(event, *self.progress[1:])
         self._follow(event)
         best = event.get("best")
         if best is None:
             return
         if event.get("samples") != self._samples:  # a fitness over more samples is another one
-            self._samples, self.best, self.convergence = event.get("samples"), float("inf"), []
+            self._samples, self.best = event.get("samples"), float("inf")
+            self.convergence, self._every = [], 1
         if best < self.best:
             self.best, self.values = best, event.get("values") or self.values
         if self.count % self._every == 0:

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from urllib.parse import quote
@@ -18,7 +19,7 @@ from dalembert.studio.runs.findings_list import findings_list
 from dalembert.studio.runs.fit_so_far import fit_so_far
 from dalembert.studio.runs.last_runs import study_of
 from dalembert.studio.runs.live import Live
-from dalembert.studio.runs.remaining import most_simulations
+from dalembert.studio.runs.remaining import planned_simulations
 from dalembert.studio.sparing import Sparing
 from dalembert.studio.worker import Kept, Worker, WorkerError
 from dalembert.studio.workspace import Workspace
@@ -63,7 +64,8 @@ class _Page:
         self.workspace, self.folder, self.jobs, self.watcher = workspace, folder, jobs, watcher
         self.drawing, self.computing = Sparing(), Sparing()
         self.live = Live(folder.events)
-        self.state, self.complaint, self.shown, self.drawn = "", "", 0, 0
+        self.state, self.complaint, self.shown = "", "", 0
+        self.drawn: dict[str, object] = {}
         self.fitted: list[float] = []
         self.fitting: asyncio.Task | None = None
         self.learning: asyncio.Task | None = None
@@ -178,30 +180,33 @@ class _Page:
         self.shown = self.live.count
 
     def _draw_curves(self) -> None:
-        """Draw the curves that have grown, those of a run that has ended at once."""
+        """Draw the curves that have changed, those of a run that has ended at once."""
         if self.state == FINISHED or (self.state == RUNNING and not self.drawing.is_due):
             return
         with self.drawing.work():
-            self._draw_grown()
+            self._draw_changed()
 
-    def _draw_grown(self) -> None:
-        points = self.live.convergence
-        if len(points) > 1 and len(points) != self.drawn:
-            self.drawn = len(points)
+    def _draw_changed(self) -> None:
+        points, visited, names = self.live.convergence, self.live.visited, self.live.names
+        if points and self._is_new("convergence", points):
             _draw(self.curve, "Best value over simulations", convergence({self.folder.path.name: points}))
-            if self.live.visited and self.live.names:
-                _draw(self.paths, "Parameters over simulations", wandering(self.live.visited, self.live.names))
-        points = self.live.followed
-        if len(points) > 1 and len(points) != self.drawn:
-            self.drawn = len(points)
-            _draw(self.curve, "The response computed so far", followed(points, self.live.axes))
+        if visited and names and self._is_new("visited", visited):
+            _draw(self.paths, "Parameters over simulations", wandering(visited, names))
+        if len(self.live.followed) > 1 and self._is_new("followed", self.live.followed):
+            _draw(self.curve, "The response computed so far", followed(self.live.followed, self.live.axes))
+
+    def _is_new(self, what: str, points: Sequence[object]) -> bool:
+        """Return True unless these points of a curve are drawn; a new stage may have fewer of them than the last."""
+        is_new = self.drawn.get(what) != tuple(points)
+        self.drawn[what] = tuple(points)
+        return is_new
 
     async def _learn(self) -> None:
         """Ask another process for the names of the unknowns and the number of simulations, which take imports."""
         name = self.folder.path.name
         with suppress(WorkerError):  # whatever a user's model raises, the run itself says it
             self.live.name(await self.watcher.ask(f"names {name}", _names, self.folder) or ())
-            self.live.remaining.most = await self.watcher.ask(f"most {name}", _most, self.folder.path)
+            self.live.remaining.planned = await self.watcher.ask(f"planned {name}", _planned, self.folder.path)
 
     def _fit_again(self) -> None:
         """Show the fit to another experiment at the next look."""
@@ -241,8 +246,8 @@ def _names(kept: Kept, folder: RunFolder) -> tuple[str, ...]:
         return ()
 
 
-def _most(kept: Kept, run: Path) -> int | None:
-    return most_simulations(run)
+def _planned(kept: Kept, run: Path) -> int | None:
+    return planned_simulations(run)
 
 
 def _saved(folder: RunFolder, file: str) -> str:

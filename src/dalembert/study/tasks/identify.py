@@ -118,10 +118,15 @@ def _cost(table: Any, parameters: int) -> tuple[str, int | None, int | None]:
         words = f"{name}: about {one} simulations a start, sensitivities counted, and at most {most} starts"
         return words, one, one if most == 1 else most * (one + SCREENED * parameters)
     if isinstance(method, Swarm):
-        count = method.particles * method.iterations * (starts or 1)
+        count = _simulations(method, starts)
         sizes = f"{starts or 1} x {method.particles} particles x {method.iterations} iterations"
         return f"{name}: {sizes} = {count} simulations", count, count
     return f"{name} {getattr(method, 'name', '')}: as many simulations as it asks for", None, None
+
+
+def _simulations(swarm: Swarm, starts: int | None) -> int:
+    """Return the number of simulations of a swarm, which does not stop before its last iteration."""
+    return swarm.particles * swarm.iterations * (starts or 1)
 
 
 def _segments(shooting: ShootingTable) -> str:
@@ -204,6 +209,10 @@ class Identify(Task):
         _, least, most = _cost(study.table, len(model.parameters))
         batch = TOGETHER if isinstance(settings(study.table.method), Swarm) else 1
         return evaluated(model, model.parameters.start, least, most, batch)
+
+    def planned(self, study: Study) -> int | None:
+        method = settings(study.table.method)
+        return _simulations(method, study.table.starts) if isinstance(method, Swarm) else None
 
     def foresight(self, study: Study) -> int:
         return 2 + len(unknown_names(study))

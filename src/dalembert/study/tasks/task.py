@@ -134,6 +134,10 @@ class Task(ABC):
     def effort(self, study: Study) -> Effort:
         """What the study spends its time with."""
 
+    def planned(self, study: Study) -> int | None:
+        """Simulations that the search takes, where they are settled beforehand; None where it stops by itself."""
+        return None
+
     def unknowns(self, study: Study) -> tuple[str, ...]:
         """Names of the values that the events of a run tell."""
         return study.parameters.names

@@ -195,7 +195,33 @@ def test_a_run_is_continued_from_its_values(page, root):
 def test_a_name_that_is_refused_changes_nothing(page, root):
     choose(page, "pendulum")
     page.get_by_role("button", name="Rename").click()
-    page.get_by_label("New name").fill("../up")
+    name = page.get_by_label("New name")
+    name.fill("../up")
     page.keyboard.press("Enter")
     wait_until(page, f"{TEXT}.includes('cannot be a name here')")
     assert (root / "runs" / "pendulum").is_dir()
+    assert name.input_value() == "../up"
+    assert page.locator(".q-dialog [role=alert]").is_visible()
+    name.fill("up")
+    page.keyboard.press("Enter")
+    wait_until(page, f"{NAMES}.includes('up') && !document.querySelector('.q-dialog')")
+    assert (root / "runs" / "up").is_dir()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_a_message_goes_when_the_action_succeeds(root, visit, scheme):
+    page = visit("/", scheme=scheme)
+    wait_until(page, f"{NAMES}.split(',').length === 3")
+    for name, is_taken in (("pendulum", True), ("pendulum 2", False)):
+        focus(page, "doubtful")
+        page.keyboard.press("F2")
+        page.keyboard.press("Control+a")
+        page.keyboard.type(name)
+        page.keyboard.press("Enter")
+        wait_until(page, f"{TEXT}.includes('choose another name') === {str(is_taken).lower()}")
+        if is_taken:
+            close = page.locator(".q-notification").get_by_role("button", name="Close")
+            assert close.evaluate("one => getComputedStyle(one).color") == "rgb(255, 255, 255)"
+            ground = page.locator(".q-notification").evaluate("one => getComputedStyle(one).backgroundColor")
+            assert ground == "rgb(193, 0, 21)"
+    wait_until(page, f"{NAMES}.includes('pendulum 2')")

@@ -45,6 +45,7 @@ body.body--dark {{ --focus: {TEXTS["primary"]}; --ground: #121212 }}
 .cm-editor.cm-focused {{ outline: 2px solid var(--focus) !important }}
 .js-plotly-plot .main-svg :is(.cartesianlayer, .infolayer) text {{ fill: currentColor !important }}
 .q-dialog .q-card {{ z-index: 1 }}
+.q-notification__actions {{ --q-primary: currentColor }}
 .model-drawing text {{ fill: currentColor; paint-order: stroke; stroke: var(--ground); stroke-width: 3px }}
 .model-space button {{ color: inherit !important }}
 .cm-editor .cm-activeLine {{ background: rgba(118, 129, 143, 0.06) }}

@@ -1,13 +1,14 @@
 """What all pages share: head, way about, colours, and how messages are shown."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Hashable, Iterator
 from contextlib import ContextDecorator, contextmanager
 from functools import wraps
 from inspect import iscoroutinefunction
 from typing import Any
 from urllib.parse import quote
+from weakref import WeakValueDictionary
 
-from nicegui import ui
+from nicegui import context, ui
 
 from dalembert import __version__
 from dalembert.errors import DalembertError, told, unchanged
@@ -114,24 +115,42 @@ class _Once:
             complain(error)
 
 
-def complain(error: Exception) -> None:
-    """Show an error as a message that stays until it is read."""
+def complain(error: Exception) -> ui.notification:
+    """Show an error as a message that stays until it is read; return the message."""
     if isinstance(error, DalembertError | OSError):
         sentence = unchanged(error)
     else:
         sentence = f"The studio met an error: {told(error)}. Reload the page: a text that is not saved is kept."
-    ui.notify(sentence, type="negative", multi_line=True, close_button="Close", timeout=0)
+    return ui.notification(sentence, type="negative", multi_line=True, close_button="Close", timeout=None)
+
+
+_MESSAGES: WeakValueDictionary[tuple[str, Hashable], ui.notification] = WeakValueDictionary()
+"""Messages of actions that failed last time, by the page that shows them and the action."""
 
 
 class _Complaints(ContextDecorator):
+    """A block of an action; see :func:`complaints`."""
+
+    def __init__(self, action: Hashable) -> None:
+        self.action = self if action is None else action
+
     def __enter__(self) -> None:
         """Begin the block."""
+        self.page = context.client.id  # at the end the element that asked for the action may be gone
 
     def __exit__(self, kind: object, error: object, trace: object) -> bool:
+        if kind is None or isinstance(error, DalembertError | OSError):
+            self._take_away()
         if not isinstance(error, DalembertError | OSError):
             return False
-        complain(error)
+        _MESSAGES[self.page, self.action] = complain(error)
         return True
+
+    def _take_away(self) -> None:
+        """Take the message of the last time away, which is out of date."""
+        message = _MESSAGES.pop((self.page, self.action), None)
+        if message is not None and not message.is_deleted:
+            message.dismiss()
 
     def __call__(self, function: Callable[..., Any]) -> Callable[..., Any]:
         if not iscoroutinefunction(function):
@@ -145,9 +164,13 @@ class _Complaints(ContextDecorator):
         return guarded
 
 
-def complaints() -> _Complaints:
-    """Return a block, which decorates functions and coroutine functions too, whose errors are shown as messages."""
-    return _Complaints()
+def complaints(action: Hashable = None) -> _Complaints:
+    """Return a block, which decorates functions and coroutine functions too, whose errors are shown as messages.
+
+    A message is taken away when the same action is done again: what the block decorates, or whatever has the same
+    ``action``, such as its name.
+    """
+    return _Complaints(action)
 
 
 def report_of(folder: RunFolder, height: str) -> None:

@@ -42,7 +42,7 @@ def disk_notice(draft: Draft, copied: Callable[[], object]) -> None:
 
     def show() -> None:
         if draft.disk == "changed" and draft.is_saved:
-            with notice, complaints():
+            with notice, complaints("follow file"):
                 draft.reload()
                 ui.notify(
                     f"{draft.path.name} changed on disk: the text shows the new content. Undo brings back the old."

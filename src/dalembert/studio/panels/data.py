@@ -207,12 +207,12 @@ class DataPanel:
         self._show_written()
 
     def _fix(self, finding: Finding) -> None:
-        with complaints():
+        with complaints("correct data"):
             self.guide.apply(finding)
         self._read()
 
     async def _uploaded(self, event: events.UploadEventArguments) -> None:
-        with complaints():
+        with complaints("place file"):
             placed = await run.io_bound(
                 self.room.workspace.put, self.draft.name, event.file.name, await event.file.read()
             )

@@ -87,7 +87,7 @@ class Additions:
             self._add(addition, str(given).strip())
 
     def _add(self, addition: Addition, what: str) -> None:
-        with complaints():
+        with complaints("add part"):
             text, place = added(self.draft.text, addition, what)
             self.draft.set_text(text)
             self.draft.select(place)
@@ -166,7 +166,7 @@ class Editor:
                 self.fields[row.field.key] = FormField(row, known, partial(self._commit, form), self._explain, enter)
 
     def _commit(self, form: Form, row: Row, written: str) -> None:
-        with complaints():
+        with complaints(("set", row.field.key)):
             self.draft.set_text(with_row(self.draft.text, form.place, row.field, written))
 
     def _explain(self, row: Row) -> None:
@@ -184,7 +184,7 @@ class Editor:
         form = form_at(self.draft.text, self.draft.selection, inner=self.inner)
         if form is None:
             return
-        with complaints():
+        with complaints("remove part"):
             self.draft.set_text(without(self.draft.text, form.place))
             self.inner = self.inner[:-1]
             if not self.inner:

@@ -75,7 +75,11 @@ _PRESSED = f"""params => {{
 }}"""
 _CHANGED = f"""params => {{
     const changed = {{ run: params.data.run, field: params.column.colId, value: params.newValue ?? '' }};
-    if (changed.field === 'run') {{ changed.run = params.oldValue; params.data.run = params.oldValue; }}
+    if (changed.field === 'run') {{
+        changed.run = params.oldValue;
+        params.data.run = params.oldValue;  // until the folder is renamed, which may be refused
+        params.api.refreshCells({{ rowNodes: [params.node], columns: ['run'], force: true }});
+    }}
     emitEvent('{CHANGED}', changed);
 }}"""
 

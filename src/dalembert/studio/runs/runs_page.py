@@ -7,6 +7,7 @@ from urllib.parse import quote, urlencode
 
 from nicegui import run, ui
 
+from dalembert.errors import DalembertError, unchanged
 from dalembert.studio.frame import button, complaints, frame
 from dalembert.studio.jobs import Jobs
 from dalembert.studio.runs.again import run_again
@@ -128,12 +129,12 @@ class _Page:
         if key == "Enter":
             ui.navigate.to(f"/run/{quote(name)}")
         else:
-            with complaints():
+            with complaints("delete"):
                 self._delete(self.selected if name in self.selected else [name])
 
     async def change(self, name: str, field: str, text: str) -> None:
         """Take what the user entered into a cell."""
-        with complaints():
+        with complaints(("change", field)):
             if field == "run":
                 await self.rename(name, text.strip())
                 return
@@ -155,12 +156,16 @@ class _Page:
         (name,) = self.selected
         with ui.dialog() as dialog, ui.card().classes("w-96"):
             ui.label(f"Rename {name}").classes("text-lg font-bold break-all").props("role=heading aria-level=2")
-            box = ui.input("New name", value=name).classes("w-full").props("autofocus outlined")
+            box = ui.input("New name", value=name).classes("w-full").props("autofocus outlined hide-bottom-space")
+            box.on_value_change(lambda: setattr(box, "error", None))
 
             async def done() -> None:
-                dialog.close()
-                with complaints():
+                try:
                     await self.rename(name, (box.value or "").strip())
+                except (DalembertError, OSError) as error:  # the dialog stays, with what was typed
+                    box.error = unchanged(error)
+                else:
+                    dialog.close()
 
             box.on("keydown.enter", done)
             with ui.row().classes("w-full justify-end gap-2"):
@@ -208,7 +213,7 @@ class _Page:
         self.undo_row.set_visibility(bool(count))
 
     async def undo(self) -> None:
-        with complaints():
+        with complaints("undo"):
             for one in self.deleted:
                 restore(self.workspace, one)
         self.deleted = []
@@ -232,13 +237,13 @@ class _Page:
 
     async def _restore(self, one: Deleted, dialog: ui.dialog) -> None:
         dialog.close()
-        with complaints():
+        with complaints("restore"):
             restore(self.workspace, one)
         await self.look()
 
     async def _empty(self, dialog: ui.dialog) -> None:
         dialog.close()
-        with complaints():
+        with complaints("empty trash"):
             count = empty_trash(self.workspace)
             ui.notify(f"{count} run{'s' * (count > 1)} removed.", type="positive")
         self.deleted = []

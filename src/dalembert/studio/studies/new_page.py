@@ -24,7 +24,7 @@ def new_page(workspace: Workspace) -> None:
         ui.label("Open a study file").classes("text-xl font-bold").props("role=heading aria-level=2")
 
         async def uploaded(event: events.UploadEventArguments) -> None:
-            with complaints():
+            with complaints("begin study from file"):
                 text = as_text(await event.file.read(), event.file.name)
                 begin(workspace, chosen() or workspace.free(Path(event.file.name).stem), text, {})
 

@@ -98,7 +98,7 @@ async def _start(draft: Draft, room: Room, checking: Checking) -> None:
     """Save, run in a process of its own, and go to the run's page."""
     if draft.reading.text != draft.text:
         await checking.check()
-    with complaints():
+    with complaints("save"):
         save_text(draft)
         if draft.study is not None:
             name = draft.study.name if draft.path.stem != "study" else draft.path.parent.name

@@ -37,7 +37,7 @@ def template_cards(
 
 def begin(workspace: Workspace, name: str, text: str, beside: dict[str, str]) -> None:
     """Make a study with the files beside it, and go to its page."""
-    with complaints():
+    with complaints("begin study"):
         study = workspace.create(name, text, partial(_write, beside))
         ui.navigate.to(f"/study/{quote(study)}")
 

@@ -25,13 +25,13 @@ def text_head(draft: Draft, editor: TextEditor, first: Callable[[], object], cop
     """
     with ui.row().classes("gap-2 items-center"):
         first()
-        save = button("Save", complaints()(lambda: save_text(draft)), icon="save")
+        save = button("Save", complaints("save")(lambda: save_text(draft)), icon="save")
         undo, redo = icon_button("undo", "Undo", draft.undo), icon_button("redo", "Redo", draft.redo)
         verdict = ui.label("").props("role=status aria-live=polite")
     disk_notice(draft, copied)  # after the buttons, which come first by keyboard
     does = ui.label("").classes("break-words")
     wrong = ui.column().classes("gap-1 w-full")
-    editor.element.map_key("Mod-s", complaints()(lambda: save_text(draft)))
+    editor.element.map_key("Mod-s", complaints("save")(lambda: save_text(draft)))
 
     def show_text() -> None:
         undo.set_enabled(draft.can_undo)

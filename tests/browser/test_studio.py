@@ -204,8 +204,8 @@ def test_findings_are_in_the_list_and_beside_each_other(visit, known, root):
     wait_until(page, f"{TEXT}.includes('1 warning, 1 note')")
     page = visit("/compare?run=first&run=doubtful")
     rows = compared(page)
-    assert re.fullmatch(r"[\d.]+ ± [\d.e-]+", rows["drag"][0]), rows
-    assert re.fullmatch(r"[\d.]+", rows["drag"][1]), rows
+    assert re.fullmatch(r"[\d.]+ ± [\d.e-]+", rows["drag (N*m*s)"][0]), rows
+    assert re.fullmatch(r"[\d.]+", rows["drag (N*m*s)"][1]), rows
     assert rows["findings"][1] == "1 warning, 1 note"
 
 

@@ -1,5 +1,6 @@
 """What a user sees of a run while it goes on: on a terminal a live line, elsewhere now and then a line."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from time import monotonic
 from typing import TYPE_CHECKING, Self
@@ -23,10 +24,13 @@ class Told:
         Names of the unknowns, for the best values.
     last : (str, int, int or None)
         The last text, and how much is done of how much, where that is known.
+    units : mapping of str to (str, float)
+        Units in which the unknowns are listed, and their sizes in SI units; without a unit for others.
     """
 
     names: tuple[str, ...] = ()
     last: tuple[str, int, int | None] = ("", 0, None)
+    units: Mapping[str, tuple[str, float]] = field(default_factory=dict)
     _best: float = field(default=float("inf"), init=False)
     _values: list[float] = field(default_factory=list, init=False)
     _samples: int | None = field(default=None, init=False)
@@ -83,7 +87,10 @@ class Told:
         return " · ".join(filter(None, (f"best {self._best:.4g}", self._listed(self._values))))
 
     def _listed(self, values: list[float]) -> str:
-        return ", ".join(f"{name} = {value:.6g}" for name, value in zip(self.names, values, strict=False))
+        listed = (
+            (name, value, self.units.get(name, ("", 1.0))) for name, value in zip(self.names, values, strict=False)
+        )
+        return ", ".join(f"{name} = {value / size:.6g} {unit}".rstrip() for name, value, (unit, size) in listed)
 
 
 def _in_segments(least: float, misfit: float, gap: float) -> str:

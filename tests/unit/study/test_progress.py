@@ -5,7 +5,7 @@ import io
 import pytest
 from rich.console import Console
 
-from dalembert.study.progress import Watch
+from dalembert.study.progress import Told, Watch
 
 
 def _printed(event: dict, names: tuple[str, ...] = ()) -> str:
@@ -71,3 +71,9 @@ def test_the_best_values_have_the_names_of_the_unknowns():
     event = {"event": "iteration", "start": 0, "iteration": 2, "simulations": 85, "best": 1e-6, "values": [0.75, 0.05]}
     told = _printed(event, ("theta1 middle", "theta1 radius"))
     assert told == "start 1 · 85 simulations · best 1e-06 · theta1 middle = 0.75, theta1 radius = 0.05"
+
+
+def test_values_are_listed_in_their_units():
+    told = Told(("angle", "drag"), units={"angle": ("mrad", 1e-3)})
+    told.take({"event": "iteration", "start": 0, "simulations": 3, "best": 0.5, "values": [0.25, 0.1]})
+    assert told.last[0] == "start 1 · 3 simulations · best 0.5 · angle = 250 mrad, drag = 0.1"

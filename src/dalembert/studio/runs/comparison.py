@@ -20,7 +20,8 @@ from dalembert.report.section import Block, Plot, Section, Source
 from dalembert.report.table import Cell, Table, cell
 from dalembert.report.thin import thinned
 from dalembert.studio.runs.differences import as_text, differences
-from dalembert.studio.runs.run_list import row, with_deviation
+from dalembert.studio.runs.run_list import row
+from dalembert.studio.runs.run_units import PLAIN, Unit, in_unit, run_units
 from dalembert.study.compare_runs import fit_or_posterior
 from dalembert.study.folder import RunFolder
 
@@ -71,11 +72,15 @@ class RunComparison:
         states = [(folder.state().get("best") or {}) for folder in self.folders]
         values, deviations = ([one.get(key) or {} for one in states] for key in ("values", "deviations"))
         found: list[list[Any]] = [[fact + _UNITS.get(fact, ""), *(_cell(one[fact]) for one in rows)] for fact in _FACTS]
+        units: dict[str, Unit] = {}
+        for folder, one in zip(self.folders, values, strict=True):
+            units = run_units(folder, one) | units  # one unit for all runs, that of the first
         for name in dict.fromkeys(name for one in values for name in one):
-            known = [(one.get(name), own.get(name)) for one, own in zip(values, deviations, strict=True)]
-            found.append([name, *(_cell(value, with_deviation(value, own)) for value, own in known)])
+            unit = units.get(name, PLAIN)
+            known = [[in_unit(own.get(name), unit) for own in both] for both in zip(values, deviations, strict=True)]
+            found.append([labelled(name, unit[0]), *(_cell(value, own) for value, own in known)])
             if any(own is not None for _, own in known):
-                found.append([f"{name}, standard deviation", *(_cell(own) for _, own in known)])
+                found.append([labelled(f"{name}, standard deviation", unit[0]), *(_cell(own) for _, own in known)])
         return Table.of_rows("runs", "Values with standard deviations", ["", *self.names], found)
 
 
@@ -194,10 +199,8 @@ def _fitted(result: Any) -> Iterator[tuple[str, Any, np.ndarray]]:
         yield f"{one.name}: ", one.data, one.response
 
 
-def _cell(value: Any, text: str | None = None) -> Cell:
-    if value is None:
-        return Cell("", "")
-    return cell(value) if text is None else Cell(value, text)
+def _cell(value: Any, deviation: float | None = None) -> Cell:
+    return Cell("", "") if value is None else cell(value, deviation)
 
 
 def _text(path: Path) -> str:

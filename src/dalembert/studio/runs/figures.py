@@ -9,6 +9,7 @@ from plotly.subplots import make_subplots
 
 from dalembert.report.charts.drawing import logarithmic, positive
 from dalembert.report.look import LIGHT, plain, themed
+from dalembert.report.quantities import labelled
 
 if TYPE_CHECKING:
     from nicegui import ui
@@ -35,11 +36,15 @@ def convergence(curves: Mapping[str, Sequence[tuple[float, float]]]) -> go.Figur
         figure.add_scatter(x=x, y=positive(y), name=plain(name), mode=mode, line=line)
     themed(figure, "", height=320)
     figure.update_xaxes(title="simulations", rangemode="tozero")
-    figure.update_yaxes(title="best fitness so far", **logarithmic(figure))
+    figure.update_yaxes(title="smallest misfit so far", **logarithmic(figure))
     return on_any_page(figure.update_layout(showlegend=len(curves) > 1))
 
 
-def wandering(visited: Sequence[tuple[float, int, Sequence[float]]], names: Sequence[str]) -> go.Figure:
+def wandering(
+    visited: Sequence[tuple[float, int, Sequence[float]]],
+    names: Sequence[str],
+    units: Mapping[str, tuple[str, float]] | None = None,
+) -> go.Figure:
     """Parameters over the simulations, each in a row, a line for each start.
 
     Parameters
@@ -47,19 +52,22 @@ def wandering(visited: Sequence[tuple[float, int, Sequence[float]]], names: Sequ
     visited : sequence of (simulations, start, values)
     names : sequence of str
         Of the parameters.
+    units : mapping of str to (str, float), optional
+        Units in which they are drawn, and their sizes in SI units.
     """
     rows = min(len(names), MOST_ROWS)
+    shown = [(units or {}).get(name, ("", 1.0)) for name in names]
     figure = make_subplots(rows=rows, cols=1, shared_xaxes=True, vertical_spacing=0.04)
     for start in sorted({start for _, start, _ in visited}):
         own = [(at, values) for at, number, values in visited if number == start]
         line = {"color": LIGHT.series[start % len(LIGHT.series)], "width": 2}
         for row in range(rows):
             style = {"name": f"start {start + 1}", "legendgroup": str(start), "showlegend": row == 0, "line": line}
-            x, y = [at for at, _ in own], [values[row] for _, values in own]
+            x, y = [at for at, _ in own], [values[row] / shown[row][1] for _, values in own]
             figure.add_scatter(x=x, y=y, mode="lines+markers", marker={"size": 4}, row=row + 1, col=1, **style)
     themed(figure, "", height=80 + 110 * rows)
     for row, name in enumerate(names[:rows], start=1):
-        figure.update_yaxes(title=plain(name), row=row)
+        figure.update_yaxes(title=plain(labelled(name, shown[row - 1][0])), row=row)
     figure.update_xaxes(title="simulations", rangemode="tozero", row=rows)
     return on_any_page(figure)
 

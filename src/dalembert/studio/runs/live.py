@@ -1,6 +1,7 @@
 """A run's events while it goes on: what came since the last look, and what all of them come to."""
 
 from collections import deque
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -54,9 +55,14 @@ class Live:
         """Names of the unknowns, once they are known."""
         return self._told.names
 
-    def name(self, names: tuple[str, ...]) -> None:
-        """Say what the unknowns are called."""
-        self._told.names = names
+    @property
+    def units(self) -> Mapping[str, tuple[str, float]]:
+        """Units of the unknowns, and their sizes in SI units."""
+        return self._told.units
+
+    def name(self, names: tuple[str, ...], units: Mapping[str, tuple[str, float]] | None = None) -> None:
+        """Say what the unknowns are called, and in which units they are shown."""
+        self._told.names, self._told.units = names, units or {}
 
     def advance(self) -> bool:
         """Take in what was written since the last look; whether there was anything."""

@@ -10,6 +10,7 @@ from typing import Any
 
 from dalembert.findings import Severity
 from dalembert.studio.runs.run_note import NOTE, read_note
+from dalembert.studio.runs.run_units import run_units, values_text
 from dalembert.study.events import last_progress
 from dalembert.study.folder import RUNNING, RunFolder
 from dalembert.study.listing import counted, doubts, since
@@ -86,7 +87,7 @@ def row(folder: RunFolder) -> Row:
         "findings": _counted(state),
         "severity": _severity(state),
         "doubts": doubts(state),
-        "values": values_text(best),
+        "values": values_text(best, run_units(folder, best.get("values") or {})),
         "misfit": _misfit(folder, best),
         "duration": _duration(state),
         "date": since(state),
@@ -104,28 +105,6 @@ def study_name(folder: RunFolder, state: Mapping[str, Any]) -> str:
         return Path(json.loads(folder.inputs.read_text(encoding="utf-8"))["folder"]).name or name
     except (OSError, ValueError, TypeError, KeyError):
         return name
-
-
-def values_text(best: Mapping[str, Any]) -> str:
-    """Return identified values with their standard deviations in one line.
-
-    >>> values_text({"values": {"drag": 0.1999, "angle": -0.5}, "deviations": {"drag": 0.00123, "angle": None}})
-    'drag = 0.1999 ± 0.0012, angle = -0.5'
-    """
-    deviations = best.get("deviations") or {}
-    return ", ".join(
-        f"{name} = {with_deviation(value, deviations.get(name))}" for name, value in (best.get("values") or {}).items()
-    )
-
-
-def with_deviation(value: object, deviation: object) -> str:
-    """Return an identified value and its standard deviation, with two digits, if they are known.
-
-    >>> with_deviation(0.7853981, 1.23e-4), with_deviation(2.0, None), with_deviation(None, None)
-    ('0.785398 ± 0.00012', '2', '')
-    """
-    text = f"{value:.6g}" if isinstance(value, int | float) else ""
-    return f"{text} ± {deviation:.2g}" if text and isinstance(deviation, int | float) else text
 
 
 def _changes(folder: str) -> Stamp:

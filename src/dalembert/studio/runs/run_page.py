@@ -20,11 +20,11 @@ from dalembert.studio.runs.fit_so_far import fit_so_far
 from dalembert.studio.runs.last_runs import study_of
 from dalembert.studio.runs.live import Live
 from dalembert.studio.runs.remaining import planned_simulations
+from dalembert.studio.runs.run_units import run_units, values_text
 from dalembert.studio.sparing import Sparing
 from dalembert.studio.worker import Kept, Worker, WorkerError
 from dalembert.studio.workspace import Workspace
 from dalembert.study.folder import FINISHED, INPUT, KILLED, RESUMABLE, RUNNING, RunFolder
-from dalembert.study.listing import best
 
 EVERY = 0.5  # s between two looks at the events
 FILES = {"report.html": "Report", "result.nc": "Result (NetCDF)", "study.toml": "Study", "events.jsonl": "Events"}
@@ -163,11 +163,18 @@ class _Page:
             if self.folder.is_run:
                 findings_list(self.folder)
         if state == FINISHED:
-            self.told.set_text(best(self.folder, self.folder.state()))
+            self.told.set_text(self._result())
         self.live_part.set_visibility(state != FINISHED)
         if self.folder.report.is_file():
             with self.report:
                 report_of(self.folder, "85vh")
+
+    def _result(self) -> str:
+        """Misfit and values of the result."""
+        found = self.folder.state().get("best") or {}
+        misfit, values = found.get("fitness"), found.get("values") or {}
+        said = "" if misfit is None else f"misfit {misfit:.4g}"
+        return ", ".join(filter(None, (said, values_text(found, run_units(self.folder, values)))))
 
     def _show_events(self) -> None:
         text, done, total = self.live.progress
@@ -191,7 +198,7 @@ class _Page:
         if points and self._is_new("convergence", points):
             _draw(self.curve, "Best value over simulations", convergence({self.folder.path.name: points}))
         if visited and names and self._is_new("visited", visited):
-            _draw(self.paths, "Parameters over simulations", wandering(visited, names))
+            _draw(self.paths, "Parameters over simulations", wandering(visited, names, self.live.units))
         if len(self.live.followed) > 1 and self._is_new("followed", self.live.followed):
             _draw(self.curve, "The response computed so far", followed(self.live.followed, self.live.axes))
 
@@ -205,7 +212,8 @@ class _Page:
         """Ask another process for the names of the unknowns and the number of simulations, which take imports."""
         name = self.folder.path.name
         with suppress(WorkerError):  # whatever a user's model raises, the run itself says it
-            self.live.name(await self.watcher.ask(f"names {name}", _names, self.folder) or ())
+            names = await self.watcher.ask(f"names {name}", _names, self.folder) or ()
+            self.live.name(names, run_units(self.folder, names))
             self.live.remaining.planned = await self.watcher.ask(f"planned {name}", _planned, self.folder.path)
 
     def _fit_again(self) -> None:

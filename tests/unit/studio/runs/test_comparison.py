@@ -53,9 +53,10 @@ def test_the_values_as_csv(root):
     answer = comparison_file(Workspace(root), ["coarse", "motion", "coarse"], csv=True)
     rows = {row[0]: row[1:] for row in csv.reader(io.StringIO(bytes(answer.body).decode()))}
     assert rows[""] == ["coarse", "motion"]
-    assert float(rows["drag"][0]) == pytest.approx(0.2, abs=1e-3)
-    assert 0 < float(rows["drag, standard deviation"][0]) < 1e-2
-    assert rows["drag"][1] == ""
+    assert float(rows["drag (N*m*s)"][0]) == pytest.approx(0.2, abs=1e-3)
+    assert 0 < float(rows["drag, standard deviation (N*m*s)"][0]) < 1e-2
+    assert rows["drag (N*m*s)"][1] == ""
+    assert -60 < float(rows["angle (deg)"][0]) < -20
 
 
 @pytest.mark.parametrize("names", [[], ["nothing"]])

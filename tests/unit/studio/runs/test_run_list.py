@@ -44,6 +44,15 @@ def write(folder, state, events=()):
         (folder / "events.jsonl").write_text("".join(json.dumps(event) + "\n" for event in events))
 
 
+def test_values_have_the_units_of_the_study(runs):
+    best = {"values": {"drag": 0.2, "angle": 1.0}, "deviations": {"angle": 0.01}}
+    write(runs / "first", STATE | {"best": best})
+    study = '[parameters]\ndrag = { lower = 0, upper = 1, unit = "N*m*s" }\nangle = { lower = 0, upper = "90 deg" }\n'
+    (runs / "first" / "study.toml").write_text(study)
+    (row,) = RunList(runs).rows()
+    assert row["values"] == "drag = 0.2 N*m*s, angle = 57.2958 ± 0.57 deg"
+
+
 def test_a_row(runs):
     write_note(runs / "first", Note("worn bearing", ("rig 2", "cold")))
     (row,) = RunList(runs).rows()

@@ -219,6 +219,15 @@ class Parameters:
     def names(self) -> tuple[str, ...]:
         return tuple(item.name for item in self.items)
 
+    def units(self, names: Iterable[str]) -> tuple[str, ...]:
+        """Units of parameters by their names.
+
+        >>> Parameters((Parameter("theta", 0.7, 0.9, unit="rad"), Parameter("k", 1.0, 2.0))).units(["k", "theta"])
+        ('', 'rad')
+        """
+        known = {item.name: item.unit for item in self.declared}
+        return tuple(known.get(name, "") for name in names)
+
     @cached_property
     def lower(self) -> np.ndarray:
         return np.array([item.lower for item in self.items], dtype=float)

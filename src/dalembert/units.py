@@ -204,3 +204,13 @@ def unit_of(dof: str) -> str:
     ('m', 'rad', 'm')
     """
     return OF_DIRECTION.get(dof.rpartition(".")[2], "m")
+
+
+def inertial_unit(parameter: str) -> str:
+    """Unit of an inertial parameter of a link by the end of its name; empty where that does not tell it.
+
+    >>> [inertial_unit(f"arm.{entry}") for entry in ("mass", "first_x", "second_xy", "friction")]
+    ['kg', 'kg*m', 'kg*m^2', '']
+    """
+    kind = parameter.rpartition(".")[2].partition("_")[0]
+    return {"mass": "kg", "first": "kg*m", "second": "kg*m^2"}.get(kind, "")

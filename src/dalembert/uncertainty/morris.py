@@ -112,6 +112,7 @@ def screen(
         units=tuple(channel.unit for channel in model.channels),
         box=inputs.box,
         distributions=inputs.texts,
+        parameter_units=model.parameters.units(inputs.box.names),
         mean=effects.mean(axis=0),
         effects=np.abs(effects).mean(axis=0),
         spread=spread,

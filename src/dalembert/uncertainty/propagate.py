@@ -95,6 +95,7 @@ def propagate(
         seconds=seconds,
         provenance=provenance(model, chosen, seed=seed, intervals={n: [i.lower, i.upper] for n, i in box.items()}),
         fixed=model.parameters.fixed,
+        parameter_units=model.parameters.units(box.names),
     )
     runs.tell(Ended(runs.method, result.success, result.status, result.runs, result.seconds))
     return result

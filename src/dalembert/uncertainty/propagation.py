@@ -53,6 +53,8 @@ class Propagation(Bands, EndedResult):
         What the method concludes about the result.
     fixed : tuple of Parameter
         Parameters of the model that equal bounds fix; they are not in ``box``.
+    parameter_units : tuple of str, length parameters
+        Of the parameters, in the order of ``box``; empty in results of former versions.
     """
 
     FORMAT: ClassVar[str] = "dalembert propagation 1"
@@ -76,6 +78,7 @@ class Propagation(Bands, EndedResult):
     provenance: Mapping[str, Any]
     findings: tuple[Finding, ...] = ()
     fixed: tuple[Parameter, ...] = ()
+    parameter_units: tuple[str, ...] = ()
 
     def summary(self) -> str:
         """Return a table of channels with their widths and one of intervals, then kind, effort and findings."""

@@ -44,6 +44,8 @@ class Screening(Result):
         Reasons of the runs that failed.
     provenance : mapping
     findings : tuple of Finding
+    parameter_units : tuple of str, length parameters
+        Of the parameters, in the order of ``box``; empty in results of former versions.
     """
 
     FORMAT: ClassVar[str] = "dalembert screening 1"
@@ -64,6 +66,7 @@ class Screening(Result):
     failures: tuple[str, ...]
     provenance: Mapping[str, Any]
     findings: tuple[Finding, ...] = ()
+    parameter_units: tuple[str, ...] = ()
 
     @property
     def success(self) -> bool:

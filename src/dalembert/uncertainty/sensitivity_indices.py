@@ -40,6 +40,8 @@ class SensitivityIndices(Result):
         Reasons of the runs that failed.
     provenance : mapping
     findings : tuple of Finding
+    parameter_units : tuple of str, length parameters
+        Of the parameters, in the order of ``box``; empty in results of former versions.
     """
 
     FORMAT: ClassVar[str] = "dalembert sensitivity indices 1"
@@ -61,6 +63,7 @@ class SensitivityIndices(Result):
     failures: tuple[str, ...]
     provenance: Mapping[str, Any]
     findings: tuple[Finding, ...] = ()
+    parameter_units: tuple[str, ...] = ()
 
     @property
     def success(self) -> bool:

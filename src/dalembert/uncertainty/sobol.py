@@ -118,6 +118,7 @@ def global_sensitivity(
         units=tuple(channel.unit for channel in model.channels),
         box=inputs.box,
         distributions=inputs.texts,
+        parameter_units=model.parameters.units(inputs.box.names),
         mean=each.mean.reshape(samples, channels),
         deviations=np.sqrt(each.variance).reshape(samples, channels),
         first=each.first.T.reshape(shape),

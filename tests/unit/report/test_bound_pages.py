@@ -5,8 +5,9 @@ import pytest
 from markupsafe import escape
 
 from dalembert.forward import PythonModel
+from dalembert.parameters import Parameter
 from dalembert.report import figures, report
-from dalembert.uncertainty import propagate
+from dalembert.uncertainty import Propagation, global_sensitivity, propagate
 from pages import read_page
 from stand_ins import band_fit, comparison, parameter_set, propagation
 
@@ -34,6 +35,19 @@ def test_bounds_have_their_report(tmp_path):
     np.testing.assert_array_equal(samples[:, 1::2], result.lower)
     np.testing.assert_array_equal(samples[:, 2::2], result.upper)
     assert list(figures(result)) == ["bands-1"]
+
+
+def test_intervals_have_the_units_of_their_parameters(tmp_path):
+    angle = Parameter("angle", -1.0, 2.0, unit="rad")
+    model = PythonModel(lambda angle, ratio: np.array([angle * ratio]), [angle, Parameter("ratio", 0, 1)], ["y"], [0.0])
+    result = propagate(model, {"angle": (-1.0, 2.0), "ratio": (0.0, 1.0)}, "vertex")
+    result.save(tmp_path / "a.nc")
+    for one in (result, Propagation.load(tmp_path / "a.nc")):
+        table = read_page(report(one, tmp_path / "a.html")).table("box")
+        assert [row[table[0].index("unit")] for row in table[1:]] == ["rad", ""]
+    indices = global_sensitivity(model)
+    table = read_page(report(indices, tmp_path / "a.html")).table("box")
+    assert [row[table[0].index("unit")] for row in table[1:]] == ["rad", ""]
 
 
 def test_bounds_of_a_method_that_knows_no_places_have_none(tmp_path):

@@ -5,9 +5,11 @@ import tomllib
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from dalembert.report.quantities import unit
 from dalembert.studio.editor.chosen_values import unit_in
 from dalembert.studio.editor.entries import table_at
 from dalembert.study.folder import RunFolder
+from dalembert.units import inertial_unit
 
 Unit = tuple[str, float]
 """A unit, and its size in SI units."""
@@ -35,11 +37,9 @@ def value_unit(document: Mapping[str, Any], name: str) -> Unit:
     >>> study = {"parameters": parameters, "experiments": [{"name": "high", "own": ["drag"]}]}
     >>> value_unit(study, "angle")[0], value_unit(study, "drag"), value_unit(study, "high.drag")
     ('deg', ('N*s', 1.0), ('N*s', 1.0))
-    >>> value_unit(study, "width of bar.end.x"), value_unit(study, "drag upper"), value_unit(study, "runs")
-    (('m', 1.0), ('N*s', 1.0), ('', 1.0))
+    >>> [value_unit(study, name)[0] for name in ("width of bar.end.x", "drag upper", "arm.mass", "runs")]
+    ['m', 'N*s', 'kg', '']
     """
-    from dalembert.report.quantities import unit  # what a list of runs of parameters alone does not need
-
     channel = _OF_CHANNEL.fullmatch(name)
     if channel is not None:
         return unit(channel["channel"]), 1.0
@@ -48,7 +48,8 @@ def value_unit(document: Mapping[str, Any], name: str) -> Unit:
     written = unit_in(document, name)
     if written != PLAIN:
         return written
-    return str(table_at(shared, _common(document, name)).get("unit", "")), 1.0
+    stated = table_at(shared, _common(document, name)).get("unit", "")
+    return str(stated or (inertial_unit(name) if "." in name else "")), 1.0
 
 
 def _common(document: Mapping[str, Any], name: str) -> str:

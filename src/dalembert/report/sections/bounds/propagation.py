@@ -48,7 +48,7 @@ def bounds(result: Propagation) -> Section:
     reasons = [finding.message for finding in result.findings if finding.code == "unknown-error"]
     series = {"lower": result.lower, "upper": result.upper}
     download = samples("bounds", result.coordinate, result.channels, series, "Download all bounds as CSV")
-    box = box_table(result.box, "Intervals of the parameters")
+    box = box_table(result.box, "Intervals of the parameters", units=result.parameter_units)
     return Section("Bounds", (box, *plots, _widths(result), Listed(reasons), download))
 
 

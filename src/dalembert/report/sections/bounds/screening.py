@@ -34,7 +34,12 @@ def screening(told: Screening, asked: Asked) -> list[Section]:
     plots = [Plot(f"effects-{k}", charts.effects(told, name), how) for k, name in enumerate(told.channels, 1)]
     series = {f"effect of {name}": told.effects[:, :, number] for number, name in enumerate(told.box.names)}
     download = samples("effects", told.coordinate, told.channels, series, "Download all effects as CSV")
-    box = box_table(told.box, "Intervals and distributions of the parameters", distribution=told.distributions)
+    box = box_table(
+        told.box,
+        "Intervals and distributions of the parameters",
+        units=told.parameter_units,
+        distribution=told.distributions,
+    )
     table = Fold(_table(told), most=40, rows="effects")
     effects = Section("Elementary effects", (table, Row(plots, beside=len(plots) > 1), download))
     return [headline, effects, Section("Parameters", (box,))]

@@ -29,7 +29,12 @@ def sensitivity_indices(told: SensitivityIndices, asked: Asked) -> list[Section]
         findings=told.findings,
     )
     indices = Section("Sobol indices", (_table(told), Row(_plots(told)), _download(told)))
-    box = box_table(told.box, "Intervals and distributions of the parameters", distribution=told.distributions)
+    box = box_table(
+        told.box,
+        "Intervals and distributions of the parameters",
+        units=told.parameter_units,
+        distribution=told.distributions,
+    )
     return [headline, indices, Section("Parameters", (box,))]
 
 

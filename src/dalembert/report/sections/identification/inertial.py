@@ -19,6 +19,7 @@ from dalembert.report.headline import Headline
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Fold, Plot, Section
 from dalembert.report.table import Table, cell, cells
+from dalembert.units import inertial_unit
 
 
 @sections_of(ConsistentInertias)
@@ -38,6 +39,7 @@ def consistent(found: ConsistentInertias, asked: Asked) -> list[Section]:
         "value": map(cell, found.values, few),
         "standard deviation": cells(few, 2),
         "prior": cells(found.prior),
+        "unit": map(inertial_unit, found.names),
     }
     caption = "Smallest eigenvalue of each pseudo-inertia, relative to the prior one: positive for a possible body"
     headline = Headline.of(
@@ -161,6 +163,7 @@ def _base(base: BaseParameters, values: np.ndarray, deviations: np.ndarray) -> S
         "combination": base.words,
         "value": map(cell, values, deviations),
         "standard deviation": cells(deviations, 2),
+        "unit": map(inertial_unit, base.base),
     }
     table = Table.of("base", "Base parameters: the combinations that torques determine", columns)
     return Section("Base parameters", (Fold(table, rows="combinations"),))
@@ -170,4 +173,5 @@ def _noise(joints: tuple[str, ...], noise: np.ndarray, residual: np.ndarray | No
     columns = {"joint": joints, "noise": cells(noise, 3)}
     if residual is not None:
         columns["rms residual"] = cells(residual, 3)
-    return Section("Torques", (Table.of("noise", "Standard deviation of the noise of each joint", columns),))
+    caption = "Standard deviation of the noise of each joint, in N m, of a prismatic joint in N"
+    return Section("Torques", (Table.of("noise", caption, columns),))

@@ -22,7 +22,7 @@ BOXES = (
 def parameter_set(found: ParameterSet, asked: Asked) -> list[Section]:
     """Outer and inner box, and the paving in the planes of the parameters."""
     boxes = [(getattr(found, name), caption, f"{name}-box") for name, caption in BOXES]
-    tables = [box_table(*box) for box in boxes if box[0] is not None]
+    tables = [box_table(*box, units=found.parameters.units(box[0].names)) for box in boxes if box[0] is not None]
     caption = "Every point of a consistent box explains all data within their errors; an undecided box may hold some."
     plots = [
         Plot(f"paving-{place}", charts.paving(found, plane, truth=asked.truth), caption)

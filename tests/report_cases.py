@@ -1062,6 +1062,9 @@ CASES: dict[str, Case] = {
         ("The energy balance is kept to", "% of the energy that moves; a smaller step lowers it."),
         ("mechanism", "energies", "violations", "newton"),
     ),
+    "a motion with outputs": Case(
+        lambda: (_pendulum(), {"channels": ("pin.angle",), "points": ("bar.end",)}), ("Outputs over time",), ("outputs-1",)
+    ),
     "a motion that rests": Case(lambda: _pendulum(0.0), ("The motion was simulated to its end.",)),
     "a fit with its motion": Case(_moved_fit, ("Drawn to scale;",), ("mechanism", "energies")),
     "experiments with their motions": Case(

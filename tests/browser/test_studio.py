@@ -312,6 +312,26 @@ def test_a_stage_with_fewer_points_than_the_last_one_is_drawn(visit, root):
     assert page.evaluate(f"[...{drawn}]") == [50, 51, 52]
 
 
+def test_figures_of_hidden_tabs_are_no_error_and_fit_their_place(chromium, visit, known):
+    page, errors = visit("/study/known/known"), []
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    width = "document.querySelector('.js-plotly-plot .main-svg')?.getBoundingClientRect().width"
+    room = "document.querySelector('.js-plotly-plot')?.getBoundingClientRect().width"
+    tab(page, "Data").click()
+    wait_until(page, "document.querySelectorAll('.js-plotly-plot .trace').length === 2")
+    before = page.evaluate(width)
+    for name in ("Model", "Sliders", "Forms"):
+        tab(page, name).click()
+        page.wait_for_timeout(500)
+    page.set_viewport_size({"width": 1100, "height": 800})
+    tab(page, "Data").click()
+    wait_until(page, f"Math.abs({width} - {room}) < 2 && {width} < {before}")
+    page.set_viewport_size({"width": 1300, "height": 800})
+    wait_until(page, f"Math.abs({width} - {room}) < 2 && {width} > {before}")
+    assert errors == []
+    assert chromium.complaints == []
+
+
 def fetched(url, **headers):
     """Status of an answer."""
     try:

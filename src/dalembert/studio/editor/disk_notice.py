@@ -5,7 +5,7 @@ from collections.abc import Callable
 from nicegui import ui
 
 from dalembert.studio.editor.draft import Draft
-from dalembert.studio.frame import button, complaints
+from dalembert.studio.frame import button, complaints, tipped
 
 EVERY = 1.0  # s between two looks at the file
 SAYS = {
@@ -30,14 +30,17 @@ def disk_notice(draft: Draft, copied: Callable[[], object]) -> None:
         says = ui.label("").classes("grow basis-60")
         choices = ui.row().classes("gap-2")
         with choices:
-            button("Reload", complaints()(draft.reload), icon="refresh").tooltip(
-                "Take the text of the file. Undo brings back the text that is here."
+            tipped(
+                button("Reload", complaints()(draft.reload), icon="refresh"),
+                "Take the text of the file. Undo brings back the text that is here.",
             )
-            button("Keep mine", complaints()(draft.keep), icon="edit").tooltip(
-                "Keep the text that is here. The next Save replaces the file."
+            tipped(
+                button("Keep mine", complaints()(draft.keep), icon="edit"),
+                "Keep the text that is here. The next Save replaces the file.",
             )
-            button("Save as a copy", copied, icon="content_copy").tooltip(
-                "Write the text that is here to a new file in the same folder."
+            tipped(
+                button("Save as a copy", copied, icon="content_copy"),
+                "Write the text that is here to a new file in the same folder.",
             )
 
     def show() -> None:

@@ -16,7 +16,7 @@ from dalembert.studio.editor.draft import Draft
 from dalembert.studio.frame import button, complaints
 from dalembert.studio.latest import Latest
 from dalembert.studio.room import Room
-from dalembert.studio.runs.figures import bare
+from dalembert.studio.runs.figures import CONFIG, bare
 from dalembert.studio.uploads import upload
 
 KINDS = ".csv,.txt,.dat,.tsv,.asc,.log,.gz,.json,.parquet,.pq,.mat,.uff,.unv,.uf,.bunv,.nc,.nc4,.cdf"
@@ -51,7 +51,9 @@ class DataPanel:
                 self._build_options()
                 self._problems = ui.column().classes("w-full gap-2").props('role=status aria-label="Problems"')
                 self._build_write()
-                self._plot = ui.plotly({}).classes("w-full").props('role=img aria-label="Columns of the file"')
+                self._plot = (
+                    ui.plotly({"config": CONFIG}).classes("w-full").props('role=img aria-label="Columns of the file"')
+                )
         self._chosen.set_visibility(False)
         draft.follow("study", self._follow)
         draft.follow("text", self._show_written)

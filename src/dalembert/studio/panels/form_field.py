@@ -6,6 +6,7 @@ from nicegui import events, ui
 
 from dalembert.studio.editor.fields import shown
 from dalembert.studio.editor.form import Row
+from dalembert.studio.frame import tipped
 
 
 class FormField:
@@ -52,7 +53,7 @@ class FormField:
                 made = ui.button(icon="tune", on_click=enter).props(
                     f'flat round dense size=sm aria-label="Edit {field.key} as a table"'
                 )
-                made.tooltip("Edit as a table")
+                tipped(made, "Edit as a table")
         self.element.on("focus", lambda: explain(self.row))
         self.show(row)
         if isinstance(self.element, ui.select):

@@ -14,6 +14,7 @@ from dalembert.studio.editor.draft import Draft
 from dalembert.studio.frame import button, complaints
 from dalembert.studio.panels.parameter_row import LOOKS, ParameterRow
 from dalembert.studio.room import Room
+from dalembert.studio.runs.figures import CONFIG
 from dalembert.studio.simulation.answers import Influences, Simulated, Source, influences, simulated
 from dalembert.studio.simulation.player import Player
 from dalembert.studio.worker import WorkerError
@@ -251,7 +252,9 @@ class Sliders:
             self._curves.clear()
             with self._curves:
                 self._plots = [
-                    ui.plotly({}).classes("w-full").props('role=img aria-label="Computed channels and data"')
+                    ui.plotly({"config": CONFIG})
+                    .classes("w-full")
+                    .props('role=img aria-label="Computed channels and data"')
                     for _ in found.curves
                 ]
         for plot, curves in zip(self._plots, found.curves, strict=True):

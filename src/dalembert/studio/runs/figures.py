@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 MOST_ROWS = 12
 """Parameters that are drawn over simulations, the first ones."""
+CONFIG = {"displayModeBar": False, "responsive": False}
+"""No buttons, which would cover a figure on a phone; the page fits it to its place, not NiceGUI."""
 NEUTRAL = "#76818f"
 """Readable on a light and on a dark page."""
 
@@ -99,8 +101,8 @@ def plot(figure: go.Figure) -> "ui.plotly":
 
 
 def bare(figure: go.Figure) -> dict[str, Any]:
-    """The figure as a page takes it."""
-    return figure.to_plotly_json() | {"config": {"displayModeBar": False, "responsive": True}}
+    """The figure as a page takes it, which fits it to its place: see :mod:`dalembert.studio.corrections`."""
+    return figure.to_plotly_json() | {"config": CONFIG}
 
 
 def on_any_page(figure: go.Figure) -> go.Figure:

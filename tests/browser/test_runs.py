@@ -192,6 +192,23 @@ def test_a_run_is_continued_from_its_values(page, root):
     assert given["angle"]["start"].endswith(" deg")
 
 
+def test_many_values_of_a_run_are_a_table(root, visit):
+    state = json.loads((root / "runs" / "pendulum" / "state.json").read_text())
+    state["best"] = {"fitness": 0.5, "values": {f"k{number}": float(number) for number in range(1, 17)}}
+    (root / "runs" / "pendulum" / "state.json").write_text(json.dumps(state))
+    page = visit("/run/pendulum")
+    wait_until(page, f"{TEXT}.includes('misfit 0.5')")
+    assert page.locator("dl[aria-label=Values] dt").all_inner_texts() == [f"k{number}" for number in range(1, 17)]
+
+
+def test_dates_are_in_the_time_zone_of_the_browser(root, workspace, chromium):
+    context = chromium.browser.new_context(timezone_id="Asia/Tokyo", viewport={"width": 1600, "height": 800})
+    page = context.new_page()
+    page.goto(workspace[1])
+    wait_until(page, f"{TEXT}.includes('Date (Asia/Tokyo)') && {TEXT}.includes('2026-01-02 12:04')")
+    context.close()
+
+
 def test_a_name_that_is_refused_changes_nothing(page, root):
     choose(page, "pendulum")
     page.get_by_role("button", name="Rename").click()

@@ -80,7 +80,7 @@ def test_a_fit_with_a_fixed_parameter(dalembert, tmp_path):
     best = json.loads((tmp_path / "runs/decay/state.json").read_text())["best"]
     assert best["values"] == {"rate": pytest.approx(1.2, abs=5e-3), "height": 1.0}
     assert list(best["deviations"]) == ["rate"]
-    assert re.search(r"fitness \S+, rate = 1\.\d+, height = 1 ", dalembert("list").stdout)
+    assert re.search(r"misfit \S+, rate = 1\.\d+, height = 1 ", dalembert("list").stdout)
     page = tmp_path / "runs/decay/report.html"
     page.unlink()
     assert dalembert("report", "decay").returncode == 0

@@ -97,7 +97,7 @@ class RunFolder:
         if state["state"] == RUNNING and not self._is_locked():
             state["state"] = KILLED
         if state["state"] == INTERRUPTED and self.pause.exists():
-            state["state"] = PAUSED
+            state |= {"state": PAUSED, "message": "paused by the user; Resume continues it"}
         return state
 
     def _logged_state(self) -> dict[str, Any]:

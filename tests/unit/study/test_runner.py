@@ -275,6 +275,6 @@ def test_the_list_of_runs(study):
     found = rows(Path("runs"))
     assert [(row["run"], row["task"], row["state"], row["best"]) for row in found] == [
         ("decay", "sweep", "finished", ""),
-        ("other", "identify", "finished", "fitness 1.235e-08, theta = 0.785398"),
+        ("other", "identify", "finished", "misfit 1.235e-08, theta = 0.785398"),
     ]
     assert rows(Path("no-such-folder")) == []

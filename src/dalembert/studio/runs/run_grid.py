@@ -36,11 +36,26 @@ _TIME = """params => {
     const minutes = Math.round(seconds / 60);
     return minutes < 60 ? minutes + ' min' : Math.floor(minutes / 60) + ' h ' + minutes % 60 + ' min';
 }"""
+_DATE = """params => {
+    const date = new Date(params.value.replace(' ', 'T') + 'Z'), two = (number) => String(number).padStart(2, '0');
+    if (isNaN(date)) return params.value;
+    const day = [date.getFullYear(), two(date.getMonth() + 1), two(date.getDate())].join('-');
+    return day + ' ' + two(date.getHours()) + ':' + two(date.getMinutes());
+}"""
+"""The time of the browser; rows have universal time."""
+_DATE_HEADER = "() => 'Date (' + Intl.DateTimeFormat().resolvedOptions().timeZone + ')'"
 _NUMERIC: dict[str, Any] = {"filter": "agNumberColumnFilter", "type": "rightAligned"}
 _EDITABLE: dict[str, Any] = {"editable": True, "cellEditorParams": {"maxLength": 1000}}
 _COLUMNS: tuple[dict[str, Any], ...] = (
-    {"field": "run", "width": 150, ":cellRenderer": _LINK, "editable": True, "headerTooltip": "Press F2 to rename"},
-    {"field": "study", "width": 105},
+    {
+        "field": "run",
+        "width": 190,
+        "tooltipField": "run",
+        ":cellRenderer": _LINK,
+        "editable": True,
+        "headerTooltip": "Press F2 to rename",
+    },
+    {"field": "study", "width": 125, "tooltipField": "study"},
     {"field": "task", "width": 110, "tooltipField": "task"},
     {"field": "state", "width": 126, ":cellRenderer": _STATE},
     {
@@ -54,11 +69,11 @@ _COLUMNS: tuple[dict[str, Any], ...] = (
     {"field": "duration", "width": 110, ":valueFormatter": _TIME, **_NUMERIC},
     {
         "field": "date",
-        "headerName": "Date (UTC)",
-        "width": 150,
+        ":headerValueGetter": _DATE_HEADER,
+        "width": 160,
         "initialSort": "desc",
         "sortingOrder": ["desc", "asc"],
-        ":valueFormatter": "params => params.value.slice(0, 16)",
+        ":valueFormatter": _DATE,
     },
     {"field": "tags", "width": 95, "headerTooltip": "Press F2 to edit, commas between tags", **_EDITABLE},
     {"field": "note", "width": 130, "tooltipField": "note", "headerTooltip": "Press F2 to edit", **_EDITABLE},

@@ -2,7 +2,7 @@
 
 import asyncio
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from urllib.parse import quote
@@ -20,7 +20,7 @@ from dalembert.studio.runs.fit_so_far import fit_so_far
 from dalembert.studio.runs.last_runs import study_of
 from dalembert.studio.runs.live import Live
 from dalembert.studio.runs.remaining import planned_simulations
-from dalembert.studio.runs.run_units import run_units, values_text
+from dalembert.studio.runs.run_units import run_units, values_of, values_text
 from dalembert.studio.sparing import Sparing
 from dalembert.studio.worker import Kept, Worker, WorkerError
 from dalembert.studio.workspace import Workspace
@@ -29,6 +29,8 @@ from dalembert.study.folder import FINISHED, INPUT, KILLED, RESUMABLE, RUNNING, 
 EVERY = 0.5  # s between two looks at the events
 FILES = {"report.html": "Report", "result.nc": "Result (NetCDF)", "study.toml": "Study", "events.jsonl": "Events"}
 """Files of a run that can be downloaded, and what they are called."""
+FEW_VALUES = 4
+"""Values of a result that are shown in a line; more are shown as a table."""
 STARTING, MISSING = "starting", "missing"
 SAYS = {
     KILLED: "The process of this run ended in the middle: it was killed, or the machine stopped. What it computed is "
@@ -83,6 +85,7 @@ class _Page:
             self.again = button("Run again", complaints()(self._run_again), icon="replay").props("flat")
             self.next = button("Continue as a new study", self._continue, icon="note_add").props("flat")
         self.message = ui.label("").classes("whitespace-pre-wrap break-words")
+        self.values = ui.column().classes("w-full")
         self.live_part = ui.column().classes("w-full gap-4")
         with self.live_part:
             self.choice = ui.select([""], value="", label="Experiment", on_change=self._fit_again)
@@ -151,6 +154,7 @@ class _Page:
         self.files.clear()
         self.report.clear()
         self.findings.clear()
+        self.values.clear()
         if not ended:
             return
         name = quote(self.folder.path.name)
@@ -170,11 +174,16 @@ class _Page:
                 report_of(self.folder, "85vh")
 
     def _result(self) -> str:
-        """Misfit and values of the result."""
+        """Misfit of the result, and its values, many of them as a table."""
         found = self.folder.state().get("best") or {}
         misfit, values = found.get("fitness"), found.get("values") or {}
+        units = run_units(self.folder, values)
         said = "" if misfit is None else f"misfit {misfit:.4g}"
-        return ", ".join(filter(None, (said, values_text(found, run_units(self.folder, values)))))
+        if len(values) > FEW_VALUES:
+            with self.values:
+                _value_table(values_of(found, units))
+            return said
+        return ", ".join(filter(None, (said, values_text(found, units))))
 
     def _show_events(self) -> None:
         text, done, total = self.live.progress
@@ -242,6 +251,17 @@ def _draw(place: ui.column, name: str, figure: go.Figure) -> None:
     if not plots:
         with place:
             plot(figure).classes("w-full").props(f'role=img aria-label="{name}"')
+
+
+def _value_table(rows: Mapping[str, str]) -> None:
+    """Show values by name in as many columns as the page has room for."""
+    with ui.element("dl").classes("w-full columns-[18rem] gap-8").props('aria-label="Values"'):
+        for name, value in rows.items():
+            with ui.element("div").classes("flex justify-between gap-4 border-t py-1 break-inside-avoid"):
+                with ui.element("dt").classes("break-words min-w-0"):
+                    ui.label(name)
+                with ui.element("dd").classes("text-right"):
+                    ui.label(value)
 
 
 def _names(kept: Kept, folder: RunFolder) -> tuple[str, ...]:

@@ -70,11 +70,13 @@ def values_text(best: Mapping[str, Any], units: Mapping[str, Unit]) -> str:
     >>> values_text(best, {"angle": ("mrad", 1e-3)})
     'drag = 0.1999 ± 0.0012, angle = -500 mrad'
     """
-    deviations = best.get("deviations") or {}
-    return ", ".join(
-        f"{name} = {with_deviation(value, deviations.get(name), units.get(name, PLAIN))}"
-        for name, value in (best.get("values") or {}).items()
-    )
+    return ", ".join(f"{name} = {text}" for name, text in values_of(best, units).items())
+
+
+def values_of(best: Mapping[str, Any], units: Mapping[str, Unit]) -> dict[str, str]:
+    """Return identified values by name, with their standard deviations and units."""
+    values, deviations = best.get("values") or {}, best.get("deviations") or {}
+    return {name: with_deviation(value, deviations.get(name), units.get(name, PLAIN)) for name, value in values.items()}
 
 
 def with_deviation(value: object, deviation: object, unit: Unit = PLAIN) -> str:

@@ -22,6 +22,7 @@ def test_a_paused_run_says_so(tmp_path, monkeypatch):
         assert sent == [(123, signal.SIGTERM)]
         folder.set_state("interrupted")
     assert folder.state()["state"] == PAUSED
+    assert folder.state()["message"] == "paused by the user; Resume continues it"
     assert PAUSED in RESUMABLE
     with pytest.raises(InputError, match=says(f"{tmp_path.name} is not running: it is paused")):
         pause(folder)

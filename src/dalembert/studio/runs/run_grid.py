@@ -49,13 +49,13 @@ _EDITABLE: dict[str, Any] = {"editable": True, "cellEditorParams": {"maxLength":
 _COLUMNS: tuple[dict[str, Any], ...] = (
     {
         "field": "run",
-        "width": 190,
+        "width": 150,
         "tooltipField": "run",
         ":cellRenderer": _LINK,
         "editable": True,
         "headerTooltip": "Press F2 to rename",
     },
-    {"field": "study", "width": 125, "tooltipField": "study"},
+    {"field": "study", "width": 105, "tooltipField": "study"},
     {"field": "task", "width": 110, "tooltipField": "task"},
     {"field": "state", "width": 126, ":cellRenderer": _STATE},
     {
@@ -70,7 +70,7 @@ _COLUMNS: tuple[dict[str, Any], ...] = (
     {
         "field": "date",
         ":headerValueGetter": _DATE_HEADER,
-        "width": 160,
+        "width": 150,
         "initialSort": "desc",
         "sortingOrder": ["desc", "asc"],
         ":valueFormatter": _DATE,

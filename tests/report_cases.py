@@ -1063,7 +1063,9 @@ CASES: dict[str, Case] = {
         ("mechanism", "energies", "violations", "newton"),
     ),
     "a motion with outputs": Case(
-        lambda: (_pendulum(), {"channels": ("pin.angle",), "points": ("bar.end",)}), ("Outputs over time",), ("outputs-1",)
+        lambda: (_pendulum(), {"channels": ("pin.angle",), "points": ("bar.end",)}),
+        ("Outputs over time",),
+        ("outputs-1",),
     ),
     "a motion that rests": Case(lambda: _pendulum(0.0), ("The motion was simulated to its end.",)),
     "a fit with its motion": Case(_moved_fit, ("Drawn to scale;",), ("mechanism", "energies")),

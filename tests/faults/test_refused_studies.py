@@ -70,7 +70,48 @@ step = 2e-3
 """
 OPEN = '[[model.joint]]\nkind = "RevoluteJoint"\nname = "second"\na = "ground(3, 0)"\nb = "bar.end"\n'
 CURVE = SLIDER + "[frequency_response]\nfrequencies = [0.1, 0.2]\n"
+MEASURED = (
+    SOLVED.replace("[model", '[parameters]\nmass = { lower = "1 kg", upper = "3 kg" }\n[model', 1).replace(
+        "mass = 1.0", 'mass = "mass"'
+    )
+    + '[data]\nfile = "x.csv"\ncolumns = { "bar.end.x" = "x" }\n'
+)
 REFUSED = {
+    "data: unit of a deviation": (
+        MEASURED + 'deviations = { "bar.end.x" = "1 s" }\n[identify]\n',
+        "[data], deviations, bar.end.x: '1 s' was given; expected a length",
+    ),
+    "noise: unit of a deviation": (
+        MEASURED + '[identify.noise]\nmodel = "constant"\ndeviation = ["1 mm", "1 rad"]\n',
+        "[identify.noise], bar.end.x: '1 rad' was given; expected a length",
+    ),
+    "noise: unit within a table": (
+        MEASURED
+        + '[sample.noise.channels."bar.end.x"]\nmodel = "autoregressive"\n'
+        + 'deviation = { model = "constant", deviation = "1 rad" }\n',
+        "[sample.noise], bar.end.x: '1 rad' was given; expected a length",
+    ),
+    "noise: known without deviations": (
+        HEAD + DATA + '[identify]\nnoise = "known"\n',
+        "noise of channel 'x': KnownNoise was given, but the data have no deviations",
+    ),
+    "noise: order too high": (
+        HEAD + DATA + '[sample.noise]\nmodel = "autoregressive"\norder = 9\n',
+        "AutoregressiveNoise of order 9 needs 90 samples",
+    ),
+    "noise: open order of uneven samples": (
+        HEAD.replace("swing", "uneven")
+        + DATA.replace("x.csv", "uneven.csv")
+        + '[identify]\nnoise = "autoregressive"\n',
+        "AutoregressiveNoise needs evenly spaced samples",
+    ),
+    "sample: unit of a start": (
+        HEAD.replace("lower = -2.0, upper = 2.0", 'lower = "-2 m", upper = "2 m"')
+        + DATA
+        + '[sample]\nstart = { place = "1 kg", speed = 0.0 }\n',
+        "[sample.start], place: '1 kg' was given; expected a length",
+    ),
+    "screening: odd levels": (HEAD + "[screening]\nlevels = 3\n", "expected a multiple of 2"),
     "simulate: open": (SOLVED + OPEN + "[simulate]\nend = 1.0\n", "has a gap of 1 (m or rad)"),
     "simulate: channel": (SOLVED + '[simulate]\nend = 1.0\nchannels = ["bar.end.q"]\n', "[simulate], channels: "),
     "simulate: memory": (SOLVED.replace("1 ms", "1e-13 s") + "[simulate]\nend = 1.0\n", "GB of memory"),

@@ -85,14 +85,23 @@ class WithUnit(float):
 def wrong_units(given: Mapping[str, Any], units: Mapping[str, str | None], where: str) -> Iterator[str]:
     """Yield sentences on numbers by name, or tables of them, whose unit is not that of the quantity of the name."""
     for name, value in given.items():
-        table = vars(value) if isinstance(value, StudyTable) else {"value": value}
-        numbers = [one for key, one in table.items() if key != "relative"]
-        for one in numbers:
-            if isinstance(one, WithUnit) and units.get(name) is not None:
+        for one in _with_units(value):
+            if units.get(name) is not None:
                 try:
                     read_number(one.text, units[name])
                 except InputError as error:
                     yield f"{where}, {name}: {error}"
+
+
+def _with_units(value: object) -> Iterator[WithUnit]:
+    """Yield the numbers with a unit in a number, a list or a table; those relative to others have none."""
+    if isinstance(value, WithUnit):
+        yield value
+    elif isinstance(value, list | tuple):
+        for one in value:
+            yield from _with_units(one)
+    elif isinstance(value, StudyTable):
+        yield from _with_units([one for key, one in vars(value).items() if key != "relative"])
 
 
 @dataclass(frozen=True)

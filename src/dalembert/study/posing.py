@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dalembert.errors import DataError
+from dalembert.errors import DataError, InputError
 from dalembert.forward import ForwardModel, Sensor, Sensors
 from dalembert.forward.sensors import QUANTITIES, reading_parameter
 from dalembert.parameters import Parameter
 from dalembert.study.data_table import DataTable
 from dalembert.study.experiments import reads
+from dalembert.study.numbers import wrong_units
 from dalembert.study.study import Study
 
 if TYPE_CHECKING:
@@ -69,12 +70,40 @@ def posed(study: Study) -> "tuple[ForwardModel | list[Experiment], Measurements 
     later = tuple(state.channel for state in states.values())
     if study.file.data is not None:
         data = study.data()
-        return _model(study, data, study.file.data, later), data
+        model = _model(study, data, study.file.data, later)
+        _check_units(study.file.data, model, "[data]")
+        return model, data
     experiments = []
     for table in study.file.experiments:
         data, variant = table.read(), study.variant(table)
-        experiments.append(Experiment(table.name, _model(variant, data, table, later), data, table.alone))
+        model = _model(variant, data, table, later)
+        _check_units(table, model, f"[[experiments]] {table.name!r}")
+        experiments.append(Experiment(table.name, model, data, table.alone))
     return experiments, None
+
+
+def channel_units_of(model: "ForwardModel | Sequence[Experiment]") -> dict[str, str | None]:
+    """Units of the channels of a model, or of experiments, also by ``"NAME.channel"``; None where there is none."""
+    if isinstance(model, ForwardModel):
+        return {channel.name: channel.unit or None for channel in model.channels}
+    found: dict[str, str | None] = {}
+    for item in model:
+        own = channel_units_of(item.model)
+        found |= own | {f"{item.name}.{name}": unit for name, unit in own.items()}
+    return found
+
+
+def _check_units(table: DataTable, model: ForwardModel, where: str) -> None:
+    """Refuse deviations whose unit is not that of their channel.
+
+    Raises
+    ------
+    InputError
+    """
+    units = channel_units_of(model)
+    for file in (table, *table.more):
+        for sentence in wrong_units(file.deviations or {}, units, f"{where}, deviations"):
+            raise InputError(sentence)
 
 
 def _model(study: Study, data: "Measurements", table: DataTable, later: Sequence[str] = ()) -> ForwardModel:

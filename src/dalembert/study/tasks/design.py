@@ -10,7 +10,7 @@ from dalembert.study.events import Emit
 from dalembert.study.numbers import Frequencies, Number, NumberOfEach, Samples, Times
 from dalembert.study.study import Study
 from dalembert.study.table import Read, StudyTable, told_apart
-from dalembert.study.tasks.noise import Noise
+from dalembert.study.tasks.noise import Noise, noise_of
 from dalembert.study.tasks.task import Outcome, ResultTask
 from dalembert.study.tasks.wrong import needs_parameters, needs_samples, needs_solver, response, unnamed
 
@@ -61,6 +61,7 @@ class Design(ResultTask):
 
     def plan(self, study: Study) -> str:
         model = response(study)
+        noise_of(study.table, model, self.name)
         names = [channel.name for channel in model.channels]
         return (
             f"ranks experiments that measure {', '.join(names)} by how well they would determine "
@@ -75,8 +76,8 @@ class Design(ResultTask):
         from dalembert.inverse import design
 
         options = study.table.picked("deviations", "sensors", "horizons", "criterion")
-        noise = None if study.table.noise is None else study.table.noise.noise()
-        return design(response(study), _at(study), noise=noise, **options)
+        model = response(study)
+        return design(model, _at(study), noise=noise_of(study.table, model, self.name), **options)
 
     def outcome(self, study: Study, designs: Any) -> Outcome:
         """Outcome of designs, with the best one's score and the deviations that it foresees."""

@@ -20,7 +20,7 @@ from dalembert.study.posing import posed, unknown_names
 from dalembert.study.study import Study
 from dalembert.study.table import StudyTable, checked, told_apart
 from dalembert.study.tasks import telling
-from dalembert.study.tasks.noise import Noise, wrong_noise
+from dalembert.study.tasks.noise import Noise, check_noise, noise_of, wrong_noise
 from dalembert.study.tasks.shooting import Shooting, ShootingTable
 from dalembert.study.tasks.task import Outcome, Task
 from dalembert.study.tasks.wrong import needs_parameters, needs_solver, unmatched, unnamed
@@ -201,6 +201,7 @@ class Identify(Task):
 
     def plan(self, study: Study) -> str:
         model, data = posed(study)
+        check_noise(study.table, model, data, telling.weights(study.table.weights, model, data), self.name)
         names = telling.whole(model).parameters.names
         return f"identifies {', '.join(names)} from {_measured(model, data)} by {_cost(study.table, len(names))[0]}"
 
@@ -240,7 +241,7 @@ class Identify(Task):
             weights=telling.weights(table.weights, model, data),
             horizon=None if table.horizon == "whole" else table.horizon,
             shooting=None if table.shooting is None else table.shooting.settings(),
-            noise=None if table.noise is None else table.noise.noise(),
+            noise=noise_of(table, model, self.name),
             on_event=teller(emit, as_record),
             **table.picked("starts", "seed", "polish", "spread", "loss", "loss_scale", "validation", "derivative"),
         )

@@ -1,12 +1,14 @@
 """Noise models of measured channels in a study file."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
-from dalembert.errors import unknown
-from dalembert.study.numbers import Number, Seconds
+from dalembert.errors import InputError, unknown
+from dalembert.study.numbers import Number, Seconds, wrong_units
+from dalembert.study.posing import channel_units_of
 from dalembert.study.table import StudyTable, checked
 
 if TYPE_CHECKING:
@@ -90,6 +92,51 @@ def _table(given: object) -> object:
 
 Noise = Annotated[NoiseTable | None, BeforeValidator(_table, json_schema_input_type=NoiseTable | Model | None)]
 """The key ``noise``: the name of a noise model, or a table."""
+
+
+def noise_of(table: Any, model: Any, place: str) -> Any:
+    """The noise of a task's table as functions take it; None if there is none.
+
+    Parameters
+    ----------
+    table : StudyTable
+        With the key ``noise``.
+    model : ForwardModel or sequence of Experiment
+    place : str
+        Name of the table.
+
+    Raises
+    ------
+    InputError
+        For a number whose unit is not that of its channel.
+    """
+    if table.noise is None:
+        return None
+    units = channel_units_of(model)
+    given = table.noise.channels or dict.fromkeys(units, table.noise)
+    for sentence in wrong_units(given, units, f"[{place}.noise]"):
+        raise InputError(sentence)
+    return table.noise.noise()
+
+
+def check_noise(table: Any, model: Any, data: Any, weights: Any, place: str) -> None:
+    """Refuse noise that the samples do not allow, without a simulation.
+
+    Raises
+    ------
+    InputError
+    """
+    from dalembert.inverse import likelihood
+
+    noise = noise_of(table, model, place)
+    if noise is not None:
+        several = {name: _closed(one) for name, one in noise.items()} if isinstance(noise, Mapping) else _closed(noise)
+        likelihood(model, data, noise=several, weights=weights)
+
+
+def _closed(noise: "NoiseModel") -> "NoiseModel":
+    """The noise, of order 0 where its order is chosen later."""
+    return replace(noise, order=0) if getattr(noise, "order", 0) is None else noise
 
 
 def wrong_noise(table: Any, place: str, channels: Collection[str]) -> list[str]:

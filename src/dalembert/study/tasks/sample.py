@@ -16,7 +16,7 @@ from dalembert.study.posing import posed, unknown_names
 from dalembert.study.study import Study
 from dalembert.study.table import StudyTable
 from dalembert.study.tasks import telling
-from dalembert.study.tasks.noise import Noise, wrong_noise
+from dalembert.study.tasks.noise import Noise, check_noise, noise_of, wrong_noise
 from dalembert.study.tasks.task import Outcome, Task, loaded_beside
 from dalembert.study.tasks.wrong import needs_parameters, needs_solver, unmatched, unnamed
 
@@ -84,6 +84,8 @@ class Sample(Task):
 
     def plan(self, study: Study) -> str:
         table, names = study.table, unknown_names(study)
+        model, data = posed(study)
+        check_noise(table, model, data, telling.weights(table.weights, model, data), self.name)
         least, most = _cost(table, len(names))
         return (
             f"draws {', '.join(names)} from their posterior, {table.chains} chains of {table.warmup} + {table.draws} "
@@ -110,7 +112,7 @@ class Sample(Task):
         table, tell = study.table, teller(emit, as_record)
         model, data = posed(study)
         weights = telling.weights(table.weights, model, data)
-        noise = None if table.noise is None else table.noise.noise()
+        noise = noise_of(table, model, self.name)
         start: Any = {**_starts(model), **table.start} if table.start else None
         told = {}
         if table.profile:

@@ -16,6 +16,7 @@ from dalembert.priors import CorrelatedNormal, Prior
 from dalembert.priors.prior import LEAST
 from dalembert.surrogate.orthonormal import Rule, uniform
 from dalembert.uncertainty.propagate import box_of
+from dalembert.uncertainty.tails import lost_variance
 
 TAIL = 1e-5
 """Probability that is cut off at an end of a distribution that is not bounded there."""
@@ -35,10 +36,13 @@ class Inputs:
         Interval of each input. Distributions are truncated by it.
     priors : tuple of Prior or None, of length d
         None for an input that is uniform.
+    lost : tuple of float, of length d
+        Part of the variance of each input that lies in the tails that are cut off.
     """
 
     box: Box
     priors: tuple[Prior | None, ...]
+    lost: tuple[float, ...]
 
     @property
     def texts(self) -> tuple[str, ...]:
@@ -93,14 +97,17 @@ def inputs_of(model: ForwardModel, given: Distributions | None, method: str) -> 
         given = completed({}, model, method)
     if not isinstance(given, Mapping):
         box = box_of(model, given)
-        return Inputs(box, (None,) * len(box))
+        return Inputs(box, (None,) * len(box), (0.0,) * len(box))
     for name, entry in given.items():
         if isinstance(entry, CorrelatedNormal):
             raise _correlated(method, name)
     priors = {name: entry for name, entry in given.items() if isinstance(entry, Prior) and name in items}
     ends = {name: _ends(prior, items[name], method) for name, prior in priors.items()}
     box = box_of(model, {name: ends.get(name, entry) for name, entry in given.items()})  # type: ignore[arg-type]
-    return Inputs(box, tuple(priors.get(name) for name in box.names))
+    lost = {
+        name: lost_variance(prior, ends[name], (items[name].lower, items[name].upper)) for name, prior in priors.items()
+    }
+    return Inputs(box, tuple(priors.get(name) for name in box.names), tuple(lost.get(name, 0.0) for name in box.names))
 
 
 def completed(given: Mapping[str, Interval | Prior], model: ForwardModel, method: str) -> dict[str, Any]:

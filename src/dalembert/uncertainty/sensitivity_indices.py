@@ -31,7 +31,8 @@ class SensitivityIndices(Result):
     whole_first, whole_total : array, shape (channels, parameters)
         Indices of the whole channel: parts of the variance summed over the samples.
     uncertainty : array, shape (channels,)
-        Largest error of an index of the whole channel that the error of the surrogate allows.
+        Largest error of an index of the whole channel that the error of the surrogate, and tails of distributions that
+        are cut off, allow.
     runs : int
         All simulations, checks and failed ones included.
     checks : int

@@ -54,7 +54,8 @@ def global_sensitivity(
     scheme : TotalDegree, Tensor or Adaptive, optional
         Of the surrogate, see :func:`dalembert.surrogate.fit`; ``Adaptive(tolerance / 20)`` if not given.
     tolerance : float
-        Largest uncertainty of the indices of a whole channel, which follows from the error of the surrogate.
+        Largest uncertainty of the indices of a whole channel, which follows from the error of the surrogate and from
+        tails of distributions that are cut off.
     checks : int, optional
         Random runs that the surrogate is compared with: at least 2. Without it a tenth of those of the surrogate, and
         from 30 to 1000.
@@ -110,7 +111,8 @@ def global_sensitivity(
         for groups in (None, made.groups)
     )
     names = tuple(channel.name for channel in model.channels)
-    _demand(whole, names, tolerance, made.surrogate.improvement)
+    uncertainty = whole.uncertainty + _of_tails(inputs, whole, names, tolerance)
+    _demand(uncertainty, names, tolerance, made.surrogate.improvement)
     shape = samples, channels, len(inputs.box)
     result = SensitivityIndices(
         coordinate=model.coordinate,
@@ -125,7 +127,7 @@ def global_sensitivity(
         total=each.total.T.reshape(shape),
         whole_first=whole.first.T,
         whole_total=whole.total.T,
-        uncertainty=whole.uncertainty,
+        uncertainty=uncertainty,
         runs=runs.count,
         checks=0 if made.checks is None else len(made.checks.eta),
         failures=tuple(runs.failures),
@@ -168,13 +170,41 @@ def _surrogate(runs: Runs, inputs: Inputs, scheme: Scheme, count: int | None, se
     return _Made(surrogate, groups, checks)
 
 
-def _demand(whole: SobolIndices, names: tuple[str, ...], tolerance: float, more: str) -> None:
+def _of_tails(inputs: Inputs, whole: SobolIndices, names: tuple[str, ...], tolerance: float) -> np.ndarray:
+    """Return how much the tails that are cut off can change an index of each channel, (channels,).
+
+    Notes
+    -----
+    The part m of the variance of an input, to whose share S it is proportional, changes an index by at most
+    S (1 − S) m / (1 − m (1 − S)), as that of a linear model.
+
+    Raises
+    ------
+    SolveError
+        If that is more than the tolerance.
+    """
+    lost, share = np.array(inputs.lost)[:, None], np.nan_to_num(np.clip(whole.total, 0.0, 1.0))
+    each = share * (1 - share) * lost / np.maximum(1 - lost * (1 - share), np.finfo(float).tiny)
+    total = each.sum(axis=0)
+    if np.max(total) > tolerance:
+        channel = int(np.argmax(total))
+        worst = int(np.argmax(each[:, channel]))
+        raise SolveError(
+            f"{NAME}: the distribution of {inputs.box.names[worst]!r} has {inputs.lost[worst]:.2g} of its variance in "
+            f"tails beyond [{inputs.box.lower[worst]:.3g}, {inputs.box.upper[worst]:.3g}], which leaves the indices of channel "
+            f"{names[channel]!r} uncertain by {total[channel]:.2g}, more than the tolerance of {tolerance:g}. Give the "
+            "parameter narrower bounds, or a distribution with lighter tails."
+        )
+    return total
+
+
+def _demand(uncertainty: np.ndarray, names: tuple[str, ...], tolerance: float, more: str) -> None:
     """Refuse indices that are too uncertain."""
-    worst = int(np.argmax(np.nan_to_num(whole.uncertainty)))
-    if whole.uncertainty[worst] > tolerance:
+    worst = int(np.argmax(np.nan_to_num(uncertainty)))
+    if uncertainty[worst] > tolerance:
         raise SolveError(
             f"{NAME}: the error of the surrogate leaves the indices of channel {names[worst]!r} uncertain by "
-            f"{whole.uncertainty[worst]:.2g}, more than the tolerance of {tolerance:g}. Improve the surrogate "
+            f"{uncertainty[worst]:.2g}, more than the tolerance of {tolerance:g}. Improve the surrogate "
             f"({more}), increase checks, narrow the intervals, or raise the tolerance."
         )
 

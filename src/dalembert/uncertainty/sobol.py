@@ -189,9 +189,10 @@ def _of_tails(inputs: Inputs, whole: SobolIndices, names: tuple[str, ...], toler
     if np.max(total) > tolerance:
         channel = int(np.argmax(total))
         worst = int(np.argmax(each[:, channel]))
+        inside = f"[{inputs.box.lower[worst]:.3g}, {inputs.box.upper[worst]:.3g}]"
         raise SolveError(
             f"{NAME}: the distribution of {inputs.box.names[worst]!r} has {inputs.lost[worst]:.2g} of its variance in "
-            f"tails beyond [{inputs.box.lower[worst]:.3g}, {inputs.box.upper[worst]:.3g}], which leaves the indices of channel "
+            f"tails beyond {inside}, which leaves the indices of channel "
             f"{names[channel]!r} uncertain by {total[channel]:.2g}, more than the tolerance of {tolerance:g}. Give the "
             "parameter narrower bounds, or a distribution with lighter tails."
         )

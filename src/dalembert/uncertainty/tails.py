@@ -24,7 +24,7 @@ def lost_variance(prior: Prior, inner: tuple[float, float], outer: tuple[float, 
 
 
 def _variance(prior: Prior, lower: float, upper: float) -> float:
-    """Variance of a distribution within an interval, by Gauss and Legendre's rule in parts that grow from its median."""
+    """Variance within an interval, by Gauss and Legendre's rule in parts that grow from the median."""
     median = float(np.clip(prior.quantile(0.5), lower, upper))
     knots = np.concatenate([[0.0], 2.0 ** np.arange(-HALVINGS, 1)])
     nodes, weights = leggauss(NODES)

@@ -9,6 +9,7 @@ from dalembert.findings import Finding
 from dalembert.inverse.least_squares.estimate import UNSEEN, Estimate
 from dalembert.inverse.problem.combinations import members, moved, separated
 from dalembert.inverse.problem.prior import prior_findings
+from dalembert.inverse.problem.prior_conflicts import conflicts_of_minimum
 from dalembert.parameters import Parameters
 
 INDISTINGUISHABLE = 0.99
@@ -41,6 +42,7 @@ def identifiability_findings(parameters: Parameters, values: np.ndarray, known: 
                 f"{item.name!r} is at its {side} bound {bound:.6g}.",
                 "Widen the bound if the true value may lie beyond it.",
             )
+    yield from conflicts_of_minimum(parameters, values, known.deviations, known.correlation)
     yield from prior_findings(parameters, known.deviations, known.correlation)
     yield from unidentifiable(parameters.names, width, parameters.scale, known)
 

@@ -11,11 +11,8 @@ from dalembert.inverse.likelihood.likelihood import Likelihood
 from dalembert.inverse.posterior.preconditioning import Centred
 from dalembert.inverse.posterior.unbounded import UnboundedCoordinates
 from dalembert.inverse.problem.prior import ALONE
+from dalembert.inverse.problem.prior_conflicts import prior_conflicts
 from dalembert.parameters import Parameter, Parameters
-from dalembert.priors import SquarePrior
-
-CONFLICT = 3.0
-"""Standard deviations between data and prior from which they contradict each other: 0.3 % by chance."""
 
 CLOSE = 0.02
 """Distance to a bound, relative to that of the bounds, that counts as at the bound."""
@@ -65,41 +62,14 @@ def _correlated(finding: Finding) -> str:
     return message
 
 
-def prior_conflicts(found: Centred) -> Iterator[Finding]:
-    """Yield findings on priors that contradict the data, by the linearised likelihood at the mode.
-
-    With the residual r of a prior, its change Δr up to the maximum of the likelihood alone and the standard deviation s
-    that the data leave in it, (r + Δr)/√(1 + s²) is standard normal if prior and data agree.
-    """
+def contradictions(found: Centred) -> Iterator[Finding]:
+    """Yield findings on priors that contradict the data, by the linearised likelihood at the mode."""
     if found.data_information is None:
         return
-    target, parameters = found.target, found.target.parameters
+    target = found.target
     slope = target.coordinates.slope(target.centre)
     _, gradient = target.likelihood.linearise(found.vector)
-    values, directions = np.linalg.eigh(found.data_information)
-    seen = values > 1e-10 * values[-1]
-    if not np.any(seen):
-        return
-    rows = directions[:, seen]
-    covariance = rows / values[seen] @ rows.T
-    blind = np.sqrt(np.sum(directions[:, ~seen] ** 2, axis=1))
-    step = covariance @ (slope * gradient)
-    for k, item in enumerate(parameters):
-        prior = item.distribution
-        if not isinstance(prior, SquarePrior) or blind[k] > 1e-3:
-            continue
-        rate = float(prior.residual_slope(found.vector[k])) * slope[k]
-        residual = float(prior.residual(found.vector[k])) + rate * step[k]
-        apart = abs(residual) / np.sqrt(1 + rate**2 * covariance[k, k])
-        if apart > CONFLICT:
-            yield Finding(
-                "prior-conflict",
-                "warning",
-                {"parameter": item.name, "deviations": float(apart)},
-                f"The prior of {item.name!r} excludes what the data show: they are {apart:.1f} standard deviations "
-                "apart.",
-                "Correct the prior, or look for what the model lacks.",
-            )
+    yield from prior_conflicts(target.parameters, found.vector, slope, found.data_information, slope * gradient)
 
 
 def findings(parameters: Parameters, draws: np.ndarray) -> Iterator[Finding]:

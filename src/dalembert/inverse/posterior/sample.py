@@ -22,7 +22,7 @@ from dalembert.inverse.identify import identify
 from dalembert.inverse.likelihood.guesses import guessed
 from dalembert.inverse.likelihood.likelihood import Likelihood, likelihood_of
 from dalembert.inverse.likelihood.placing import Noise
-from dalembert.inverse.posterior.conclusions import findings, inherited, prior_conflicts
+from dalembert.inverse.posterior.conclusions import contradictions, findings, inherited
 from dalembert.inverse.posterior.convergence import convergence
 from dalembert.inverse.posterior.posterior import Posterior
 from dalembert.inverse.posterior.preconditioning import Centred, centred, has_jacobian
@@ -210,7 +210,7 @@ def _result(around: Centred, target: Target, found: Chains, sampler: Sampler, le
         warmup=length.warmup,
         simulations=0,
         provenance=provenance(target.problem.model, sampler, **settings),
-        findings=(*found.findings, *prior_conflicts(around), *findings(parameters, flat)),
+        findings=(*found.findings, *contradictions(around), *findings(parameters, flat)),
     )
 
 

@@ -194,6 +194,16 @@ def test_a_prior_that_excludes_the_data_is_found() -> None:
     )
 
 
+def test_a_fit_finds_the_same_conflict() -> None:
+    fit = identify(line(a=Normal(-1.0, 0.2)), measured(), starts=1)
+    finding = next(item for item in fit.doubts if item.code == "prior-conflict")
+    deviation = np.sqrt(0.2**2 + SIGMA**2 * np.linalg.inv(DESIGN.T @ DESIGN)[0, 0])
+    best = np.linalg.lstsq(DESIGN, measured().values[:, 0], rcond=None)[0][0]
+    np.testing.assert_allclose(finding.values["deviations"], (best + 1.0) / deviation, rtol=1e-6)
+    agreeing = identify(line(a=Normal(1.0, 0.2)), measured(), starts=1)
+    assert "prior-conflict" not in {item.code for item in agreeing.doubts}
+
+
 def test_a_prior_that_agrees_is_no_finding() -> None:
     found = sample(line(a=Normal(1.0, 0.2)), measured(), **SHORT)
     assert not {"prior-conflict", "prior-dominates"} & {item.code for item in found.findings}

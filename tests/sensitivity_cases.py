@@ -37,6 +37,14 @@ SENSITIVITY_CASES = {
         ),
         ("indices-1",),
     ),
+    "indices of a constant channel": Case(
+        lambda: da.global_sensitivity(
+            da.PythonModel(
+                lambda a: np.stack([a * TIMES, 0 * a * TIMES + 1.0], axis=1), {"a": (0, 1)}, ["x", "y"], TIMES
+            )
+        ),
+        ("The response of 'y' is constant: it has no indices.", "or widen the intervals."),
+    ),
     "indices where runs fail": Case(
         lambda: da.global_sensitivity(
             da.PythonModel(_fragile, DECAY.parameters, ["x"], TIMES),

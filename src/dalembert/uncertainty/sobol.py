@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.arguments import check_model, check_whole, is_number, takes_checked
-from dalembert.errors import InputError, SolveError, shown
+from dalembert.errors import InputError, SolveError, listed, shown
 from dalembert.findings import Finding
 from dalembert.forward import Executor, ForwardModel, findings_at, on_cluster, takes_executor
 from dalembert.forward.provenance import provenance
@@ -134,6 +134,7 @@ def global_sensitivity(
         provenance=provenance(model, scheme, seed=seed, tolerance=tolerance, intervals=dict(described(inputs))),
         findings=(
             *failed_runs(runs),
+            *_constant(names, whole),
             *_negligible(inputs, whole),
             unseen(made.surrogate, inputs.box.names),
             *findings_at(model, inputs.box.middle),
@@ -208,6 +209,16 @@ def _demand(uncertainty: np.ndarray, names: tuple[str, ...], tolerance: float, m
             f"{uncertainty[worst]:.2g}, more than the tolerance of {tolerance:g}. Improve the surrogate "
             f"({more}), increase checks, narrow the intervals, or raise the tolerance."
         )
+
+
+def _constant(names: tuple[str, ...], whole: SobolIndices) -> list[Finding]:
+    """Finding on channels without a variance, which have no indices."""
+    still = [name for name, variance in zip(names, whole.variance, strict=True) if not variance > 0]
+    if not still:
+        return []
+    message = f"The response of {listed(list(map(repr, still)))} is constant: it has no indices."
+    advice = "Check that the channels depend on the parameters, or widen the intervals."
+    return [Finding("constant-response", "warning", {"channels": ", ".join(still)}, message, advice)]
 
 
 def _negligible(inputs: Inputs, whole: SobolIndices) -> list[Finding]:

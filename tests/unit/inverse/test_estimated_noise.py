@@ -284,3 +284,23 @@ def test_a_combination_that_the_data_do_not_determine_is_found_beside_noise():
     both = da.PythonModel(lambda a, b: (a + b) * times, {"a": (-20.0, 20.0), "b": (-20.0, 20.0)}, ["x"], times)
     fit = da.identify(both, da.Measurements.of(times, {"x": 2 * times + noise}), noise="autoregressive")
     assert np.sum(fit.values) == pytest.approx(2.0, abs=0.05)
+
+
+@pytest.mark.parametrize("noise", ["constant", "proportional", "mixed"])
+def test_as_many_values_as_parameters_leave_no_noise_to_estimate(noise):
+    times = np.array([0.0, 1.0])
+    model = da.PythonModel(lambda a, b: a + b * times, {"a": (-9.0, 9.0), "b": (-9.0, 9.0)}, ["x"], times)
+    fit = da.identify(model, da.Measurements.of(times, {"x": [1.0, 2.5]}), noise=noise, starts=1)
+    assert np.all(np.isnan(fit.deviations))
+    assert "too-few-data" in {finding.code for finding in fit.doubts}
+
+
+def test_a_value_with_all_of_the_misfit_changes_no_parameter_by_infinity():
+    times = np.linspace(0, 2, 41)
+    model = da.PythonModel(lambda a: a * (times - 1.03), {"a": (0.1, 9.0)}, ["x"], times)
+    values = 2 * (times - 1.03) * (1 + 0.1 * np.random.default_rng(0).standard_normal(41))
+    values[20] = 3.0  # where the response is nearly zero, and with it the noise
+    fit = da.identify(model, da.Measurements.of(times, {"x": values}), noise="proportional", starts=1)
+    finding = next(one for one in fit.conclusions if one.code == "influential-sample")
+    assert finding.message.endswith("decides the fit (Cook's distance 1.06).")
+    assert not any("e+308" in str(one) for one in fit.conclusions)

@@ -14,6 +14,9 @@ from dalembert.inverse.fit.stored_data import StoredMeasured
 from dalembert.results import EndedResult, text_table
 from dalembert.stored_fields import Labels, OptionalTable, Over, Table
 
+FLAT = 1e-9
+"""Range of a response, as a part of its size, below which a band has no width relative to it."""
+
 
 @dataclass(frozen=True, eq=False)
 class Prediction(EndedResult):
@@ -119,7 +122,9 @@ class Prediction(EndedResult):
             )
             yield Finding("infinite-band", "error", {"channels": ", ".join(lost)}, message, advice)
         widest = np.fmax.reduce(self.deviations, axis=0)
-        ratio = 2 * self.quantile * widest / np.maximum(np.ptp(self.response, axis=0), 1e-300)
+        extent = np.ptp(self.response, axis=0)
+        varies = extent > FLAT * np.max(np.abs(self.response), axis=0)
+        ratio = 2 * self.quantile * widest / np.where(varies, extent, np.nan)
         finite = np.flatnonzero(np.isfinite(ratio))
         if len(finite):
             worst = finite[np.argmax(ratio[finite])]

@@ -184,8 +184,9 @@ def _of_influence(names: Sequence[str], series: Sequence[SeriesResiduals]) -> It
         "parameter": names[most],
         "change": float(change[most]),
     }
-    message = (
-        f"The sample of {worst.name!r} at {f'{at:.4g} {unit}'.rstrip()} decides the fit (Cook's distance "
-        f"{distance:.3g}): without it {names[most]!r} changes by {abs(change[most]):.2g} standard deviations."
+    effect = (
+        f": without it {names[most]!r} changes by {abs(change[most]):.2g} standard deviations" if change.any() else ""
     )
+    where = f"{at:.4g} {unit}".rstrip()
+    message = f"The sample of {worst.name!r} at {where} decides the fit (Cook's distance {distance:.3g}){effect}."
     yield Finding("influential-sample", "note", values, message, "Check this sample, and measure more like it.")

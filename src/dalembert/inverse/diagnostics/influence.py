@@ -22,7 +22,8 @@ class Influence:
         Cook's distance: how far the parameters move without the value, in the metric of their covariance, divided by
         their number.
     changes : array, shape (values, parameters)
-        DFBETAS: identified value less that without the value, in standard deviations; 0 for a parameter on a bound.
+        DFBETAS: identified value less that without the value, in standard deviations; 0 for a parameter on a bound,
+        NaN where the other values have no residual.
     """
 
     leverage: np.ndarray
@@ -74,7 +75,8 @@ def influence(
     without = np.full(len(residual), variance)
     if freedom is not None:
         left_over = variance * freedom - residual**2 / remaining
-        without = np.maximum(left_over, 0.0) / (freedom - 1) if freedom > 1 else np.full(len(residual), np.nan)
+        exact = left_over <= ALONE * variance * freedom  # the other values have no residual
+        without = np.where(exact, np.nan, left_over) / (freedom - 1) if freedom > 1 else np.full(len(residual), np.nan)
     changes = np.zeros((len(residual), len(free)))
     size = np.linalg.norm(spread, axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -18,7 +18,7 @@ from dalembert.inverse.likelihood.placing import Noise, base_of, picked_models
 from dalembert.inverse.noise.correlated import CorrelatedNoise
 from dalembert.inverse.noise.deviations import ProportionalNoise
 from dalembert.inverse.noise.noise_model import NoiseModel
-from dalembert.inverse.problem.prior import prior_slopes
+from dalembert.inverse.problem.prior import prior_slopes, priors
 from dalembert.inverse.problem.problem import Linearisation, Problem
 
 STEP = 1e-4
@@ -89,12 +89,14 @@ def estimate_noise(problem: Problem, noise: Noise, at: Linearisation, *, known: 
     if again != picked:  # the residuals of the better fit have another order
         picked = again
         likelihood, found = _largest(problem, picked, found.expansion.at, known=known)
-    scale = problem.model.parameters.scale
+    model = problem.model.parameters
+    few = problem.compared + len(priors(model)) <= len(model)  # no residual is left to estimate the noise from
+    variance = np.nan if few and len(likelihood.noise_parameters) else 1.0
     return NoiseFit(
         likelihood,
         found,
         _noise(likelihood, found, picked),
-        estimate(_slopes(likelihood, found), scale, 1.0),
+        estimate(_slopes(likelihood, found), model.scale, variance),
         _weights(likelihood, found),
         _table_of(likelihood, found),
     )

@@ -180,3 +180,10 @@ def test_outliers_of_a_robust_fit_do_not_widen_its_bands():
     assert predict(DECAY, fit).noise[0] == 0.02
     rough = Measurements.of(data.coordinate.values, {"x": measured(DECAY, [2.0, 0.8], 0.06, 3).values[:, 0]}, 0.02)
     assert predict(DECAY, identify(DECAY, rough, loss="huber")).noise[0] == pytest.approx(0.06, rel=0.3)
+
+
+def test_a_constant_response_has_no_relative_width():
+    times = np.linspace(0, 1, 5)
+    model = PythonModel(lambda a: a + 0 * times, {"a": (0.0, 9.0)}, ["x"], times)
+    found = predict(model, identify(model, Measurements.of(times, {"x": [1.0, 1.1, 0.9, 1.0, 1.2]}), starts=1))
+    assert "band-width" not in {finding.code for finding in found.outcome}

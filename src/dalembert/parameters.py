@@ -290,6 +290,23 @@ class Parameters:
             raise InputError(f"parameters are {shown(vector.tolist())}; expected real numbers")
         return vector.astype(float)
 
+    def start_vector(self, values: Mapping[str, float] | ArrayLike) -> np.ndarray:
+        """Vector of real numbers within the bounds, as :meth:`vector`, where a search starts.
+
+        Raises
+        ------
+        InputError
+            For a complex number, and one outside its bounds.
+        """
+        vector = self.real_vector(values)
+        for item, value in zip(self, vector, strict=True):
+            if not item.lower <= value <= item.upper:
+                raise InputError(
+                    f"start: {item.name!r} is {value}, outside its bounds ({item.lower}, {item.upper}); "
+                    "widen the bounds or move the start"
+                )
+        return vector
+
     def batch(self, vectors: ArrayLike) -> np.ndarray:
         """Vectors of shape (batch, parameters) from as many, or from one of them.
 

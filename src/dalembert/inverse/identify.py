@@ -97,9 +97,10 @@ def identify(
     weights : array, shape (channels,) or (samples, channels), optional
         W; 1/deviation² of each channel if the data have deviations, else 1. With experiments a mapping from their
         names to such arrays; 1 for those that it leaves out. With ``noise`` each is 1, or 0 for a value to leave out.
-    noise : NoiseModel, its name, or mapping of channel to NoiseModel, optional
-        Noise that is estimated with the parameters, from the minimum of the search on. If not given, the noise is
-        independent, and correlated residuals are allowed for after the fit.
+    noise : NoiseModel, its name, mapping of channel to NoiseModel, or EstimatedNoise, optional
+        Noise that is estimated with the parameters, from the minimum of the search on; ``noise`` of a fit means its
+        models, with the orders that were chosen. If not given, the noise is independent, and correlated residuals are
+        allowed for after the fit.
     polish : bool
         Whether least squares goes on from where another method ends.
     horizon : {"growing", None}
@@ -343,15 +344,7 @@ def _method(given: Squares | Method | str | None) -> Squares | Method:
 
 def _origin(problem: Problem, start: Mapping[str, float] | ArrayLike) -> np.ndarray:
     """Search point of a first guess."""
-    parameters = problem.model.parameters
-    vector = parameters.real_vector(start)
-    for item, value in zip(parameters, vector, strict=True):
-        if not item.lower <= value <= item.upper:
-            raise InputError(
-                f"start: {item.name!r} is {value}, outside its bounds ({item.lower}, {item.upper}); "
-                "widen the bounds or move the start"
-            )
-    return problem.search.points(vector)
+    return problem.search.points(problem.model.parameters.start_vector(start))
 
 
 def _estimated(

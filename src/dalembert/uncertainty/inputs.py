@@ -23,7 +23,7 @@ TAIL = 1e-5
 PANELS, NODES = 10, 24
 """Parts of equal probability in which a density is integrated, and nodes in each, beside half the degree."""
 
-Distributions = Box | Mapping[str, Interval | tuple[float, float] | float | Prior]
+Distributions = Box | Mapping[str, Interval | tuple[float, float] | float | Prior | CorrelatedNormal]
 
 
 @dataclass(frozen=True, eq=False)

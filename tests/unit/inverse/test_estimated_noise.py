@@ -304,3 +304,12 @@ def test_a_value_with_all_of_the_misfit_changes_no_parameter_by_infinity():
     finding = next(one for one in fit.conclusions if one.code == "influential-sample")
     assert finding.message.endswith("decides the fit (Cook's distance 1.06).")
     assert not any("e+308" in str(one) for one in fit.conclusions)
+
+
+def test_the_noise_of_a_fit_is_a_noise_model():
+    data = measured(0.1 * autoregressive(3, 61, 0.6))
+    open_order = da.identify(decay(), data, noise="autoregressive", starts=1)
+    again = da.identify(decay(), data, noise=open_order.noise, starts=1)
+    np.testing.assert_allclose(again.noise.values, open_order.noise.values, rtol=1e-4)
+    likely = da.inverse.likelihood(decay(), data, noise=open_order.noise)
+    assert likely.noise_parameters.names == open_order.noise.parameters.names

@@ -33,8 +33,8 @@ POINTS = 12
 @takes_checked("level", "points")
 def profile(
     model: ForwardModel | Sequence[Experiment],
-    data: Measurements | None,
-    fit: Fit,
+    data: Measurements | None = None,
+    fit: Fit | None = None,
     *,
     names: Collection[str] | None = None,
     level: float = 0.95,
@@ -110,6 +110,8 @@ def profile(
     True
     """
     check_level(level, "profile")
+    if fit is None:
+        raise InputError("profile: no fit was given; give the one whose parameters are profiled, fit=...")
     fit.needs_one_run("profile")
     check_whole("profile", "points", points, 4)
     if "loss" in fit.provenance:

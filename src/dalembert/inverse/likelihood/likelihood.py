@@ -215,7 +215,7 @@ def likelihood(
     model : ForwardModel or sequence of Experiment
     data : Measurements, optional
         Left out with experiments, which have their own.
-    noise : NoiseModel, its name, or mapping of channel to NoiseModel, optional
+    noise : NoiseModel, its name, mapping of channel to NoiseModel, or EstimatedNoise, optional
         :class:`KnownNoise` if the data have deviations or weights are given, else :class:`ConstantNoise`. A mapping
         names channels, with several experiments also ``"NAME.channel"``.
     weights : array, shape (channels,) or (samples, channels), or mapping of experiments to such arrays, optional

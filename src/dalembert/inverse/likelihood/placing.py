@@ -9,14 +9,15 @@ import numpy as np
 from dalembert.errors import InputError, unknown
 from dalembert.inverse.correlation.series import Series, series_of
 from dalembert.inverse.likelihood.channel_noise import ChannelNoise
+from dalembert.inverse.likelihood.estimated_noise import EstimatedNoise
 from dalembert.inverse.noise.catalogue import noise_model
 from dalembert.inverse.noise.deviations import ConstantNoise, KnownNoise
 from dalembert.inverse.noise.noise_model import Extent, NoiseModel
 from dalembert.inverse.problem.problem import Problem
 from dalembert.parameters import Parameter, Parameters
 
-Noise: TypeAlias = NoiseModel | str | Mapping[str, NoiseModel | str]
-"""One noise model for all channels, or one for each by name."""
+Noise: TypeAlias = NoiseModel | str | Mapping[str, NoiseModel | str] | EstimatedNoise
+"""One noise model for all channels, one for each by name, or those of a fit, whose orders are chosen."""
 
 
 def picked_models(
@@ -33,6 +34,7 @@ def picked_models(
     """
     usual = KnownNoise() if known else ConstantNoise()
     series = list(series_of(problem, fewest=1))
+    given = given.models if isinstance(given, EstimatedNoise) else given
     if not isinstance(given, Mapping):
         chosen = usual if given is None else noise_model(given)
         return dict.fromkeys(series, chosen), chosen

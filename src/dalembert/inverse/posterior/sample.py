@@ -79,7 +79,7 @@ def sample(
         declare none.
     data : Measurements, optional
         Left out with experiments, which have their own.
-    noise : NoiseModel, its name, or mapping of channel to NoiseModel, optional
+    noise : NoiseModel, its name, mapping of channel to NoiseModel, or EstimatedNoise, optional
         As in :func:`likelihood`. Parameters of the noise are sampled, too.
     weights : array, or mapping of experiments to arrays, optional
         1/variance of the values, in place of the data's deviations.
@@ -296,7 +296,7 @@ def _start(
         fit = identify(posed, data, weights=weights, seed=seed, on_event=on_event, executor=executor)
         vector = fit.values
     else:
-        vector = own.real_vector(start)
+        vector = own.start_vector(start)
     vector = own.clip(vector)
     sizes = _guesses(likely, vector)
     sizes |= {name: value for name, value in estimated.items() if name in sizes}

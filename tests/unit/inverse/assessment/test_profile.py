@@ -224,3 +224,13 @@ def test_what_cannot_be_meant_is_refused():
     robust = identify(DECAY, data, loss="huber", loss_scale=0.1)
     with pytest.raises(InputError, match="profile: the fit has the loss 'huber', whose minimum is no likelihood"):
         profile(DECAY, data, robust)
+
+
+def test_experiments_need_no_data_and_a_fit_is_asked_for():
+    experiments = [Experiment(name, LINE, measured(LINE, [1.0, -0.5], noise=0.3)) for name in ("one", "two")]
+    fit = identify(experiments, starts=1)
+    assert profile(experiments, fit=fit).intervals == profile(experiments, None, fit).intervals
+    with pytest.raises(
+        InputError, match=says("profile: no fit was given; give the one whose parameters are profiled, fit=...")
+    ):
+        profile(experiments)

@@ -363,3 +363,9 @@ def test_findings_of_the_fit_concern_the_draws_too() -> None:
     assert "correlated-residuals" in codes
     codes = {item.code for item in sample(model, data, noise=AutoregressiveNoise(order=1), **short).findings}
     assert "correlated-residuals" not in codes
+
+
+def test_a_start_outside_the_bounds_is_refused() -> None:
+    with pytest.raises(InputError) as refused:
+        sample(line(), measured(), start={"a": 99.0, "b": 0.0}, **SHORT)
+    assert "start: 'a' is 99.0, outside its bounds" in str(refused.value)

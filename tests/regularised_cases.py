@@ -46,6 +46,12 @@ REGULARISED_CASES = {
         ("Parameters without a penalty",),
         ("smooth-parameters",),
     ),
+    "smooth parameters, beyond their bounds": Case(
+        lambda: da.regularise(
+            da.PythonModel(summed, {f"c{k}": (-0.5, 0.5) for k in range(COUNT)}, ["x"], TIMES), measured()
+        ),
+        ("beyond the bounds, the first: 'c2' is", "Regularisation does not keep bounds."),
+    ),
     "smooth parameters, unknown noise": Case(
         lambda: da.regularise(MODEL, measured(deviations=False)), ("noise not known",), ()
     ),

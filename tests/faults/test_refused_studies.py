@@ -105,6 +105,18 @@ REFUSED = {
         + '[identify]\nnoise = "autoregressive"\n',
         "AutoregressiveNoise needs evenly spaced samples",
     ),
+    "sample: open order": (
+        HEAD + DATA + '[sample]\nnoise = "autoregressive"\n',
+        "noise of channel 'x': the order of AutoregressiveNoise is open; give it",
+    ),
+    "sample: prior of no noise parameter": (
+        HEAD + DATA + '[sample.priors."noise.y.deviation"]\nkind = "half-normal"\ndeviation = 0.1\n',
+        "[sample.priors]: unknown noise parameter 'noise.y.deviation'; did you mean 'noise.x.deviation'?",
+    ),
+    "sample: unit of a prior": (
+        MEASURED + '[sample.priors."noise.bar.end.x.deviation"]\nkind = "half-normal"\ndeviation = "1 s"\n',
+        "[sample.priors], noise.bar.end.x.deviation: '1 s' was given; expected a length",
+    ),
     "sample: unit of a start": (
         HEAD.replace("lower = -2.0, upper = 2.0", 'lower = "-2 m", upper = "2 m"')
         + DATA

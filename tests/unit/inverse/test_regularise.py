@@ -184,7 +184,7 @@ def test_the_discrepancy_principle_needs_a_weight_that_balances_the_noise() -> N
         ),
     ):
         da.regularise(*blurred(100.0), weight="discrepancy")
-    (finding,) = da.regularise(*blurred(0.001), weight="discrepancy").findings
-    assert finding.code == "misfit-above-noise"
+    finding, beyond = da.regularise(*blurred(0.001), weight="discrepancy").findings
+    assert (finding.code, beyond.code) == ("misfit-above-noise", "values-beyond-bounds")
     assert finding.values["ratio"] > 5
     assert da.regularise(*blurred(0.01), weight="discrepancy").findings == ()

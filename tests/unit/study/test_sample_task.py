@@ -52,6 +52,22 @@ def study(folder: Path, task: str, head: str = HEAD) -> Path:
     return path
 
 
+def test_a_noise_parameter_has_a_prior(tmp_path: Path) -> None:
+    task = """
+[sample]
+chains = 1
+draws = 30
+warmup = 30
+sampler = "affine-invariant"
+priors = { "noise.x.deviation" = { kind = "normal", mean = 0.2, deviation = 1e-4 } }
+"""
+    loaded = load(study(tmp_path, task, HEAD.replace("deviations = { x = 0.05 }", "")))
+    folder, _ = run_study(loaded, tmp_path / "run")
+    result = Posterior.load(folder.result)
+    assert result.provenance["priors"]["noise.x.deviation"] == "Normal(mean=0.2, deviation=0.0001)"
+    assert result.estimates["noise.x.deviation"] == pytest.approx(0.2, rel=1e-2)
+
+
 def test_a_study_is_sampled_and_reported(tmp_path: Path) -> None:
     task = "[sample]\nchains = 2\ndraws = 40\nwarmup = 40\nprofile = true\nsampler = { kind = 'nuts', target_accept = 0.9 }\n"
     loaded = load(study(tmp_path, task))

@@ -9,7 +9,7 @@ from scipy.linalg import cho_factor, cho_solve, solve_triangular
 
 from dalembert.arguments import check_whole, names_of
 from dalembert.data import Measurements
-from dalembert.errors import InputError, SolveError, listed, require_known
+from dalembert.errors import InputError, SolveError, counted, listed, require_known
 from dalembert.findings import Finding
 from dalembert.forward import ForwardModel
 from dalembert.forward.adjoint import AUTO, GRADIENTS
@@ -20,6 +20,7 @@ from dalembert.inverse.problem.problem import Linearisation, Problem, pose
 from dalembert.inverse.regularised.regularised_fit import RegularisedFit
 from dalembert.inverse.regularised.smoothness import Smoothed, differences
 from dalembert.optimize import Minimiser
+from dalembert.parameters import Parameters
 
 L_CURVE, DISCREPANCY, GIVEN = "l-curve", "discrepancy", "given"
 _SETTLED = 0.05  # relative change of the weight at which the rounds end
@@ -174,7 +175,24 @@ def _identified(
         findings=(
             *(_findings(before, mu, left) if not settled or left > _CONVERGED else ()),
             *(_above_noise(many, residual, mu) if weight == DISCREPANCY else ()),
+            *_beyond_bounds(parameters, vector),
         ),
+    )
+
+
+def _beyond_bounds(parameters: Parameters, values: np.ndarray) -> Iterator[Finding]:
+    """Yield that values (parameters,) lie beyond the bounds, which the penalty does not know."""
+    beyond = np.flatnonzero((values < parameters.lower) | (values > parameters.upper))
+    if not len(beyond):
+        return
+    item, value = parameters.items[beyond[0]], float(values[beyond[0]])
+    yield Finding(
+        "values-beyond-bounds",
+        "warning",
+        {"values": len(beyond), "parameter": item.name, "value": value},
+        f"{counted(len(beyond), 'value')} beyond the bounds, the first: {item.name!r} is {value:.4g}, expected "
+        f"{item.lower:.4g} to {item.upper:.4g}. Regularisation does not keep bounds.",
+        "Widen the bounds if such values are possible, or give a larger weight.",
     )
 
 
@@ -225,9 +243,9 @@ def _linearised(
     scale = problem.model.parameters.scale
     at = problem.linearise(vector)
     residual = problem.residual(at.response)
-    counted = problem.weights.ravel() > 0
-    matrix = problem.weighted(at.jacobian, at.response).reshape(len(residual), -1)[counted] * scale
-    many = Smoothed(matrix, matrix @ (vector / scale) - residual[counted], penalty)
+    used = problem.weights.ravel() > 0
+    matrix = problem.weighted(at.jacobian, at.response).reshape(len(residual), -1)[used] * scale
+    many = Smoothed(matrix, matrix @ (vector / scale) - residual[used], penalty)
     if many.blind.size:
         undetermined = np.any(np.abs(many.blind) > _SEEN, axis=1)
         names = [repr(name) for name, one in zip(problem.model.parameters.names, undetermined, strict=True) if one]
@@ -237,7 +255,7 @@ def _linearised(
             "smooth, fix them by equal bounds, or measure what shows them"
         )
     known = problem.data.deviations is not None
-    discrepancy = many.standard.discrepancy(np.sqrt(counted.sum())) if known else np.nan
+    discrepancy = many.standard.discrepancy(np.sqrt(used.sum())) if known else np.nan
     return at, many, many.standard.corner(), float(discrepancy)
 
 

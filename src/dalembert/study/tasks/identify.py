@@ -20,7 +20,7 @@ from dalembert.study.posing import posed, unknown_names
 from dalembert.study.study import Study
 from dalembert.study.table import StudyTable, checked, told_apart
 from dalembert.study.tasks import telling
-from dalembert.study.tasks.noise import Noise, check_noise, noise_of, wrong_noise
+from dalembert.study.tasks.noise import Noise, likelihood_of, noise_of, wrong_noise
 from dalembert.study.tasks.shooting import Shooting, ShootingTable
 from dalembert.study.tasks.task import Outcome, Task
 from dalembert.study.tasks.wrong import needs_parameters, needs_solver, unmatched, unnamed
@@ -201,7 +201,9 @@ class Identify(Task):
 
     def plan(self, study: Study) -> str:
         model, data = posed(study)
-        check_noise(study.table, model, data, telling.weights(study.table.weights, model, data), self.name)
+        if study.table.noise is not None:
+            weights = telling.weights(study.table.weights, model, data)
+            likelihood_of(study.table, model, data, weights, self.name, open_orders=True)
         names = telling.whole(model).parameters.names
         return f"identifies {', '.join(names)} from {_measured(model, data)} by {_cost(study.table, len(names))[0]}"
 

@@ -12,7 +12,7 @@ from dalembert.study.posing import channel_units_of
 from dalembert.study.table import StudyTable, checked
 
 if TYPE_CHECKING:
-    from dalembert.inverse import NoiseModel
+    from dalembert.inverse import Likelihood, NoiseModel
 
 Model = Literal["known", "constant", "proportional", "mixed", "autoregressive", "ornstein-uhlenbeck"]
 
@@ -119,19 +119,30 @@ def noise_of(table: Any, model: Any, place: str) -> Any:
     return table.noise.noise()
 
 
-def check_noise(table: Any, model: Any, data: Any, weights: Any, place: str) -> None:
-    """Refuse noise that the samples do not allow, without a simulation.
+def likelihood_of(table: Any, model: Any, data: Any, weights: Any, place: str, *, open_orders: bool) -> "Likelihood":
+    """The likelihood that a task's table poses, without a simulation.
+
+    Parameters
+    ----------
+    table, model, place
+        As in :func:`noise_of`.
+    data : Measurements or None
+    weights : list, mapping or None
+        As functions take them.
+    open_orders : bool
+        Whether an order that is not given will be chosen; it counts as 0.
 
     Raises
     ------
     InputError
+        For noise that the samples do not allow.
     """
     from dalembert.inverse import likelihood
 
     noise = noise_of(table, model, place)
-    if noise is not None:
-        several = {name: _closed(one) for name, one in noise.items()} if isinstance(noise, Mapping) else _closed(noise)
-        likelihood(model, data, noise=several, weights=weights)
+    if open_orders and noise is not None:
+        noise = {name: _closed(one) for name, one in noise.items()} if isinstance(noise, Mapping) else _closed(noise)
+    return likelihood(model, data, noise=noise, weights=weights)
 
 
 def _closed(noise: "NoiseModel") -> "NoiseModel":

@@ -1,22 +1,25 @@
 """Sample: the posterior distribution of parameters from measured data."""
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from pydantic import Field
 
+from dalembert.errors import InputError, unknown
 from dalembert.kinds import named
 from dalembert.study.catalogue import part, schemes
 from dalembert.study.components import chosen, settings_of
 from dalembert.study.duration import Effort, evaluated
 from dalembert.study.events import Emit, teller
 from dalembert.study.experiments import measured_channels
-from dalembert.study.numbers import Number
+from dalembert.study.numbers import Number, read_number
 from dalembert.study.posing import posed, unknown_names
+from dalembert.study.priors import PriorTable, prior
 from dalembert.study.study import Study
 from dalembert.study.table import StudyTable
 from dalembert.study.tasks import telling
-from dalembert.study.tasks.noise import Noise, check_noise, noise_of, wrong_noise
+from dalembert.study.tasks.noise import Noise, likelihood_of, noise_of, wrong_noise
 from dalembert.study.tasks.task import Outcome, Task, loaded_beside
 from dalembert.study.tasks.wrong import needs_parameters, needs_solver, unmatched, unnamed
 
@@ -38,6 +41,9 @@ class SampleTable(StudyTable):
         None,
         description="noise model, or a table: noise whose parameters are sampled too; by default the deviations of the "
         "data, or a constant one for each channel",
+    )
+    priors: dict[str, PriorTable] = Field(
+        {}, description="priors of noise parameters: 'noise.x.deviation'; those of others are in [parameters]"
     )
     start: dict[str, Number] = Field({}, description="where the posterior is large; identified first if not given")
     profile: bool = Field(False, description="whether to make the profile likelihood of each parameter too")
@@ -84,8 +90,7 @@ class Sample(Task):
 
     def plan(self, study: Study) -> str:
         table, names = study.table, unknown_names(study)
-        model, data = posed(study)
-        check_noise(table, model, data, telling.weights(table.weights, model, data), self.name)
+        _priors(study, *posed(study))
         least, most = _cost(table, len(names))
         return (
             f"draws {', '.join(names)} from their posterior, {table.chains} chains of {table.warmup} + {table.draws} "
@@ -123,6 +128,7 @@ class Sample(Task):
             data,
             weights=weights,
             noise=noise,
+            priors=_priors(study, model, data),
             start=start,
             sampler=None if table.sampler is None else table.sampler.settings(),
             surrogate=getattr(table.surrogate, "settings", lambda: table.surrogate)(),
@@ -160,6 +166,33 @@ def _cost(table: Any, parameters: int) -> tuple[int, int]:
         return count, count
     gradients = table.chains * (table.draws + table.warmup)
     return 2 * gradients * (1 + parameters), 2 * STEPS * gradients * (1 + parameters)
+
+
+def _priors(study: Study, model: Any, data: Any) -> dict[str, Any]:
+    """Priors of noise parameters, by their names.
+
+    Raises
+    ------
+    InputError
+        For noise that the samples do not allow, a name that no noise parameter has, and a quantity of another unit.
+    """
+    table, where = study.table, "[sample.priors]"
+    weights = telling.weights(table.weights, model, data)
+    known = likelihood_of(table, model, data, weights, "sample", open_orders=False).noise_parameters
+    items, found = {item.name: item for item in known}, {}
+    for name, given in table.priors.items():
+        if name not in items:
+            raise InputError(unknown("noise parameter", name, items, where))
+        item = items[name]
+        try:
+            found[name] = prior(given, (item.lower, item.upper), partial(_quantity, unit=item.unit or None))
+        except InputError as error:
+            raise InputError(f"{where}, {name}: {error}") from None
+    return found
+
+
+def _quantity(value: Any, unit: str | None) -> float:
+    return read_number(value, unit)  # pyright: ignore[reportReturnType] - no names are offered to it
 
 
 def _outcome(study: Study, posterior: Any, told: dict[str, Any]) -> Sampled:

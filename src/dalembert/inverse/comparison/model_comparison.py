@@ -76,13 +76,18 @@ class ModelComparison(Result):
 
     def summary(self) -> str:
         """Return a table of the models, the best one first, then the findings."""
-        rows: list[tuple[str, ...]] = [
-            ("model", "parameters", "rms", "AICc", "BIC", "elpd", "difference", "± deviation")
-        ]
-        for k, name in enumerate(self.models):
-            known = str(self.parameters[k]) if self.parameters[k] >= 0 else ""
-            numbers = (self.rms[k], self.aicc[k], self.bic[k], self.elpd[k])
-            apart = ("", "") if k == 0 else (f"{self.difference[k]:.3g}", f"{self.difference_deviation[k]:.3g}")
-            rows.append((name, known, *("" if np.isnan(number) else f"{number:.6g}" for number in numbers), *apart))
+        columns: dict[str, list[str]] = {
+            "model": list(self.models),
+            "parameters": [str(count) if count >= 0 else "" for count in self.parameters],
+            **{
+                name: ["" if np.isnan(number) else f"{number:.6g}" for number in numbers]
+                for name, numbers in (("rms", self.rms), ("AICc", self.aicc), ("BIC", self.bic), ("WAIC", self.waic))
+            },
+            "elpd": [f"{number:.6g}" for number in self.elpd],
+            "difference": ["", *(f"{number:.3g}" for number in self.difference[1:])],
+            "± deviation": ["", *(f"{number:.3g}" for number in self.difference_deviation[1:])],
+        }
+        filled = {name: cells for name, cells in columns.items() if any(cells)}  # draws alone have no criteria
+        rows = [tuple(filled), *zip(*filled.values(), strict=True)]
         facts = fact_lines(elpd=f"{self.how}; left out: {self.left_out}", values=self.values)
         return "\n".join([*text_table(rows), "", *facts, *map(str, self.findings)])

@@ -345,3 +345,10 @@ def test_posteriors_are_compared_as_fits_of_the_same_noise():
 
 def test_it_is_in_the_package():
     assert da.compare_models is compare_models
+
+
+def test_the_table_of_draws_has_no_empty_columns():
+    made = compare_models(fitted(recorded(0.5)))
+    nothing = np.full(2, np.nan)
+    draws = replace(made, parameters=np.array([-1, -1]), rms=nothing, aicc=nothing, bic=nothing, waic=made.elpd)
+    assert draws.summary().splitlines()[0].split() == ["model", "WAIC", "elpd", "difference", "±", "deviation"]

@@ -40,13 +40,14 @@ def compared_models(found: ModelComparison, *, findings: bool = False) -> Sectio
 
 def _table(found: ModelComparison) -> Table:
     known = found.parameters >= 0
-    columns: dict[str, Iterable[object]] = {
-        "model": found.models,
-        "parameters": [int(count) if one else Cell("", "") for count, one in zip(found.parameters, known, strict=True)],
-        "rms residual": cells(found.rms, 4),
-        "AIC": cells(found.aic),
-        "AICc": cells(found.aicc),
-        "BIC": cells(found.bic),
+    columns: dict[str, Iterable[object]] = {"model": found.models}
+    if np.any(known):
+        columns["parameters"] = [
+            int(count) if one else Cell("", "") for count, one in zip(found.parameters, known, strict=True)
+        ]
+    criteria = {"rms residual": found.rms, "AIC": found.aic, "AICc": found.aicc, "BIC": found.bic}
+    columns |= {name: cells(values) for name, values in criteria.items() if np.any(np.isfinite(values))}
+    columns |= {
         "elpd": cells(found.elpd),
         "difference": [cell(float(one), digits=4) for one in found.difference],
         "deviation of the difference": cells(found.difference_deviation, 2),

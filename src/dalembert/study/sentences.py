@@ -45,8 +45,7 @@ def mistakes(error: ValidationError, document: Any, context: Context) -> list[tu
         With which the document was validated.
     """
     found = []
-    for entry in error.errors(include_url=False):
-        path, table = _follow(document, entry["loc"])
+    for entry, path, table in _likeliest(document, error.errors(include_url=False)):
         where = path
         if entry["type"] == "extra_forbidden":
             *where, key = path
@@ -55,6 +54,28 @@ def mistakes(error: ValidationError, document: Any, context: Context) -> list[tu
             texts = _texts(entry, is_in_space(document.get("model")))
         found += [(tuple(path), _placed(document, where, text)) for text in texts]
     return found
+
+
+def _likeliest(document: Any, entries: Iterable[Any]) -> list[tuple[Any, list[str | int], Any]]:
+    """Errors with their paths and holders, of each union those of the members that the value was meant for.
+
+    A member of another type says nothing where a member of the same type found a mistake at the value, or within it.
+    """
+    found = [(entry, *_follow(document, entry["loc"])) for entry in entries]
+    kept = []
+    for entry, path, holder in found:
+        of_union = len(entry["loc"]) > len(path) and entry["type"] != "missing"
+        other = [one for one in found if one[1][: len(path)] == path and one[0] is not entry]
+        within = any(len(one[1]) > len(path) for one in other)
+        at = any(one[1] == path and not _of_type(one[0]) for one in other)
+        if not (of_union and (within or (at and _of_type(entry)))):
+            kept.append((entry, path, holder))
+    return kept
+
+
+def _of_type(entry: Any) -> bool:
+    """Whether an error is only that a value has another type."""
+    return entry["type"].endswith("_type")
 
 
 def _placed(document: Any, path: list[str | int], text: str) -> str:

@@ -13,7 +13,7 @@ from dalembert.report.pictures.mechanism import draw_mechanism
 from dalembert.report.pictures.projection import Projection
 from dalembert.studio.model.parts import absent_parts, place_of
 from dalembert.studio.model.picture import model_picture
-from dalembert.studio.model.scene import mechanism_scene
+from dalembert.studio.model.scene import MOST_NAMES, mechanism_scene, readable
 from dalembert.studio.worker import Kept
 from dalembert.study.catalogue import kinds_of, structure_parts
 from dalembert.study.loader import load
@@ -148,3 +148,12 @@ def test_every_table_of_a_structure_is_drawn_or_listed(tmp_path):
 def test_what_is_not_drawn_is_listed_once_a_table():
     places = {"": ("model",), "body a": ("model", "body", 0), "channel e": ("data",), "channel f": ("data",)}
     assert absent_parts(places, {"channel e"}) == ["body a", "channel f"]
+
+
+def test_channels_and_forces_keep_their_names_where_contacts_have_too_many():
+    names = [
+        {"part": f"{role} {k}"} for role, count in (("contact", 32), ("channel", 3), ("force", 2)) for k in range(count)
+    ]
+    assert [name["part"] for name in readable(names)] == ["channel 0", "channel 1", "channel 2", "force 0", "force 1"]
+    few = [{"part": f"contact {k}"} for k in range(MOST_NAMES)]
+    assert readable(few) == few

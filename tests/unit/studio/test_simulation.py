@@ -193,3 +193,12 @@ def test_all_observed_degrees_of_freedom_are_drawn_and_have_effects(tmp_path):
     result = SimpleNamespace(dofs=("a.x", "b.x"))
     table = SimpleNamespace(dof="b.x", observe=["a.x", "b.x"])
     assert drawn_dofs(table, result) == ("b.x", "a.x")
+
+
+def test_points_of_a_motion_in_space_have_three_coordinates(tmp_path):
+    path = begin("spatial", tmp_path / "spatial")
+    text = path.read_text()
+    begun = text.index("# [simulate]")
+    path.write_text(text[:begun] + '[simulate]\nend = 0.1\npoints = ["plate.origin"]\n')
+    model = part(load(path), "").model
+    assert [channel.name for channel in model.channels] == [f"plate.origin.{axis}" for axis in "xyz"]

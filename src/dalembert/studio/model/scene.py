@@ -19,6 +19,8 @@ Scene = dict[str, Any]
 """``shapes`` with the part that each shows, ``names``, and the corners ``low`` and ``high`` of all, in m."""
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 MOST_NAMES = 24
+ROLES = ("channel", "force", "joint", "load", "body")
+"""Roles of parts whose names come first where there are too many."""
 
 
 def mechanism_scene(
@@ -139,7 +141,16 @@ def _name(part: str, position: np.ndarray, words: str = "", colour: str = INK) -
 
 def _scene(shapes: list[dict[str, Any]], names: list[dict[str, Any]], positions: np.ndarray) -> Scene:
     known = positions[np.isfinite(positions).all(axis=1)]
-    shown = names if len(names) <= MOST_NAMES else []
-    return {
-        "shapes": shapes, "names": shown, "low": known.min(axis=0).tolist(), "high": known.max(axis=0).tolist()
-    }  # fmt: skip
+    low, high = known.min(axis=0).tolist(), known.max(axis=0).tolist()
+    return {"shapes": shapes, "names": readable(names), "low": low, "high": high}
+
+
+def readable(names: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return the names that fit into a scene, in their order: those of whole roles, most wanted first."""
+    roles = [name["part"].partition(" ")[0] for name in names]
+    wanted = dict.fromkeys([*(role for role in ROLES if role in roles), *roles])
+    shown: list[str] = []
+    for role in wanted:
+        if len(shown) + roles.count(role) <= MOST_NAMES:
+            shown += [role] * roles.count(role)
+    return [name for name, role in zip(names, roles, strict=True) if role in shown]

@@ -115,7 +115,8 @@ def _moving(study: "Study") -> Part:
         raise NothingToSimulateError(
             f"[{study.task}] names no time until which the motion lasts. Run the study to see its result."
         )
-    points = [f"{point}.{axis}" for point in getattr(table, "points", ()) for axis in "xy"]
+    named = getattr(table, "points", ())
+    points = [f"{point}.{axis}" for point in named for axis in study.system().AXES] if named else []
     channels = tuple(getattr(table, "channels", None) or points)
     model = study.forward(channels, np.linspace(0.0, end, POINTS)) if channels else None
     return Part(study, model, None, end)

@@ -11,12 +11,14 @@ from dalembert.multibody.sketch import sketch
 from dalembert.report.pictures.canvas import Canvas
 from dalembert.report.pictures.mechanism import draw_mechanism
 from dalembert.report.pictures.projection import Projection
+from dalembert.structure import Material, box, solid
 from dalembert.studio.model.parts import absent_parts, place_of
 from dalembert.studio.model.picture import model_picture
-from dalembert.studio.model.scene import MOST_NAMES, mechanism_scene, readable
+from dalembert.studio.model.scene import MOST_NAMES, mechanism_scene, readable, structure_scene
 from dalembert.studio.worker import Kept
 from dalembert.study.catalogue import kinds_of, structure_parts
 from dalembert.study.loader import load
+from dalembert.vibration import HarmonicForce, VibrationSystem
 from mechanisms import PIECES, mechanism
 from spatial_scenes import SCENES, two_rods
 
@@ -157,3 +159,15 @@ def test_channels_and_forces_keep_their_names_where_contacts_have_too_many():
     assert [name["part"] for name in readable(names)] == ["channel 0", "channel 1", "channel 2", "force 0", "force 1"]
     few = [{"part": f"contact {k}"} for k in range(MOST_NAMES)]
     assert readable(few) == few
+
+
+def test_a_structure_shows_its_mesh_and_pulls_at_its_faces():
+    plate = solid(box((0.2, 0.1, 0.02), (2, 2, 1)), Material(210e9, 0.3, 7800.0))
+    system = VibrationSystem(plate)
+    system.add(HarmonicForce(f"{plate.nodes.names[0]}.z", 1.0))
+    shapes = structure_scene(system)["shapes"]
+    outline, mesh = (shape for shape in shapes if shape["kind"] == "edges")
+    assert len(mesh["points"]) == 2 * 32  # the 16 faces of a closed surface with 18 corners have 16 + 18 - 2 sides
+    assert len(outline["points"]) == 2 * 20  # twelve edges of the box, eight of them of two elements
+    (arrow,) = (shape for shape in shapes if shape["kind"] == "arrow")
+    assert (arrow["along"], arrow["pulls"]) == ((0.0, 0.0, 1.0), True)

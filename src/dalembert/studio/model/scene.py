@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 Scene = dict[str, Any]
 """``shapes`` with the part that each shows, ``names``, and the corners ``low`` and ``high`` of all, in m."""
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
-MOST_NAMES = 24
+MOST_NAMES, MOST_SIDES = 24, 20_000
+MESH = "#9fc3e6"
+"""Of the sides of elements, on the faces."""
 ROLES = ("channel", "force", "joint", "load", "body")
 """Roles of parts whose names come first where there are too many."""
 
@@ -88,6 +90,8 @@ def structure_scene(system: "VibrationSystem", channels: Sequence[str] = ()) -> 
     else:
         shapes.append(_mesh("body structure", places, triangles(nodes.faces), COLOURS[0]))
         shapes.append(_shape("edges", "body structure", places[edges(places, nodes.faces)].reshape(-1, 3), INK))
+        if len(mesh := _sides(nodes.faces)) <= MOST_SIDES:
+            shapes.append(_shape("edges", "body structure", places[mesh].reshape(-1, 3), MESH))
     for element in system.elements:
         ends, part = ends_of(element, known), f"{role_of(element)} {element.name}"
         if ends:
@@ -103,9 +107,14 @@ def structure_scene(system: "VibrationSystem", channels: Sequence[str] = ()) -> 
         node, _, axis = force.dof.rpartition(".")
         if node in known and axis in AXES:
             at = places[nodes.rows([node])]
-            shapes.append(_shape("arrow", f"force {force.dof}", at, COLOURS[3]) | {"along": AXES[axis]})
+            shapes.append(_shape("arrow", f"force {force.dof}", at, COLOURS[3]) | {"along": AXES[axis], "pulls": True})
             names.append(_name(f"force {force.dof}", at[0]))
     return _scene(shapes, names, places)
+
+
+def _sides(faces: np.ndarray) -> np.ndarray:
+    """Ends (sides, 2) of the sides of all faces, each once."""
+    return np.unique(np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1), axis=0)
 
 
 def _load(load: Any, sketch: "Sketch") -> dict[str, Any]:

@@ -102,8 +102,8 @@ export default {
       object.userData.part = part;
       this.group.add(object);
     },
-    objects({ kind, points, colour, triangles, along }) {
-      const solid = () => new THREE.MeshStandardMaterial({ color: colour, roughness: 0.7, metalness: 0.05, side: THREE.DoubleSide });
+    objects({ kind, points, colour, triangles, along, pulls }) {
+      const solid = () => new THREE.MeshStandardMaterial({ color: colour, roughness: 0.7, metalness: 0.05, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }); // behind lines on it
       const unit = 0.009 * this.size;
       const solids = (geometries) => geometries.map((geometry) => new THREE.Mesh(geometry, solid()));
       const at = (geometry, point) => geometry.translate(...point);
@@ -137,7 +137,7 @@ export default {
         case "ground":
           return solids([at(new THREE.SphereGeometry(1.4 * unit, 20, 14), first), at(new THREE.ConeGeometry(2.6 * unit, 4 * unit, 4).rotateX(Math.PI / 2).translate(0, 0, -2 * unit), first)]);
         case "arrow":
-          return this.arrow(vector(first).addScaledVector(vector(along), -14 * unit), vector(along), 14 * unit, colour);
+          return this.arrow(vector(first).addScaledVector(vector(along), pulls ? 0 : -14 * unit), vector(along), 14 * unit, colour); // above the face that is pulled
         default:
           return solids([at(new THREE.SphereGeometry((kind === "point" ? 0.8 : 1.4) * unit, 20, 14), first)]);
       }

@@ -99,3 +99,25 @@ def answer_time(page: Page) -> float:
     return page.evaluate(
         "async () => { const t = performance.now(); await fetch('/'); return (performance.now() - t) / 1000 }"
     )
+
+
+def test_the_channel_of_a_column_is_picked_in_the_drawing(visit, root):
+    study = begin("identify", root / "studies" / "drag")
+    page = visit("/study/drag/drag")
+    page.get_by_role("tab", name="Data").click()
+    page.get_by_label("Use of column y").wait_for()
+    page.get_by_role("button", name="Pick the channel of column y in the drawing").click()
+    drawing = page.get_by_role("dialog").locator("g.body[data-part=rod]")
+    drawing.wait_for()
+    page.keyboard.press("Escape")
+    wait_until(page, "!document.querySelector('.q-dialog__inner')")
+    page.get_by_role("button", name="Pick the channel of column y in the drawing").click()
+    drawing.wait_for()
+    drawing.click()
+    page.get_by_role("button", name="rod.end.angle", exact=True).click()
+    wait_until(page, "!document.querySelector('.q-dialog__inner')")
+    wait_until(page, "document.querySelector('[aria-label=\"Use of column y\"]').value.startsWith('rod.end.angle')")
+    page.get_by_role("button", name="Write into the study").click()
+    page.get_by_role("button", name="Save").click()
+    wait_until(page, f"{TEXT}.includes('Saved.')")
+    assert tomllib.loads(study.read_text())["data"]["columns"]["rod.end.angle"] == "y"

@@ -1,7 +1,8 @@
 """The columns of a data file as a table: a menu for the use of each, one for its unit, and the first rows."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 from nicegui import ui
 
@@ -9,6 +10,7 @@ from dalembert.data.guesses import Unit
 from dalembert.studio.data.choices import Choices, Key
 from dalembert.studio.data.examined import Curve, Examined
 
+Pick = Callable[[str, Sequence[str], Callable[[str], object]], Awaitable[object]]
 NOTHING, TIMES = "", "\0times"
 """Values of the menu of uses beside the channels' names."""
 SOURCES = {"file": "from the file", "name": "from the name", "steps": "guessed from the steps", "": ""}
@@ -36,10 +38,12 @@ class ColumnTable:
     ----------
     choose : function of Choices
         Called when a menu was changed.
+    pick : coroutine function of str, sequence of str and function
+        Asks for a channel of a column in the drawing, and calls the function with it.
     """
 
-    def __init__(self, choose: Callable[[Choices], object]) -> None:
-        self._choose, self._examined, self._built = choose, None, None
+    def __init__(self, choose: Callable[[Choices], object], pick: Pick) -> None:
+        self._choose, self._pick, self._examined, self._built = choose, pick, None, None
         self._uses: dict[Key, ui.select] = {}
         self._units: dict[Key, ui.select] = {}
         self._hints: dict[Key, ui.label] = {}
@@ -82,6 +86,8 @@ class ColumnTable:
         look = "outlined dense options-dense"
         use = ui.select([], with_input=True, label="Used as", on_change=lambda: self._used(key, use.value))
         use.props(f'{look} aria-label="Use of column {key}"').classes("w-full")
+        picked = ui.button("Pick in the drawing", icon="ads_click", on_click=partial(self._picked, key))
+        picked.props(f'flat dense no-caps size=sm aria-label="Pick the channel of column {key} in the drawing"')
         unit = ui.select([], with_input=True, new_value_mode="add-unique", label="Unit")
         unit.on_value_change(lambda: self._measured(key, unit.value))
         unit.props(f'{look} aria-label="Unit of column {key}"').classes("w-full mt-2")
@@ -105,6 +111,14 @@ class ColumnTable:
         if self._quiet or self._examined is None or use is None:
             return
         self._choose(used(self._examined.choices, key, use))
+
+    async def _picked(self, key: Key) -> None:
+        if self._examined is not None:
+            channels = [name for name in uses(self._examined.channels, self._unit(key)) if name not in (NOTHING, TIMES)]
+            await self._pick(str(key), channels, partial(self._used, key))
+
+    def _unit(self, key: Key) -> str:
+        return self._units[key].value or ""
 
     def _measured(self, key: Key, unit: str | None) -> None:
         if self._quiet or self._examined is None or not unit:

@@ -12,6 +12,7 @@ from dalembert.studio.data.columns import ColumnTable
 from dalembert.studio.data.examined import Examined
 from dalembert.studio.data.figure import columns_figure
 from dalembert.studio.data.guide import DataGuide
+from dalembert.studio.data.picker import ChannelPicker
 from dalembert.studio.editor.draft import Draft
 from dalembert.studio.frame import button, complaints
 from dalembert.studio.latest import Latest
@@ -47,7 +48,7 @@ class DataPanel:
             self._busy.props('aria-label="Reading the file"').set_visibility(False)
             self._error = ui.label("").classes("text-negative").props("role=alert")
             with ui.column().classes("w-full gap-3") as self._chosen:
-                self._columns = ColumnTable(self._choose)
+                self._columns = ColumnTable(self._choose, ChannelPicker(draft, room).pick)
                 self._build_options()
                 self._problems = ui.column().classes("w-full gap-2").props('role=status aria-label="Problems"')
                 self._build_write()

@@ -79,8 +79,10 @@ def test_a_full_disk_loses_nothing(chromium, small, tmp_path_factory):
     page.screenshot(path=tmp_path_factory.mktemp("full") / "save.png")
     assert study.read_text() == before
     assert page.evaluate("document.querySelector('.cm-content').innerText.startsWith('# mine')")
-    click(page, "Run")
-    page.locator(".q-notification__badge").wait_for()  # the same sentence again
+    page.evaluate("document.querySelector('.q-notification').dataset.former = ''")
+    click(page, "Run")  # saves first: the same sentence in place of the former one
+    fresh = "[...document.querySelectorAll('.q-notification:not([data-former])')].map((one) => one.innerText).join()"
+    wait_until(page, f"{fresh}.includes('No space left on device')")
     assert page.url.endswith("/study/mine/mine")
     other = visit("/new")
     click(other, "A motion of a mechanism")

@@ -7,7 +7,15 @@ from scipy.stats import multivariate_normal, multivariate_t, norm, t
 from correlated_noise import autoregressive
 from dalembert.data import Measurements
 from dalembert.forward import PythonModel
-from dalembert.inverse import AutoregressiveNoise, ConstantNoise, compare_models, cross_validate, identify
+from dalembert.inverse import (
+    AutoregressiveNoise,
+    ConstantNoise,
+    compare_models,
+    cross_validate,
+    identify,
+    likelihood,
+    sample,
+)
 from dalembert.inverse.comparison.left_out import counted_groups, groups
 from dalembert.inverse.comparison.linearisation import linearised
 from stack_loss import STACK
@@ -121,6 +129,64 @@ def test_values_are_predicted_from_correlated_neighbours_as_by_exact_refits(size
         [at.without(rows) for rows in places], tolerance=1e-7, topic=TOPIC, kind="closed form",
         source="generalised least squares and the normal density given the other values, by NumPy and SciPy", noisy=True,
     )  # fmt: skip
+
+
+KNOWN_AR1 = AutoregressiveNoise(deviation=ConstantNoise(deviation=0.2), order=1, partial=[0.6])
+
+
+def test_likelihoods_of_blocks_are_normal_densities_given_all_other_values(record_evidence):
+    """Two channels with gaps and a block that is torn by one, at two vectors."""
+    values = np.stack([recorded().values[:, 0], recorded(seed=3).values[:, 0]], axis=1)
+    values[[4, 5, 17], 0] = np.nan
+    both = PythonModel(lambda a, b: (COLUMNS @ [a, b, 0.3])[:, None] * [1, 2], {"a": BOX, "b": BOX}, ["x", "y"], TIMES)
+    data = Measurements(recorded().coordinate, ("x", "y"), values, missing="leave-out")
+    likely = likelihood(both, data, noise=KNOWN_AR1)
+    rows, names = likely.places.row, likely.places.channel
+    blocks, expected = rows // 7, []
+    for a, b in ((1.0, 0.5), (0.8, 0.7)):
+        residual = values - (COLUMNS @ [a, b, 0.3])[:, None] * [1, 2]
+        for block in range(5):
+            total = 0.0
+            for column, name in enumerate("xy"):
+                there = rows[names == name]
+                whole = covariance(TIMES, 0.6, 0.2)[np.ix_(there, there)]
+                own, error = there // 7 == block, residual[there, column]
+                pull = whole[np.ix_(own, ~own)] @ np.linalg.inv(whole[np.ix_(~own, ~own)])
+                width = whole[np.ix_(own, own)] - pull @ whole[np.ix_(~own, own)]
+                total += multivariate_normal(pull @ error[~own], width).logpdf(error[own])
+            expected.append(total)
+    (ours,) = likely.left_out([[1.0, 0.5], [0.8, 0.7]], blocks)
+    record_evidence(
+        "AR(1) noise with gaps, two channels: log-likelihood of each block given all other values", expected,
+        ours.ravel(), tolerance=1e-9, topic=TOPIC, kind="closed form",
+        source="conditional normal densities by NumPy and SciPy", noisy=True,
+    )  # fmt: skip
+
+
+@pytest.mark.slow
+def test_draws_predict_groups_of_correlated_values_as_exact_refits_do(record_evidence):
+    """Known noise and flat priors: the linearised fit is exact, and the draws have its predictive densities.
+
+    Differences of 4 count. A block of three values out of 30 moves the posterior more than a single value does.
+    """
+    data = recorded()
+    fits = {
+        name: identify(model(columns), data, noise=KNOWN_AR1, starts=1, horizon=None)
+        for name, columns in (("three", COLUMNS), ("two", COLUMNS[:, :2]))
+    }
+    posteriors = {
+        name: sample(model(COLUMNS[:, : len(fit.values)]), data, noise=KNOWN_AR1, start=fit, warmup=300, seed=4)
+        for name, fit in fits.items()
+    }
+    for left_out, blocks, tolerance in (("values", None, 0.05), ("blocks", 10, 0.2)):
+        found = compare_models(posteriors, leave_out=left_out)
+        exact = compare_models(fits, leave_out=left_out, blocks=blocks)
+        assert found.models == exact.models
+        record_evidence(
+            f"linear models, known AR(1) noise: elpd of posterior draws, {left_out} left out", exact.elpd, found.elpd,
+            tolerance=tolerance, topic=TOPIC, kind="closed form", source="generalised least squares without each group",
+            noisy=True,
+        )  # fmt: skip
 
 
 @pytest.mark.parametrize(

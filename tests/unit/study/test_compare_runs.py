@@ -78,7 +78,7 @@ def test_the_command_ranks_runs_and_writes_a_report(root, monkeypatch):
 
 def test_what_is_left_out_can_be_chosen(root):
     folders = [RunFolder(root / "runs" / name) for name in ("line", "bent")]
-    assert compare_runs(folders, "values").left_out == "single values"
+    assert compare_runs(folders, "values").left_out == "values"
 
 
 def test_a_run_of_another_task_is_refused(root):

@@ -10,14 +10,11 @@ from dalembert.errors import InputError, shown
 from dalembert.inverse.comparison.conclusions import comparison_findings
 from dalembert.inverse.comparison.cross_validate import fits_of
 from dalembert.inverse.comparison.cross_validation import CrossValidation
-from dalembert.inverse.comparison.draws import Predictive, is_inference_data, of_draws
+from dalembert.inverse.comparison.draws import Predictive, default_way, is_draws, of_draws
 from dalembert.inverse.comparison.left_out import correlation_time, counted_groups, groups
 from dalembert.inverse.comparison.linearisation import linearised
 from dalembert.inverse.comparison.model_comparison import ModelComparison
 from dalembert.inverse.fit.fit import Fit
-from dalembert.inverse.posterior.posterior import Posterior
-
-LEFT_OUT = {"values": "single values", "blocks": "blocks of neighbouring samples", "experiments": "experiments"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,9 +40,10 @@ def compare_models(
         simulation; :func:`cross_validate` fits again; draws are those of :func:`sample`, or of ArviZ with the group
         ``log_likelihood``.
     leave_out : {"values", "blocks", "experiments"}, optional
-        For fits: what is left out together. Without it single values, or blocks where residuals are correlated.
+        What is left out together. Without it single values, or blocks where residuals or their noise are correlated.
+        InferenceData have single values only.
     blocks : int, optional
-        For fits: number of blocks of each record.
+        For fits: number of blocks of each record. Posteriors have those of ``sample(..., blocks=...)``.
 
     Returns
     -------
@@ -82,13 +80,14 @@ def compare_models(
     >>> found.models, found.findings[0].code
     (('line', 'bent'), 'best-model')
     """
-    named: dict[str, Any] = {
-        name: one.inference_data if isinstance(one, Posterior) else one for name, one in models.items()
-    }
+    named: dict[str, Any] = dict(models)
     if len(named) < 2:
         raise InputError(f"compare_models: {len(named)} model was given; expected at least two, by their names")
-    if all(map(is_inference_data, named.values())):
-        return _compared_draws({name: of_draws(name, one) for name, one in named.items()})
+    if all(map(is_draws, named.values())):
+        if blocks is not None:
+            raise InputError("compare_models: the blocks of draws are those of sample; leave blocks out here")
+        way = leave_out or default_way(named)
+        return _compared_draws({name: of_draws(name, one, way) for name, one in named.items()}, way)
     for name, one in named.items():
         if not isinstance(one, Fit | CrossValidation) or type(one) is not type(next(iter(named.values()))):
             raise InputError(
@@ -123,7 +122,7 @@ def compare_models(
     correlated = [name for name, fit in fits.items() if fit.correlated is not None]
     data = next(iter(fits.values())).provenance["data"]
     number = int(np.count_nonzero(numbers >= 0))
-    return _result(found, number, how, LEFT_OUT[left_out], {"data": data}, correlated)
+    return _result(found, number, how, left_out, {"data": data}, correlated)
 
 
 def _groups_of(named: Mapping[str, CrossValidation]) -> tuple[np.ndarray, str]:
@@ -172,16 +171,21 @@ def _check_same_data(fits: Mapping[str, Fit]) -> None:
             )
 
 
-def _compared_draws(known: Mapping[str, Predictive]) -> ModelComparison:
+def _compared_draws(known: Mapping[str, Predictive], leave_out: str) -> ModelComparison:
     """Compare posterior draws."""
     (first, reference), *others = known.items()
     for name, one in others:
         if not np.array_equal(one.observed, reference.observed, equal_nan=True):
             raise InputError(f"compare_models: the draws of {name!r} are of other data than those of {first!r}")
+        if not np.array_equal(one.groups, reference.groups):
+            raise InputError(
+                f"compare_models: the draws of {name!r} have other blocks than those of {first!r}; sample both with "
+                "the same number of blocks"
+            )
     found = {name: Criteria(-1, np.nan, np.nan, one.densities, one.waic) for name, one in known.items()}
     unreliable = {name: one.unreliable for name, one in known.items() if one.unreliable}
     how = "PSIS-LOO of posterior draws"
-    return _result(found, len(reference.densities), how, LEFT_OUT["values"], {}, (), unreliable)
+    return _result(found, len(reference.groups), how, leave_out, {}, (), unreliable)
 
 
 def _result(

@@ -22,13 +22,13 @@ FEW = 10
 def comparison_findings(
     made: ModelComparison, correlated: Sequence[str], unreliable: Mapping[str, int]
 ) -> ModelComparison:
-    """Return a comparison with its findings; ``unreliable`` counts values that draws do not predict reliably."""
+    """Return a comparison with its findings; ``unreliable`` counts groups that draws do not predict reliably."""
     found = (
         _ranking(made),
         *_criteria(made),
         *_correlated(made, correlated),
         *_few(made),
-        *_unreliable(unreliable),
+        *_unreliable(made, unreliable),
     )
     return replace(made, findings=found)
 
@@ -88,7 +88,7 @@ def _correlated(made: ModelComparison, names: Sequence[str]) -> Iterator[Finding
         f"The residuals of {listed([repr(name) for name in names])} are correlated. AIC, AICc and BIC take values for "
         "independent, so their differences are too large."
     )
-    blocks = made.left_out != "single values"
+    blocks = made.left_out != "values"
     advice = "" if blocks else "Leave out blocks: leave_out='blocks'."
     values = {"models": ", ".join(names)}
     yield Finding("correlated-comparison", "note" if blocks else "warning", values, message, advice)
@@ -101,9 +101,10 @@ def _few(made: ModelComparison) -> Iterator[Finding]:
         yield Finding("few-groups", "note", {"groups": count}, message, "Leave out more, smaller groups.")
 
 
-def _unreliable(counts: Mapping[str, int]) -> Iterator[Finding]:
+def _unreliable(made: ModelComparison, counts: Mapping[str, int]) -> Iterator[Finding]:
     if counts:
-        what = listed([f"{counted(count, 'value')} of {name!r}" for name, count in counts.items()])
+        group = made.left_out.removesuffix("s")
+        what = listed([f"{counted(count, group)} of {name!r}" for name, count in counts.items()])
         message = f"PSIS-LOO does not predict {what} reliably (Pareto shape above 0.7)."
         yield Finding(
             "unreliable-densities", "warning", dict(counts), message, "Compare by cross-validation: cross_validate."

@@ -4,6 +4,7 @@ import numpy as np
 
 from dalembert.errors import InputError, require_known
 from dalembert.inverse.correlation.series import Series, series_of_record
+from dalembert.inverse.experiments.blocks import USUAL, blocks_of_records
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.likelihood.estimated_noise import EstimatedNoise
 
@@ -14,9 +15,6 @@ CORRELATION_TIMES = 4.0
 
 FEWEST = 5
 """Fewest blocks of a record."""
-
-USUAL = 10
-"""Blocks of a record whose residuals are not correlated."""
 
 
 def groups(fit: Fit, leave_out: str, blocks: int | None = None) -> np.ndarray:
@@ -37,25 +35,14 @@ def groups(fit: Fit, leave_out: str, blocks: int | None = None) -> np.ndarray:
     """
     require_known("way", leave_out, WAYS, "leave_out")
     fitted = fit.weights > 0
-    found = np.full(fitted.shape, -1)
     if leave_out == "values":
+        found = np.full(fitted.shape, -1)
         found[fitted] = np.arange(np.count_nonzero(fitted))
         return found
     if leave_out == "experiments" and len(fit.experiments) < 2:
         raise InputError("leave_out is 'experiments', but the fit has one experiment; use 'blocks'")
-    records = [part.block for part in fit.parts] or [np.ix_(*map(np.arange, fitted.shape))]
-    begin = 0
-    for record in records:
-        rows = np.flatnonzero(np.any(fitted[record], axis=1))
-        if not len(rows):
-            continue
-        count = 1 if leave_out == "experiments" else _count(fit, len(rows), blocks)
-        numbers = np.full(len(record[0]), -1)
-        for number, own in enumerate(np.array_split(rows, count)):
-            numbers[own] = begin + number
-        found[record] = np.where(fitted[record], numbers[:, None], -1)
-        begin += count
-    return found
+    together = leave_out == "experiments"
+    return blocks_of_records(fitted, fit.parts, lambda samples: 1 if together else _count(fit, samples, blocks))
 
 
 def _count(fit: Fit, samples: int, blocks: int | None) -> int:

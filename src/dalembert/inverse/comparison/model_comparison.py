@@ -10,6 +10,9 @@ from dalembert.findings import Finding
 from dalembert.results import Result, fact_lines, text_table
 from dalembert.stored_fields import Labels, Over
 
+LEFT_OUT = {"values": "single values", "blocks": "blocks of neighbouring samples", "experiments": "experiments"}
+"""What is left out together, in words."""
+
 
 @dataclass(frozen=True, eq=False)
 class ModelComparison(Result):
@@ -38,7 +41,7 @@ class ModelComparison(Result):
         Number of fitted values.
     how : str
         How the predictive densities were computed.
-    left_out : str
+    left_out : {"values", "blocks", "experiments"}
         What was left out together.
     provenance : mapping
     findings : tuple of Finding
@@ -89,5 +92,5 @@ class ModelComparison(Result):
         }
         filled = {name: cells for name, cells in columns.items() if any(cells)}  # draws alone have no criteria
         rows = [tuple(filled), *zip(*filled.values(), strict=True)]
-        facts = fact_lines(elpd=f"{self.how}; left out: {self.left_out}", values=self.values)
+        facts = fact_lines(elpd=f"{self.how}; left out: {LEFT_OUT[self.left_out]}", values=self.values)
         return "\n".join([*text_table(rows), "", *facts, *map(str, self.findings)])

@@ -1,14 +1,17 @@
 """The noise of one channel of one experiment, in place: its values, and the parameters that describe it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from dalembert.inverse.correlation.series import Series
 from dalembert.inverse.noise.noise_model import NoiseModel
 from dalembert.inverse.noise.whitening import Whitening
+
+if TYPE_CHECKING:
+    from scipy.sparse import coo_array
 
 HALF_LOG_2_PI = 0.5 * np.log(2 * np.pi)
 STEP = 1e-30
@@ -69,26 +72,43 @@ class ChannelNoise:
                 white, logs = (np.array(part).reshape(residual.shape) for part in zip(*rows, strict=True))
             return -0.5 * white**2 - logs - HALF_LOG_2_PI
 
-    def left_out(self, residual: np.ndarray, response: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
-        """Return the log density of each value after all others, all of shape (batch, values).
+    def left_out(
+        self,
+        residual: np.ndarray,
+        response: np.ndarray,
+        values: Mapping[str, np.ndarray],
+        groupings: Sequence[np.ndarray],
+    ) -> list[np.ndarray]:
+        """Return the log density of each group of values after all others, for each grouping (batch, groups).
 
-        ``values`` are of shape (batch, 1) each. With the inverse K = AᵀA of the correlation of the standardised
-        residuals z, value i has the mean z_i − (K z)_i/K_ii and the variance 1/K_ii.
+        Parameters
+        ----------
+        residual, response : array, shape (batch, values)
+        values : mapping of str to array, shape (batch, 1)
+        groupings : sequence of array of int, shape (values,)
+            Number of the group of each value, from 0.
+
+        Notes
+        -----
+        With the inverse K = AᵀA of the correlation of the standardised residuals z, a group S has the precision K_SS
+        and the error K_SS⁻¹ (K z)_S. Without the entries of K between groups, one banded Cholesky factor L has the
+        factors of all K_SS, so that each value adds −½ u² + log L_ii with L u = K z.
 
         Source: P.-C. Bürkner, J. Gabry, A. Vehtari, Efficient leave-one-out cross-validation for Bayesian
-        non-factorized normal and Student-t models, Computational Statistics 36 (2021), equations 8 and 9.
+        non-factorized normal and Student-t models, Computational Statistics 36 (2021), equations 8 and 9, for groups.
         """
         if self.whitening is None:
-            return self.log_densities(residual, response, values)
-        rows = []
+            densities = self.log_densities(residual, response, values)
+            return [_summed(densities, groups) for groups in groupings]
+        found = np.empty((len(groupings), *residual.shape))
         with np.errstate(divide="ignore", invalid="ignore"):
             for k, (own, there) in enumerate(zip(residual, response, strict=True)):
                 known = {name: value[k, 0] for name, value in values.items()}
                 sizes, matrix = self.model.deviations(there, self.given, known), self.whitening.matrix(known)
-                precision = np.asarray(matrix.multiply(matrix).sum(axis=0)).ravel()
-                white = matrix.T @ (matrix @ (own / sizes)) / np.sqrt(precision)
-                rows.append(-0.5 * white**2 + 0.5 * np.log(precision) - np.log(sizes) - HALF_LOG_2_PI)
-        return np.array(rows).reshape(residual.shape)
+                precision, pulled = (matrix.T @ matrix).tocoo(), matrix.T @ (matrix @ (own / sizes))
+                for number, groups in enumerate(groupings):
+                    found[number, k] = _densities_of_groups(precision, pulled, groups) - np.log(sizes)
+        return [_summed(found[number], groups) for number, groups in enumerate(groupings)]
 
     def slopes(
         self, residual: np.ndarray, response: np.ndarray, jacobian: np.ndarray, values: Mapping[str, np.ndarray]
@@ -140,3 +160,26 @@ class ChannelNoise:
         if self.whitening is not None and len(noise):
             noise = splu(self.whitening.matrix(values).tocsc(), permc_spec="NATURAL").solve(noise)
         return noise * self.model.deviations(response, self.given, values)
+
+
+def _densities_of_groups(precision: "coo_array", pulled: np.ndarray, groups: np.ndarray) -> np.ndarray:
+    """Return what each standardised value adds to :meth:`ChannelNoise.left_out`; NaN where there is no density."""
+    from scipy.linalg import cholesky_banded, solve_banded
+
+    inside = (groups[precision.row] == groups[precision.col]) & (precision.row >= precision.col)
+    rows, columns = precision.row[inside], precision.col[inside]
+    width = int(np.max(rows - columns, initial=0))
+    banded = np.zeros((width + 1, len(pulled)))
+    banded[rows - columns, columns] = precision.data[inside]
+    try:
+        factor = cholesky_banded(banded, lower=True)
+        white = solve_banded((width, 0), factor, pulled)
+    except (ValueError, np.linalg.LinAlgError):  # not finite, or not positive
+        return np.full(len(pulled), np.nan)
+    return -0.5 * white**2 + np.log(factor[0]) - HALF_LOG_2_PI
+
+
+def _summed(densities: np.ndarray, groups: np.ndarray) -> np.ndarray:
+    """Return the sums (batch, groups) of densities (batch, values)."""
+    count = int(np.max(groups, initial=-1)) + 1
+    return np.array([np.bincount(groups, own, count) for own in densities]).reshape(-1, count)

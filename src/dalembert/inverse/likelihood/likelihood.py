@@ -1,6 +1,6 @@
 """The likelihood of a model's parameters and of the noise of the data."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -90,25 +90,51 @@ class Likelihood:
 
         NaN where a simulation failed.
         """
-        return self._densities(vectors, ChannelNoise.log_densities)
-
-    def left_out(self, vectors: ArrayLike) -> np.ndarray:
-        """Return the log density of each value after all others, shape (batch, values): what leave-one-out needs.
-
-        It is that of :meth:`pointwise` where the noise is independent. NaN where a simulation failed.
-        """
-        return self._densities(vectors, ChannelNoise.left_out)
-
-    def _densities(self, vectors: ArrayLike, density: Callable[..., np.ndarray]) -> np.ndarray:
-        batch, responses = self._simulated(vectors)
-        residuals = self.problem.misfit(responses).reshape(len(batch), -1)
-        flat, known = responses.reshape(len(batch), -1), self._known(batch)
-        places = [channel.series.rows for channel in self.channels]
+        batch, residuals, responses = self._compared(vectors)
+        known = self._known(batch)
         found = [
-            density(channel, residuals[:, rows], flat[:, rows], channel.values(known))
-            for channel, rows in zip(self.channels, places, strict=True)
+            channel.log_densities(residuals[:, rows], responses[:, rows], channel.values(known))
+            for channel, rows in self._placed
         ]
         return np.concatenate(found, axis=1)
+
+    def left_out(self, vectors: ArrayLike, *groups: ArrayLike) -> tuple[np.ndarray, ...]:
+        """Return the log density of each group of values after all others: what leave-one-out needs.
+
+        Parameters
+        ----------
+        vectors : array, shape (batch, parameters)
+        *groups : array of int, shape (values,)
+            Number of the group of each value, from 0. Each vector is simulated once for all of these groupings.
+
+        Returns
+        -------
+        tuple of array, shape (batch, groups)
+            For each grouping. NaN where a simulation failed. Groups of single values have the densities of
+            :meth:`pointwise` where the noise is independent.
+        """
+        batch, residuals, responses = self._compared(vectors)
+        known, numbers = self._known(batch), [np.asarray(one) for one in groups]
+        found = [np.zeros((len(batch), int(np.max(one, initial=-1)) + 1)) for one in numbers]
+        begin = 0
+        for channel, rows in self._placed:
+            own = [np.unique(of_all[begin : begin + len(rows)], return_inverse=True) for of_all in numbers]
+            values = residuals[:, rows], responses[:, rows], channel.values(known)
+            densities = channel.left_out(*values, [local for _, local in own])
+            for total, (mine, _), part in zip(found, own, densities, strict=True):
+                total[:, mine] += part
+            begin += len(rows)
+        return tuple(found)
+
+    @property
+    def _placed(self) -> list[tuple[ChannelNoise, np.ndarray]]:
+        """Each channel with the places of its values."""
+        return [(channel, channel.series.rows) for channel in self.channels]
+
+    def _compared(self, vectors: ArrayLike) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Vectors, residuals (batch, places) and responses (batch, places)."""
+        batch, responses = self._simulated(vectors)
+        return batch, self.problem.misfit(responses).reshape(len(batch), -1), responses.reshape(len(batch), -1)
 
     def linearise(self, vector: ArrayLike) -> tuple[float, np.ndarray]:
         """Return the log-likelihood and its exact gradient (parameters,).

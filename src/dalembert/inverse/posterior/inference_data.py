@@ -19,11 +19,11 @@ def inference_data(posterior: "Posterior") -> "InferenceData":
     some draws only, these are one chain.
     """
     arviz, (chains, draws, _) = package("arviz", "inference_data"), posterior.draws.shape
-    names = [f"{e}.{c}" if e else c for e, c in zip(posterior.experiments, posterior.channels, strict=True)]
+    names = posterior.columns
     of_channel = {name: np.flatnonzero([one == name for one in names]) for name in dict.fromkeys(names)}
     every = len(posterior.kept) == chains * draws
     likelihoods = posterior.log_likelihood.reshape(chains, draws, -1) if every else posterior.log_likelihood[None]
-    columns = {name: _column(posterior, name) for name in of_channel}
+    columns = {name: posterior.data.channels.index(name) for name in of_channel}
     rows = {name: posterior.rows[places] for name, places in of_channel.items()}
     along = posterior.data.coordinate.values
     coordinates: dict[str, Any] = {f"{name}.sample": along[rows[name]] for name in of_channel}
@@ -37,7 +37,3 @@ def inference_data(posterior: "Posterior") -> "InferenceData":
         coords=coordinates,
         dims=dimensions,
     )
-
-
-def _column(posterior: "Posterior", name: str) -> int:
-    return posterior.data.channels.index(name)

@@ -62,6 +62,14 @@ class Posterior(EndedResult):
         Where the compared values stand; experiments are empty for a single one.
     rows : array of int, shape (values,)
         Of the compared values in the data.
+    blocks : array of int, shape (values,)
+        Number of the block of neighbouring samples that each compared value is in.
+    block_log_likelihood : array, shape (kept draws, blocks)
+        Log density of each block, with all its channels, after all other values.
+    experiment_log_likelihood : array, shape (kept draws, experiments)
+        Log density of all compared values of each experiment.
+    correlated : bool
+        Whether a noise model is correlated from sample to sample.
     replicas : array, shape (replicas, samples, channels)
         Posterior predictive: responses with simulated noise; NaN where no value was compared.
     replicated : array of int, shape (replicas,)
@@ -93,6 +101,10 @@ class Posterior(EndedResult):
     experiments: Annotated[tuple[str, ...], Labels("value", name="value_experiment")]
     channels: Annotated[tuple[str, ...], Labels("value", name="value_channel")]
     rows: Annotated[np.ndarray, Over("value", name="value_row")]
+    blocks: Annotated[np.ndarray, Over("value", name="value_block")]
+    block_log_likelihood: Annotated[np.ndarray, Over("kept", "block")]
+    experiment_log_likelihood: Annotated[np.ndarray, Over("kept", "experiment")]
+    correlated: bool
     replicas: Annotated[np.ndarray, Over("replica", "sample", "channel")]
     replicated: Annotated[np.ndarray, Over("replica", name="replicated_draw")]
     data: StoredData
@@ -162,6 +174,11 @@ class Posterior(EndedResult):
         ends = np.quantile(self.replicas[:, there], [(1 - level) / 2, (1 + level) / 2], axis=0)
         lower[there], upper[there] = ends
         return lower, upper
+
+    @property
+    def columns(self) -> list[str]:
+        """Channel of each compared value in the data, ``"EXPERIMENT.channel"`` with several experiments."""
+        return [f"{e}.{c}" if e else c for e, c in zip(self.experiments, self.channels, strict=True)]
 
     @property
     def inference_data(self) -> "InferenceData":

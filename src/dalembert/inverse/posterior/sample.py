@@ -14,6 +14,7 @@ from dalembert.errors import InputError, require_known, shown
 from dalembert.forward import Executor, ForwardModel, check_derivatives, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.events import Drawn, OnEvent
+from dalembert.inverse.experiments.blocks import USUAL, blocks_of_records
 from dalembert.inverse.experiments.experiment import Experiment
 from dalembert.inverse.experiments.experiments import placed
 from dalembert.inverse.experiments.joined import joined
@@ -67,6 +68,7 @@ def sample(
     draws: int = 1000,
     warmup: int = 500,
     seed: int = 0,
+    blocks: int = USUAL,
     on_event: OnEvent | None = None,
     executor: Executor = None,
 ) -> Posterior:
@@ -97,6 +99,9 @@ def sample(
         ``draws`` of each of ``chains`` are kept, after ``warmup`` that are not.
     seed : int
         All random numbers follow from it.
+    blocks : int
+        Blocks of neighbouring samples of each record, whose log densities after all other values are kept for
+        :func:`compare_models`.
     on_event : callable, optional
         Called with each event (see :mod:`dalembert.inverse.events`) as it happens.
     executor : str or distributed.Client, optional
@@ -135,8 +140,9 @@ def sample(
     >>> bool(abs(posterior.deviations[0] - exact) < 0.15 * exact)
     True
     """
-    for name, number, least in (("chains", chains, 1), ("draws", draws, 1), ("warmup", warmup, 1), ("seed", seed, 0)):
-        check_whole("sample", name, number, least)
+    counts = {"chains": chains, "draws": draws, "warmup": warmup, "seed": seed, "blocks": blocks}
+    for name, number in counts.items():
+        check_whole("sample", name, number, {"seed": 0, "blocks": 2}.get(name, 1))
     chosen = _sampler(sampler, surrogate)
     if chosen is not None:
         chosen.check()
@@ -162,14 +168,14 @@ def sample(
     remembered = Remembered(problem.model) if isinstance(chosen, DelayedAcceptance) else None
     own = problem if remembered is None else replace(problem, model=remembered, journal=Journal(problem.samples))
     found = chosen.sampled(around.target.of(own), length, _announced(on_event))
-    result = _result(around, around.target.of(own), found, chosen, length)
+    result = _result(around, around.target.of(own), found, chosen, length, blocks)
     simulations = problem.journal.simulations + found.simulations
     simulations += 0 if remembered is None else remembered.simulations
     doubts = inherited(fit, likely, usual=noise is None)
     return replace(result, simulations=simulations, findings=(*result.findings, *doubts))
 
 
-def _result(around: Centred, target: Target, found: Chains, sampler: Sampler, length: Length) -> Posterior:
+def _result(around: Centred, target: Target, found: Chains, sampler: Sampler, length: Length, blocks: int) -> Posterior:
     """The result of the draws, with what is computed at them."""
     parameters, vectors = target.parameters, target.vectors(found.places)
     flat = vectors.reshape(-1, len(parameters))
@@ -178,6 +184,10 @@ def _result(around: Centred, target: Target, found: Chains, sampler: Sampler, le
     replicated = _spaced(len(flat), REPLICAS)
     diagnostics = convergence(vectors)
     likely = target.likelihood
+    block_of = _blocks(likely, blocks)
+    experiment_of = np.unique(places.experiment, return_inverse=True)[1].ravel()
+    groups = np.arange(len(places.row)), block_of, experiment_of
+    single, of_blocks, of_experiments = _left_out(likely, flat[kept], groups)
     settings = {
         "chains": length.chains,
         "draws": length.draws,
@@ -197,11 +207,15 @@ def _result(around: Centred, target: Target, found: Chains, sampler: Sampler, le
         errors=diagnostics.error,
         mode=around.vector,
         linear_deviations=around.deviations,
-        log_likelihood=_pointwise(likely, flat[kept]),
+        log_likelihood=single,
         kept=kept,
         experiments=tuple(map(str, places.experiment)),
         channels=tuple(map(str, places.channel)),
         rows=np.asarray(places.row),
+        blocks=block_of,
+        block_log_likelihood=of_blocks,
+        experiment_log_likelihood=of_experiments,
+        correlated=any(channel.whitening is not None for channel in likely.channels),
         replicas=likely.replicas(flat[replicated], length.seed),
         replicated=replicated,
         data=target.problem.data,
@@ -219,11 +233,20 @@ def _spaced(count: int, most: int) -> np.ndarray:
     return np.unique(np.linspace(0, count - 1, min(count, max(most, 1))).astype(int))
 
 
-def _pointwise(likely: Likelihood, vectors: np.ndarray) -> np.ndarray:
-    """Log density of each value after all others at vectors, (vectors, values); equal vectors are simulated once."""
+def _left_out(likely: Likelihood, vectors: np.ndarray, groups: Sequence[np.ndarray]) -> list[np.ndarray]:
+    """Log densities of groups of values after all others, (vectors, groups) each; equal vectors are simulated once."""
     distinct, back = np.unique(vectors, axis=0, return_inverse=True)
     parts = np.array_split(distinct, max(1, len(distinct) // TOGETHER))
-    return np.concatenate([likely.left_out(part) for part in parts])[back.ravel()]
+    found = zip(*(likely.left_out(part, *groups) for part in parts), strict=True)
+    return [np.concatenate(one)[back.ravel()] for one in found]
+
+
+def _blocks(likely: Likelihood, blocks: int) -> np.ndarray:
+    """Number of the block of each value, (values,): of at most some blocks of each record."""
+    problem = likely.problem
+    parts = getattr(problem.model, "parts", ())
+    numbers = blocks_of_records(problem.weights > 0, parts, lambda samples: min(blocks, samples))
+    return numbers.ravel()[np.concatenate([channel.series.rows for channel in likely.channels])]
 
 
 def with_priors(likely: Likelihood, priors: Mapping[str, AnyPrior] | None) -> Parameters:

@@ -36,6 +36,7 @@ class SampleTable(StudyTable):
     draws: int = Field(1000, ge=1, description="draws of each chain that are kept")
     warmup: int = Field(500, ge=1, description="draws of each chain before them")
     seed: int = Field(0, ge=0, description="of all random numbers")
+    blocks: int = Field(10, ge=2, description="blocks of each record that comparisons of models leave out")
     weights: dict[str, Number] | None = Field(None, description="weight of each channel; from deviations if not given")
     noise: Noise = Field(
         None,
@@ -133,7 +134,7 @@ class Sample(Task):
             sampler=None if table.sampler is None else table.sampler.settings(),
             surrogate=getattr(table.surrogate, "settings", lambda: table.surrogate)(),
             on_event=tell,
-            **table.picked("chains", "draws", "warmup", "seed"),
+            **table.picked("chains", "draws", "warmup", "seed", "blocks"),
         )
         return _outcome(study, posterior, told)
 

@@ -84,7 +84,7 @@ def test_correlated_residuals_are_left_out_in_blocks():
     fits = fitted(recorded(0.0, noise))
     assert fits["line"].correlated is not None
     found = compare_models(fits)
-    assert found.left_out == "blocks of neighbouring samples"
+    assert found.left_out == "blocks"
     assert ("correlated-comparison", "note") in codes(found)
     assert found.densities.shape[1] < 20
     alone = compare_models(fits, leave_out="values")
@@ -111,7 +111,7 @@ def test_a_noise_model_is_judged_with_its_parameters():
 def test_correlated_noise_is_left_out_in_blocks_longer_than_its_correlation():
     process = fitted(recorded(0.0, autoregressive(1, 81, 0.8)), noise=da.AutoregressiveNoise(order=1))
     found = compare_models(process)
-    assert found.left_out == "blocks of neighbouring samples"
+    assert found.left_out == "blocks"
     assert found.densities.shape[1] < 10
     again = compare_models(
         {name: cross_validate(MODELS[name], fit.data, fit=fit) for name, fit in process.items()}, leave_out="blocks"
@@ -341,6 +341,82 @@ def test_posteriors_are_compared_as_fits_of_the_same_noise():
     found, exact = compare_models(posteriors), compare_models(fits, leave_out="values")
     assert found.models == exact.models == ("parabola", "line")
     np.testing.assert_allclose(found.elpd, exact.elpd, atol=0.6)
+
+
+def drawn(model, data, **options):
+    return sample(
+        model,
+        data,
+        sampler=AffineInvariant(),
+        start=options.pop("start", None),
+        chains=2,
+        draws=40,
+        warmup=30,
+        **options,
+    )
+
+
+def test_draws_with_correlated_noise_leave_out_blocks():
+    data, noise = recorded(0.5), da.AutoregressiveNoise(order=1)
+    posteriors = {name: drawn(model, data, noise=noise) for name, model in MODELS.items()}
+    found = compare_models(posteriors)
+    assert (found.left_out, found.densities.shape, found.values) == ("blocks", (2, 10), 81)
+    assert compare_models(posteriors, leave_out="values").densities.shape == (2, 81)
+    plain = compare_models({name: drawn(model, recorded(0.0, deviations=0.1)) for name, model in MODELS.items()})
+    assert plain.left_out == "values"
+
+
+def test_correlated_residuals_of_draws_are_left_out_in_blocks():
+    data = recorded(0.0, autoregressive(1, 81, 0.8), deviations=0.1)
+    assert compare_models({name: drawn(model, data) for name, model in MODELS.items()}).left_out == "blocks"
+
+
+def test_draws_of_several_channels_and_experiments_are_compared():
+    def runs(model):
+        wide = PythonModel(
+            lambda **values: np.stack([model.function(**values), 2 * model.function(**values)], axis=1),
+            dict.fromkeys(model.parameters.names, BOX), ["x", "y"], TIMES,
+        )  # fmt: skip
+        values = np.stack([recorded(0.5).values[:, 0], 2 * recorded(0.5).values[:, 0]], axis=1)
+        data = Measurements(recorded(0.5).coordinate, ("x", "y"), values, deviations=[0.1, 0.1])
+        return [Experiment("first", wide, data), Experiment("second", wide.first(60), data.first(60))]
+
+    posteriors = {name: drawn(runs(model), None) for name, model in MODELS.items()}
+    for left_out, count in (("values", 2 * 141), ("blocks", 20), ("experiments", 2)):
+        found = compare_models(posteriors, leave_out=left_out)
+        assert found.models[0] == "parabola"
+        assert found.densities.shape == (2, count)
+    single = posteriors["line"]
+    np.testing.assert_allclose(
+        single.experiment_log_likelihood.sum(axis=1), single.log_likelihood.sum(axis=1), rtol=1e-10
+    )
+    np.testing.assert_allclose(
+        single.block_log_likelihood[:, :10].sum(axis=1), single.experiment_log_likelihood[:, 0], rtol=1e-10
+    )
+    assert set(single.inference_data.log_likelihood) == {"first.x", "first.y", "second.x", "second.y"}
+    assert compare_models({name: one.inference_data for name, one in posteriors.items()}).densities.shape == (2, 282)
+
+
+def test_groups_that_draws_do_not_have_are_refused():
+    posteriors = {name: drawn(model, recorded(0.5, deviations=0.1)) for name, model in MODELS.items()}
+    other = {**posteriors, "line": drawn(LINE, recorded(0.5, deviations=0.1), blocks=5)}
+    for models, options, sentence in (
+        (posteriors, {"blocks": 5}, "compare_models: the blocks of draws are those of sample; leave blocks out here"),
+        (
+            posteriors, {"leave_out": "experiments"},
+            "leave_out is 'experiments', but the posterior has one experiment; use 'blocks'",
+        ),
+        (
+            other, {"leave_out": "blocks"},
+            "compare_models: the draws of 'parabola' have other blocks than those of 'line'; sample both with the same number of blocks",
+        ),
+        (
+            {name: one.inference_data for name, one in posteriors.items()}, {"leave_out": "blocks"},
+            "compare_models: the draws of 'line' have log-likelihoods of single values only, so leave_out cannot be 'blocks'; use leave_out='values', or posteriors of sample",
+        ),
+    ):  # fmt: skip
+        with pytest.raises(InputError, match=says(sentence)):
+            compare_models(models, **options)
 
 
 def test_it_is_in_the_package():

@@ -344,7 +344,7 @@ def test_left_out_densities_are_those_of_refits_without_each_value() -> None:
         variance = covariance[k, k] - weights @ covariance[others, k]
         expected[k] = -0.5 * (residual[k] - weights @ residual[others]) ** 2 / variance
         expected[k] -= 0.5 * np.log(2 * np.pi * variance)
-    np.testing.assert_allclose(likely.left_out([[0.3]])[0], expected, rtol=1e-10)
+    np.testing.assert_allclose(likely.left_out([[0.3]], np.arange(12))[0][0], expected, rtol=1e-10)
 
 
 def test_findings_of_the_fit_concern_the_draws_too() -> None:

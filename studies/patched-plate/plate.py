@@ -122,18 +122,22 @@ def _reduce(plate: Structure) -> tuple[ReducedStructure, dict[str, str], tuple[t
 
 def _keep(path: Path, plate: ReducedStructure, forced: dict[str, str], pairs: tuple[tuple[str, str, str], ...]) -> None:
     """Write what is needed later: all matrices, and the motion of the nodes that pictures show. Whole or not at all."""
-    shown = np.unique(plate.nodes.faces)
+    touching = [node for _, *pair in pairs for node in pair]
+    shown = np.union1d(plate.nodes.faces, plate.nodes.rows(touching))  # contacts have places, too
     names = np.array(plate.nodes.names)[shown]
     rows = [row for row, name in enumerate(plate.full_dofs.names) if name.rpartition(".")[0] in set(names)]
-    called = {f"{node}.z": f"{name}.z" for name, node in forced.items()}
+    called = {node: name for name, node in forced.items()}  # nodes and degrees of freedom, so that forces have places
+    called |= {f"{node}.{axis}": f"{name}.{axis}" for node, name in called.items() for axis in "xyz"}
+    full_names = [called.get(name, name) for name in np.array(plate.full_dofs.names)[rows].tolist()]
     path.parent.mkdir(parents=True, exist_ok=True)
     handle, part = tempfile.mkstemp(dir=path.parent, suffix=".part")
     with os.fdopen(handle, "wb") as file:
         np.savez(
             file, mass=plate.mass, stiffness=plate.stiffness, pairs=pairs,
             names=[called.get(name, name) for name in plate.dofs.names],
-            basis=plate.basis[rows], full_names=np.array(plate.full_dofs.names)[rows],
-            node_names=names, places=plate.nodes.places[shown], faces=np.searchsorted(shown, plate.nodes.faces),
+            basis=plate.basis[rows], full_names=full_names,
+            node_names=[called.get(name, name) for name in names.tolist()],
+            places=plate.nodes.places[shown], faces=np.searchsorted(shown, plate.nodes.faces),
         )  # fmt: skip
     Path(part).replace(path)
 

@@ -99,6 +99,8 @@ class Equations:
             before, solution = solution.error, finer(solution)
             if not solution.converged and solution.error > before / 2:  # what is left is not of the samples
                 break
+        if solution.error <= self.method.sampling and not solution.converged and self.method.samples == AUTOMATIC:
+            solution = self._resampled(solution, unknowns, omega, samples, plane)
         while solution.converged:
             solution = replace(solution, sampling_error=self._sampling_error(solution))
             if solution.sampling_error <= self.method.sampling or not self._doubles(solution):
@@ -106,6 +108,17 @@ class Equations:
             better = finer(solution)
             solution = replace(better, iterations=solution.iterations + better.iterations)
         return solution
+
+    def _resampled(
+        self, stalled: Solution, unknowns: np.ndarray, omega: float, samples: int, plane: Plane | None
+    ) -> Solution:
+        """Solve with other numbers of samples, whose kinks are elsewhere; return the stalled solution if none helps."""
+        point = stalled.point if plane is None else None
+        for number in (int(part * samples) for part in RESAMPLED if part * samples <= MOST_SAMPLES):
+            found = correct(self.balance(number), self.condensation.at, self.method, unknowns, omega, plane, point)
+            if found.converged:
+                return found
+        return stalled
 
     def first(self, omega: float) -> Solution:
         """Return a first point: from contacts that stick, from the motion without contacts, or by increasing force.
@@ -213,6 +226,8 @@ def equations(
     return Equations(lowered, method, checkpoint)
 
 
+RESAMPLED = (1.25, 2.0, 1.5, 4.0)
+"""Other numbers of samples, as parts of the first one, where Newton's method alternates between the sides of kinks."""
 FIRST_LOAD = 0.01
 """Part of the force at the start of the path, at which pressed contacts stick."""
 RESOLUTION = 0.1

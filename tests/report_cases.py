@@ -344,7 +344,7 @@ CASES: dict[str, Case] = {
     ),
     "given deviations": Case(
         lambda: da.identify(DECAY, _exact(DECAY, [2.0, 0.8], noise=0.02, deviations=0.02)),
-        ("(from the given standard deviations)", "starts converged to the best fitness."),
+        ("(from the given standard deviations)", "starts converged to the smallest misfit."),
         ("starts",),
     ),
     "deviations too small": Case(
@@ -945,7 +945,7 @@ CASES: dict[str, Case] = {
     ),
     "bands with one descent": Case(
         lambda: da.identify_bands(DECAY, BANDS, method=GlobalSurrogate(starts=1)),
-        ("Only one of the descents reached the best fitness: another minimum may be better. Increase starts.",),
+        ("Only one of the descents reached the smallest misfit: another minimum may be better. Increase starts.",),
     ),
     "bands with failing runs": Case(_tired, ("simulations failed and were left out; the first: RuntimeError: enough",)),
     # ── sets ────────────────────────────────────────────────────────────────────────────────────────────────────────

@@ -1,6 +1,9 @@
 """Measured data, guided: columns are corrected by menus, problems by buttons; large files do not block the studio."""
 
+import re
 import tomllib
+from pathlib import Path
+from shutil import copytree
 
 import numpy as np
 import pytest
@@ -11,6 +14,7 @@ from browser.visitor import Visitor, wait_until
 from dalembert.study.template import begin
 
 pytestmark = pytest.mark.slow
+STUDIES = Path(__file__).parents[2] / "studies"
 TEXT = "(document.body?.innerText ?? '')"
 LONGEST_ANSWER = 5.0
 """Seconds, on a machine whose cores other processes use as well."""
@@ -121,3 +125,21 @@ def test_the_channel_of_a_column_is_picked_in_the_drawing(visit, root):
     page.get_by_role("button", name="Save").click()
     wait_until(page, f"{TEXT}.includes('Saved.')")
     assert tomllib.loads(study.read_text())["data"]["columns"]["rod.end.angle"] == "y"
+
+
+def test_the_channel_of_a_column_is_picked_in_three_dimensions(visit, root):
+    copytree(STUDIES / "spatial-slider-crank", root / "studies" / "crank")
+    page = visit("/study/crank/identify")
+    page.get_by_role("tab", name="Data").click()
+    pick = page.get_by_role("button", name=re.compile("^Pick the channel of column ")).first
+    pick.click()
+    name = page.get_by_role("dialog").locator(".model-space button[aria-label='body slider']")
+    name.wait_for()
+    name.click()
+    page.get_by_text("Channels of body slider:").wait_for()
+    offers = page.get_by_role("group", name="Channels of the part").get_by_role("button")
+    channel = offers.first.inner_text()
+    assert channel.startswith("slider.")
+    offers.first.click()
+    wait_until(page, "!document.querySelector('.q-dialog__inner')")
+    wait_until(page, f"[...document.querySelectorAll('input')].some((one) => one.value.startsWith('{channel}'))")

@@ -20,3 +20,12 @@ def code_html(text: str) -> str:
     'Write <code>start = 1</code> where a &lt; b.'
     """
     return _CODE.sub(r"<code>\1</code>", escape(text, quote=False))
+
+
+def plain_text(text: str) -> str:
+    """Return a sentence for places that show no code: names in quotes.
+
+    >>> plain_text("Write `start = 1`.")
+    "Write 'start = 1'."
+    """
+    return _CODE.sub(r"'\1'", text)

@@ -12,6 +12,7 @@ from nicegui import context, ui
 
 from dalembert import __version__
 from dalembert.errors import DalembertError, told, unchanged
+from dalembert.studio.code_text import plain_text
 from dalembert.studio.colours import add_colours
 from dalembert.studio.corrections import add_corrections
 from dalembert.study.folder import RunFolder
@@ -121,7 +122,7 @@ def complain(error: Exception) -> ui.notification:
         sentence = unchanged(error)
     else:
         sentence = f"The studio met an error: {told(error)}. Reload the page: a text that is not saved is kept."
-    return ui.notification(sentence, type="negative", multi_line=True, close_button="Close", timeout=None)
+    return ui.notification(plain_text(sentence), type="negative", multi_line=True, close_button="Close", timeout=None)
 
 
 _MESSAGES: WeakValueDictionary[tuple[str, Hashable], ui.notification] = WeakValueDictionary()

@@ -21,3 +21,7 @@ def task_names() -> tuple[str, ...]:
     (True, False)
     """
     return tuple(name for name in schema_file.schema()["properties"] if name not in SHARED)
+
+
+MODEL_FILE = ("model", "constants")
+"""Tables of a file that ``[model] file = "..."`` names."""

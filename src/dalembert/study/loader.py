@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from dalembert.errors import InputError, no_text, unknown
-from dalembert.study.basics import LARGEST
+from dalembert.study.basics import LARGEST, MODEL_FILE
 from dalembert.study.context import Context
 from dalembert.study.parameters import series_in
 from dalembert.study.schema import study_file, words_of
@@ -133,7 +133,7 @@ def _document(path: Path, content: bytes) -> tuple[bytes, dict[str, Any]]:
 
 def _refuse_parts(document: Mapping[str, Any], path: Path) -> None:
     """Refuse a file that asks for nothing: an empty one, or a model alone."""
-    if document.keys() <= {"model", "constants"}:
+    if document.keys() <= set(MODEL_FILE):
         given, more = "the file holds no tables", ""
         if document:
             given, more = (
@@ -161,7 +161,7 @@ def _with_model_file(document: dict[str, Any], context: Context, path: Path, con
     except InputError as error:
         raise _wrong_file(path, str(error)) from None
     for table in shared:
-        if table not in ("model", "constants"):
+        if table not in MODEL_FILE:
             raise _wrong_file(
                 path,
                 f"{given}: [{table}] is in a model file; expected [model] and [constants] there, "

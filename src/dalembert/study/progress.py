@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from rich.progress import Progress
 
 _EVERY = 2.0  # s between plain lines
+MOST_LISTED = 8
+"""Unknowns whose values a line lists."""
 
 
 @dataclass
@@ -50,7 +52,7 @@ class Told:
                 least = event.get("minimised")
                 if least is not None and best is not None:  # it weighs gaps ever more, so that no two compare
                     return f"{said} · {_in_segments(least, best, event['gap'])}{self._listed(values)}", 0, None
-                if event.get("samples") != self._samples:  # a fitness over more samples is another one
+                if event.get("samples") != self._samples:  # a misfit over more samples is another one
                     self._samples, self._best = event.get("samples"), float("inf")
                 if best is not None and best < self._best:
                     self._best, self._values = best, values
@@ -90,7 +92,9 @@ class Told:
         listed = (
             (name, value, self.units.get(name, ("", 1.0))) for name, value in zip(self.names, values, strict=False)
         )
-        return ", ".join(f"{name} = {value / size:.6g} {unit}".rstrip() for name, value, (unit, size) in listed)
+        texts = [f"{name} = {value / size:.6g} {unit}".rstrip() for name, value, (unit, size) in listed]
+        more = [f"and {len(texts) - MOST_LISTED} more"] if len(texts) > MOST_LISTED else []
+        return ", ".join([*texts[:MOST_LISTED], *more])
 
 
 def _in_segments(least: float, misfit: float, gap: float) -> str:
@@ -99,7 +103,7 @@ def _in_segments(least: float, misfit: float, gap: float) -> str:
 
 
 def _horizon(event: Event) -> str:
-    """The samples that the best fitness is of, while they are not all: more of them make it rise."""
+    """The samples that the best misfit is of, while they are not all: more of them make it rise."""
     samples, of = event.get("samples"), event.get("of")
     if samples is None or of is None or samples == of:
         return ""

@@ -172,7 +172,7 @@ def test_intervals_without_true_ones_true_runs_and_history(tmp_path):
     result.history, result.checked_fitness = (), None
     page = read_page(report(result, tmp_path / "a.html"))
     assert "true lower" not in page.table("intervals")[0]
-    assert "fitness by true runs" not in page.text
+    assert "misfit by true runs" not in page.text
     assert "search" not in _anchors(page)
 
 

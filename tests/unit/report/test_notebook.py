@@ -66,7 +66,7 @@ SHOWN = {
         ["Forced response", "computed", "frequency (Hz)"],
     ),
     "bounds": (lambda: propagate(decay(), {"rate": (0.9, 1.1)}), ["Bounds of the response", "runs of the model"]),
-    "a fit": (fitted, ["Identified parameters", "rate (1/s)", "fitness", "x measured", "x computed"]),
+    "a fit": (fitted, ["Identified parameters", "rate (1/s)", "misfit", "x measured", "x computed"]),
 }
 
 

@@ -54,6 +54,12 @@ def test_events_are_told_in_a_line(event, text):
 ITERATION = {"event": "iteration", "start": 0, "iteration": 2, "simulations": 85, "best": 2.5, "values": [0.75]}
 
 
+def test_many_values_are_told_in_part():
+    names = tuple(f"k{number}" for number in range(1, 12))
+    told = _printed(ITERATION | {"values": [1.0] * 11}, names)
+    assert told.endswith("k7 = 1, k8 = 1, and 3 more")
+
+
 def test_segments_are_told_with_what_is_minimised():
     told = _printed(ITERATION | {"minimised": 4.5, "gap": 0.013}, ("mass",))
     minimised = "minimised 4.5 = misfit 2.5 + weighted gaps, largest gap 0.013"

@@ -159,7 +159,7 @@ class BandFit(EndedResult):
         facts = [
             *fact_lines(
                 method=self.method,
-                fitness=f"{self.fitness:.6g} (weighted sum of squares of {2 * self.lower.size} bounds), {checked}",
+                misfit=f"{self.fitness:.6g} (weighted sum of squares of {2 * self.lower.size} bounds), {checked}",
                 simulations=self.simulations,
                 seconds=f"{self.seconds:.2g}",
                 starts=len(self.starts),

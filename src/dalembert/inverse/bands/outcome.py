@@ -84,7 +84,7 @@ def conclusions(problem: BandProblem, found: BandSolution) -> Iterator[Finding]:
         advice = "Check the bands, the model and the bounds of the parameters."
         yield Finding("inconsistent-bands", "error" if share > CLEAR else "warning", {"share": share}, message, advice)
     if found.reached == 1:
-        message = "Only one of the descents reached the best fitness: another minimum may be better."
+        message = "Only one of the descents reached the smallest misfit: another minimum may be better."
         yield Finding("minimum-reached-once", "warning", {"reached": 1}, message, "Increase starts.")
 
 

@@ -232,7 +232,7 @@ class Fit(EndedResult):
         facts = [
             *fact_lines(
                 method=self.method,
-                fitness=f"{self.fitness:.6g} (weighted sum of squares of {int(self.data.present.sum())} values)",
+                misfit=f"{self.fitness:.6g} (weighted sum of squares of {int(self.data.present.sum())} values)",
                 simulations=self.simulations,
                 starts=len(self.starts),
             ),
@@ -291,7 +291,7 @@ def _integration_facts(fit: Fit) -> list[str]:
         return []
     return [
         f"integrator   bias of the values {amounts(fit.parameters, found.bias)} (by one simulation {found.how})",
-        f"             fitness with converged steps {found.fitness:.6g}, with corrected values {found.corrected:.6g}",
+        f"             misfit with converged steps {found.fitness:.6g}, with corrected values {found.corrected:.6g}",
     ]
 
 

@@ -48,7 +48,7 @@ def outcome(
     fitnesses = [start.fitness for start in problem.journal.starts]
     if len(fitnesses) > 1:
         there = sum(fitness <= searched * (1 + 1e-3) + floor.fitness * 1e-3 for fitness in fitnesses)
-        message = f"{there} of {len(fitnesses)} starts converged to the best fitness."
+        message = f"{there} of {len(fitnesses)} starts converged to the smallest misfit."
         yield Finding("starts-at-best", "note", {"at_best": there, "starts": len(fitnesses)}, message)
     if best.nodes is not None:
         yield _segments(best.nodes)

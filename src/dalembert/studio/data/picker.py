@@ -6,8 +6,8 @@ from functools import partial
 from nicegui import ui
 
 from dalembert.studio.editor.draft import Draft
-from dalembert.studio.model.drawing import ModelDrawing
 from dalembert.studio.model.picture import model_picture
+from dalembert.studio.model.viewer import Viewer
 from dalembert.studio.room import Room
 from dalembert.studio.worker import WorkerError
 
@@ -44,8 +44,9 @@ class ChannelPicker:
         with ui.dialog() as self._dialog, ui.card().classes("w-[44rem] max-w-full"):
             self._title = ui.label("").classes("font-bold")
             self._says = ui.label(HOW).props("role=status aria-live=polite").classes("text-sm")
-            self._offers = ui.row().classes("gap-2").props('role=group aria-label="Channels of the part"')
-            self._drawing = ModelDrawing(self._chosen).classes("w-full").style("height: 22rem")
+            self._offers = ui.row().classes("gap-2 max-h-36 overflow-auto w-full")
+            self._offers.props('role=group aria-label="Channels of the part"')
+            self._view = Viewer(self._chosen).classes("w-full").style("height: 22rem")
             ui.button("Cancel", on_click=self._dialog.close).props("flat no-caps")
 
     async def pick(self, column: str, channels: Sequence[str], take: Callable[[str], object]) -> None:
@@ -64,7 +65,7 @@ class ChannelPicker:
             self._says.set_text(str(error))
             return
         if picture is not None:
-            self._drawing.draw(picture.svg)
+            self._view.draw(picture)
             if not picture.svg:
                 self._says.set_text(picture.message)
 
@@ -72,7 +73,7 @@ class ChannelPicker:
         if part is None:
             return
         found = channels_of_part(part, self._channels)
-        self._drawing.mark([part], [])
+        self._view.mark([part], [])
         self._offers.clear()
         self._says.set_text(f"Channels of {part}:" if found else f"There is no channel of {part}. Click another part.")
         with self._offers:

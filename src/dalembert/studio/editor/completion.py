@@ -1,7 +1,7 @@
 """Completions of a study's text at a position, and what is said about the word there."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -39,7 +39,9 @@ class Option:
     info: str = ""
 
 
-def completions(text: str, position: int, more: Names | None = None) -> tuple[int, tuple[Option, ...]]:
+def completions(
+    text: str, position: int, more: Names | None = None, tables: Collection[str] = ()
+) -> tuple[int, tuple[Option, ...]]:
     """Return where the completed text begins, and the completions at a position in a study's text.
 
     Parameters
@@ -49,6 +51,8 @@ def completions(text: str, position: int, more: Names | None = None) -> tuple[in
         In characters from the beginning.
     more : mapping, optional
         Names that the text does not say, such as the channels of the mechanism.
+    tables : collection of str
+        The tables that the file may have; all if empty.
 
     Examples
     --------
@@ -65,7 +69,7 @@ def completions(text: str, position: int, more: Names | None = None) -> tuple[in
     for what, known in (more or {}).items():
         names[what] = tuple(dict.fromkeys((*names.get(what, ()), *known)))
     make = {"header": _headers, "key": _keys, "value": _values}[cursor.where]
-    options = list(make(document, cursor, names))
+    options = [one for one in make(document, cursor, names) if not tables or _table(one, cursor) in tables]
     typed = cursor.typed
     if cursor.where == "value" and not any(option.label.lower().startswith(typed.lower()) for option in options):
         typed = _WORD.search(typed)[0]  # type: ignore[index]  # the last name of an expression
@@ -130,6 +134,11 @@ def _values(document: Any, cursor: Cursor, names: Names) -> Iterator[Option]:
         yield Option(text, text if cursor.quoted else f'"{text}"', info=about.get(text, ""))
     if field.shape == "switch":
         yield from (Option(text, text, field.facts, field.meaning) for text in ("true", "false"))
+
+
+def _table(option: Option, cursor: Cursor) -> str:
+    """The table of the file that a completion belongs to."""
+    return str(cursor.place[0]) if cursor.place else option.label.strip("[]").partition(".")[0]
 
 
 def _name(place: Place) -> str:

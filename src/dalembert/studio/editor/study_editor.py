@@ -1,7 +1,7 @@
 """The editor of TOML with completions, and with the meaning of the word under the pointer or, by F1, at the cursor."""
 
 import sys
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Collection
 from dataclasses import asdict
 from pathlib import Path
 
@@ -29,6 +29,8 @@ class StudyEditor(ui.codemirror, component="study_editor.js", esm={"dalembert-co
         Called with a text that the browser kept when its page was lost, and the saved text that it was based on.
     label : str
         What a screen reader says.
+    tables : collection of str
+        The tables that the file may have; all if empty.
     """
 
     def __init__(
@@ -38,9 +40,10 @@ class StudyEditor(ui.codemirror, component="study_editor.js", esm={"dalembert-co
         late: Callable[[str], object] = lambda text: None,
         kept: Callable[[str, str], object] = lambda text, saved: None,
         label: str = "The study as text",
+        tables: Collection[str] = (),
     ) -> None:
         super().__init__(text, language="TOML", theme="vscodeLight", line_wrapping=True)
-        self._names, self._late = names, late
+        self._names, self._late, self._tables = names, late, tables
         self._props["revision"], self._props["label"], self._props["saved"] = 0, label, text
         self.on("question", self._answer)
         self.on("kept", lambda event: kept(event.args["text"], event.args["saved"]))
@@ -67,7 +70,7 @@ class StudyEditor(ui.codemirror, component="study_editor.js", esm={"dalembert-co
         position, reply = int(event.args["position"]), None
         if event.args["kind"] == "complete":
             names, text = await self._names(), self.value or ""
-            start, options = completions(text, position, names)
+            start, options = completions(text, position, names, self._tables)
             reply = {"typed": text[start:position], "options": [asdict(option) for option in options[:_MOST]]}
         elif found := explanation(self.value or "", position):
             reply = asdict(found)

@@ -1,5 +1,7 @@
 """The editor of a study's text, with marks at mistakes and at what is selected."""
 
+from collections.abc import Collection
+
 from nicegui import events, ui
 
 from dalembert.studio.editor.draft import Draft
@@ -32,11 +34,13 @@ class TextEditor:
     draft : Draft
     label : str
         What a screen reader says.
+    tables : collection of str
+        The tables that the file may have; all if empty.
     """
 
-    def __init__(self, draft: Draft, label: str = "The study as text") -> None:
+    def __init__(self, draft: Draft, label: str = "The study as text", tables: Collection[str] = ()) -> None:
         self.draft, self._line = draft, 1
-        self.element = StudyEditor(draft.text, Channels(draft), self._recall, self._restore, label)
+        self.element = StudyEditor(draft.text, Channels(draft), self._recall, self._restore, label, tables)
         self.element.classes("w-full h-full border rounded")
         self.element.on_value_change(self._typed)
         for event in ("keyup", "mouseup"):

@@ -9,9 +9,9 @@ from dalembert.studio.editor.lines import Place
 from dalembert.studio.editor.reading import Mistake
 from dalembert.studio.frame import icon_button
 from dalembert.studio.latest import Latest
-from dalembert.studio.model.drawing import ModelDrawing, ModelSpace, ModelView
 from dalembert.studio.model.parts import parts_at, place_of
 from dalembert.studio.model.picture import Picture, model_picture
+from dalembert.studio.model.viewer import Viewer
 from dalembert.studio.room import Room
 from dalembert.studio.worker import WorkerError
 
@@ -39,26 +39,18 @@ class _Panel:
         self.draft, self.room = draft, room
         self.picture = Picture()
         self.links: dict[str, ui.button] = {}
-        self.flat = False  # whether the browser cannot draw in three dimensions
         with ui.column().classes("w-full h-full gap-1 flex-nowrap"):
             with ui.row().classes("w-full items-center gap-1 flex-nowrap"):
                 self.told = ui.label("Drawing the model …").classes("text-sm grow").props("role=status")
                 icon_button("zoom_in", "Enlarge the drawing", lambda: self.view.scale(0.8))
                 icon_button("zoom_out", "Reduce the drawing", lambda: self.view.scale(1.25))
                 icon_button("fit_screen", "Show all of the drawing", self._fit)
-            self.drawing = ModelDrawing(self._choose).classes("w-full grow min-h-0")
-            self.space = ModelSpace(self._choose, self._stay_flat).classes("w-full grow min-h-0")
+            self.view = Viewer(self._choose).classes("w-full grow min-h-0")
             self.others = ui.row().classes("w-full items-center gap-1").props('role=group aria-label="Not drawn"')
-        self.space.set_visibility(False)
         draft.follow("study", Latest(self._draw))
         draft.follow("values", Latest(self._draw, STILL))  # by sliders, which another panel shows: theirs comes first
         draft.follow("selection", self._mark)
         draft.follow("mistakes", self._mark)
-
-    @property
-    def view(self) -> ModelView:
-        """The element that shows the model."""
-        return self.drawing if self.picture.scene is None or self.flat else self.space
 
     @property
     def places(self) -> dict[str, Place]:
@@ -86,11 +78,8 @@ class _Panel:
             self.draft.find(picture.mistake)
         if picture.svg or not picture.mistake:
             self.picture = picture
-            self.drawing.draw(picture.svg)
-            if picture.scene is not None:
-                self.space.draw(picture.scene)
+            self.view.draw(picture)
             self._list()
-            self._place()
         self._mark()
 
     def _list(self) -> None:
@@ -106,14 +95,6 @@ class _Panel:
     def _link(self, part: str) -> ui.button:
         link = ui.button(part, on_click=lambda: self._choose(part), color=None)
         return link.props('flat dense no-caps padding="0 6px"').classes("model-part underline text-sm")
-
-    def _place(self) -> None:
-        for one in (self.drawing, self.space):
-            one.set_visibility(one is self.view)
-
-    def _stay_flat(self) -> None:
-        self.flat = True
-        self._place()
 
     def _mark(self) -> None:
         wrong = [part for mistake in self.draft.mistakes for part in self._parts_of(mistake)]

@@ -8,6 +8,7 @@ from fastapi.responses import HTMLResponse, PlainTextResponse, Response
 from nicegui import ui
 
 from dalembert.errors import InputError
+from dalembert.studio.code_text import code_text
 from dalembert.studio.frame import frame
 from dalembert.studio.workspace import Workspace
 from dalembert.study.folder import RunFolder
@@ -22,7 +23,7 @@ def compare_page(workspace: Workspace, names: list[str]) -> None:
         try:
             folders = _folders(workspace, names)
         except InputError as error:
-            ui.label(str(error)).props("role=alert")
+            code_text(str(error)).props("role=alert")
             return
         asked = urlencode({"run": [folder.path.name for folder in folders]}, doseq=True)
         with ui.row().classes("gap-4 items-center"):

@@ -6,6 +6,7 @@ import tomlkit
 from nicegui import ui
 
 from dalembert.errors import InputError
+from dalembert.studio.code_text import code_text
 from dalembert.studio.frame import button, complaints, frame
 from dalembert.studio.runs.advice import Change, changes_of, start_from_best
 from dalembert.studio.runs.differences import differences, show_differences
@@ -34,7 +35,7 @@ def continue_page(workspace: Workspace, name: str, code: str = "", number: int =
             old = study_text(folder).as_string()
             change = _change(folder, code, number)
         except InputError as error:
-            ui.label(str(error)).props("role=alert")
+            code_text(str(error)).props("role=alert")
             return
         _Page(workspace, folder, old, change).build()
 
@@ -60,7 +61,7 @@ class _Page:
 
     def build(self) -> None:
         if self.change is not None:
-            ui.label(f"{self.change.label}.").classes("text-lg")
+            code_text(f"{self.change.label}.").classes("text-lg")
         with ui.row().classes("items-center gap-4 w-full"):
             self.box = ui.input("Name of the new study", value=self.name).props("outlined").classes("w-72")
             self.start = ui.checkbox("Start from the identified values", value=self._can_start)

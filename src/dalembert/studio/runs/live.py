@@ -95,7 +95,7 @@ class Live:
         best = event.get("best")
         if best is None:
             return
-        if event.get("samples") != self._samples:  # a fitness over more samples is another one
+        if event.get("samples") != self._samples:  # a misfit over more samples is another one
             self._samples, self.best = event.get("samples"), float("inf")
             self.convergence, self._every = [], 1
         if best < self.best:

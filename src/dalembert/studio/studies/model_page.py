@@ -6,6 +6,7 @@ from urllib.parse import quote
 from nicegui import ui
 
 from dalembert.errors import InputError
+from dalembert.studio.code_text import code_text
 from dalembert.studio.editor.draft import Draft
 from dalembert.studio.editor.model_reading import model_reading
 from dalembert.studio.editor.text_editor import TextEditor
@@ -14,6 +15,7 @@ from dalembert.studio.studies.checking import Checking
 from dalembert.studio.studies.text_head import text_head
 from dalembert.studio.worker import Worker
 from dalembert.studio.workspace import Workspace
+from dalembert.study.basics import MODEL_FILE
 
 
 def model_page(workspace: Workspace, name: str) -> None:
@@ -24,7 +26,7 @@ def model_page(workspace: Workspace, name: str) -> None:
         draft = Draft(path)
     except InputError as error:
         with frame("No such model"):
-            ui.label(str(error)).props("role=alert")
+            code_text(str(error)).props("role=alert")
         return
     worker = Worker()
     worker.start()
@@ -32,7 +34,7 @@ def model_page(workspace: Workspace, name: str) -> None:
     with frame(f"{path.name} of {title}", wide=True):
         head = ui.column().classes("w-full gap-1")
         with ui.element("div").classes("w-full grow").style("height: 45vh"):
-            editor = TextEditor(draft, "The model as text")
+            editor = TextEditor(draft, "The model as text", MODEL_FILE)
         with head:
             text_head(draft, editor, partial(_way_back, name, title), complaints()(partial(_copy, draft, study.name)))
             Checking(draft, worker, model_reading, study)

@@ -6,6 +6,7 @@ from urllib.parse import quote
 from nicegui import ui
 
 from dalembert.errors import InputError
+from dalembert.studio.code_text import code_text
 from dalembert.studio.editor.cursor import tolerant
 from dalembert.studio.editor.draft import Draft
 from dalembert.studio.editor.model_kind import model_file
@@ -38,7 +39,7 @@ def study_page(workspace: Workspace, jobs: Jobs, name: str) -> None:
         draft = Draft(path)
     except InputError as error:
         with frame("No such study" if path is None else name.removesuffix("/study")):
-            ui.label(str(error)).props("role=alert")
+            code_text(str(error)).props("role=alert")
         return
     room = Room(workspace, jobs, Worker())
     room.worker.start()

@@ -95,6 +95,16 @@ def test_channels_and_joints():
     assert at(spatial) == ("", ["pin"])
 
 
+def test_a_model_file_has_tables_of_models_only():
+    tables = ("model", "constants")
+    headers = [one.label for one in completions("[", 1, tables=tables)[1]]
+    assert "[constants]" in headers
+    assert "[parameters]" not in headers
+    assert "[simulate]" not in headers
+    text = "[[model.body]]\nki"
+    assert [one.label for one in completions(text, len(text), tables=tables)[1]][:1] == ["kind"]
+
+
 def test_nothing_in_comments():
     assert at("[model] # gra|") == ("", [])
     assert at('[model]\nx = 1 # "a|') == ("", [])

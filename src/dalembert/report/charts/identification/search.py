@@ -43,7 +43,7 @@ def convergence(fit: Fit | BandFit, *, title: str = "Convergence") -> go.Figure:
         name = f"start {start + 1}, the best" if won else f"start {start + 1}"
         own = {"marker_size": size, "opacity": opacity, "showlegend": won}
         draw(figure, iterations, fitness[kept], name, colour, width, **style, **own)
-    y = {"title": "best fitness so far", **logarithmic(figure)}
+    y = {"title": "smallest misfit so far", **logarithmic(figure)}
     return themed(figure, title, 360, x="iteration", y=y, showlegend=True)
 
 
@@ -86,7 +86,7 @@ def starts(fit: Fit | BandFit, *, title: str = "Starts and their ends") -> go.Fi
         style = {"mode": "markers", "marker": marker, "text": text, "showlegend": bool(here)}
         figure.add_scatter(x=rank[here], y=ends[here], name=name, **style)
     x = {"title": "starts, best first", "dtick": max(1, len(order) // 10)}
-    return themed(figure, title, 360, x=x, y={"title": "fitness", **logarithmic(figure)})
+    return themed(figure, title, 360, x=x, y={"title": "misfit", **logarithmic(figure)})
 
 
 def ranked(fit: Fit | BandFit) -> list[int]:

@@ -34,8 +34,8 @@ def _headline(fit: BandFit) -> Headline:
     checked = fit.checked_fitness
     facts = {
         **few(fit.parameters, map(interval, fit.box.lower, fit.box.upper)),
-        "fitness": shown(fit.fitness, digits=3),
-        **({} if checked is None else {"fitness by true runs": shown(checked, digits=3)}),
+        "misfit": shown(fit.fitness, digits=3),
+        **({} if checked is None else {"misfit by true runs": shown(checked, digits=3)}),
         "simulations": counted(fit.simulations),
     }
     return identified(fit, "Identified intervals", facts)

@@ -47,7 +47,7 @@ def _headline(result: Fit) -> Headline:
     converged = sum(start.success for start in result.starts)
     facts = {
         **few(result.parameters, map(with_deviation, result.values, result.deviations)),
-        "fitness": shown(result.fitness, digits=3),
+        "misfit": shown(result.fitness, digits=3),
         "simulations": counted(result.simulations),
     }
     if len(result.starts) > 1:

@@ -22,7 +22,7 @@ def search(fit: Fit | BandFit) -> list[Section]:
     lines = "One line a start; the winning one in colour."
     plots = [Plot("convergence", charts.convergence(fit), f"{lines} {GREW}" if grew(fit) else lines)]
     if len(fit.starts) > 1:
-        ends = "Starts in order of their final fitness; a flat step is a minimum that many starts lead to."
+        ends = "Starts in order of their final misfit; a flat step is a minimum that many starts lead to."
         plots.append(Plot("starts", charts.starts(fit), ends))
     if accounts(fit):
         corner = "The weight is chosen at the corner, and raised until the step goes as the linear model foresees."
@@ -38,7 +38,7 @@ def _starts(fit: Fit | BandFit) -> Table:
     ended = unless((start.success for start in starts), "not converged")
     columns = {
         "start": [number + 1 for number in numbers],
-        "fitness": cells((start.fitness for start in starts), 4),
+        "misfit": cells((start.fitness for start in starts), 4),
         "simulations": [int(start.simulations) for start in starts],
         "ended": [end if end.text else "converged" for end in ended],
         "message": [start.message for start in starts],

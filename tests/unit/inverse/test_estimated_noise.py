@@ -313,3 +313,11 @@ def test_the_noise_of_a_fit_is_a_noise_model():
     np.testing.assert_allclose(again.noise.values, open_order.noise.values, rtol=1e-4)
     likely = da.inverse.likelihood(decay(), data, noise=open_order.noise)
     assert likely.noise_parameters.names == open_order.noise.parameters.names
+
+
+def test_fewer_values_than_parameters_are_refused():
+    line = da.PythonModel(lambda a, b: a + b * np.ones(1), {"a": (-9.0, 9.0), "b": (-9.0, 9.0)}, ["x"], np.ones(1))
+    with pytest.raises(
+        da.InputError, match="1 value cannot determine 2 parameters and the noise; measure more samples"
+    ):
+        da.identify(line, da.Measurements.of(np.ones(1), {"x": [1.0]}), noise="constant")

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dalembert.errors import InputError
+from dalembert.errors import InputError, counted
 from dalembert.inverse.correlation.series import Series
 from dalembert.inverse.least_squares.estimate import Estimate, estimate
 from dalembert.inverse.likelihood.estimated_noise import EstimatedNoise
@@ -78,10 +78,11 @@ def estimate_noise(problem: Problem, noise: Noise, at: Linearisation, *, known: 
     Raises
     ------
     InputError
-        For noise models that the data do not allow.
+        For noise models that the data do not allow, and fewer values than parameters.
     SolveError
         If the response cannot be linearised.
     """
+    _check_count(problem)
     given, _ = picked_models(problem, noise, known=known)
     picked = ordered(problem, given, at, known=known)
     likelihood, found = _largest(problem, picked, at, known=known)
@@ -100,6 +101,22 @@ def estimate_noise(problem: Problem, noise: Noise, at: Linearisation, *, known: 
         _weights(likelihood, found),
         _table_of(likelihood, found),
     )
+
+
+def _check_count(problem: Problem) -> None:
+    """Refuse fewer values than parameters, from which no noise can be estimated.
+
+    Raises
+    ------
+    InputError
+    """
+    count = len(problem.model.parameters)
+    if problem.compared < count:
+        values, parameters = counted(problem.compared, "value"), counted(count, "parameter")
+        raise InputError(
+            f"identify: {values} cannot determine {parameters} and the noise; "
+            "measure more samples, fix parameters, or leave noise out"
+        )
 
 
 def _largest(

@@ -269,7 +269,8 @@ class Sliders:
                 self._at_start = found.misfit
             start = "" if self._at_start is None else f" (at the start values {self._at_start:.4g})"
             facts.append(f"Misfit {found.misfit:.4g}{start}")
-        facts += [f"rms residual of {name} {size:.3g}" for name, size in list(found.residuals.items())[:4]]
+        sizes = list(found.residuals.items())[:4]
+        facts += [f"rms residual of {name} {size:.3g} {found.units.get(name, '')}".rstrip() for name, size in sizes]
         return " · ".join([*facts, f"simulated in {_duration(found.seconds)}"])
 
 

@@ -49,14 +49,14 @@ _EDITABLE: dict[str, Any] = {"editable": True, "cellEditorParams": {"maxLength":
 _COLUMNS: tuple[dict[str, Any], ...] = (
     {
         "field": "run",
-        "width": 150,
+        "width": 210,
         "tooltipField": "run",
         ":cellRenderer": _LINK,
         "editable": True,
         "headerTooltip": "Press F2 to rename",
     },
     {"field": "study", "width": 105, "tooltipField": "study"},
-    {"field": "task", "width": 110, "tooltipField": "task"},
+    {"field": "task", "width": 100, "tooltipField": "task"},
     {"field": "state", "width": 126, ":cellRenderer": _STATE},
     {
         "field": "findings",
@@ -64,9 +64,9 @@ _COLUMNS: tuple[dict[str, Any], ...] = (
         ":comparator": "(a, b, first, second) => first.data.severity - second.data.severity",
         ":tooltipValueGetter": "params => params.data.doubts.join('\\n')",
     },
-    {"field": "values", "flex": 1, "minWidth": 200, "tooltipField": "values"},
-    {"field": "misfit", "width": 100, ":valueFormatter": _NUMBER, **_NUMERIC},
-    {"field": "duration", "width": 110, ":valueFormatter": _TIME, **_NUMERIC},
+    {"field": "values", "flex": 1, "minWidth": 190, "tooltipField": "values"},
+    {"field": "misfit", "width": 95, ":valueFormatter": _NUMBER, **_NUMERIC},
+    {"field": "duration", "width": 105, ":valueFormatter": _TIME, **_NUMERIC},
     {
         "field": "date",
         ":headerValueGetter": _DATE_HEADER,
@@ -75,7 +75,7 @@ _COLUMNS: tuple[dict[str, Any], ...] = (
         "sortingOrder": ["desc", "asc"],
         ":valueFormatter": _DATE,
     },
-    {"field": "tags", "width": 95, "headerTooltip": "Press F2 to edit, commas between tags", **_EDITABLE},
+    {"field": "tags", "width": 85, "headerTooltip": "Press F2 to edit, commas between tags", **_EDITABLE},
     {"field": "note", "width": 130, "tooltipField": "note", "headerTooltip": "Press F2 to edit", **_EDITABLE},
 )
 _KEYS = """params => !params.editing && (

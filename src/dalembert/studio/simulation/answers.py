@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dalembert.errors import SolveError
+from dalembert.report.look import plain
 from dalembert.report.player import Film, film_of, frames
 from dalembert.studio.editor.reading import study_of
 from dalembert.studio.simulation.curves import Curves, curves, on_page
@@ -66,6 +67,8 @@ class Simulated:
         Weighted sum of squares of the residuals; None without data.
     residuals : dict of str to float
         Root mean square of each channel's.
+    units : dict of str to str
+        Of the channels that have one.
     seconds, computed : float
         Time of the simulation, and with film and curves.
     hint : str
@@ -76,6 +79,7 @@ class Simulated:
     curves: tuple[Curves, ...] = ()
     misfit: float | None = None
     residuals: dict[str, float] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
     seconds: float = 0.0
     computed: float = 0.0
     hint: str = ""
@@ -122,7 +126,8 @@ def simulated(
     found = () if response is None else curves(own, response, figures=figures)
     misfit, residuals = (None, {}) if own.data is None or response is None else _misfit(own, response)
     played = None if moving is None else _film(own, *moving)
-    return Simulated(played, found, misfit, residuals, seconds, perf_counter() - began)
+    units = {} if own.model is None else {one.name: plain(one.unit) for one in own.model.channels if one.unit}
+    return Simulated(played, found, misfit, residuals, units, seconds, perf_counter() - began)
 
 
 def influences(kept: Kept, source: Source, name: str, values: Mapping[str, float]) -> Influences:

@@ -34,7 +34,7 @@ def studies_page(workspace: Workspace) -> None:
             own = [folder for folder in found if not folder.example]
             examples = [folder for folder in found if folder.example]
             heading("Your studies")
-            none = "No study matches the search." if search.value else "None yet. Start from a template."
+            none = "None of these matches the search." if search.value else "None yet. Start from a template."
             _cards(own, none)
             if any(map(is_found, templates().values())):
                 heading("Templates")

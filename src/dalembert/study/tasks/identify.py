@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from pydantic import AfterValidator, Field
 
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError, counted, unknown
 from dalembert.optimize import Minimiser, Squares, Swarm
 from dalembert.optimize.minimiser import NAMES as MINIMISERS
 from dalembert.study.catalogue import methods
@@ -109,13 +109,13 @@ def _cost(table: Any, parameters: int) -> tuple[str, int | None, int | None]:
         one, most = STEPS_IN_SEGMENTS * (1 + parameters), starts or 3
         words = f"{name} in {_segments(shooting)} that must meet"
         return (
-            f"{words}: about {one} simulations a start, sensitivities counted, and at most {most} starts",
+            f"{words}: about {one} simulations a start, sensitivities counted, and at most {counted(most, 'start')}",
             one,
             most * one,
         )
     if isinstance(method, Squares):
         one, most = 10 * (1 + parameters), starts or 8
-        words = f"{name}: about {one} simulations a start, sensitivities counted, and at most {most} starts"
+        words = f"{name}: about {one} simulations a start, sensitivities counted, and at most {counted(most, 'start')}"
         return words, one, one if most == 1 else most * (one + SCREENED * parameters)
     if isinstance(method, Swarm):
         count = _simulations(method, starts)

@@ -167,7 +167,8 @@ def test_likelihoods_of_blocks_are_normal_densities_given_all_other_values(recor
 def test_draws_predict_groups_of_correlated_values_as_exact_refits_do(record_evidence):
     """Known noise and flat priors: the linearised fit is exact, and the draws have its predictive densities.
 
-    Differences of 4 count. A block of three values out of 30 moves the posterior more than a single value does.
+    Tolerances are four standard deviations of importance sampling: 0.013 and 0.126 over twelve seeds of 4,000
+    independent draws. A block of three values out of 30 moves the posterior more than a single value does.
     """
     data = recorded()
     fits = {
@@ -178,7 +179,7 @@ def test_draws_predict_groups_of_correlated_values_as_exact_refits_do(record_evi
         name: sample(model(COLUMNS[:, : len(fit.values)]), data, noise=KNOWN_AR1, start=fit, warmup=300, seed=4)
         for name, fit in fits.items()
     }
-    for left_out, blocks, tolerance in (("values", None, 0.05), ("blocks", 10, 0.2)):
+    for left_out, blocks, tolerance in (("values", None, 0.05), ("blocks", 10, 0.5)):
         found = compare_models(posteriors, leave_out=left_out)
         exact = compare_models(fits, leave_out=left_out, blocks=blocks)
         assert found.models == exact.models

@@ -11,6 +11,8 @@ SHARED = (
     "sensors",
 )  # fmt: skip
 """Tables that are no tasks."""
+MODEL_FILE = ("model", "constants")
+"""Tables of a file that ``[model] file = "..."`` names."""
 
 
 @cache
@@ -21,7 +23,3 @@ def task_names() -> tuple[str, ...]:
     (True, False)
     """
     return tuple(name for name in schema_file.schema()["properties"] if name not in SHARED)
-
-
-MODEL_FILE = ("model", "constants")
-"""Tables of a file that ``[model] file = "..."`` names."""

@@ -8,7 +8,8 @@ from dalembert.inverse.experiments.blocks import USUAL, blocks_of_records
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.likelihood.estimated_noise import EstimatedNoise
 
-WAYS = ("values", "blocks", "experiments")
+WAYS = {"values": "single values", "blocks": "blocks of neighbouring samples", "experiments": "experiments"}
+"""What is left out together, in words."""
 
 CORRELATION_TIMES = 4.0
 """Length of a block in correlation times of the residuals, so that blocks are nearly independent."""

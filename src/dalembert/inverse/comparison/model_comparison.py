@@ -7,11 +7,9 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 
 from dalembert.findings import Finding
+from dalembert.inverse.comparison.left_out import WAYS
 from dalembert.results import Result, fact_lines, text_table
 from dalembert.stored_fields import Labels, Over
-
-LEFT_OUT = {"values": "single values", "blocks": "blocks of neighbouring samples", "experiments": "experiments"}
-"""What is left out together, in words."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,5 +90,5 @@ class ModelComparison(Result):
         }
         filled = {name: cells for name, cells in columns.items() if any(cells)}  # draws alone have no criteria
         rows = [tuple(filled), *zip(*filled.values(), strict=True)]
-        facts = fact_lines(elpd=f"{self.how}; left out: {LEFT_OUT[self.left_out]}", values=self.values)
+        facts = fact_lines(elpd=f"{self.how}; left out: {WAYS[self.left_out]}", values=self.values)
         return "\n".join([*text_table(rows), "", *facts, *map(str, self.findings)])

@@ -19,7 +19,7 @@ def blocks_of_records(fitted: np.ndarray, parts: Sequence[Part], count: Callable
     parts : sequence of Part
         Where several experiments stand; empty for a single one.
     count : callable
-        ``count(samples)`` returns the number of blocks of a record that has so many fitted samples.
+        ``count(samples)`` returns the number of blocks of a record with this number of fitted samples.
 
     Examples
     --------

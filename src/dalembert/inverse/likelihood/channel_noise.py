@@ -163,7 +163,7 @@ class ChannelNoise:
 
 
 def _densities_of_groups(precision: "coo_array", pulled: np.ndarray, groups: np.ndarray) -> np.ndarray:
-    """Return what each standardised value adds to :meth:`ChannelNoise.left_out`; NaN where there is no density."""
+    """Return the terms of log densities of groups, one for each standardised value; NaN where there is no density."""
     from scipy.linalg import cholesky_banded, solve_banded
 
     inside = (groups[precision.row] == groups[precision.col]) & (precision.row >= precision.col)

@@ -68,7 +68,7 @@ class Simulated:
     residuals : dict of str to float
         Root mean square of each channel's.
     units : dict of str to str
-        Of the channels that have one.
+        Of these channels.
     seconds, computed : float
         Time of the simulation, and with film and curves.
     hint : str
@@ -126,7 +126,8 @@ def simulated(
     found = () if response is None else curves(own, response, figures=figures)
     misfit, residuals = (None, {}) if own.data is None or response is None else _misfit(own, response)
     played = None if moving is None else _film(own, *moving)
-    units = {} if own.model is None else {one.name: plain(one.unit) for one in own.model.channels if one.unit}
+    channels = () if own.model is None else own.model.channels
+    units = {one.name: plain(one.unit) for one in channels if one.name in residuals}
     return Simulated(played, found, misfit, residuals, units, seconds, perf_counter() - began)
 
 

@@ -94,13 +94,17 @@ class Equations:
             balance, near = self.balance(2 * found.samples), (found.unknowns, found.omega)
             return correct(balance, self.condensation.at, self.method, *near, plane, found.point)
 
-        solution = correct(self.balance(samples), self.condensation.at, self.method, unknowns, omega, plane, point)
+        def solved(number: int) -> Solution:
+            return correct(self.balance(number), self.condensation.at, self.method, unknowns, omega, plane, point)
+
+        solution = solved(samples)
         while solution.error <= self.method.sampling and not solution.converged and self._doubles(solution):
             before, solution = solution.error, finer(solution)
             if not solution.converged and solution.error > before / 2:  # what is left is not of the samples
                 break
         if solution.error <= self.method.sampling and not solution.converged and self.method.samples == AUTOMATIC:
-            solution = self._resampled(solution, unknowns, omega, samples, plane)
+            others = (int(part * samples) for part in RESAMPLED if part * samples <= MOST_SAMPLES)
+            solution = next((found for found in map(solved, others) if found.converged), solution)
         while solution.converged:
             solution = replace(solution, sampling_error=self._sampling_error(solution))
             if solution.sampling_error <= self.method.sampling or not self._doubles(solution):
@@ -108,17 +112,6 @@ class Equations:
             better = finer(solution)
             solution = replace(better, iterations=solution.iterations + better.iterations)
         return solution
-
-    def _resampled(
-        self, stalled: Solution, unknowns: np.ndarray, omega: float, samples: int, plane: Plane | None
-    ) -> Solution:
-        """Solve with other numbers of samples, whose kinks are elsewhere; return the stalled solution if none helps."""
-        point = stalled.point if plane is None else None
-        for number in (int(part * samples) for part in RESAMPLED if part * samples <= MOST_SAMPLES):
-            found = correct(self.balance(number), self.condensation.at, self.method, unknowns, omega, plane, point)
-            if found.converged:
-                return found
-        return stalled
 
     def first(self, omega: float) -> Solution:
         """Return a first point: from contacts that stick, from the motion without contacts, or by increasing force.

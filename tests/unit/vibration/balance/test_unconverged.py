@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -85,3 +86,25 @@ def test_a_motion_in_time_needs_a_force(way: str) -> None:
     made = system(CubicSpring("cubic", "m", stiffness=1.0), damping=0.1, force=0.0)
     with pytest.raises(InputError, match="steady_state: no force acts on the system"):
         steady_state(made, 1.0, way=way)
+
+
+def test_other_numbers_of_samples_are_tried_where_newtons_method_alternates() -> None:
+    """With powers of two a small mean force always points away from the balance; with other numbers there is none."""
+    method, at, seen = HarmonicBalance(3, samples=64, halvings=0), np.array([0.8]), np.zeros(0)
+
+    def plain(u: np.ndarray) -> np.ndarray:
+        nonlocal seen
+        seen = np.real(u) if u.shape[-1] == 64 else seen
+        return 50 * u**3
+
+    def kinked(u: np.ndarray) -> np.ndarray:
+        is_power = u.shape[-1] & (u.shape[-1] - 1) == 0
+        return plain(u) + is_power * 1e-5 * np.sign(np.max(np.real(u)) - peak)
+
+    exact = frequency_response(system(law(plain), damping=0.5), at, method)
+    peak = np.max(seen)
+    made = system(law(kinked), damping=0.5)
+    assert not frequency_response(made, at, method, check=False).converged[0]
+    found = frequency_response(made, at, replace(method, samples="automatic"))
+    assert found.samples == [80]
+    np.testing.assert_allclose(found.response, exact.response, atol=1e-6)

@@ -6,7 +6,7 @@ import numpy as np
 
 from dalembert.inverse import ModelComparison
 from dalembert.inverse.comparison.conclusions import alike
-from dalembert.inverse.comparison.model_comparison import LEFT_OUT
+from dalembert.inverse.comparison.left_out import WAYS
 from dalembert.report import charts
 from dalembert.report.asked import Asked
 from dalembert.report.digits import counted
@@ -35,7 +35,7 @@ def compared_models(found: ModelComparison, *, findings: bool = False) -> Sectio
         Plot("model-differences", charts.model_differences(found), HOW),
         Plot("difference-by-group", charts.difference_by_group(found), WHERE),
     ]
-    how = f"Log predictive densities (elpd): {found.how}. Left out together: {LEFT_OUT[found.left_out]}."
+    how = f"Log predictive densities (elpd): {found.how}. Left out together: {WAYS[found.left_out]}."
     return Section("Model comparison", (Listed(sentences), how, _table(found), Row(plots, beside=False)))
 
 

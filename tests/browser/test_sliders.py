@@ -124,6 +124,24 @@ def test_the_mechanism_plays_after_a_change(sliders):
     assert page.evaluate(BODY) != shown
 
 
+def test_numbers_are_typed_with_a_decimal_comma_or_a_unit(sliders):
+    page = sliders("written/written")
+    value(page, "drag").fill("0,25")
+    value(page, "drag").press("Tab")
+    wait_until(page, "document.querySelector('[aria-label=\"Value of drag\"]').value === '0.25'")
+    value(page, "angle").fill("\N{MINUS SIGN}0,5 rad")
+    value(page, "angle").press("Tab")
+    wait_until(page, "document.querySelector('[aria-label=\"Value of angle\"]').value === '-28.6479'")
+    number = page.evaluate(NUMBER)
+    value(page, "angle").fill("3 kg")
+    wait_until(page, f"{TEXT}.includes('is not a number in this unit. Enter a number such as 2.5, or 2.5 deg')")
+    value(page, "angle").fill("1000")
+    wait_until(page, f"{TEXT}.includes('Enter -')")
+    page.get_by_role("button", name="Reset", exact=True).click()
+    wait_until(page, f"{NUMBER} > {number}")
+    assert value(page, "drag").input_value() == "0.1"
+
+
 def test_values_are_typed_reset_and_written_into_the_study(sliders, root):
     page = sliders("written/written")
     path = root / "studies" / "written" / "written.toml"

@@ -2,13 +2,14 @@
 
 from collections.abc import Callable, Mapping
 from html import escape
-from typing import Any
 
 from nicegui import events, ui
 
+from dalembert.errors import InputError
 from dalembert.parameters import Parameter
 from dalembert.report.charts.drawing import colour_of
 from dalembert.studio.editor.entries import DIGITS
+from dalembert.studio.editor.typed_number import typed_number
 from dalembert.studio.travel import STEPS, Travel
 
 THROTTLE = 0.02  # s between two values of a slider that is dragged
@@ -83,12 +84,12 @@ class ParameterRow:
         """Show a value that was set elsewhere."""
         if value != self._value:
             self._value = value
-            self._number.set_value(self._shown(value))
+            self._number.set_value(self._text)
             self.settle()
 
     def settle(self) -> None:
         """Bring the slider to its value."""
-        text = f"{self._shown(self._value):.6g} {self.unit[0]}".rstrip()
+        text = f"{self._text} {self.unit[0]}".rstrip()
         self._way.place(self._travel.position(self._value), text)
 
     def show_effects(self, channels: tuple[str, ...], effects: list[float], largest: float) -> None:
@@ -103,39 +104,55 @@ class ParameterRow:
             self._way = Way().props(f'max={STEPS} aria-label="{escape(item.name)}"')
             self._way.on("moved", self._moved, throttle=THROTTLE)
             with ui.element("div").classes("bounds").props("aria-hidden=true"):
-                ui.label(f"{self._shown(item.lower):.6g}")
-                ui.label(f"{self._shown(item.upper):.6g}")
+                ui.label(self._shown(item.lower))
+                ui.label(self._shown(item.upper))
 
     def _build_number(self) -> None:
-        item = self.item
-        bounds = f"{self._shown(item.lower):.6g} to {self._shown(item.upper):.6g}"
-        checks = {f"Enter {bounds}": self._is_within}
-        self._number = ui.number(
-            value=self._shown(self._value), format="%.6g", validation=checks, on_change=self._typed
-        )
+        self._number = ui.input(value=self._text, validation=self._complaint, on_change=self._typed)
         self._number.props(f'dense outlined debounce=300 hide-bottom-space suffix="{escape(self.unit[0])}"')
-        self._number.props(f'step=any aria-label="Value of {escape(item.name)}"')
+        self._number.props(f'inputmode=decimal aria-label="Value of {escape(self.item.name)}"')
+        self._number.on("blur", self._tidy)
 
     def _moved(self, event: events.GenericEventArguments) -> None:
         value = self._travel.value(float(event.args))
         if value != self._value:
             self._value = value
-            self._number.set_value(self._shown(value))
+            self._number.set_value(self._text)
             self._chosen(value)
 
     def _typed(self) -> None:
-        shown = self._number.value
-        if shown is not None and self._is_within(shown) and shown != self._shown(self._value):
-            self._value = min(max(shown * self.unit[1], self.item.lower), self.item.upper)
+        if self._number.value == self._text or self._complaint(self._number.value):
+            return
+        value = min(max(self._read(self._number.value), self.item.lower), self.item.upper)
+        if value != self._value:
+            self._value = value
             self.settle()
-            self._chosen(self._value)
+            self._chosen(value)
 
-    def _is_within(self, shown: Any) -> bool:
-        return shown is not None and self._shown(self.item.lower) <= shown <= self._shown(self.item.upper)
+    def _tidy(self) -> None:
+        """Show the value in the unit of the row, whichever way it was typed."""
+        if not self._complaint(self._number.value):
+            self._number.set_value(self._text)
 
-    def _shown(self, value: float) -> float:
+    def _complaint(self, text: str) -> str | None:
+        """What is wrong with a text that was typed; None if nothing is."""
+        lower, upper = self._shown(self.item.lower), self._shown(self.item.upper)
+        try:
+            value = self._read(text)
+        except InputError as error:
+            return str(error)
+        return None if float(lower) <= float(self._shown(value)) <= float(upper) else f"Enter {lower} to {upper}"
+
+    def _read(self, text: str) -> float:
+        return typed_number(text, *self.unit)
+
+    @property
+    def _text(self) -> str:
+        return self._shown(self._value)
+
+    def _shown(self, value: float) -> str:
         """A value (SI) in the unit of the row, with the digits that a user can read."""
-        return float(f"{value / self.unit[1]:.{DIGITS}g}")
+        return f"{value / self.unit[1]:.{DIGITS}g}"
 
 
 def _bar(channel: str, effect: float, share: float, colour: str) -> str:

@@ -85,6 +85,35 @@ def test_unknown_autoregressive_noise_has_the_largest_restricted_likelihood(reco
                     tolerance=1e-6, **common)  # fmt: skip
 
 
+def test_deviations_of_noise_parameters_are_those_of_the_restricted_likelihood(record_evidence):
+    """A short record, in which estimates of the model follow the noise; second differences of the dense likelihood."""
+    count = 25
+    times, columns = TIMES[:count], COLUMNS[:count]
+    values = columns @ [1.0, 0.5] + 0.1 * autoregressive(4, count, 0.6)
+    line = da.PythonModel(
+        lambda level, slope: level + slope * times, {"level": (-5.0, 5.0), "slope": (-5.0, 5.0)}, ["x"], times
+    )
+
+    def density(noise):
+        sigma, coefficient = noise
+        inverse = np.linalg.inv(sigma**2 * covariance(coefficient)[:count, :count])
+        information = columns.T @ inverse @ columns
+        residual = values - columns @ np.linalg.solve(information, columns.T @ inverse @ values)
+        sizes = np.linalg.slogdet(inverse)[1] - np.linalg.slogdet(information)[1]
+        return 0.5 * (sizes - residual @ inverse @ residual)
+
+    fit = da.identify(line, da.Measurements.of(times, {"x": values}), noise=da.AutoregressiveNoise(order=1), starts=1)
+    steps = np.diag(1e-4 * fit.noise.values)
+    at = lambda *moves: density(fit.noise.values + sum(moves))  # noqa: E731
+    curvature = [
+        [(at(a, b) - at(a, -b) - at(-a, b) + at(-a, -b)) / (4 * a.sum() * b.sum()) for b in steps] for a in steps
+    ]
+    expected = np.sqrt(np.diag(np.linalg.inv(-np.array(curvature))))
+    record_evidence("AR(1), 25 samples: standard deviations of σ and φ", expected, fit.noise.deviations, tolerance=1e-3,
+                    relative=True, topic=TOPIC, kind="closed form",
+                    source="restricted likelihood (Patterson and Thompson 1971)")  # fmt: skip
+
+
 def test_the_gradient_of_mixed_noise_is_the_complex_step(record_evidence):
     decay = da.PythonModel(
         lambda height, rate: height * np.exp(-rate * TIMES), {"height": (0.1, 5.0), "rate": (0.1, 5.0)}, ["x"], TIMES

@@ -193,7 +193,9 @@ def _noise(likelihood: Likelihood, found: Maximum, picked: Mapping[Series, Noise
 def _noise_covariance(likelihood: Likelihood, found: Maximum) -> np.ndarray:
     """Return the covariance of the noise parameters, from the curvature of the restricted likelihood.
 
-    Where that is not positive, for example at a bound, the expected information takes its place.
+    Its curvature is −∂²ℓ/∂ν² − Cᵀ I⁻¹ C for the noise parameters ν, with C = −∂²ℓ/∂θ∂ν and the information I on the
+    model's parameters θ, which follow the noise. Where that is not positive, for example at a bound, the expected
+    information takes its place.
     """
     model = likelihood.problem.model.parameters
     count = len(model)
@@ -201,24 +203,29 @@ def _noise_covariance(likelihood: Likelihood, found: Maximum) -> np.ndarray:
     prior = prior_slopes(model, found.vector[:count], np.ones(count))
     rows = np.concatenate([rows, np.pad(prior, ((0, 0), (0, rows.shape[1] - count)))])
     expected = rows.T @ rows
-    common = np.linalg.lstsq(expected[:count, :count], expected[:count, count:], rcond=1e-12)[0]
-    shared = expected[count:, :count] @ common
-    for information in (_curvature(likelihood, found) - shared, expected[count:, count:] - shared):
+    observed = _curvature(likelihood, found)
+    for cross, own in ((observed[:count], observed[count:]), (expected[:count, count:], expected[count:, count:])):
+        if not np.all(np.isfinite(cross)):
+            continue
+        information = own - cross.T @ np.linalg.lstsq(expected[:count, :count], cross, rcond=1e-12)[0]
         if not np.all(np.diag(information) > 0):
             continue
         size = np.sqrt(np.diag(information))
         scaled = information / (size[:, None] * size)
         if np.all(np.linalg.eigvalsh(scaled) > 1e-12):
             return np.linalg.inv(scaled) / (size[:, None] * size)
-    return np.full(shared.shape, np.nan)
+    return np.full(own.shape, np.nan)
 
 
 def _curvature(likelihood: Likelihood, found: Maximum) -> np.ndarray:
-    """Return the negative second derivatives of the restricted likelihood by the noise parameters."""
+    """Return negative second derivatives of the restricted likelihood by all and by the noise parameters.
+
+    Shape (parameters, noise parameters).
+    """
     problem, count = likelihood.problem, len(found.expansion.at.vector)
     objective = Objective(likelihood.parameters, problem.model.parameters, found.restriction)
     ones = np.ones(len(found.vector))
-    rows = []
+    columns = np.zeros((len(found.vector), len(found.vector) - count))
     for place in range(count, len(found.vector)):
         step = np.zeros(len(found.vector))
         item = likelihood.parameters.items[place]
@@ -229,13 +236,13 @@ def _curvature(likelihood: Likelihood, found: Maximum) -> np.ndarray:
                     problem, likelihood.channels, likelihood.parameters, found.expansion.at, found.vector + way * step
                 ),
                 ones,
-            )[0][count:]
+            )[0]
             for way in (1, -1)
         ]
         with np.errstate(invalid="ignore", divide="ignore"):  # at a bound the step is zero
-            rows.append((ends[1] - ends[0]) / (2 * step[place]))
-    table = np.array(rows).reshape(len(rows), len(rows))
-    return (table + table.T) / 2
+            columns[:, place - count] = (ends[1] - ends[0]) / (2 * step[place])
+    columns[count:] = (columns[count:] + columns[count:].T) / 2
+    return columns
 
 
 def _weights(likelihood: Likelihood, found: Maximum) -> np.ndarray:

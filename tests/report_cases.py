@@ -44,6 +44,9 @@ LONG = np.linspace(0, 4, 201)
 LINE_IN_TIME = PythonModel(
     lambda offset, slope: offset + slope * LONG, {"offset": (-5.0, 5.0), "slope": (-5.0, 5.0)}, ["x"], LONG
 )
+THRICE = PythonModel(
+    lambda offset, slope: np.stack(3 * [offset + slope * LONG], axis=1), LINE_IN_TIME.parameters, ["x", "y", "z"], LONG
+)
 ALMOST_AT_ONCE = np.concatenate([np.linspace(0, 0.1, 30), [2.0]])
 FAR_SAMPLE = PythonModel(
     lambda offset, slope: offset + slope * ALMOST_AT_ONCE, LINE_IN_TIME.parameters, ["x"], ALMOST_AT_ONCE
@@ -395,6 +398,14 @@ CASES: dict[str, Case] = {
     "a hum": Case(
         lambda: da.identify(LINE_IN_TIME, _noisy(added=0.1 * np.sin(23 * LONG))),
         ("have a periodic part:", "Look for its source, such as mains voltage"),
+    ),
+    "channels that share noise": Case(
+        lambda: da.identify(THRICE, Measurements.of(LONG, dict.fromkeys("xyz", _noisy().values[:, 0]))),
+        (
+            "The residuals of 'x' and 'y' are correlated with each other",
+            "and those of 2 more pairs.",
+            "With this correlation they are 1.7 times as large.",
+        ),
     ),
     "noise that grows": Case(
         lambda: da.identify(LINE_IN_TIME, _noisy(factor=0.2 + LONG)),

@@ -109,7 +109,7 @@ def test_deviations_of_noise_parameters_are_those_of_the_restricted_likelihood(r
         [(at(a, b) - at(a, -b) - at(-a, b) + at(-a, -b)) / (4 * a.sum() * b.sum()) for b in steps] for a in steps
     ]
     expected = np.sqrt(np.diag(np.linalg.inv(-np.array(curvature))))
-    record_evidence("AR(1), 25 samples: standard deviations of σ and φ", expected, fit.noise.deviations, tolerance=1e-3,
+    record_evidence("AR(1), 25 samples: standard deviations of σ and φ", expected, fit.noise.deviations, tolerance=1e-5,
                     relative=True, topic=TOPIC, kind="closed form",
                     source="restricted likelihood (Patterson and Thompson 1971)")  # fmt: skip
 

@@ -7,6 +7,8 @@ import numpy as np
 
 from dalembert.errors import counted, listed
 from dalembert.findings import Finding
+from dalembert.inverse.correlation.correlation import SLIGHT
+from dalembert.inverse.diagnostics.channel_pairs import ChannelPair
 from dalembert.inverse.diagnostics.noise_tests import rank_correlation, runs
 from dalembert.inverse.diagnostics.series_residuals import SeriesResiduals
 
@@ -160,6 +162,40 @@ def _of_normality(one: SeriesResiduals) -> Finding:
     message = f"The residuals of {one.name!r} are not normally distributed (Anderson–Darling test)."
     advice = "Look at the normal quantiles. A robust loss is more exact where large residuals are frequent."
     return Finding("non-normal-residuals", "note", values, message, advice)
+
+
+def pair_findings(pairs: Sequence[ChannelPair], grown: np.ndarray) -> Iterator[Finding]:
+    """Yield that channels are correlated with each other, if there are such pairs.
+
+    ``grown`` are the standard deviations (parameters,) that allow for it, over those of the fit; empty without a
+    Jacobian.
+    """
+    if not pairs:
+        return
+    worst, seen = pairs[0], grown[np.isfinite(grown)]
+    more = f", and those of {counted(len(pairs) - 1, 'more pair')}" if len(pairs) > 1 else ""
+    values = {
+        "first": worst.first.name,
+        "second": worst.second.name,
+        "correlation": worst.correlation,
+        "p_value": worst.p_value,
+        "pairs": len(pairs),
+    }
+    effect = " The standard deviations are those for independent channels."
+    if len(seen):
+        values |= {"smallest_factor": float(np.min(seen)), "largest_factor": float(np.max(seen))}
+        shown = dict.fromkeys(f"{factor:.2g}" for factor in (np.min(seen), np.max(seen)))
+        effect += f" With this correlation they are {' to '.join(shown)} times as large."
+    message = (
+        f"The residuals of {worst.first.name!r} and {worst.second.name!r} are correlated with each other (correlation "
+        f"{worst.correlation:.2f}){more}.{effect}"
+    )
+    matters = not len(seen) or np.max(seen) > SLIGHT
+    advice = (
+        "If a channel is a copy of another, or is calculated from it, leave it out. If they share their noise, "
+        "multiply the standard deviations by this factor."
+    )
+    yield Finding("correlated-channels", "warning" if matters else "note", values, message, advice if matters else "")
 
 
 def _of_influence(names: Sequence[str], series: Sequence[SeriesResiduals]) -> Iterator[Finding]:

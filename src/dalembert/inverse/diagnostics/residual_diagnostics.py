@@ -10,7 +10,8 @@ from dalembert.findings import Finding
 from dalembert.inverse.correlation.correlation import SMALL
 from dalembert.inverse.correlation.series import Series, series_of_record
 from dalembert.inverse.correlation.whiteness import LEAST, p_value
-from dalembert.inverse.diagnostics.findings import LEVEL, Outlier, diagnostic_findings
+from dalembert.inverse.diagnostics.channel_pairs import correlated_pairs, factors
+from dalembert.inverse.diagnostics.findings import LEVEL, Outlier, diagnostic_findings, pair_findings
 from dalembert.inverse.diagnostics.influence import ALONE, Influence, influence
 from dalembert.inverse.diagnostics.noise_tests import normality, rank_correlation, runs
 from dalembert.inverse.diagnostics.series_residuals import SeriesResiduals
@@ -74,7 +75,7 @@ def residual_diagnostics(fit: "Fit") -> ResidualDiagnostics:
     known = _unknown(fit) if slopes is None else influence(slopes, residual, free, variance, freedom)
     basis = np.zeros((len(residual), 0)) if slopes is None else left_vectors(slopes[:, free])[: len(residual)]
     tested = _tested(fit)
-    correlated = () if fit.correlated is None else tuple(item.channel for item in fit.correlated.processes)
+    correlated = {} if fit.correlated is None else {item.channel: item for item in fit.correlated.processes}
     found = []
     for own in series_of_record(fit.data, fit.weights, fit.parts):
         made = _standardised(fit, own, residual, known, robust=robust, correlated=own.name in correlated)
@@ -83,6 +84,15 @@ def residual_diagnostics(fit: "Fit") -> ResidualDiagnostics:
         found.append(replace(made, p_values=tests))
     outliers = _outliers(fit, found, robust=robust) if tested else ()
     findings = tuple(diagnostic_findings(fit.parameters.names, found, outliers, robust=robust)) if tested else ()
+    judged = [one for one in found if one.p_values]
+    pairs = correlated_pairs(judged, residual, basis, fit.weights.shape[1], correlated, LEVEL)
+    grown = np.zeros(0)
+    if pairs and slopes is not None:
+        sizes = np.ones(len(residual))
+        for one in judged:
+            sizes[one.series.rows] = one.deviation
+        grown = factors(pairs, slopes[:, free], sizes, fit.weights.shape[1])
+    findings = (*findings, *pair_findings(pairs, grown))
     return ResidualDiagnostics(fit.parameters.names, tuple(found), outliers, findings, tested)
 
 

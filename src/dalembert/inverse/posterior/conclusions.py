@@ -43,7 +43,7 @@ def inherited(fit: Fit | None, likelihood: Likelihood, *, usual: bool) -> Iterat
     usual : bool
         Whether the noise is that of the data, and no model of it is given.
     """
-    codes = {"equal-minima"} | ({"misfit-above-noise"} if usual else set())
+    codes = {"equal-minima", "correlated-channels"} | ({"misfit-above-noise"} if usual else set())
     if all(channel.whitening is None for channel in likelihood.channels):
         codes |= OF_INDEPENDENT_NOISE
     for finding in fit.doubts if fit is not None else ():

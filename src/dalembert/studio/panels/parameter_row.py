@@ -134,7 +134,7 @@ class ParameterRow:
         if not self._complaint(self._number.value):
             self._number.set_value(self._text)
 
-    def _complaint(self, text: str) -> str | None:
+    def _complaint(self, text: str | None) -> str | None:
         """What is wrong with a text that was typed; None if nothing is."""
         lower, upper = self._shown(self.item.lower), self._shown(self.item.upper)
         try:
@@ -143,7 +143,7 @@ class ParameterRow:
             return str(error)
         return None if float(lower) <= float(self._shown(value)) <= float(upper) else f"Enter {lower} to {upper}"
 
-    def _read(self, text: str) -> float:
+    def _read(self, text: str | None) -> float:
         return typed_number(text, *self.unit)
 
     @property

@@ -210,3 +210,80 @@ def test_nothing_found_is_said():
     assert str(fitted(noise(2)).diagnostics()) == snapshot(
         "The tests find nothing against independent normal residuals."
     )
+
+
+PLANE = PythonModel(
+    lambda a, b: np.stack([a + b * TIMES, a - b * TIMES], axis=1),
+    {"a": (-5.0, 5.0), "b": (-5.0, 5.0)},
+    ["x", "y"],
+    TIMES,
+)
+TWICE = PythonModel(
+    lambda a, b: np.stack(2 * [a + b * TIMES], axis=1), {"a": (-5.0, 5.0), "b": (-5.0, 5.0)}, ["x", "y"], TIMES
+)
+
+
+def fitted_pair(x, y, model=TWICE, **options):
+    exact = model.function(1.0, 2.0)
+    data = Measurements.of(TIMES, {"x": exact[:, 0] + x, "y": exact[:, 1] + y})
+    return identify(model, data, starts=1, horizon=None, **options)
+
+
+def of_code(fit, code):
+    return [item for item in fit.findings if item.code == code]
+
+
+@pytest.mark.parametrize("estimated", [None, "constant"])
+def test_a_channel_that_is_there_twice_is_found(estimated):
+    one = fitted_pair(noise(1), noise(1), noise=estimated)
+    (finding,) = of_code(one, "correlated-channels")
+    assert finding.severity == "warning"
+    assert finding.values["correlation"] == pytest.approx(1.0)
+    assert finding.values["largest_factor"] == pytest.approx(np.sqrt(2))
+    single = fitted(noise(1))
+    assert one.deviations * np.sqrt(2) == pytest.approx(single.deviations, rel=5e-3)  # of 400 and of 199 freedoms
+    assert str(finding) == snapshot(
+        "The residuals of 'x' and 'y' are correlated with each other (correlation 1.00). The standard deviations are those for independent channels. With this correlation they are 1.4 times as large. If a channel is a copy of another, or is calculated from it, leave it out. If they share their noise, multiply the standard deviations by this factor."
+    )
+
+
+def test_channels_that_share_noise_have_the_deviations_of_their_covariance():
+    shared = noise(3)
+    fit = fitted_pair(shared + 0.5 * noise(4), shared + 0.5 * noise(5), PLANE)
+    (finding,) = of_code(fit, "correlated-channels")
+    assert finding.values["correlation"] == pytest.approx(0.8, abs=0.05)
+    size = finding.values["correlation"]  # the sum of the channels determines a, their difference b
+    expected = np.sqrt([1 - size, 1 + size])
+    assert [finding.values["smallest_factor"], finding.values["largest_factor"]] == pytest.approx(expected, rel=0.1)
+
+
+def test_correlation_that_changes_no_deviation_is_a_note():
+    apart = PythonModel(
+        lambda a, b: np.stack([a + TIMES, b - TIMES], axis=1), {"a": (-5.0, 5.0), "b": (-5.0, 5.0)}, ["x", "y"], TIMES
+    )
+    shared = noise(6)
+    (finding,) = of_code(fitted_pair(shared + noise(7), shared + noise(8), apart), "correlated-channels")
+    assert finding.severity == "note"
+    assert not finding.advice
+    assert finding.values["largest_factor"] == pytest.approx(1.0)
+
+
+def test_independent_channels_are_rarely_taken_for_correlated():
+    fit = fitted_pair(noise(9), noise(10), PLANE)
+    slopes = fit.jacobian.reshape(-1, 2)
+    alarms = 0
+    for errors in SIZE * np.random.default_rng(11).standard_normal((400, 201, 2)):
+        values = PLANE.function(1.0, 2.0) + errors
+        found = np.linalg.lstsq(slopes, values.ravel(), rcond=None)[0]
+        response = (slopes @ found).reshape(-1, 2)
+        other = replace(fit, data=replace(fit.data, values=values), values=found, response=response,
+                        fitness=float(np.sum((response - values) ** 2)))  # fmt: skip
+        alarms += "correlated-channels" in codes(other.diagnostics())
+    assert alarms <= 4  # 0.4 of 400 are expected
+
+
+def test_a_lack_of_the_model_is_no_correlation_of_channels():
+    wave = 0.5 * np.sin(3 * TIMES)
+    fit = fitted_pair(wave + noise(12), wave + noise(13))
+    assert of_code(fit, "systematic-residuals")
+    assert not of_code(fit, "correlated-channels")

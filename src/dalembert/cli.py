@@ -63,7 +63,7 @@ def _version(wanted: bool) -> None:
         raise typer.Exit
 
 
-Version = Annotated[bool, typer.Option("--version", help="Say the version and end.", is_eager=True, callback=_version)]
+Version = Annotated[bool, typer.Option("--version", help="Show the version.", is_eager=True, callback=_version)]
 
 
 @app.callback()
@@ -74,13 +74,15 @@ def _options(version: Version = False) -> None:
 @app.command()
 def new(
     template: Annotated[
-        str | None, typer.Argument(metavar="TEMPLATE", help="Without it, all are listed.", show_default=False)
+        str | None,
+        typer.Argument(metavar="TEMPLATE", help="The template; if it is left out, all are listed.", show_default=False),
     ] = None,
     folder: Annotated[
-        Path | None, typer.Argument(metavar="FOLDER", help="Made for the study; by default as the template is called.")
+        Path | None,
+        typer.Argument(metavar="FOLDER", help="New folder for the study; by default it has the name of the template."),
     ] = None,
 ) -> None:
-    """Begin a study from a template."""
+    """Create a study from a template."""
     from dalembert.study.template import begin, templates
 
     if template is None:
@@ -107,7 +109,7 @@ def run(
     seed: Annotated[int | None, typer.Option(min=0, help="Seed of all random numbers, instead of the study's.")] = None,
     cluster: Cluster = None,
 ) -> None:
-    """Do what a study says, in a run folder of its own."""
+    """Run the task of a study in a new run folder."""
     from dalembert.study import RunFolder, load, run_study
     from dalembert.study.progress import Watch
     from dalembert.study.runner import unknowns
@@ -123,7 +125,7 @@ def run(
 
 @app.command()
 def resume(run: Run, cluster: Cluster = None) -> None:
-    """Go on with a run that was killed or stopped: it ends with the same bits as one that was not."""
+    """Continue a run that was killed or stopped. The result has the same bits as without the interruption."""
     from dalembert.study import resume_run
     from dalembert.study.progress import Watch
     from dalembert.study.runner import unknowns
@@ -140,7 +142,7 @@ def check(
     study: StudyFile,
     limit: Annotated[float, typer.Option(min=0, metavar="SECONDS", help="Time for simulations.")] = 30.0,
 ) -> None:
-    """Check a study, list its mechanism's channels, and say about how many simulations it would run and how long."""
+    """Check a study, list the channels of its mechanism, and estimate the number of simulations and the time."""
     from dalembert.errors import ModelError
     from dalembert.study import load, plan
     from dalembert.study.channels import channel_lines
@@ -184,7 +186,7 @@ def list_runs(
 
 @app.command()
 def report(run: Run) -> None:
-    """Make the report of a run anew, from its result."""
+    """Write the report of a run again from its result."""
     from dalembert.study import report_run
 
     typer.echo(f"report: {report_run(_folder(run))}")
@@ -201,7 +203,7 @@ def compare(
         str | None, typer.Option(metavar="WHAT", help="What is predicted from all else: values, blocks or experiments.")
     ] = None,
 ) -> None:
-    """Rank identified models of the same data by how well they predict, and say when the difference means nothing."""
+    """Rank identified models of the same data by their predictions, and report if the difference means nothing."""
     from dalembert.study.compare_runs import compare_runs
 
     found = compare_runs([_folder(run) for run in runs], leave_out)
@@ -211,15 +213,17 @@ def compare(
 
 @app.command()
 def studio(
-    folder: Annotated[Path, typer.Argument(help="Folder with studies/ and runs/; made as needed.")] = Path(),
+    folder: Annotated[
+        Path, typer.Argument(help="Folder with studies/ and runs/, which are created if they do not exist.")
+    ] = Path(),
     host: Annotated[
         str, typer.Option(help="Address to listen at; beyond this machine a token is needed.")
     ] = "127.0.0.1",
-    port: Annotated[int, typer.Option(min=0, max=65535, help="0 takes a free one.")] = 8080,
-    token: Annotated[str, typer.Option(help="Secret that a browser must know; made if needed.")] = "",
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Port; 0 selects a free one.")] = 8080,
+    token: Annotated[str, typer.Option(help="Secret that a browser needs; created if it is left out.")] = "",
     browser: Annotated[bool, typer.Option(help="Open the page in a browser.")] = True,
 ) -> None:
-    """Studies and runs in a browser: edit, start, watch, compare."""
+    """Edit, start, watch and compare studies and runs in a browser."""
     from dalembert.errors import InputError
 
     try:
@@ -240,7 +244,7 @@ def studio(
 
 @app.command("compile")
 def compile_() -> None:
-    """Compile all kernels now, on all cores: for an image, or the shared disk of a cluster."""
+    """Compile all kernels now on all cores, for example for an image or the shared disk of a cluster."""
     from dalembert.kernels.everything import package_kernels
     from dalembert.kernels.objects import cache_folder
     from dalembert.kernels.preparation import prepare

@@ -80,6 +80,7 @@ class Sliders:
         self._curves = ui.column().classes("w-full gap-2")
         for part in (self._busy, self._choice, self._scene, self._problem):
             part.set_visibility(False)
+        self._enable()
 
     @property
     def _changed(self) -> dict[str, float]:
@@ -146,9 +147,12 @@ class Sliders:
     def _take_values(self) -> None:
         for name in self._rows.keys() & self._draft.values.keys():
             self._rows[name].show(self._draft.values[name])
+        self._enable()
+        self._ask()
+
+    def _enable(self) -> None:
         for one in (self._start, self._reset):
             one.set_enabled(bool(self._changed))
-        self._ask()
 
     def _reset_value(self, name: str) -> None:
         self._draft.set_value(name, self._draft.starts[name])

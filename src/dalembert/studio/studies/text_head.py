@@ -9,6 +9,11 @@ from dalembert.studio.editor.disk_notice import disk_notice
 from dalembert.studio.editor.draft import Draft
 from dalembert.studio.editor.text_editor import TextEditor
 from dalembert.studio.frame import button, complaints, icon_button
+from dalembert.studio.latest import Latest
+
+CHECKING = "Checking …"
+SLOW = 1.0
+"""Seconds after a change from which a check is announced."""
 
 
 def text_head(draft: Draft, editor: TextEditor, first: Callable[[], object], copied: Callable[[], object]) -> None:
@@ -27,7 +32,7 @@ def text_head(draft: Draft, editor: TextEditor, first: Callable[[], object], cop
         first()
         save = button("Save", complaints("save")(lambda: save_text(draft)), icon="save")
         undo, redo = icon_button("undo", "Undo", draft.undo), icon_button("redo", "Redo", draft.redo)
-        verdict = ui.label("").props("role=status aria-live=polite")
+        verdict = ui.label(CHECKING).props("role=status aria-live=polite")
     disk_notice(draft, copied)  # after the buttons, which come first by keyboard
     does = ui.label("").classes("break-words")
     wrong = ui.column().classes("gap-1 w-full")
@@ -50,7 +55,12 @@ def text_head(draft: Draft, editor: TextEditor, first: Callable[[], object], cop
                     go.props("dense no-caps unelevated size=sm").classes("shrink-0")
                     ui.label(mistake.sentence).classes("text-sm break-words")
 
+    async def show_wait() -> None:
+        if draft.reading.text != draft.text:
+            verdict.set_text(CHECKING)
+
     draft.follow("text", show_text)
+    draft.follow("text", Latest(show_wait, SLOW))
     draft.follow("mistakes", show_study)
     show_text()
 

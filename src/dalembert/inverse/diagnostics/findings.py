@@ -16,7 +16,7 @@ LEVEL = 0.001
 """Probability with which a test takes independent noise for something else, over all channels of a fit."""
 
 DECIDES = 1.0
-"""Cook's distance from which one sample decides a fit: without it the parameters leave their confidence region."""
+"""Cook's distance from which one sample decides a fit: without it the parameters leave their 50 % confidence region."""
 
 FREEDOM = 10
 """Fewest degrees of freedom with which a single sample that decides is reported: of few samples each one does."""

@@ -116,3 +116,23 @@ def test_the_model_file_is_edited_in_a_page_of_its_own(visit, root):
     assert other.read_text().startswith("# theirs")
     page.get_by_role("link", name="Study opened").click()
     wait_until(page, "location.pathname === '/study/opened/opened'")
+
+
+def test_the_model_file_is_drawn_and_has_forms(visit, root):
+    _, other = with_model_file(root, "drawn")
+    page = visit("/study/drawn/drawn")
+    page.locator("g.body[data-part=rod]").click()
+    wait_until(page, f"{TEXT}.includes('are in pendulum.toml. Change them there.')")
+    page.get_by_role("link", name="Open the model file pendulum.toml").click()
+    wait_until(page, "document.querySelector('g.body[data-part=rod]')")
+    page.locator("g.body[data-part=rod]").click()
+    wait_until(page, "document.querySelector('.cm-line.chosen')?.innerText.includes('[[model.body]]')")
+    page.get_by_role("tab", name="Forms").click()
+    page.get_by_label("mass, kg").fill("2 kg")
+    page.keyboard.press("Tab")
+    wait_until(page, f"{TEXT}.includes('mass = \"2 kg\"') && {TEXT}.includes('Valid.')")
+    assert page.get_by_role("button", name="Add a body").is_enabled()
+    assert not page.get_by_role("button", name="Add a parameter").count()
+    page.get_by_role("button", name="Save").click()
+    wait_until(page, f"{TEXT}.includes('Saved.')")
+    assert 'mass = "2 kg"' in other.read_text()

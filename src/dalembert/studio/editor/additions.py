@@ -1,7 +1,7 @@
 """What can be added to a study by a form: bodies, joints, forces, contacts, sensors, parameters, tasks and so on."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
 from itertools import count
 from typing import Any
 
@@ -44,8 +44,8 @@ class Addition:
     elsewhere: str = ""
 
 
-def additions(text: str) -> tuple[Addition, ...]:
-    """Return what can be added to a study.
+def additions(text: str, only: Collection[str] = ()) -> tuple[Addition, ...]:
+    """Return what can be added to a study, or to a file that may have ``only`` some of its tables.
 
     Examples
     --------
@@ -53,6 +53,8 @@ def additions(text: str) -> tuple[Addition, ...]:
     ['Mass', 'Spring', 'Force', 'Contact', 'Parameter', 'Constant', 'Sensor', 'Input', 'Task', 'Table']
     >>> additions("")[1].kinds["RevoluteJoint"]
     'A pin: both points coincide.'
+    >>> [one.label for one in additions("", ["model", "constants"])]
+    ['Body', 'Joint', 'Force', 'Constant', 'Table']
     """
     document = tolerant(text)
     parts = _STRUCTURE if model_kind(document) == "structure" else _MECHANISM
@@ -65,7 +67,16 @@ def additions(text: str) -> tuple[Addition, ...]:
     tables = {place[0]: meaning for place, meaning in tables_of(document).items() if len(place) == 1}
     rest = {key: meaning for key, meaning in tables.items() if key not in (*task_names(), *_NAMED, *document)}
     tasks = {str(key): meaning for key, meaning in tables.items() if key in task_names() and key not in document}
-    return (*found, Addition(TASK, (), tasks), Addition("Table", (), {str(key): one for key, one in rest.items()}))
+    found += [Addition(TASK, (), tasks), Addition("Table", (), {str(key): one for key, one in rest.items()})]
+    return tuple(filter(None, (_within(one, only) for one in found))) if only else tuple(found)
+
+
+def _within(addition: Addition, tables: Collection[str]) -> Addition | None:
+    """The addition as far as it is one of the tables, or to one of them; None if nothing is left."""
+    if addition.place:
+        return addition if addition.place[0] in tables else None
+    kinds = {kind: meaning for kind, meaning in addition.kinds.items() if kind in tables}
+    return replace(addition, kinds=kinds) if kinds else None
 
 
 def added(text: str, addition: Addition, what: str) -> tuple[str, Place]:

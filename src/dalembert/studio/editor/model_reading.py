@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 from dalembert.errors import DalembertError
 from dalembert.studio.editor.cursor import tolerant
 from dalembert.studio.editor.outline import Outline
-from dalembert.studio.editor.reading import Mistake, Reading, mistake
+from dalembert.studio.editor.reading import OF_FILES, Mistake, Reading, mistake
 from dalembert.studio.editor.watched_files import stamps_of
 from dalembert.studio.worker import Kept
 
 if TYPE_CHECKING:
+    from dalembert.study import Study
     from dalembert.study.loader import StudyError
 
 _AT_FILE = "[model], file: "
@@ -29,16 +30,36 @@ def model_reading(kept: Kept, study: Path, text: str) -> Reading:
     text : str
         Of the model file, which is not written.
     """
+    for kind in OF_FILES:
+        kept.drop(kind)
     used: dict[str, Path] = {}
-    return replace(_read(study, text, used), files=stamps_of([study, *used.values()]))
+    return replace(_read(kept, study, text, used), files=stamps_of([study, *used.values()]))
 
 
-def _read(study: Path, text: str, used: dict[str, Path]) -> Reading:
-    from dalembert.study import load, plan
+def study_with_model(kept: Kept, study: Path, text: str, used: dict[str, Path] | None = None) -> "Study":
+    """Return a study with the text of its model file, read once.
+
+    Parameters
+    ----------
+    used : dict of str to Path, optional
+        Takes the other files that the study names, if it is read now.
+
+    Raises
+    ------
+    DalembertError
+        If the study or the text has mistakes.
+    """
+    from dalembert.study import load
+
+    return kept.newest("study", (study, text), lambda: load(study, name=study.stem, model=text.encode(), used=used))
+
+
+def _read(kept: Kept, study: Path, text: str, used: dict[str, Path]) -> Reading:
+    from dalembert.study import plan
     from dalembert.study.loader import StudyError
 
     try:
-        found = load(study, name=study.stem, model=text.encode(), used=used)
+        found = study_with_model(kept, study, text, used)
         return Reading(text, Outline.of(found, text), f"As the model of {study.name}, it {plan(found)}.")
     except StudyError as error:
         return Reading(text, mistakes=tuple(_mistakes(error, study, text)))

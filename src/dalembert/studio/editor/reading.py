@@ -22,7 +22,7 @@ _PLACE = re.compile(r"\[{1,2}([\w.]+)\]{1,2}(?: '([^']+)')?(?:, (\w+))?")
 """Beginning of a sentence about a table and a key."""
 _CONSTANT = re.compile(r"\[constants\](?:,|:) ([\w-]+): ")
 """Beginning of a sentence about a constant."""
-_OF_FILES = ("study", "channels", "comparison", "measured positions")
+OF_FILES = ("study", "channels", "comparison", "measured positions")
 """Kinds of things that a process keeps and that depend on files which a text names; user's functions are among them."""
 
 
@@ -74,7 +74,7 @@ def read(path: Path, text: str) -> Reading:
 
 def reading(kept: Kept, path: Path, text: str) -> Reading:
     """Read a text as :func:`read` does, in the process of the study's page, where the study is kept."""
-    for kind in _OF_FILES:
+    for kind in OF_FILES:
         kept.drop(kind)
     used: dict[str, Path] = {}
     found = _read(kept, path, text, used)

@@ -11,6 +11,8 @@ from dalembert.studio.editor.study_editor import StudyEditor
 
 WRONG, CHOSEN = "wrong", "chosen"
 """Classes of lines; ``frame.LOOKS`` colours them."""
+PATIENCE = 30.0
+"""Seconds in which a busy browser says whether it is dark."""
 _LINE = """() => {
     const state = getElement(%d).editor.state;
     emit(state.doc.lineAt(state.selection.main.head).number);
@@ -62,7 +64,7 @@ class TextEditor:
     async def _adapt(self) -> None:
         """Take the colours of the system, also when they change."""
         ui.on("dark", lambda event: self._colour(bool(event.args)))
-        self._colour(await ui.run_javascript(_DARK))
+        self._colour(await ui.run_javascript(_DARK, timeout=PATIENCE))
 
     def _colour(self, dark: bool) -> None:
         self.element.set_theme("vscodeDark" if dark else "vscodeLight")

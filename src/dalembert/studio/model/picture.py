@@ -1,7 +1,7 @@
 """The drawing of a study's model, computed in the process of the study's page."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from html import unescape
 from pathlib import Path
@@ -65,17 +65,30 @@ class Picture:
 
 
 def model_picture(
-    kept: Kept, path: Path, text: str, values: Mapping[str, float], box: np.ndarray | None = None
+    kept: Kept,
+    path: Path,
+    text: str,
+    values: Mapping[str, float],
+    box: np.ndarray | None = None,
+    read: Callable[[Kept, Path, str], "Study"] = study_of,
 ) -> Picture:
     """Draw the model of a text at values of its parameters.
 
     Parameters
     ----------
+    kept : Kept
+    path : Path
+        Of the study.
+    text : str
+        Of the study, or what ``read`` takes instead.
+    values : mapping of str to float
     box : array, shape (2, 2), optional
         Corners of an earlier drawing, kept if the model fits into it: a drawing that follows a slider stands still.
+    read : function
+        Returns the study.
     """
     try:
-        study = study_of(kept, path, text)
+        study = read(kept, path, text)
     except DalembertError:
         return Picture(message="The text has mistakes. The drawing follows when they are corrected.")
     places = places_of(study)

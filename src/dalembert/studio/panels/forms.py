@@ -1,6 +1,6 @@
 """Forms beside the text: add a table, and edit the selected one."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from functools import partial
 
 from nicegui import ui
@@ -20,15 +20,20 @@ HINT = "Click a table in the text or a part in the drawing to edit it here, or a
 
 def show(draft: Draft, room: Room) -> None:
     """Build the panel."""
+    show_tables(draft)
+
+
+def show_tables(draft: Draft, tables: Collection[str] = ()) -> None:
+    """Build the panel of a file that may have these tables, or all of a study if there are none."""
     bar, body = ui.row().classes("gap-1 items-center"), ui.column().classes("w-full gap-2 pt-2")
-    Additions(draft, bar, Editor(draft, body).focus)
+    Additions(draft, bar, Editor(draft, body).focus, tables)
 
 
 class Additions:
     """A menu for each kind of table that can be added to a draft."""
 
-    def __init__(self, draft: Draft, bar: ui.row, then: Callable[[], object]) -> None:
-        self.draft, self.bar, self.then = draft, bar, then
+    def __init__(self, draft: Draft, bar: ui.row, then: Callable[[], object], tables: Collection[str] = ()) -> None:
+        self.draft, self.bar, self.then, self.tables = draft, bar, then, tables
         self.shown: tuple[Addition, ...] = ()
         self.channels = Channels(draft)
         draft.follow("text", self.update)
@@ -36,7 +41,7 @@ class Additions:
 
     def update(self) -> None:
         """Show what can be added to the text."""
-        found = additions(self.draft.text)
+        found = additions(self.draft.text, self.tables)
         if found == self.shown:
             return
         self.shown = found

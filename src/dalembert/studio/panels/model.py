@@ -1,19 +1,26 @@
 """The model drawn beside its text, at the current values of the parameters."""
 
 from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
 
 from nicegui import ui
 
+from dalembert.studio.editor.cursor import tolerant
 from dalembert.studio.editor.draft import Draft
 from dalembert.studio.editor.lines import Place
-from dalembert.studio.editor.reading import Mistake
+from dalembert.studio.editor.model_kind import model_elsewhere
+from dalembert.studio.editor.reading import Mistake, study_of
 from dalembert.studio.frame import icon_button
 from dalembert.studio.latest import Latest
 from dalembert.studio.model.parts import parts_at, place_of
 from dalembert.studio.model.picture import Picture, model_picture
 from dalembert.studio.model.viewer import Viewer
 from dalembert.studio.room import Room
-from dalembert.studio.worker import WorkerError
+from dalembert.studio.worker import Kept, Worker, WorkerError
+
+if TYPE_CHECKING:
+    from dalembert.study import Study
 
 STILL = 0.3
 """Seconds without a change of values after which the model is drawn at them."""
@@ -23,20 +30,30 @@ NONE = "The text has mistakes. The drawing appears when they are corrected."
 
 def show(draft: Draft, room: Room) -> None:
     """Build the panel."""
-    _Panel(draft, room)
+    ModelPanel(draft, room.worker, draft.path)
 
 
-class _Panel:
+class Reader(Protocol):
+    """Returns the study of a path whose study file, or model file, has a text."""
+
+    def __call__(self, kept: Kept, path: Path, text: str, /) -> "Study": ...
+
+
+class ModelPanel:
     """The drawing, what to know about it, and buttons to look closer.
 
     Parameters
     ----------
     draft : Draft
-    room : Room
+    worker : Worker
+    path : Path
+        Of the study.
+    read : Reader
+        Returns the study from the text of the draft.
     """
 
-    def __init__(self, draft: Draft, room: Room) -> None:
-        self.draft, self.room = draft, room
+    def __init__(self, draft: Draft, worker: Worker, path: Path, read: Reader = study_of) -> None:
+        self.draft, self.worker, self.path, self.read = draft, worker, path, read
         self.picture = Picture()
         self.links: dict[str, ui.button] = {}
         with ui.column().classes("w-full h-full gap-1 flex-nowrap"):
@@ -64,8 +81,8 @@ class _Panel:
             self.told.set_text(LAST if self.picture.svg else NONE if draft.mistakes else "")
             return
         try:
-            ask, values = self.room.worker.ask, dict(draft.values)
-            picture = await ask("model", model_picture, draft.path, draft.reading.text, values, self.picture.box)
+            request = self.path, draft.reading.text, dict(draft.values), self.picture.box, self.read
+            picture = await self.worker.ask("model", model_picture, *request)
         except WorkerError as error:
             self.told.set_text(str(error))
             return
@@ -111,7 +128,10 @@ class _Panel:
         return parts_at(self.places, mistake.place) or named
 
     def _choose(self, part: str | None) -> None:
-        self.draft.select(None if part is None else place_of(self.places, part))
+        place = None if part is None else place_of(self.places, part)
+        elsewhere = model_elsewhere(tolerant(self.draft.text)) if place and place[0] == "model" else ""
+        self.told.set_text(elsewhere or self.picture.message)
+        self.draft.select(place)
 
     def _fit(self) -> None:
         self.picture = replace(self.picture, box=None)

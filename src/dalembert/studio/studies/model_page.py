@@ -1,4 +1,4 @@
-"""The model of a study in a separate file: its text, checked as the model of this study."""
+"""The model of a study in a separate file: its text, drawn and checked as the model of this study."""
 
 from functools import partial
 from urllib.parse import quote
@@ -8,9 +8,13 @@ from nicegui import ui
 from dalembert.errors import InputError
 from dalembert.studio.code_text import code_text
 from dalembert.studio.editor.draft import Draft
-from dalembert.studio.editor.model_reading import model_reading
+from dalembert.studio.editor.model_reading import model_reading, study_with_model
 from dalembert.studio.editor.text_editor import TextEditor
 from dalembert.studio.frame import complaints, frame
+from dalembert.studio.panels.forms import show_tables
+from dalembert.studio.panels.model import ModelPanel
+from dalembert.studio.panels.tabs import tabs
+from dalembert.studio.splitter import splitter
 from dalembert.studio.studies.checking import Checking
 from dalembert.studio.studies.text_head import text_head
 from dalembert.studio.worker import Worker
@@ -19,7 +23,7 @@ from dalembert.study.basics import MODEL_FILE
 
 
 def model_page(workspace: Workspace, name: str) -> None:
-    """Edit and check the model file that a study names."""
+    """Edit, draw and check the model file that a study names."""
     title = name.removesuffix("/study")
     try:
         study, path = workspace.study(name), workspace.model_of(name)
@@ -33,8 +37,21 @@ def model_page(workspace: Workspace, name: str) -> None:
     ui.context.client.on_delete(worker.stop)
     with frame(f"{path.name} of {title}", wide=True):
         head = ui.column().classes("w-full gap-1")
-        with ui.element("div").classes("w-full grow").style("height: 45vh"):
-            editor = TextEditor(draft, "The model as text", MODEL_FILE)
+        with splitter("Width of the text") as (left, right):
+            with left:
+                editor = TextEditor(draft, "The model as text", MODEL_FILE)
+            with right:
+                tabs(
+                    [
+                        (
+                            "model",
+                            "Model",
+                            "precision_manufacturing",
+                            partial(ModelPanel, draft, worker, study, study_with_model),
+                        ),
+                        ("forms", "Forms", "edit_note", partial(show_tables, draft, MODEL_FILE)),
+                    ]
+                )
         with head:
             text_head(draft, editor, partial(_way_back, name, title), complaints()(partial(_copy, draft, study.name)))
             Checking(draft, worker, model_reading, study)

@@ -14,6 +14,7 @@ from dalembert.studio.editor.text_editor import TextEditor
 from dalembert.studio.frame import button, complaints, frame
 from dalembert.studio.jobs import Jobs
 from dalembert.studio.panels import data, forms, model, sliders
+from dalembert.studio.panels.tabs import tabs
 from dalembert.studio.room import Room
 from dalembert.studio.splitter import splitter
 from dalembert.studio.studies.checking import Checking
@@ -50,22 +51,9 @@ def study_page(workspace: Workspace, jobs: Jobs, name: str) -> None:
             with left:
                 editor = TextEditor(draft)
             with right:
-                _panels(draft, room)
+                tabs([(name, title, icon, partial(show, draft, room)) for name, title, icon, show in PANELS])
         with head:
             _head(draft, room, editor, Checking(draft, room.worker))
-
-
-def _panels(draft: Draft, room: Room) -> None:
-    """Build a tab for each panel."""
-    with (
-        ui.tabs().props("dense no-caps inline-label align=left outside-arrows mobile-arrows").classes("w-full") as tabs
-    ):
-        for name, title, icon, _ in PANELS:
-            ui.tab(name, title, icon)
-    with ui.tab_panels(tabs, value=PANELS[0][0], animated=False).classes("w-full grow bg-transparent"):
-        for name, _, _, show in PANELS:
-            with ui.tab_panel(name).style("padding: 4px 0"):
-                show(draft, room)
 
 
 def _head(draft: Draft, room: Room, editor: TextEditor, checking: Checking) -> None:

@@ -88,9 +88,9 @@ def new(
     if template is None:
         for one in templates().values():
             typer.echo(f"{one.name:10}{one.title}: {one.description}")
-        typer.echo("Begin with one of them by: dalembert new TEMPLATE FOLDER")
+        typer.echo("Create a study with: dalembert new TEMPLATE FOLDER")
     else:
-        typer.echo(f"run it by: dalembert run {begin(template, folder or Path(template))}")
+        typer.echo(f"Run it with: dalembert run {begin(template, folder or Path(template))}")
 
 
 @app.command()
@@ -154,7 +154,7 @@ def check(
 
     read = load(study)
     with placed(study.name), placed(study.name, ModelError):
-        typer.echo(f"{study}: in order; it {plan(read)}")
+        typer.echo(f"{study}: valid; it {plan(read)}")
         for line in (*source_lines(read), *channel_lines(read)):
             typer.echo(line)
         try:

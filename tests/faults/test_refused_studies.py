@@ -255,7 +255,7 @@ def test_the_states_of_segments_are_checked_where_the_motion_does_not_begin_with
     moving = HEAD.replace("upper = 3.0", "upper = 3.0, start = 1.0")
     Path("study.toml").write_text(moving + KNOWN + SHOOTING.replace('"v"', '"x"'))
     done = checked()
-    assert (done.returncode, done.stdout.splitlines()[0][:27]) == (2, "study.toml: in order; it id")
+    assert (done.returncode, done.stdout.splitlines()[0][:24]) == (2, "study.toml: valid; it id")
     assert "shooting, state 'speed': the motion begins with 'x' at" in done.stderr
     with pytest.raises(DalembertError, match="shooting, state 'speed': the motion begins with 'x' at"):
         run_study(load("study.toml"))

@@ -90,22 +90,22 @@ def test_a_fit_with_a_fixed_parameter(dalembert, tmp_path):
 def test_a_study_from_a_template(dalembert, tmp_path):
     listed = dalembert("new").stdout.splitlines()
     assert listed[1].startswith("identify  Parameters from a measured motion: Identify the friction")
-    assert listed[-1] == "Begin with one of them by: dalembert new TEMPLATE FOLDER"
+    assert listed[-1] == "Create a study with: dalembert new TEMPLATE FOLDER"
     begun = dalembert("new", "identify", "mine/rod")
-    assert (begun.returncode, begun.stdout) == (0, "run it by: dalembert run mine/rod/rod.toml\n")
+    assert (begun.returncode, begun.stdout) == (0, "Run it with: dalembert run mine/rod/rod.toml\n")
     assert sorted(path.name for path in (tmp_path / "mine" / "rod").iterdir()) == [
         "motion.csv",
         "rod.toml",
         "study.schema.json",
     ]
-    assert "in order; it identifies drag, angle" in dalembert("check", "mine/rod/rod.toml").stdout
+    assert "valid; it identifies drag, angle" in dalembert("check", "mine/rod/rod.toml").stdout
 
 
 def test_check(dalembert):
     checked = dalembert("check", "decay.toml")
     assert checked.returncode == 0
     first, second = checked.stdout.splitlines()
-    assert first == "decay.toml: in order; it sweeps rate (4) at time 0.5 s: 4 simulations, each with 1 sensitivities"
+    assert first == "decay.toml: valid; it sweeps rate (4) at time 0.5 s: 4 simulations, each with 1 sensitivities"
     number = r"[\d.]+ (ms|s)"
     assert re.fullmatch(
         rf"This takes about {number}: 8 simulations of {number} \(4 at once at the first guesses\)\.", second

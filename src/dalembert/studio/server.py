@@ -171,7 +171,7 @@ def serve(root: Path, host: str = "127.0.0.1", port: int = 8080, token: str = ""
     port = listening.getsockname()[1]
     shown = "localhost" if host in ("0.0.0.0", "::") else host
     address = f"http://{f'[{shown}]' if ':' in shown else shown}:{port}/" + (f"?token={token}" if token else "")
-    print(f"the studio: {address}\nstop it with Ctrl-C; runs continue without it", flush=True)  # noqa: T201
+    print(f"The studio: {address}\nStop it with Ctrl-C. Runs continue without it.", flush=True)  # noqa: T201
     if browser:
         import webbrowser
 

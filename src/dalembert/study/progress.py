@@ -107,7 +107,7 @@ def _horizon(event: Event) -> str:
     samples, of = event.get("samples"), event.get("of")
     if samples is None or of is None or samples == of:
         return ""
-    return f"first {samples} of {of} samples, more of which raise the best · "
+    return f"first {samples} of {of} samples; the best misfit grows with their number · "
 
 
 @dataclass

@@ -103,7 +103,7 @@ def resume_run(folder: RunFolder, *, listener: Listener | None = None, executor:
         raise folder.damaged(folder.path / "state.json")
     if state["state"] == FINISHED:
         raise InputError(
-            f"{folder.path}: the run has finished, so there is nothing to resume; make its report anew by "
+            f"{folder.path}: the run has finished, so there is nothing to resume; write its report again with "
             f"'dalembert report {folder.path}'"
         )
     if state.get("version") != __version__:

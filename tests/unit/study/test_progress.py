@@ -68,7 +68,7 @@ def test_segments_are_told_with_what_is_minimised():
 
 def test_a_growing_horizon_says_why_the_best_rises():
     told = _printed(ITERATION | {"samples": 25, "of": 100}, ("mass",))
-    horizon = "first 25 of 100 samples, more of which raise the best"
+    horizon = "first 25 of 100 samples; the best misfit grows with their number"
     assert told == f"start 1 · 85 simulations · {horizon} · best 2.5 · mass = 0.75"
     assert "samples" not in _printed(ITERATION | {"samples": 100, "of": 100}, ("mass",))
 

@@ -68,7 +68,7 @@ def test_a_stopped_run_goes_on(stopped):
 def test_a_finished_run_is_not_resumed(stopped):
     resume_run(stopped)
     sentence = (
-        f"{stopped.path}: the run has finished, so there is nothing to resume; make its report anew by "
+        f"{stopped.path}: the run has finished, so there is nothing to resume; write its report again with "
         f"'dalembert report {stopped.path}'"
     )
     with pytest.raises(InputError, match=says(sentence)):

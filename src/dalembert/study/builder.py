@@ -229,7 +229,8 @@ def _place(given: Place, values: Values, bodies: Values, system: Any, where: str
     """Point of a body or of the ground."""
     if given.position is not None:
         numbers = tuple(resolved(one, values, where) for one in given.position)
-        return system.ground.point(numbers) if len(system.AXES) == 3 else system.ground.point(*numbers)
+        with placed(where):
+            return system.ground.point(numbers) if len(system.AXES) == 3 else system.ground.point(*numbers)
     if not given.body:
         return system.ground
     with placed(where):

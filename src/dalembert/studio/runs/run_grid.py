@@ -164,6 +164,7 @@ def _options(rows: list[Row]) -> dict[str, Any]:
         "selectionColumnDef": {"width": 46},
         "ensureDomOrder": True,
         "rowBuffer": 2,
+        "suppressColumnVirtualisation": True,  # all columns can be reached by keys and read aloud
         ":tabToNextCell": "() => false",  # Tab leaves the table, arrow keys move in it
         ":tabToNextHeader": "() => false",
         "tooltipShowDelay": 300,

@@ -97,14 +97,21 @@ class Equations:
         def solved(number: int) -> Solution:
             return correct(self.balance(number), self.condensation.at, self.method, unknowns, omega, plane, point)
 
+        def back(found: Solution) -> Solution:
+            """The solution with the first number of samples, with which a curve goes on smoothly, if there is one."""
+            near = found.unknowns, found.omega
+            first = correct(self.balance(samples), self.condensation.at, self.method, *near, plane, found.point)
+            return first if first.converged else found
+
         solution = solved(samples)
         while solution.error <= self.method.sampling and not solution.converged and self._doubles(solution):
             before, solution = solution.error, finer(solution)
             if not solution.converged and solution.error > before / 2:  # what is left is not of the samples
                 break
-        if solution.error <= self.method.sampling and not solution.converged and self.method.samples == AUTOMATIC:
+        alternates = solution.error <= self.method.sampling and not solution.converged
+        if alternates and plane is None and self.method.samples == AUTOMATIC:  # on a path, a shorter step is cheaper
             others = (int(part * samples) for part in RESAMPLED if part * samples <= MOST_SAMPLES)
-            solution = next((found for found in map(solved, others) if found.converged), solution)
+            solution = next((back(found) for found in map(solved, others) if found.converged), solution)
         while solution.converged:
             solution = replace(solution, sampling_error=self._sampling_error(solution))
             if solution.sampling_error <= self.method.sampling or not self._doubles(solution):

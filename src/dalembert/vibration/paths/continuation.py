@@ -70,7 +70,33 @@ class PathPoint:
 
 
 def at_frequencies(equations: Problem, omegas: np.ndarray, start: Solution | None) -> Iterator[PathPoint]:
-    """Yield solutions at given frequencies, each from the last converged one."""
+    """Yield solutions at given frequencies, each from the last converged one, else from the next one."""
+    return _from_behind(equations, _at_frequencies(equations, omegas, start))
+
+
+def _from_behind(equations: Problem, points: Iterator[PathPoint]) -> Iterator[PathPoint]:
+    """Yield points of a curve in their order; those that were not found are sought from the one behind them.
+
+    At a kink of the forces a branch may end, and the next one begin before that: it is found from its other points.
+    """
+    missed: list[PathPoint] = []
+    for point in points:
+        missed.append(point)
+        if not point.solution.converged:
+            continue
+        known = point.solution
+        for place in range(len(missed) - 2, -1, -1):
+            omega = missed[place].solution.omega
+            known = equations.solve(_predicted(known, omega), omega, known.samples)
+            if not known.converged:
+                break
+            missed[place] = replace(missed[place], solution=known)
+        yield from missed
+        missed = []
+    yield from missed
+
+
+def _at_frequencies(equations: Problem, omegas: np.ndarray, start: Solution | None) -> Iterator[PathPoint]:
     known = start
     for omega in omegas:
         solution = equations.first(omega) if known is None else _towards(equations, known, omega)
@@ -118,6 +144,10 @@ def _predicted(known: Solution, omega: float) -> np.ndarray:
 
 def natural(equations: Problem, begin: float, end: float, start: Solution | None) -> Iterator[PathPoint]:
     """Yield solutions from one frequency to another, with steps as long as Newton's method allows."""
+    return _from_behind(equations, _natural(equations, begin, end, start))
+
+
+def _natural(equations: Problem, begin: float, end: float, start: Solution | None) -> Iterator[PathPoint]:
     known = start if start is not None else equations.first(begin)
     yield PathPoint(known)
     longest = (end - begin) * equations.method.resolution

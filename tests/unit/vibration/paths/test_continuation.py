@@ -1,12 +1,13 @@
 """Paths over frequency past turns, and points that only the curve itself leads to."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 
 from dalembert.vibration import HarmonicBalance, frequency_response
 from dalembert.vibration.balance import balance
+from dalembert.vibration.paths import continuation
 from random_vibrations import ACCEPTED, METHOD, at_frequencies, path_end, random_system, unbalanced
 
 
@@ -62,3 +63,42 @@ def test_the_evaluation_of_forces_in_plain_numpy_refuses_a_point_that_is_no_solu
     assert unbalanced(own, moved, 0) > 1e-8
     few = frequency_response(own.system, own.frequencies, HarmonicBalance(5, samples=64, events=False))
     assert unbalanced(own, few, 0) > 1e-5
+
+
+@dataclass(frozen=True)
+class OnBranch:
+    """A solution of :class:`TwoBranches`."""
+
+    omega: float
+    unknowns: np.ndarray
+    converged: bool
+    samples: int = 64
+    iterations: int = 1
+
+    def rate(self) -> np.ndarray:
+        return np.zeros_like(self.unknowns)
+
+
+class TwoBranches:
+    """The branch at 0 ends at ω = 2; that at 1 begins at 1.5, and Newton's method reaches it from 0 at 3 only."""
+
+    method = HarmonicBalance(halvings=0)
+
+    def solve(self, unknowns: np.ndarray, omega: float, samples: int, plane: object = None) -> OnBranch:
+        on_second = bool(unknowns[0] > 0.5)
+        if omega >= 3 or (on_second and omega >= 1.5):
+            return OnBranch(omega, np.ones(1), converged=True)
+        return OnBranch(omega, unknowns, converged=not on_second and omega < 2)
+
+    def first(self, omega: float) -> OnBranch:
+        return self.solve(np.zeros(1), omega, 64)
+
+
+def test_points_that_are_not_found_are_sought_from_behind() -> None:
+    points = continuation.at_frequencies(TwoBranches(), np.array([1.0, 2.0, 2.5, 3.0]), None)
+    found = [point.solution for point in points]
+    assert [(one.omega, one.unknowns[0]) for one in found] == [(1.0, 0.0), (2.0, 1.0), (2.5, 1.0), (3.0, 1.0)]
+    assert all(one.converged for one in found)
+    assert [
+        point.solution.converged for point in continuation.at_frequencies(TwoBranches(), np.array([1.0, 2.0]), None)
+    ] == [1, 0]

@@ -319,6 +319,7 @@ def test_figures_of_hidden_tabs_are_no_error_and_fit_their_place(chromium, visit
     room = "document.querySelector('.js-plotly-plot')?.getBoundingClientRect().width"
     tab(page, "Data").click()
     wait_until(page, "document.querySelectorAll('.js-plotly-plot .trace').length === 2")
+    wait_until(page, f"Math.abs({width} - {room}) < 2")  # a figure is drawn before it has the width of its place
     before = page.evaluate(width)
     for name in ("Model", "Sliders", "Forms"):
         tab(page, name).click()

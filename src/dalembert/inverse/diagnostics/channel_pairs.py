@@ -36,9 +36,13 @@ class ChannelPair:
 
     def samples(self, width: int) -> tuple[np.ndarray, np.ndarray]:
         """Return where the common samples stand among the values of the fit, which has ``width`` channels."""
-        one, other = self.first.series.rows, self.second.series.rows
-        _, here, there = np.intersect1d(one // width, other // width, return_indices=True)
-        return one[here], other[there]
+        return _common(self.first, self.second, width)
+
+
+def _common(first: SeriesResiduals, second: SeriesResiduals, width: int) -> tuple[np.ndarray, np.ndarray]:
+    one, other = first.series.rows, second.series.rows
+    _, here, there = np.intersect1d(one // width, other // width, return_indices=True)
+    return one[here], other[there]
 
 
 def correlated_pairs(
@@ -89,8 +93,7 @@ def _pairs(
     processes: Mapping[str, NoiseProcess],
 ) -> Iterator[ChannelPair]:
     for first, second in combinations(series, 2):
-        pair = ChannelPair(first, second, 0.0, 1.0)
-        one, other = pair.samples(width)
+        one, other = _common(first, second, width)
         if first.series.experiment != second.series.experiment or len(one) < LEAST:
             continue
         size = np.linalg.norm(residual[one]) * np.linalg.norm(residual[other])

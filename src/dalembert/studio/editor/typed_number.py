@@ -20,7 +20,7 @@ def typed_number(text: str | None, unit: str = "", size: float = 1.0) -> float:
     Raises
     ------
     InputError
-        If the text is no number, or its unit measures something else.
+        If the text is not a number, or has the unit of another quantity.
 
     Examples
     --------

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from dalembert.multibody.sketch import Sketch
     from dalembert.study import Study
 
+Reader = Callable[[Kept, Path, str], "Study"]
+"""Returns the study of a path whose study file, or model file, has a text."""
 SIZE = (720, 460)
 MARGIN = 0.09
 """Room for names beside the drawing, as part of its size."""
@@ -70,7 +72,7 @@ def model_picture(
     text: str,
     values: Mapping[str, float],
     box: np.ndarray | None = None,
-    read: Callable[[Kept, Path, str], "Study"] = study_of,
+    read: Reader = study_of,
 ) -> Picture:
     """Draw the model of a text at values of its parameters.
 
@@ -84,8 +86,7 @@ def model_picture(
     values : mapping of str to float
     box : array, shape (2, 2), optional
         Corners of an earlier drawing, kept if the model fits into it: a drawing that follows a slider stands still.
-    read : function
-        Returns the study.
+    read : Reader
     """
     try:
         study = read(kept, path, text)

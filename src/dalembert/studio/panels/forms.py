@@ -15,6 +15,8 @@ from dalembert.studio.frame import button, complaints, icon_button
 from dalembert.studio.panels.form_field import FormField
 from dalembert.studio.room import Room
 
+TAB = "forms", "Forms", "edit_note"
+"""Name, title and icon of the panel."""
 HINT = "Click a table in the text or a part in the drawing to edit it here, or add one."
 
 

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
 
 from nicegui import ui
 
@@ -14,14 +13,13 @@ from dalembert.studio.editor.reading import Mistake, study_of
 from dalembert.studio.frame import icon_button
 from dalembert.studio.latest import Latest
 from dalembert.studio.model.parts import parts_at, place_of
-from dalembert.studio.model.picture import Picture, model_picture
+from dalembert.studio.model.picture import Picture, Reader, model_picture
 from dalembert.studio.model.viewer import Viewer
 from dalembert.studio.room import Room
-from dalembert.studio.worker import Kept, Worker, WorkerError
+from dalembert.studio.worker import Worker, WorkerError
 
-if TYPE_CHECKING:
-    from dalembert.study import Study
-
+TAB = "model", "Model", "precision_manufacturing"
+"""Name, title and icon of the panel."""
 STILL = 0.3
 """Seconds without a change of values after which the model is drawn at them."""
 LAST = "The text has mistakes. The drawing shows the last valid text."
@@ -31,12 +29,6 @@ NONE = "The text has mistakes. The drawing appears when they are corrected."
 def show(draft: Draft, room: Room) -> None:
     """Build the panel."""
     ModelPanel(draft, room.worker, draft.path)
-
-
-class Reader(Protocol):
-    """Returns the study of a path whose study file, or model file, has a text."""
-
-    def __call__(self, kept: Kept, path: Path, text: str, /) -> "Study": ...
 
 
 class ModelPanel:

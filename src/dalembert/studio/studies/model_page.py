@@ -11,8 +11,7 @@ from dalembert.studio.editor.draft import Draft
 from dalembert.studio.editor.model_reading import model_reading, study_with_model
 from dalembert.studio.editor.text_editor import TextEditor
 from dalembert.studio.frame import complaints, frame
-from dalembert.studio.panels.forms import show_tables
-from dalembert.studio.panels.model import ModelPanel
+from dalembert.studio.panels import forms, model
 from dalembert.studio.panels.tabs import tabs
 from dalembert.studio.splitter import splitter
 from dalembert.studio.studies.checking import Checking
@@ -43,13 +42,8 @@ def model_page(workspace: Workspace, name: str) -> None:
             with right:
                 tabs(
                     [
-                        (
-                            "model",
-                            "Model",
-                            "precision_manufacturing",
-                            partial(ModelPanel, draft, worker, study, study_with_model),
-                        ),
-                        ("forms", "Forms", "edit_note", partial(show_tables, draft, MODEL_FILE)),
+                        (*model.TAB, partial(model.ModelPanel, draft, worker, study, study_with_model)),
+                        (*forms.TAB, partial(forms.show_tables, draft, MODEL_FILE)),
                     ]
                 )
         with head:

@@ -24,8 +24,8 @@ from dalembert.studio.worker import Worker
 from dalembert.studio.workspace import Workspace
 
 PANELS = (
-    ("model", "Model", "precision_manufacturing", model.show),
-    ("forms", "Forms", "edit_note", forms.show),
+    (*model.TAB, model.show),
+    (*forms.TAB, forms.show),
     ("sliders", "Sliders", "tune", sliders.show),
     ("data", "Data", "show_chart", data.show),
 )

@@ -105,8 +105,8 @@ def frequency_response(
     Returns
     -------
     FrequencyCurve
-        A point that Newton's method does not find, from the one before nor by halves of the step, is marked there and
-        the curve goes on.
+        A point that Newton's method does not find, from the point before, by halves of the step or from the point
+        behind, is marked there and the curve continues.
 
     Raises
     ------

@@ -1,6 +1,7 @@
 """The table of a study file that describes its model: components as data, or a Python function."""
 
 from functools import cache, lru_cache
+from itertools import chain
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, ConfigDict, Field
@@ -142,14 +143,14 @@ class ModelTable(StudyTable):
 
 def _wrong_names(components: list[tuple[str, Any]], robot: RobotTable | None) -> list[str]:
     """Sentences for names that repeat, and for places at bodies that are not there, or not yet."""
-    own = {"body": robot.bodies, "joint": [joint.name for joint in robot.tree.moving]} if robot else {}
+    of_robot: tuple[list[str], list[str]] = robot.names if robot else ([], [])
     bodies, joints = (
-        [*own.get(kind, ()), *(component.name for table, component in components if table == kind)]
-        for kind in ("body", "joint")
+        [*names, *(component.name for table, component in components if table == kind)]
+        for names, kind in zip(of_robot, ("body", "joint"), strict=True)
     )
     wrong = [
         f"{count} components are called {name!r}; expected different names"
-        for name, count in repeated([*own.get("body", ()), *(component.name for _, component in components)]).items()
+        for name, count in repeated([*chain(*of_robot), *(component.name for _, component in components)]).items()
     ]
     for table, component in components:
         known = bodies[: bodies.index(component.name)] if table == "body" else bodies

@@ -60,11 +60,12 @@ class RobotTable(StudyTable):
         return {name: given.input for name, given in self.torques.items() if isinstance(given, InputReference)}
 
     @property
-    def bodies(self) -> list[str]:
-        """Names of the bodies of the robot."""
-        from dalembert.multibody.trees.build import groups
+    def names(self) -> tuple[list[str], list[str]]:
+        """Names of the bodies and of the joints of the robot's mechanism."""
+        from dalembert.multibody.trees.build import names
 
-        return [group.name for group in groups(self.tree).values() if group.joint is not None]
+        bodies, joints = names(self.tree)
+        return bodies, list(joints.values())
 
 
 @lru_cache(maxsize=8)

@@ -1,9 +1,12 @@
 """Robots in study files: the model, the identification of inertias, exciting trajectories, and wrong input."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
-from dalembert.errors import InputError
+from dalembert.errors import InputError, ModelError
 from dalembert.inverse.inertial import TorquePrediction
 from dalembert.multibody import RungeKutta4, simulate
 from dalembert.multibody.trees import inverse_dynamics, read_urdf
@@ -74,6 +77,82 @@ def test_a_robot_has_the_numbers_torques_and_initial_state_of_the_study(folder):
     other = simulate(direct, 0.2, solver=study.solver)
     np.testing.assert_allclose(bare.motion(0.2).channels(names), other.channels(names), atol=1e-12)
     assert np.abs(motion.channels(names)[-1] - other.channels(names)[-1]).max() > 1e-3  # the push acts
+
+
+FIXED = """<robot name="arm"><link name="base"/>
+<link name="upper"><inertial><origin xyz="0 0 -0.2"/><mass value="2"/>
+  <inertia ixx="0.03" iyy="0.03" izz="0.002" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="tool"/><link name="tip"/>
+<joint name="upper" type="continuous"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/></joint>
+<joint name="flange" type="fixed"><parent link="upper"/><child link="tool"/><origin xyz="0 0 -0.4"/></joint>
+<joint name="end" type="fixed"><parent link="tool"/><child link="tip"/><origin xyz="0 0 -0.1"/></joint>
+</robot>"""
+OF_FIXED = """
+[model]
+space = true
+robot = { file = "arm.urdf", positions = { upper = 0.5 } }
+[solver]
+step = "0.5 ms"
+[simulate]
+end = "0.2 s"
+points = ["upper.tip"]
+"""
+
+
+def test_links_that_are_fixed_to_a_moving_body_are_parts_of_it(tmp_path):
+    """A pendulum of 2 kg with 0.11 kg m^2 about its pin; the point is 0.5 m below the pin."""
+    (tmp_path / "arm.urdf").write_text(FIXED)
+    (tmp_path / "arm.toml").write_text(OF_FIXED)
+    study = load(tmp_path / "arm.toml")
+    assert study.file.model.robot_table.names == (["upper"], ["upper joint"])
+    pendulum = solve_ivp(
+        lambda _, y: [y[1], -2 * 9.81 * 0.2 / 0.11 * np.sin(y[0])], (0, 0.2), [0.5, 0], rtol=1e-10, atol=1e-12
+    )
+    angle = pendulum.y[0, -1]
+    found = study.motion(0.2).channels(["upper joint.angle", "upper.tip.x", "upper.tip.z"])[-1]
+    np.testing.assert_allclose(found, [angle, -0.5 * np.sin(angle), -0.5 * np.cos(angle)], atol=2e-6)
+
+
+def test_components_are_placed_at_the_joints_that_the_mechanism_has(tmp_path):
+    (tmp_path / "arm.urdf").write_text(FIXED)
+    spring = (
+        '[[model.load]]\nkind = "AngleLimit"\nname = "stop"\njoint = "JOINT"\nstiffness = 10.0\nupper_limit = 1.0\n'
+    )
+    (tmp_path / "arm.toml").write_text(OF_FIXED + spring.replace("JOINT", "upper joint"))
+    assert [load.name for load in load(tmp_path / "arm.toml").system().loads] == ["stop"]
+    sentences = wrong(tmp_path, OF_FIXED + spring.replace("JOINT", "upper"))
+    assert sentences == [
+        "[[model.load]] 'stop', joint: 'upper' was given; unknown joint 'upper'; did you mean 'upper joint'?"
+    ]
+    same = spring.replace("JOINT", "upper joint").replace('"stop"', '"upper"')
+    assert wrong(tmp_path, OF_FIXED + same) == ["[model]: 2 components are called 'upper'; expected different names"]
+
+
+REFUSED = (
+    "the system has no body",
+    "but has no mass, and no link with mass",
+    "the file has no <link>",
+    "<mimic>: unknown joint",
+)
+
+
+@pytest.mark.slow
+def test_studies_take_the_robots_of_others(tmp_path):
+    """All URDF files of example-robot-data, but those without a moving body or with a moving link without mass."""
+    package = Path(pytest.importorskip("pinocchio").__file__).parents[4]
+    found = sorted(package.glob("share/example-robot-data/robots/**/*.urdf"))
+    taken, refused = 0, []
+    for file in found:
+        path = tmp_path / "robot.toml"
+        robot = f"robot = {{ file = {str(file)!r}, impossible = 'replace' }}"
+        path.write_text(f'[model]\nspace = true\n{robot}\n[solver]\nstep = "1 ms"\n[simulate]\nend = 0.01\n')
+        try:
+            plan(load(path))
+            taken += 1
+        except (InputError, ModelError) as error:
+            refused.append(str(error))
+    assert all(any(words in sentence for words in REFUSED) for sentence in refused), refused
+    assert taken >= 62
 
 
 def test_the_reactions_of_torques_at_joints_are_those_of_inverse_dynamics(folder):

@@ -1,6 +1,6 @@
 """From a tree to a mechanism in space."""
 
-__all__ = ["built", "groups"]
+__all__ = ["built", "groups", "names"]
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -97,6 +97,16 @@ def groups(tree: Tree) -> dict[str, Group]:
     return of
 
 
+def names(tree: Tree) -> tuple[list[str], dict[str, str]]:
+    """Return the names of the bodies of a tree's mechanism, and the name of each joint there by its name in the tree.
+
+    Links that are fixed to each other are one body. A joint that has the name of a body gets another name.
+    """
+    bodies = [link.name for link in tree.links if link.joint.moves]
+    joints = [joint.name for joint in tree.joints if joint.moves]
+    return bodies, {name: f"{name} joint" if name in bodies else name for name in joints}
+
+
 def _moved(shapes: Iterable[Shape], frame: Frame) -> list[Shape]:
     """Shapes that are given in a frame."""
     return [replace(shape, pose=_pose(composed(frame, pose_matrix(shape.pose)))) for shape in shapes]
@@ -143,6 +153,7 @@ def built(
     moving = [link for link in tree.links if link.joint.moves]
     described = {link.joint.name: link.joint for link in moving}
     joints: dict[str, Joint] = {}
+    _, joint_names = names(tree)
     bodies = {
         link.name: system.add(_body(of[link.name], motion[link.name], link.joint.name in torques)) for link in moving
     }
@@ -153,7 +164,7 @@ def built(
             side: Side = system.ground.point(_row(at), Orientation.of(axes))
         else:
             side = bodies[parent.name].point(parent.seat(name))
-        joints[name] = _connect(system, tree, link.joint, side, bodies[link.name], slip)
+        joints[name] = _connect(system, tree, link.joint, joint_names[name], side, bodies[link.name], slip)
         if name in torques:
             _drive(system, link.joint, side, bodies[link.name], torques[name])
     at = {name: coordinate(tree, own, q, q_rates)[0] for name, own in described.items()}
@@ -231,16 +242,16 @@ def _body(group: Group, motion: Motion, driven: bool) -> RigidBody:
     )
 
 
-def _connect(system: SpatialSystem, tree: Tree, joint: TreeJoint, a: Side, body: RigidBody, slip: Number) -> Joint:
-    """Add a joint, which is returned, its friction and its armature inertia.
+def _connect(
+    system: SpatialSystem, tree: Tree, joint: TreeJoint, name: str, a: Side, body: RigidBody, slip: Number
+) -> Joint:
+    """Add a joint of this name, which is returned, its friction and its armature inertia.
 
     Zero numbers that are parameters stay in the model."""
     has = {name: getattr(joint, name) != 0.0 or f"{joint.name}.{name}" in tree.changed for name in JOINT_NUMBERS}
     friction = None
     if has["damping"] or has["friction"]:
         friction = Friction(joint.damping, joint.friction if has["friction"] else None, slip=slip)
-    bodies = {own.name for own in system.bodies}
-    name = f"{joint.name} joint" if joint.name in bodies else joint.name
     kind = RevoluteJoint if joint.kind == REVOLUTE else PrismaticJoint
     made = system.add(kind(name, a, body.point("origin"), joint.axis, friction))
     if has["armature"]:

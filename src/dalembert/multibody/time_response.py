@@ -15,6 +15,7 @@ from dalembert.findings import Finding
 from dalembert.forward import Refinement, StateChart, error_factor
 from dalembert.forward.builders import check_function, cores
 from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES
+from dalembert.multibody.bushing_rotations import turning_bushings
 from dalembert.multibody.fingerprint import fingerprint
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.long_runs import check_steps
@@ -245,13 +246,13 @@ class TimeResponse(BuiltModel):
         return Refinement(model, error_factor(order), how)
 
     def findings(self, vector: np.ndarray) -> tuple[Finding, ...]:
-        """Findings on the mechanism at a parameter vector (parameters,), and on its motion where joints have friction.
+        """Findings on the mechanism at a parameter vector (parameters,), and on its motion.
 
-        With Coulomb friction the motion is simulated once.
+        The motion is simulated once if it has Coulomb friction, or bushings in space with torques.
         """
         system, late = self.system(vector), late_samples(self.times)
         try:
-            if not rubbing(system):
+            if not (rubbing(system) or turning_bushings(system)):
                 step, end = self.solver.fixed_step, float(self.times[-1])
                 return (*system.findings, *late, *skipped_samples(system, step, self.begin, end))
             return (*simulate(system, float(self.times[-1]), self.solver, begin=self.begin).findings, *late)

@@ -15,6 +15,7 @@ from dalembert.errors import require_known
 from dalembert.files import write_contents
 from dalembert.findings import Finding
 from dalembert.kernels.preparation import prepare
+from dalembert.multibody.bushing_rotations import half_turns, turning_bushings
 from dalembert.multibody.components.joint import BaseJoint
 from dalembert.multibody.drawing import Drawing, draw
 from dalembert.multibody.evaluate import energies, energy_kernels, violations
@@ -69,21 +70,29 @@ class Trajectory(Displayed):
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
-        """Those of the system, skipped samples, redundant constraints, and friction that does not suit the motion."""
+        """Those of the system and of its motion.
+
+        Skipped samples, redundant constraints, friction that does not suit the motion, bushings that pass half a turn.
+        """
         joints = rubbing(self.system)
         begin = float(np.real(self.lowered.signal_data[0]))
         skipped = skipped_samples(self.system, self.solver.fixed_step, begin, float(self.run.times[-1]))
         redundant = redundant_constraints(self.lowered) if self.solver.takes_redundancy else ()
-        if not joints:
+        bushings = turning_bushings(self.system)
+        if not (joints or bushings):
             return (*self.system.findings, *skipped, *redundant)
-        readers = observer(self.system, self.lowered, [f"{name}.{own.channel}" for name, own in joints.items()])
+        names = [f"{name}.{own.channel}" for name, own in joints.items()]
+        names += [f"{name}.{axis}" for name, axes in bushings.items() for axis in axes]
+        readers = observer(self.system, self.lowered, names)
         prepare(readers.kernels(self.lowered, False))
-        rates = readers.read(self.lowered, self.lowered.real, self.run.states, self.run.times)
+        values = readers.read(self.lowered, self.lowered.real, self.run.states, self.run.times)
         unsuited = (
             slip_findings(name, own, self.run.times, column, self.solver.fixed_step)
-            for (name, own), column in zip(joints.items(), rates.T, strict=True)
+            for (name, own), column in zip(joints.items(), values.T, strict=False)
         )
-        return (*self.system.findings, *skipped, *redundant, *chain.from_iterable(unsuited))
+        vectors = np.split(values[:, len(joints) :], len(bushings), axis=1) if bushings else []
+        turned = half_turns(self.run.times, dict(zip(bushings, vectors, strict=True)))
+        return (*self.system.findings, *skipped, *redundant, *chain.from_iterable(unsuited), *turned)
 
     @property
     def channel_names(self) -> tuple[str, ...]:

@@ -21,6 +21,11 @@ class BaseLoad(Checked):
         """Bodies without mass, one for each coordinate of a joint that the component needs."""
         return ()
 
+    @property
+    def rotation_vector(self) -> tuple[str, ...]:
+        """Channels of the rotation vector that its torque depends on, unique within half a turn; none for others."""
+        return ()
+
     @abstractmethod
     def lower(self, lowering: Any) -> None:
         """Write the rows of the kernels."""

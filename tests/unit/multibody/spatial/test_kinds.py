@@ -4,6 +4,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from dalembert.multibody import in_python
 from dalembert.multibody.evaluate import constraint_rates, energies, residual
@@ -19,6 +20,8 @@ from spatial_scenes import SCENES
 TIME = 0.3
 #: Their energies and powers are those of aligned axes, and of points on the axis.
 ALIGNED = {"torsion spring", "torsion spring to ground", "prismatic, rubbing", "motor", "motor to ground"}
+#: Their torques are those of rotations: they do what energies lose where directors are orthonormal.
+RIGID = {"bushing", "bushing to ground", "rigid body"}
 
 
 @cache
@@ -90,12 +93,18 @@ def test_rates_are_slopes_of_the_constraint_along_a_motion(kind: Kind) -> None:
 
 @pytest.mark.parametrize("scene", [scene for scene in SCENES if scene not in ALIGNED])
 def test_forces_do_what_energies_lose(scene: str) -> None:
-    """Residual . v = d(T + V)/dt - power + multipliers . d(constraints)/dt, for any state."""
+    """Residual . v = d(T + V)/dt - power + multipliers . d(constraints)/dt, for any state, or any rigid one."""
     own = lowered(scene)
     n = own.structure.n
     for seed in range(2):
         noise = states(float, len(own.x), seed)
         x, v, a = own.x + 0.1 * noise[0], noise[1], noise[2]
+        if scene in RIGID:
+            for name, first in own.structure.first.items():
+                if own.bodies[name].turns:
+                    turned = Rotation.from_rotvec(noise[0, first : first + 3]).as_matrix()
+                    x[first + 3 : first + 12] = turned.T.ravel()
+                    v[first + 3 : first + 12] = np.cross(noise[1, first : first + 3], turned.T).ravel()
         x[n:], v[n:], a[n:] = 20 * noise[0, n:], 0.0, 0.0
         x[-1] = 0.0
         moved = x + 0j

@@ -17,25 +17,31 @@ from dalembert.multibody.components.points import require_direction
 from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
-from dalembert.multibody.components.spatial.markers import SLOTS, axis_rate
+from dalembert.multibody.components.spatial.markers import axis_rate
 from dalembert.multibody.components.spatial.pairs import (
     A_AXES,
-    B_AXES,
     E,
-    F,
+    along_axes,
+    e1,
+    e2,
+    e3,
+    f1,
+    f2,
+    f3,
     push_a_axis,
-    push_b_axis,
     push_pair,
+    relative_spin,
     separation,
     separation_rate,
+    twist_pair,
 )  # fmt: skip
 from dalembert.multibody.components.spatial.points import Side
-from dalembert.multibody.components.spatial.vectors import dot, times
+from dalembert.multibody.components.spatial.rotations import rotation_vector, vector_rate, vector_torque
+from dalembert.multibody.components.spatial.vectors import at, combined, dot, times
 
-_OTHERS = ((1, 2), (2, 0), (0, 1))
 _ENTRIES = [(i, j) for i in range(6) for j in range(i, 6)]
 _NUMBERS = tuple(f"{what}_{i + 1}{j + 1}" for what in ("stiffness", "damping") for i, j in _ENTRIES)
-_PUSH_A, _PUSH_B = (tuple(push(number) for number in (1, 2, 3)) for push in (push_a_axis, push_b_axis))
+_PUSH_A = tuple(push_a_axis(number) for number in (1, 2, 3))
 
 
 def _displacement(i: int) -> tuple[Any, Any, Any]:
@@ -59,49 +65,23 @@ def _displacement(i: int) -> tuple[Any, Any, Any]:
     return value, rate, push
 
 
-def _rotation(i: int) -> tuple[Any, Any, Any]:
-    """Rotation (e_k . f_j - e_j . f_k) / 2, about the axis i, its rate, and the torque that does work on it."""
-    j, k = _OTHERS[i]
-    ej, ek, fj, fk = E[j], E[k], F[j], F[k]
-    aj, ak, bj, bk = A_AXES[j], A_AXES[k], B_AXES[j], B_AXES[k]
-    push_ej, push_ek, push_fj, push_fk = _PUSH_A[j], _PUSH_A[k], _PUSH_B[j], _PUSH_B[k]
-
-    @inlined
-    def value(x, p, m):
-        return 0.5 * (dot(ek(x, p, m), fj(x, p, m)) - dot(ej(x, p, m), fk(x, p, m)))
-
-    @inlined
-    def rate(x, v, p, m):
-        first = dot(axis_rate(m.a_kind, 0, v, ak(p)), fj(x, p, m))
-        first += dot(ek(x, p, m), axis_rate(m.b_kind, SLOTS, v, bj(p)))
-        second = dot(axis_rate(m.a_kind, 0, v, aj(p)), fk(x, p, m))
-        second += dot(ej(x, p, m), axis_rate(m.b_kind, SLOTS, v, bk(p)))
-        return 0.5 * (first - second)
-
-    @inlined
-    def push(x, p, m, torque, r):
-        half = 0.5 * torque
-        push_ek(p, m, times(half, fj(x, p, m)), r)
-        push_fj(p, m, times(half, ek(x, p, m)), r)
-        push_ej(p, m, times(-half, fk(x, p, m)), r)
-        push_fk(p, m, times(-half, ej(x, p, m)), r)
-
-    return value, rate, push
+(_u1, _v1, _push1), (_u2, _v2, _push2), (_u3, _v3, _push3) = map(_displacement, range(3))
 
 
-(
-    (_u1, _v1, _push1), (_u2, _v2, _push2), (_u3, _v3, _push3),
-    (_u4, _v4, _push4), (_u5, _v5, _push5), (_u6, _v6, _push6),
-) = (*map(_displacement, range(3)), *map(_rotation, range(3)))  # fmt: skip
+@inlined
+def _rotation(x, p, m):
+    """Rotation vector of b relative to a, along the axes of a (or of b: they are the same)."""
+    first, second = along_axes(f1(x, p, m), x, p, m), along_axes(f2(x, p, m), x, p, m)
+    return rotation_vector(first, second, along_axes(f3(x, p, m), x, p, m))
 
 
 @inlined
 def _deflection(x, v, p, m, u, w):
-    """Displacements and rotations of b relative to a along the axes of a, less those at the start, and their rates."""
+    """Displacement and rotation vector of b relative to a along the axes of a, less those at the start, and rates."""
     u[0], u[1], u[2] = _u1(x, p, m) - p.rest_x, _u2(x, p, m) - p.rest_y, _u3(x, p, m) - p.rest_z
-    u[3], u[4], u[5] = _u4(x, p, m), _u5(x, p, m), _u6(x, p, m)
+    u[3], u[4], u[5] = _rotation(x, p, m)
     w[0], w[1], w[2] = _v1(x, v, p, m), _v2(x, v, p, m), _v3(x, v, p, m)
-    w[3], w[4], w[5] = _v4(x, v, p, m), _v5(x, v, p, m), _v6(x, v, p, m)
+    w[3], w[4], w[5] = vector_rate(at(u, 3), along_axes(relative_spin(x, v, m), x, p, m))
 
 
 @inlined
@@ -138,7 +118,7 @@ def _product(matrix, u, out):
 
 @inlined
 def _loads(x, v, p, m, u, w, f):
-    """Forces and torques K u + D u' on a along its axes."""
+    """Forces and torques K u + D u' that do work on u."""
     _deflection(x, v, p, m, u, w)
     for i in range(6):
         f[i] = 0.0 * u[i]
@@ -153,9 +133,8 @@ def _residual(x, v, a, p, m, inputs, r):
     _push1(x, p, m, f[0], r)
     _push2(x, p, m, f[1], r)
     _push3(x, p, m, f[2], r)
-    _push4(x, p, m, f[3], r)
-    _push5(x, p, m, f[4], r)
-    _push6(x, p, m, f[5], r)
+    torque = vector_torque(at(u, 3), at(f, 3))
+    twist_pair(x, m, combined(torque, e1(x, p, m), e2(x, p, m), e3(x, p, m)), r)
 
 
 @inlined
@@ -179,7 +158,9 @@ def _observe(x, v, a, p, m, inputs, out):
     u, w, f = stack(x, 6), stack(x, 6), stack(x, 6)
     _loads(x, v, p, m, u, w, f)
     for i in range(6):
-        out[i], out[6 + i] = u[i], f[i]
+        out[i] = u[i]
+    out[6], out[7], out[8] = f[0], f[1], f[2]
+    out[9], out[10], out[11] = vector_torque(at(u, 3), at(f, 3))
 
 
 BUSHING = pair_kind(
@@ -203,9 +184,14 @@ BUSHING = pair_kind(
 class Bushing(Load):
     """An elastic bearing between two markers, without force as the bodies are placed.
 
-    The force and the torque on a along its axes are K u + D u', with the displacement of b relative to a and the
-    rotation vector of b relative to a (the sine of the angle times the axis) in u; both start from zero. K and D are
-    symmetric. The rotations should stay below about half a right angle.
+    u holds the displacement of b relative to a along the axes of a, and the rotation vector p of b relative to a: the
+    axis of the rotation times its angle. Both start from zero. The bushing stores u . K u / 2 and loses u' . D u'. So
+    K u + D u' consists of the force on a, and of the torque t that does work on p. The torque on a is
+    t + p x t / 2 + c p x (p x t) with c = (1 - |p|/2 cot(|p|/2)) / |p|^2. For a rotation about one axis it is t. K and
+    D are symmetric.
+
+    The law holds for rotations of less than half a turn, where p is unique. Beyond half a turn p jumps to the rotation
+    with the opposite axis, and the torque changes its sign. A finding names a motion that does this.
 
     Parameters
     ----------
@@ -215,6 +201,12 @@ class Bushing(Load):
         Along and about the axes x, y, z of a: N/m, then N m/rad.
     damping : six float, or (6, 6) symmetric
         N s/m, then N m s/rad.
+
+    Notes
+    -----
+    Channels: ``x``, ``y``, ``z``, the displacement; ``rotation_x``, ``rotation_y``, ``rotation_z``, the rotation
+    vector; ``force_x`` to ``torque_z``, the force on a and the torque on a about the point of b. All are along the axes
+    of a.
     """
 
     a: Side
@@ -223,6 +215,11 @@ class Bushing(Load):
     damping: Any = field(default=(0.0,) * 6, metadata={"unit": "N*s/m", "table": "BushingDamping"})
 
     kind = BUSHING
+
+    @property
+    def rotation_vector(self) -> tuple[str, ...]:
+        matrices = [np.real(_matrix("", what, getattr(self, what))) for what in ("stiffness", "damping")]
+        return ("rotation_x", "rotation_y", "rotation_z") if any(np.any(rows[:, 3:]) for rows in matrices) else ()
 
     def __post_init__(self) -> None:
         for what in ("stiffness", "damping"):

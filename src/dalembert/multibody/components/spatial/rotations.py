@@ -1,7 +1,8 @@
 """Orientations as numbers, from the axes of a marker: exact in the real part, first order in the imaginary one."""
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.kernels.elementary import angle_of, real, reciprocal, root
+from dalembert.multibody.components.spatial.vectors import cross, dot, plus, times
+from dalembert.multibody.kernels.elementary import angle_of, real, reciprocal, root, sin_cos
 
 
 @inlined
@@ -39,6 +40,38 @@ def rotation_vector(e1, e2, e3):
         s = root(square)
         factor = 2.0 * angle_of(w, s) * reciprocal(s)
     return factor * x, factor * y, factor * z
+
+
+@inlined
+def _bend(vector):
+    """The factor c = (1 - a/2 cot a/2) / a^2 of the rotation vector's differential, with its length a < 2 pi.
+
+    Below a = 1/2 the difference loses digits; there it is the series sum_k |B_2k| a^(2k-2) / (2k)! with Bernoulli's
+    numbers B.
+    """
+    square = dot(vector, vector)
+    if real(square) < 0.25:
+        c = 691.0 / 1307674368000.0 + square / 74724249600.0
+        c = 1.0 / 47900160.0 + square * c
+        c = 1.0 / 30240.0 + square * (1.0 / 1209600.0 + square * c)
+        return 1.0 / 12.0 + square * (1.0 / 720.0 + square * c)
+    half = 0.5 * root(square)
+    s, cosine = sin_cos(half)
+    return (1.0 - half * cosine * reciprocal(s)) * reciprocal(square)
+
+
+@inlined
+def vector_rate(vector, spin):
+    """Rate of a rotation vector p by the angular velocity w in the fixed axes, w - p x w / 2 + c p x (p x w)."""
+    across = cross(vector, spin)
+    return plus(spin, plus(times(-0.5, across), times(_bend(vector), cross(vector, across))))
+
+
+@inlined
+def vector_torque(vector, torque):
+    """Torque in the fixed axes that does the work of t on a rotation vector p, t + p x t / 2 + c p x (p x t)."""
+    across = cross(vector, torque)
+    return plus(torque, plus(times(0.5, across), times(_bend(vector), cross(vector, across))))
 
 
 @inlined

@@ -44,6 +44,11 @@ def _ghost() -> Posterior:
     return sample(model, measured(b=0.0), **{**SHORT, "start": [1.2, 1.0], "draws": 100})
 
 
+def _mirrored() -> Posterior:
+    model = PythonModel(lambda a: a * a * TIMES, {"a": (-3.0, 3.0)}, ["x"], TIMES)
+    return sample(model, measured(b=0.0), chains=2, draws=30, warmup=30, start=[1.1])
+
+
 POSTERIOR_CASES = {
     "a posterior with profiles": Case(
         _with_profiles,
@@ -56,6 +61,7 @@ POSTERIOR_CASES = {
         ("marginal-1", "marginal-2", "pairs", "trace-1", "trace-2", "predictive-1", "profile-1"),
     ),
     "chains that differ": Case(_apart, ("The chains have not converged: R-hat of 'rate' is up to 1.500",), ("pairs",)),
+    "modes that no chain connects": Case(_mirrored, ("The posterior has 2 modes that no chain connects: a = ",)),
     "one short chain": Case(_alone, ("There are too few draws", "There is one chain, so that nothing shows")),
     "a prior that excludes the data": Case(
         lambda: sample(line(a=Normal(-1.0, 0.2)), measured(), **SHORT),

@@ -95,6 +95,21 @@ def test_the_parameters_of_the_noise_are_sampled_too(tmp_path: Path) -> None:
     assert 0.02 < outcome.result.estimates["noise.x.deviation"] < 0.2  # 0.05 in the data
 
 
+@pytest.mark.parametrize(("sampler", "separate"), [("nuts", True), ("affine-invariant", False)])
+def test_both_modes_of_a_study_are_sampled(tmp_path: Path, sampler: str, separate: bool) -> None:
+    task = f"[sample]\nchains = 2\ndraws = 100\nwarmup = 40\nsampler = '{sampler}'\n"
+    head = HEAD.replace('lower = 0.5, upper = "8 1/s"', "lower = -8, upper = 8, start = 3")
+    path = study(tmp_path, task, head)
+    (tmp_path / "decay.py").write_text(DECAY.replace("-rate * times", "-0.5 * rate * rate * times"))
+    _, outcome = run_study(load(path), tmp_path / "run")
+    rates = outcome.result["rate"].mean(axis=1)
+    assert np.any(outcome.result["rate"] > 0)
+    assert np.any(outcome.result["rate"] < 0)
+    codes = {finding.code for finding in outcome.result.findings}
+    assert ("separate-modes" in codes) == separate
+    assert (np.max(np.abs(rates)) > 1.8) == separate  # chains that jump change the sign
+
+
 MISTAKES = {
     "no data": ("[sample]\n", HEAD.partition("[data]")[0]),
     "both": ("[sample]\nsampler = 'nuts'\nsurrogate = true\n", HEAD),

@@ -90,7 +90,11 @@ class Likelihood:
 
         NaN where a simulation failed.
         """
-        batch, residuals, responses = self._compared(vectors)
+        return self.of_responses(*self._simulated(vectors))
+
+    def of_responses(self, batch: np.ndarray, simulated: np.ndarray) -> np.ndarray:
+        """Return :meth:`pointwise` from responses (batch, samples, channels) at vectors (batch, parameters)."""
+        residuals, responses = self._compared(simulated)
         known = self._known(batch)
         found = [
             channel.log_densities(residuals[:, rows], responses[:, rows], channel.values(known))
@@ -113,7 +117,8 @@ class Likelihood:
             For each grouping. NaN where a simulation failed. Groups of single values have the densities of
             :meth:`pointwise` where the noise is independent.
         """
-        batch, residuals, responses = self._compared(vectors)
+        batch, simulated = self._simulated(vectors)
+        residuals, responses = self._compared(simulated)
         known, numbers = self._known(batch), [np.asarray(one) for one in groups]
         found = [np.zeros((len(batch), int(np.max(one, initial=-1)) + 1)) for one in numbers]
         begin = 0
@@ -131,10 +136,9 @@ class Likelihood:
         """Each channel with the places of its values."""
         return [(channel, channel.series.rows) for channel in self.channels]
 
-    def _compared(self, vectors: ArrayLike) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Vectors, residuals (batch, places) and responses (batch, places)."""
-        batch, responses = self._simulated(vectors)
-        return batch, self.problem.misfit(responses).reshape(len(batch), -1), responses.reshape(len(batch), -1)
+    def _compared(self, responses: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Residuals (batch, places) and responses (batch, places) of responses (batch, samples, channels)."""
+        return self.problem.misfit(responses).reshape(len(responses), -1), responses.reshape(len(responses), -1)
 
     def linearise(self, vector: ArrayLike) -> tuple[float, np.ndarray]:
         """Return the log-likelihood and its exact gradient (parameters,).

@@ -22,8 +22,6 @@ PILED = 0.1
 
 
 ADVICE = {
-    "equal-minima": "The chains start at one minimum, and the draws may miss the others. Narrow the bounds, or measure "
-    "another channel.",
     "correlated-residuals": "The draws take the noise for independent, so that their intervals are too narrow. Give "
     "noise='autoregressive', or correct the model.",
 }
@@ -43,7 +41,7 @@ def inherited(fit: Fit | None, likelihood: Likelihood, *, usual: bool) -> Iterat
     usual : bool
         Whether the noise is that of the data, and no model of it is given.
     """
-    codes = {"equal-minima", "correlated-channels"} | ({"misfit-above-noise"} if usual else set())
+    codes = {"correlated-channels"} | ({"misfit-above-noise"} if usual else set())
     if all(channel.whitening is None for channel in likelihood.channels):
         codes |= OF_INDEPENDENT_NOISE
     for finding in fit.doubts if fit is not None else ():

@@ -17,6 +17,9 @@ from dalembert.stored_fields import Labels, Over, Source, Store, StoredParameter
 if TYPE_CHECKING:
     from arviz import InferenceData
 
+SEPARATE = "separate-modes"
+"""Code of the finding on modes that no chain connects."""
+
 _OF_DRAWS = ("chain", "draw")
 
 
@@ -128,7 +131,8 @@ class Posterior(EndedResult):
     @property
     def success(self) -> bool:
         """Whether no finding on the chains is an error."""
-        return all(finding.severity != "error" for finding in self.outcome)
+        of_chains = (*self.outcome, *(finding for finding in self.findings if finding.code == SEPARATE))
+        return all(finding.severity != "error" for finding in of_chains)
 
     @property
     def flat(self) -> np.ndarray:

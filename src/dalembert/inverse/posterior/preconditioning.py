@@ -20,6 +20,13 @@ SEARCHES = 12
 REACH, NEAR = 8.0, 1.0
 """Reach of a search in standard deviations, and how near to its start the last one ends."""
 
+LOCAL = 2.0
+"""Reach of a local search in standard deviations: a longer step may leave a narrow mode."""
+
+FALL, HALVINGS = 2.0, 20
+"""Fall of the log density at one standard deviation from which a local search takes the deviation for too large, and
+how often it is halved at most."""
+
 STEP = 0.05
 """Step of second differences in coordinates without bounds, for models without a jacobian."""
 
@@ -50,11 +57,14 @@ class Centred:
         return np.sqrt(np.diag(self.covariance))
 
 
-def centred(likelihood: Likelihood, parameters: Parameters, start: np.ndarray, *, gradients: bool) -> Centred:
+def centred(
+    likelihood: Likelihood, parameters: Parameters, start: np.ndarray, *, gradients: bool, local: bool = False
+) -> Centred:
     """Return the target around the mode that is reached from a start (parameters,).
 
     With ``gradients`` the mode is searched by L-BFGS-B, and the curvature is JᵀΣ⁻¹J and that of the priors. Without,
-    Nelder and Mead's simplex and second differences serve.
+    Nelder and Mead's simplex and second differences serve. A ``local`` search takes short steps, and trusts the
+    curvature only as far as the density falls by it, so that it stays in a narrow mode.
 
     Raises
     ------
@@ -72,18 +82,36 @@ def centred(likelihood: Likelihood, parameters: Parameters, start: np.ndarray, *
     for number in range(SEARCHES):  # each one is in the coordinates of the end of the one before
         information, _ = _information(target, point, gradients=gradients)
         target = replace(target, centre=point, factor=_factor(information))
-        place = _searched(target, gradients=gradients)
+        target = _narrowed(target) if local else target
+        place = _searched(target, LOCAL if local else REACH, gradients=gradients)
         point = target.points(place)
         if number and np.max(np.abs(place), initial=0.0) < NEAR:
             break
     information, data = _information(target, point, gradients=gradients)
-    factor = _factor(information)
-    rows = target.coordinates.slope(point)[:, None] * factor
-    found = replace(target, centre=point, factor=factor)
+    found = replace(target, centre=point, factor=_factor(information))
+    found = _narrowed(found) if local else found
+    rows = target.coordinates.slope(point)[:, None] * found.factor
     return Centred(found, target.coordinates.vectors(point), rows @ rows.T, data)
 
 
-def _searched(target: Target, *, gradients: bool) -> np.ndarray:
+def _narrowed(target: Target) -> Target:
+    """Return the target with columns of its factor halved until the density falls by at most FALL at their ends.
+
+    A normal density falls by ½ there. It falls by more where the response is so nonlinear that the curvature JᵀΣ⁻¹J
+    at the centre is far too small.
+    """
+    count = len(target.centre)
+    for _ in range(HALVINGS):
+        density = target.evaluate(np.concatenate([np.zeros((1, count)), np.eye(count), -np.eye(count)]))
+        falls = density[0] - density[1:].reshape(2, count).mean(axis=0)
+        steep = falls > FALL  # infinite where a simulation failed
+        if not np.any(steep):
+            break
+        target = replace(target, factor=np.where(steep, 0.5, 1.0) * target.factor)
+    return target
+
+
+def _searched(target: Target, reach: float, *, gradients: bool) -> np.ndarray:
     """The place of the largest density, from the centre of the target."""
     origin = np.zeros(len(target.centre))
     bound = float(target.evaluate(origin[None])[0])
@@ -97,7 +125,7 @@ def _searched(target: Target, *, gradients: bool) -> np.ndarray:
         return bound - value if np.isfinite(value) else FAR + float(place @ place)
 
     if gradients:
-        limits = [(-REACH, REACH)] * len(origin)  # a search within what the curvature allows
+        limits = [(-reach, reach)] * len(origin)  # a search within what the curvature allows
         return minimize(squared, origin, jac=True, method="L-BFGS-B", bounds=limits, options={"maxiter": 100}).x
     size = len(origin)
     simplex = np.vstack([origin, 0.5 * np.eye(size)])

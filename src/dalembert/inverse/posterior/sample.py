@@ -25,14 +25,15 @@ from dalembert.inverse.likelihood.likelihood import Likelihood, likelihood_of
 from dalembert.inverse.likelihood.placing import Noise
 from dalembert.inverse.posterior.conclusions import contradictions, findings, inherited
 from dalembert.inverse.posterior.convergence import convergence
+from dalembert.inverse.posterior.modes import Modes, modes
 from dalembert.inverse.posterior.posterior import Posterior
-from dalembert.inverse.posterior.preconditioning import Centred, centred, has_jacobian
+from dalembert.inverse.posterior.preconditioning import centred, has_jacobian
 from dalembert.inverse.posterior.remembered import Remembered
 from dalembert.inverse.posterior.samplers.affine_invariant import AffineInvariant
 from dalembert.inverse.posterior.samplers.delayed_acceptance import DelayedAcceptance
 from dalembert.inverse.posterior.samplers.nuts import NUTS
 from dalembert.inverse.posterior.samplers.sampler import Chains, Length, OnDraws, Sampler
-from dalembert.inverse.posterior.target import Target
+from dalembert.inverse.posterior.separate_modes import separate_modes
 from dalembert.inverse.posterior.unprior import without_priors
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import pose
@@ -127,6 +128,10 @@ def sample(
     logarithm is searched; the Jacobian of the map is part of the density. They are preconditioned by the Cholesky
     factor of JᵀΣ⁻¹J and the curvature of the priors at the mode, so that the posterior is nearly round.
 
+    Further modes are searched from the ends of the fit's starts and from local maxima among points all over the
+    prior. Each mode of at least 1 % of the probability has a chain, if there are enough chains. If no chain connects
+    two modes, the finding ``separate-modes`` is an error.
+
     Source: A. Gelman and others, Bayesian Data Analysis, third edition, 2013, chapters 11 and 12.
 
     Examples
@@ -164,19 +169,25 @@ def sample(
             )
     around = centred(likely, parameters, vector, gradients=differentiable)
     length = Length(chains, draws, warmup, seed)
+    ends = [] if fit is None else [start.end for start in fit.starts if np.isfinite(start.fitness)]
+    known_noise = weights is not None or problem.data.deviations is not None
+    found_modes = modes(around, ends, known_noise=known_noise, gradients=differentiable, draws=length.total, seed=seed)
     # A surrogate's draws are vectors that the model has simulated: what it is asked again costs nothing.
     remembered = Remembered(problem.model) if isinstance(chosen, DelayedAcceptance) else None
     own = problem if remembered is None else replace(problem, model=remembered, journal=Journal(problem.samples))
-    found = chosen.sampled(around.target.of(own), length, _announced(on_event))
-    result = _result(around, around.target.of(own), found, chosen, length, blocks)
+    found_modes = found_modes.of(own)
+    found = chosen.sampled(found_modes, length, _announced(on_event))
+    result = _result(found_modes, found, chosen, length, blocks)
     simulations = problem.journal.simulations + found.simulations
     simulations += 0 if remembered is None else remembered.simulations
     doubts = inherited(fit, likely, usual=noise is None)
     return replace(result, simulations=simulations, findings=(*result.findings, *doubts))
 
 
-def _result(around: Centred, target: Target, found: Chains, sampler: Sampler, length: Length, blocks: int) -> Posterior:
+def _result(modes: Modes, found: Chains, sampler: Sampler, length: Length, blocks: int) -> Posterior:
     """The result of the draws, with what is computed at them."""
+    around = modes.best
+    target = around.target
     parameters, vectors = target.parameters, target.vectors(found.places)
     flat = vectors.reshape(-1, len(parameters))
     places = target.likelihood.places
@@ -224,7 +235,12 @@ def _result(around: Centred, target: Target, found: Chains, sampler: Sampler, le
         warmup=length.warmup,
         simulations=0,
         provenance=provenance(target.problem.model, sampler, **settings),
-        findings=(*found.findings, *contradictions(around), *findings(parameters, flat)),
+        findings=(
+            *separate_modes(modes, found.places, sampler),
+            *found.findings,
+            *contradictions(around),
+            *findings(parameters, flat),
+        ),
     )
 
 

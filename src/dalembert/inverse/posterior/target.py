@@ -52,6 +52,10 @@ class Target:
         """Coordinates z of y, both (..., parameters)."""
         return self.centre + places @ self.factor.T
 
+    def places(self, points: np.ndarray) -> np.ndarray:
+        """Return y at coordinates z, both (..., parameters)."""
+        return np.linalg.solve(self.factor, (points - self.centre)[..., None])[..., 0]
+
     def vectors(self, places: np.ndarray) -> np.ndarray:
         """Parameter vectors of y, both (..., parameters)."""
         return self.coordinates.vectors(self.points(places))
@@ -60,7 +64,11 @@ class Target:
         """Log density (batch,) at y (batch, parameters); −∞ where the simulation failed."""
         points = self.points(places)
         vectors = self.coordinates.vectors(points)
-        found = self.likelihood.evaluate(vectors) + self.prior(vectors) + self.coordinates.log_slope(points)
+        return self.density(points, vectors, self.likelihood.evaluate(vectors))
+
+    def density(self, points: np.ndarray, vectors: np.ndarray, likelihoods: np.ndarray) -> np.ndarray:
+        """Log density (batch,) from log-likelihoods (batch,) at coordinates z and vectors (batch, parameters) each."""
+        found = likelihoods + self.prior(vectors) + self.coordinates.log_slope(points)
         return np.where(np.isnan(found), -np.inf, found)
 
     def linearise(self, place: np.ndarray) -> tuple[float, np.ndarray]:

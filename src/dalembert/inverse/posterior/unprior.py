@@ -10,7 +10,16 @@ from dalembert.parameters import Parameters
 
 
 @dataclass(frozen=True)
-class _WithoutPriors(Wrapped):
+class WithoutPriors(Wrapped):
+    """A model whose parameters have no priors.
+
+    Parameters
+    ----------
+    model : ForwardModel
+    known : Parameters
+        Those of the model, without priors.
+    """
+
     known: Parameters
 
     @property
@@ -18,7 +27,7 @@ class _WithoutPriors(Wrapped):
         return self.known
 
     @classmethod
-    def of(cls, model: ForwardModel) -> "_WithoutPriors":
+    def of(cls, model: ForwardModel) -> "WithoutPriors":
         own = model.parameters
         bare = tuple(replace(item, prior=None, deviation=None) for item in own.items)
         return cls(model, Parameters(bare, own.fixed))
@@ -27,5 +36,5 @@ class _WithoutPriors(Wrapped):
 def without_priors(model: ForwardModel | Sequence[Experiment]) -> ForwardModel | Sequence[Experiment]:
     """Return a model, or experiments, whose parameters have no priors."""
     if isinstance(model, Sequence):
-        return [replace(item, model=_WithoutPriors.of(item.model)) for item in model]
-    return _WithoutPriors.of(model)
+        return [replace(item, model=WithoutPriors.of(item.model)) for item in model]
+    return WithoutPriors.of(model)

@@ -1,15 +1,16 @@
 """The affine-invariant ensemble sampler, by emcee."""
 
 from dataclasses import dataclass
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
 
 from dalembert.arguments import limited
 from dalembert.errors import SolveError
+from dalembert.inverse.posterior.modes import Modes
 from dalembert.inverse.posterior.packages import package
-from dalembert.inverse.posterior.samplers.sampler import Chains, Length, OnDraws, Sampler
-from dalembert.inverse.posterior.target import Target
+from dalembert.inverse.posterior.samplers.sampler import Chains, Length, OnDraws, Sampler, moved
 
 TRIES = 20
 """Times that walkers whose start cannot be simulated get another one."""
@@ -24,20 +25,23 @@ class AffineInvariant(Sampler):
     Parameters
     ----------
     walkers : int, optional
-        The larger of ``chains`` and 4 walkers for each parameter if not given.
+        The larger of ``chains`` and 4 walkers for each parameter and mode if not given.
     thin : int
         Steps of the ensemble for each draw.
 
     Notes
     -----
-    Moves by differential evolution and its snooker variant, 4 to 1. All walkers of a half-step are one batch.
+    Moves by differential evolution and its snooker variant, 4 to 1. All walkers of a half-step are one batch. Where the
+    posterior has several modes, walkers start in each of them, and every fifth move is from one mode to another.
 
-    Source: D. Foreman-Mackey and others, emcee: the MCMC hammer, Publications of the Astronomical Society of the
-    Pacific 125 (2013).
+    Sources: D. Foreman-Mackey and others, emcee: the MCMC hammer, Publications of the Astronomical Society of the
+    Pacific 125 (2013). H. Tjelmeland and B. K. Hegstad, Mode jumping proposals in MCMC, Scandinavian Journal of
+    Statistics 28 (2001).
     """
 
     name: ClassVar[str] = "affine-invariant"
     gradients: ClassVar[bool] = False
+    jumps: ClassVar[bool] = True
 
     walkers: int | None = limited(None, least=4)
     thin: int = limited(5, least=1)
@@ -45,7 +49,7 @@ class AffineInvariant(Sampler):
     def check(self) -> None:
         package("emcee", "the sampler AffineInvariant")
 
-    def sampled(self, target: Target, length: Length, on_draws: OnDraws) -> Chains:
+    def sampled(self, modes: Modes, length: Length, on_draws: OnDraws) -> Chains:
         """Sample one ensemble.
 
         Raises
@@ -53,13 +57,16 @@ class AffineInvariant(Sampler):
         SolveError
             If too few starts can be simulated.
         """
+        target = modes.best.target
         emcee, size = package("emcee", "the sampler AffineInvariant"), len(target.centre)
-        walkers = self.walkers or max(length.chains, 4 * size)
+        walkers = self.walkers or max(length.chains, 4 * size * len(modes.targets))
         walkers = max(walkers + walkers % 2, 2 * size + 2)
         moves = [(emcee.moves.DEMove(), 0.8), (emcee.moves.DESnookerMove(), 0.2)]
+        if len(modes.targets) > 1:
+            moves = [(emcee.moves.DEMove(), 0.6), *moves[1:], (emcee.moves.MHMove(partial(_jumped, modes)), 0.2)]
         sampler = emcee.EnsembleSampler(walkers, size, target.evaluate, vectorize=True, moves=moves)
         random = np.random.RandomState(length.chain_seed(0))  # emcee takes the state of this one
-        starts = _starts(target, walkers, random)
+        starts = _starts(modes, walkers, random)
         state = emcee.State(starts, random_state=random.get_state())
         total = length.warmup + length.draws
         for _ in sampler.sample(state, iterations=total, thin_by=self.thin):
@@ -69,20 +76,47 @@ class AffineInvariant(Sampler):
         return Chains(np.moveaxis(places, 0, 1), density.T, {"acceptance_rate": accepted})
 
 
-def _starts(target: Target, walkers: int, random: np.random.RandomState) -> np.ndarray:
-    """Starts (walkers, parameters) that can be simulated.
+def _starts(modes: Modes, walkers: int, random: np.random.RandomState) -> np.ndarray:
+    """Starts (walkers, parameters) that can be simulated, around the modes.
 
     Raises
     ------
     SolveError
     """
-    found = random.standard_normal((walkers, len(target.centre)))
+    target, mode = modes.best.target, modes.of_chains(walkers)
+    found = _around(modes, mode, random.standard_normal((walkers, len(target.centre))))
     for _ in range(TRIES):
         failed = ~np.isfinite(target.evaluate(found))
         if not np.any(failed):
             return found
-        found[failed] = 0.5 * random.standard_normal((int(np.sum(failed)), len(target.centre)))
+        closer = 0.5 * random.standard_normal((int(np.sum(failed)), len(target.centre)))
+        found[failed] = _around(modes, mode[failed], closer)
     raise SolveError(
         f"the sampler AffineInvariant found no {walkers} starts that can be simulated. Narrow the bounds to where the "
         "model can be run"
     )
+
+
+def _around(modes: Modes, mode: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Places (walkers, parameters) around the mode (walkers,) of each, in the coordinates of the best one."""
+    found = places.copy()
+    for k, target in enumerate(modes.targets):
+        found[mode == k] = moved(places[mode == k], target, modes.best.target)
+    return found
+
+
+def _jumped(modes: Modes, places: np.ndarray, random: np.random.RandomState) -> tuple[np.ndarray, np.ndarray]:
+    """Places (walkers, parameters) from one mode to another, and the logarithm of the ratio of volumes (walkers,).
+
+    The map y_j = y_i, with y_i the coordinates in which mode i is round, is affine, and its inverse is proposed as
+    often. So the ratio of densities times the determinant of the map decides.
+    """
+    best, targets, count = modes.best.target, modes.targets, len(modes.targets)
+    sizes = np.array([np.linalg.slogdet(target.factor)[1] for target in targets])
+    before = random.randint(count, size=len(places))
+    after = (before + 1 + random.randint(count - 1, size=len(places))) % count
+    found = np.empty_like(places)
+    for i, j in {*zip(before.tolist(), after.tolist(), strict=True)}:
+        walkers = (before == i) & (after == j)
+        found[walkers] = moved(moved(places[walkers], best, targets[i]), targets[j], best)
+    return found, sizes[after] - sizes[before]

@@ -1,6 +1,7 @@
 """Delayed acceptance: a surrogate proposes, the model decides."""
 
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 import numpy as np
@@ -9,7 +10,8 @@ from scipy.special import erfc
 from dalembert.arguments import limited
 from dalembert.errors import SolveError
 from dalembert.findings import Finding
-from dalembert.inverse.posterior.samplers.sampler import Chains, Length, OnDraws, Sampler
+from dalembert.inverse.posterior.modes import Modes
+from dalembert.inverse.posterior.samplers.sampler import Chains, Length, OnDraws, Sampler, moved
 from dalembert.inverse.posterior.surrogate_model import SurrogateModel, with_surrogate
 from dalembert.inverse.posterior.target import Target
 from dalembert.surrogate import Adaptive
@@ -59,15 +61,36 @@ class DelayedAcceptance(Sampler):
     scheme: Scheme = field(default_factory=lambda: Adaptive(tolerance=1e-4))
     walk: int | None = limited(None, least=1)
 
-    def sampled(self, target: Target, length: Length, on_draws: OnDraws) -> Chains:
-        """Sample the chains together: their simulations are batches.
+    def sampled(self, modes: Modes, length: Length, on_draws: OnDraws) -> Chains:
+        """Sample the chains of each mode together: their simulations are batches, and each mode has its surrogate.
 
         Raises
         ------
         SolveError
-            If the surrogate is too inaccurate, or its runs fail.
+            If a surrogate is too inaccurate, or its runs fail.
         """
-        random = np.random.default_rng(length.chain_seed(0))
+        counts = np.bincount(modes.of_chains(length.chains), minlength=len(modes.targets))
+        parts: list[tuple[Chains, Target]] = []
+        for number, (target, count) in enumerate(zip(modes.targets, counts, strict=True)):
+            if count:
+                part, cheap = self._of_mode(target, replace(length, chains=int(count)), number, length.chains, on_draws)
+                parts.append((replace(part, places=moved(part.places, target, modes.best.target)), cheap))
+        if len(parts) == 1:
+            places, density, accepted = parts[0][0].places, parts[0][0].log_density, parts[0][0].statistics["accepted"]
+        else:
+            places = np.concatenate([part.places for part, _ in parts])
+            density = np.concatenate([part.log_density for part, _ in parts])
+            accepted = np.concatenate([part.statistics["accepted"] for part, _ in parts])
+        cut = [finding for part, _ in parts for finding in part.findings]
+        return Chains(
+            places, density, {"accepted": accepted}, findings=(_effort([one for _, one in parts], accepted), *cut)
+        )
+
+    def _of_mode(
+        self, target: Target, length: Length, number: int, chains: int, on_draws: OnDraws
+    ) -> tuple[Chains, Target]:
+        """Chains that start in one mode, and the target with the surrogate around it; of ``chains`` in all."""
+        random = np.random.default_rng(length.chain_seed(number))
         rows = target.coordinates.slope(target.centre)[:, None] * target.factor
         vector = target.coordinates.vectors(target.centre)
         cheap = with_surrogate(target, vector, np.sqrt(np.sum(rows**2, axis=1)), self.scheme, length.seed)
@@ -86,10 +109,9 @@ class DelayedAcceptance(Sampler):
             taken = np.log(random.random(length.chains)) < np.nan_to_num(ratio, nan=-np.inf, posinf=np.inf)
             states, exact = states.where(taken, proposed), np.where(taken, there, exact)
             keep.append((states.places, exact, taken))
-            on_draws(length.chains, length.chains * (BURN + length.draws))
+            on_draws(length.chains, chains * (BURN + length.draws))
         places, density, accepted = (np.stack(part, axis=1)[:, BURN:] for part in zip(*keep, strict=True))
-        findings = _findings(cheap, places, accepted)
-        return Chains(places, density, {"accepted": accepted}, findings=tuple(findings))
+        return Chains(places, density, {"accepted": accepted}, findings=tuple(_cuts(cheap, places))), cheap
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,17 +194,25 @@ def _too_inaccurate(error: float, acceptance: float, cheap: Target) -> str:
     )
 
 
-def _findings(cheap: Target, places: np.ndarray, accepted: np.ndarray) -> list[Finding]:
+def _effort(surrogates: Sequence[Target], accepted: np.ndarray) -> Finding:
+    """Return the note on the simulations of the surrogates, and on the proposals that the model accepted."""
+    part = float(np.mean(accepted))
+    runs = 0
+    for cheap in surrogates:
+        assert isinstance(cheap.problem.model, SurrogateModel)
+        runs += cheap.problem.model.surrogate.runs
+    what = "A surrogate" if len(surrogates) == 1 else f"{len(surrogates)} surrogates"
+    message = (
+        f"{what} of {runs} simulations proposed the draws; the model accepted {100 * part:.0f} % of the proposals."
+    )
+    return Finding("delayed-acceptance", "note", {"acceptance": part, "runs": runs}, message)
+
+
+def _cuts(cheap: Target, places: np.ndarray) -> Iterator[Finding]:
+    """Yield findings on sides of the surrogate's box that cut the posterior."""
     model = cheap.problem.model
     assert isinstance(model, SurrogateModel)
     polynomial, problem = model.surrogate.polynomial, model.problem
-    part = float(np.mean(accepted))
-    values = {"acceptance": part, "runs": model.surrogate.runs}
-    message = (
-        f"A surrogate of {model.surrogate.runs} simulations proposed the draws; the model accepted {100 * part:.0f} % "
-        "of the proposals."
-    )
-    found = [Finding("delayed-acceptance", "note", values, message)]
     vectors = cheap.vectors(places)[..., : len(problem.model.parameters)]
     inside = (problem.search.points(vectors) - polynomial.lower) / (polynomial.upper - polynomial.lower)
     for k, name in enumerate(problem.model.parameters.names):
@@ -190,13 +220,10 @@ def _findings(cheap: Target, places: np.ndarray, accepted: np.ndarray) -> list[F
         near = (inside[..., k] < EDGE, inside[..., k] > 1 - EDGE)
         share = max((float(np.mean(one)) for one, is_cut in zip(near, cut, strict=True) if is_cut), default=0.0)
         if share > 0.001:
-            found.append(
-                Finding(
-                    "surrogate-box",
-                    "warning",
-                    {"parameter": name, "share": share},
-                    f"The box of the surrogate cuts the posterior of {name!r}.",
-                    "Sample without a surrogate, or narrow the bounds to where the posterior is.",
-                )
+            yield Finding(
+                "surrogate-box",
+                "warning",
+                {"parameter": name, "share": share},
+                f"The box of the surrogate cuts the posterior of {name!r}.",
+                "Sample without a surrogate, or narrow the bounds to where the posterior is.",
             )
-    return found

@@ -1,6 +1,6 @@
 """The No-U-Turn sampler, by nutpie."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from threading import Event
@@ -12,8 +12,9 @@ from dalembert.arguments import limited
 from dalembert.findings import Finding
 from dalembert.forward import ensemble
 from dalembert.forward.prefetch import on_several_machines
+from dalembert.inverse.posterior.modes import Modes
 from dalembert.inverse.posterior.packages import package
-from dalembert.inverse.posterior.samplers.sampler import Chains, Length, OnDraws, Sampler
+from dalembert.inverse.posterior.samplers.sampler import Chains, Length, OnDraws, Sampler, moved
 from dalembert.inverse.posterior.target import Target
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import Problem
@@ -57,8 +58,10 @@ class NUTS(Sampler):
     def check(self) -> None:
         package("nutpie", "the sampler NUTS")
 
-    def sampled(self, target: Target, length: Length, on_draws: OnDraws) -> Chains:
+    def sampled(self, modes: Modes, length: Length, on_draws: OnDraws) -> Chains:
         """Sample the chains, several at a time in threads, or on the workers of a cluster.
+
+        Each chain moves in the coordinates of the mode in which it starts.
 
         Raises
         ------
@@ -66,13 +69,18 @@ class NUTS(Sampler):
             If no start of a chain can be simulated.
         """
         stop, several = Event(), range(length.chains)
+        best = modes.best.target
+        targets = [modes.targets[k] for k in modes.of_chains(length.chains)]
         one = partial(_chain, self, length, on_draws, stop)
-        if on_several_machines(target.problem.model):
-            alone = target.of(replace(target.problem, model=cast(Any, None), journal=Journal(target.problem.samples)))
-            ahead = target.problem.prefetched(partial(_on_worker, alone, self, length), several)
-            found = [one(target, chain) for chain in ahead]
+        if on_several_machines(best.problem.model):
+            problem = replace(best.problem, model=cast(Any, None), journal=Journal(best.problem.samples))
+            alone = [target.of(problem) for target in targets]
+            ahead = best.problem.prefetched(partial(_on_worker, alone, self, length), several)
+            found = [one(targets[chain], chain) for chain in ahead]
         else:
-            found = list(ensemble(partial(_apart, target, one), several, on_stop=stop.set))
+            found = list(ensemble(partial(_apart, targets, one), several, on_stop=stop.set))
+        placed = zip(found, targets, strict=True)
+        found = [replace(chain, places=moved(chain.places, target, best)) for chain, target in placed]
         return _joined(found, self.max_depth)
 
 
@@ -80,15 +88,16 @@ def _silent(draws: int, of: int) -> None:
     """Take the number of draws and do nothing."""
 
 
-def _apart(target: Target, one: Callable[[Target, int], Chains], chain: int) -> Chains:
-    """A chain with a journal of its own, since several threads count."""
+def _apart(targets: Sequence[Target], one: Callable[[Target, int], Chains], chain: int) -> Chains:
+    """A chain with a separate journal, since several threads count."""
+    target = targets[chain]
     problem = replace(target.problem, journal=Journal(target.problem.samples))
     found = one(target.of(problem), chain)
     return replace(found, simulations=problem.journal.simulations)
 
 
-def _on_worker(target: Target, sampler: NUTS, length: Length, problem: Problem, chain: int) -> None:
-    _chain(sampler, length, _silent, Event(), target.of(problem), chain)
+def _on_worker(targets: Sequence[Target], sampler: NUTS, length: Length, problem: Problem, chain: int) -> None:
+    _chain(sampler, length, _silent, Event(), targets[chain].of(problem), chain)
 
 
 def _chain(sampler: NUTS, length: Length, on_draws: OnDraws, stop: Event, target: Target, chain: int) -> Chains:

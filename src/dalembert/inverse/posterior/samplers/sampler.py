@@ -9,6 +9,7 @@ import numpy as np
 
 from dalembert.arguments import Checked
 from dalembert.findings import Finding
+from dalembert.inverse.posterior.modes import Modes
 from dalembert.inverse.posterior.target import Target
 
 OnDraws: TypeAlias = Callable[[int, int], None]
@@ -66,6 +67,11 @@ class Chains:
     findings: tuple[Finding, ...] = ()
 
 
+def moved(places: np.ndarray, target: Target, to: Target) -> np.ndarray:
+    """Places of a target in the coordinates of another one with the same density, both (..., parameters)."""
+    return places if target is to else to.places(target.points(places))
+
+
 @dataclass(frozen=True)
 class Sampler(Checked, ABC):
     """Base of the samplers; a subclass with a ``name`` needs no other registration."""
@@ -73,6 +79,8 @@ class Sampler(Checked, ABC):
     name: ClassVar[str]
     gradients: ClassVar[bool]
     """Whether it needs gradients."""
+    jumps: ClassVar[bool] = False
+    """Whether it jumps between modes."""
 
     def check(self) -> None:
         """Refuse where a package that it needs is not installed.
@@ -83,8 +91,8 @@ class Sampler(Checked, ABC):
         """
 
     @abstractmethod
-    def sampled(self, target: Target, length: Length, on_draws: OnDraws) -> Chains:
-        """Sample a target.
+    def sampled(self, modes: Modes, length: Length, on_draws: OnDraws) -> Chains:
+        """Sample from starts in all modes; places are in the coordinates of the best mode.
 
         Raises
         ------

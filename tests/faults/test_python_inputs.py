@@ -62,6 +62,10 @@ def other_name(laenge: complex) -> mb.System:
     return pendulum(laenge)
 
 
+def body(length: complex) -> object:
+    return pendulum(length).bodies[0]
+
+
 def forgets(length: complex) -> None:
     pendulum(length)
 
@@ -75,12 +79,16 @@ def place(function: Callable, line: int = 0) -> str:
 
 
 SYSTEM = "expected a System"
+FROM_EQUILIBRIUM = "give its system. To start a motion at the equilibrium, make the system with start='equilibrium'"
 VECTORS = "expected an array (batch, 1) with one column each for"
 CASES: dict[str, tuple[Callable[[], object], str]] = {
     "an equilibrium simulated": (
         lambda: mb.simulate(hanging(), 1.0),  # type: ignore[arg-type]
-        f"an Equilibrium was given as the mechanism; {SYSTEM}; give its system, in which the bodies are placed as they "
-        "begin",
+        f"an Equilibrium was given as the mechanism; {SYSTEM}: {FROM_EQUILIBRIUM}",
+    ),
+    "a motion simulated": (
+        lambda: mb.simulate(mb.simulate(pendulum(), 0.1), 1.0),  # type: ignore[arg-type]
+        f"a Trajectory was given as the mechanism; {SYSTEM}: give its system",
     ),
     "nothing simulated": (lambda: mb.simulate(None, 1.0), f"None was given as the mechanism; {SYSTEM}"),  # type: ignore[arg-type]
     "a builder simulated": (
@@ -89,7 +97,11 @@ CASES: dict[str, tuple[Callable[[], object], str]] = {
     ),
     "an equilibrium as a model": (
         lambda: motion(at_rest).evaluate([[1.0]]),
-        f"the model's function ({place(at_rest)}) returned an Equilibrium; {SYSTEM}: end it with 'return'",
+        f"the model's function ({place(at_rest)}) returned an Equilibrium; {SYSTEM}: {FROM_EQUILIBRIUM}",
+    ),
+    "a body as a model": (
+        lambda: motion(body).channels,
+        f"the model's function ({place(body)}) returned a PointMass; {SYSTEM}: return the System",
     ),
     "a builder that returns nothing": (
         lambda: motion(forgets).channels,

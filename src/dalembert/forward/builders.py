@@ -57,7 +57,8 @@ def built(builder: Callable[..., Any], arguments: Mapping[str, Any], kind: type[
         raise ModelError(told(error) if users_place(error) else f"{named(builder)} raised {told(error)}") from error
     if not isinstance(system, kind):
         expected = getattr(kind, "IN_WORDS", kind.__name__)
-        raise InputError(f"{named(builder)} returned {shown(system)}; expected a {expected}: end it with 'return'")
+        advice = "end it with 'return'" if system is None else getattr(system, "INSTEAD", f"return the {expected}")
+        raise InputError(f"{named(builder)} returned {shown(system)}; expected a {expected}: {advice}")
     return system
 
 

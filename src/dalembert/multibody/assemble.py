@@ -16,6 +16,7 @@ from scipy.sparse import csc_matrix, csr_matrix, diags_array
 from scipy.sparse.linalg import norm, splu
 
 from dalembert.errors import ModelError, require_known
+from dalembert.multibody.callbacks import AnswerError
 from dalembert.multibody.components.body import BaseBody
 from dalembert.multibody.equilibrium_start import begin_at_rest, unstable_body
 from dalembert.multibody.evaluate import constraint_jacobian, residual
@@ -304,7 +305,8 @@ def _close(
     for error in lowered.failures.inexact:
         raise error
     for error in lowered.failures.errors:
-        raise ModelError(f"the joints cannot be placed at the start: {type(error).__name__}: {error}") from error
+        cause = str(error) if isinstance(error, AnswerError) else f"{type(error).__name__}: {error}"
+        raise ModelError(f"the joints cannot be placed at the start: {cause}") from error
     x = unknowns(lowered, coordinates_of(bodies, frames))
     gaps = residual(lowered, model, x, still, still)[structure.n :] - open_by
     wide, slope = np.abs(np.real(gaps)), np.abs(np.imag(gaps)) / STEP

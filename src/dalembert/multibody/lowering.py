@@ -220,8 +220,8 @@ def lower(system: Mechanism, begin: float = 0.0) -> Lowered:
         For what is no System.
     """
     if not isinstance(system, Mechanism):
-        own = "; give its system, in which the bodies are placed as they begin" if hasattr(system, "system") else ""
-        raise InputError(f"{shown(system)} was given as the mechanism; expected a System{own}")
+        advice = f": {system.INSTEAD}" if hasattr(system, "INSTEAD") else ""
+        raise InputError(f"{shown(system)} was given as the mechanism; expected a System{advice}")
     module, _, name = system.LOWERING.rpartition(".")
     return getattr(import_module(module), name)(system, begin).run()
 

@@ -45,6 +45,8 @@ class Equilibrium:
     x: np.ndarray
     iterations: int
 
+    INSTEAD = "give its system. To start a motion at the equilibrium, make the system with start='equilibrium'"
+
     def channels(self, names: Sequence[str]) -> np.ndarray:
         """Values of channels, (channels,)."""
         still = np.zeros((1, len(self.x)))

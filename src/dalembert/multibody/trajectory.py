@@ -58,6 +58,8 @@ class Trajectory(Displayed):
     run: Run
     rows: np.ndarray
 
+    INSTEAD = "give its system"
+
     @property
     def times(self) -> np.ndarray:
         """Output times, s, (samples,)."""

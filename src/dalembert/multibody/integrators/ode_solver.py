@@ -18,7 +18,7 @@ from dalembert.multibody.integrators.field import Field
 from dalembert.multibody.integrators.index1 import PROJECTED
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.problem import DONE, TOO_MANY_STEPS
-from dalembert.multibody.integrators.run import Run, explain
+from dalembert.multibody.integrators.run import Run, explain, users_error
 from dalembert.multibody.integrators.stabilisation import Projection, Stabilisation, posed
 from dalembert.multibody.singular_positions import singular_position
 from dalembert.multibody.structure import Structure
@@ -183,10 +183,8 @@ class OdeSolver(Integrator):
         return solver
 
     def _explain(self, own: Field, time: float, message: str | None) -> SolveError:
-        if own.lowered.failures.errors:
-            return explain(own.lowered, DONE, time, 0, "")
-        if singular := singular_position(own.lowered, own.state.x, time):
-            return singular
+        if error := users_error(own.lowered, time) or singular_position(own.lowered, own.state.x, time):
+            return error
         why = f"{message[0].lower()}{message[1:].rstrip('.')}" if message else "no reason was given"
         return SolveError(
             f"OdeSolver: {self.method} stopped at t = {time:.6g} s ({why}); if the model is stiff take an "

@@ -19,7 +19,7 @@ from dalembert.multibody.integrators.radau_coefficients import coefficients
 from dalembert.multibody.integrators.radau_derivatives import differentiate, settle_end_along
 from dalembert.multibody.integrators.radau_loop import integrate
 from dalembert.multibody.integrators.radau_workspace import Settings, workspace
-from dalembert.multibody.integrators.run import Run, cut_down, explain
+from dalembert.multibody.integrators.run import Run, cut_down, explain, users_error
 from dalembert.multibody.kernels.motion import resting
 from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.singular_positions import singular_position
@@ -120,9 +120,9 @@ class RadauIIA(Integrator):
     def _explain(
         self, lowered: Lowered, status: int, time: float, unknown: int, least: float, x: np.ndarray
     ) -> SolveError:
-        if singular := singular_position(lowered, x, time):
-            return singular
-        if status == INEXACT and not lowered.failures.errors:
+        if error := users_error(lowered, time) or singular_position(lowered, x, time):
+            return error
+        if status == INEXACT:
             return self._explain_inexact(time, least)
         shortened = "the step was cut down for it" if self.step is None else cut_down(self.step)
         return explain(lowered, status, time, unknown, shortened, self.most_steps)

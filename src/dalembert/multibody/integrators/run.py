@@ -52,12 +52,16 @@ def cut_down(step: float) -> str:
     return f"the step of {step:g} s was cut down to 1/256 for it"
 
 
+def users_error(lowered: Lowered, time: float) -> SolveError | None:
+    """Return the error of a function of the user's, if one failed in the step after a time of the motion, in s."""
+    return lowered.failures.after(float(np.real(lowered.signal_data[0])) + time)
+
+
 def explain(lowered: Lowered, status: int, time: float, unknown: int, step: str, most_steps: int = 0) -> SolveError:
     """Return the error of a run that ended early; ``step`` describes the step that was too long."""
     owner = lowered.structure.owners[min(unknown, lowered.structure.size - 1)]
-    if lowered.failures.errors:
-        error = lowered.failures.errors[0]
-        return SolveError(f"a function of the user's failed near t = {time:.6g} s: {type(error).__name__}: {error}")
+    if error := users_error(lowered, time):
+        return error
     why = {
         SINGULAR: f"the equations of motion became singular at t = {time:.6g} s, at component {owner!r}: redundant "
         "constraints, a massless part, or a singular position; start from another position or take a constraint out",

@@ -243,3 +243,35 @@ def test_other_components() -> None:
         ),
     ):
         simulate(system, 0.1)
+
+
+NO_NUMBERS = ["a", None, object(), [[1.0, 2.0], [3.0]], np.nan, np.eye(3), {"a": 1.0}, True]
+ORIENTATIONS = {
+    "angles": lambda wrong: Orientation.by_angles("zyx", wrong),
+    "one angle": lambda wrong: Orientation.by_angles("z", [wrong]),
+    "rotation vector": Orientation.by_rotation_vector,
+    "quaternion": lambda wrong: Orientation.by_quaternion(1.0, 0.0, 0.0, wrong),
+    "direction z": Orientation.by_axes,
+    "direction x": lambda wrong: Orientation.by_axes((0.0, 0.0, 1.0), wrong) if wrong is not None else Orientation("x"),
+    "rows": lambda wrong: Orientation(wrong if not isinstance(wrong, np.ndarray) else np.nan * wrong),
+    "entry": lambda wrong: Orientation(((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, wrong))),
+}
+
+
+@pytest.mark.parametrize("argument", ORIENTATIONS)
+@pytest.mark.parametrize("wrong", NO_NUMBERS, ids=lambda wrong: type(wrong).__name__)
+def test_an_orientation_of_no_numbers_is_refused(argument: str, wrong) -> None:
+    with pytest.raises(InputError, match=r"(Orientation: .*|rotation vector|direction x) (is|are) .*; expected "):
+        ORIENTATIONS[argument](wrong)
+
+
+@pytest.mark.parametrize("axes", [3, None, "", "ab", "Xy", "xyzx"])
+def test_axes_of_no_letters_are_refused(axes) -> None:
+    with pytest.raises(InputError, match=r"^Orientation: the axes are .*; expected one to three of 'xyz'"):
+        Orientation.by_angles(axes, 0.1)
+
+
+def test_a_single_angle_can_be_a_number() -> None:
+    assert Orientation.by_angles("z", 0.3) == Orientation.by_angles("z", [0.3])
+    slope = np.imag(Orientation.by_angles("z", 0.3 + 1e-30j).matrix) / 1e-30
+    np.testing.assert_allclose(slope[0, :2], [-np.sin(0.3), -np.cos(0.3)], rtol=1e-15)

@@ -20,7 +20,7 @@ from dalembert.multibody.components.planar.pairs import pair_kind, push_pair, tw
 from dalembert.multibody.components.points import Side
 
 _TIME = 0  # signal that holds the time
-_SIZES = Sizes(state=6, answer=3)
+_SIZES = Sizes(state=6, answer=3, words="three finite numbers (fx, fy, torque)")
 GIVEN, ANSWER = _SIZES.given, _SIZES.answer
 
 

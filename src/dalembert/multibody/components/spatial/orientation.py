@@ -16,6 +16,12 @@ Vector = tuple[Number, Number, Number]
 _ALIKE = 1e-9  # of what should be orthonormal axes
 
 
+def _numbers(row: Any) -> list[Number]:
+    """The finite numbers of a row; none of what is no row of finite numbers."""
+    is_row = row.ndim == 1 if isinstance(row, np.ndarray) else isinstance(row, Sequence) and not isinstance(row, str)
+    return list(row) if is_row and all(map(is_number, row)) else []
+
+
 @dataclass(frozen=True)
 class Orientation:
     """Axes of a frame, as the columns of a rotation matrix.
@@ -36,8 +42,9 @@ class Orientation:
     IN_WORDS = "an orientation such as Orientation.by_angles('zyx', [0.1, 0.0, 0.0])"
 
     def __post_init__(self) -> None:
-        matrix = np.array(self.rows)
-        wrong = matrix.shape != (3, 3) or matrix.dtype.kind not in "fic"
+        rows = [_numbers(row) for row in self.rows] if isinstance(self.rows, tuple | list | np.ndarray) else []
+        wrong = [len(row) for row in rows] != [3, 3, 3]
+        matrix = np.eye(3) if wrong else np.array(rows)
         if wrong or np.abs(np.real(matrix.T @ matrix) - np.eye(3)).max() > _ALIKE or np.linalg.det(np.real(matrix)) < 0:
             raise InputError(
                 f"Orientation: rows is {shown(self.rows)}; expected the rows of a rotation matrix, with orthonormal, "
@@ -52,31 +59,44 @@ class Orientation:
     @classmethod
     def of(cls, matrix: np.ndarray) -> "Orientation":
         """From a rotation matrix, (3, 3)."""
-        return cls(tuple(tuple(row) for row in np.asarray(matrix).tolist()))  # type: ignore[arg-type]
+        is_matrix = isinstance(matrix, np.ndarray) and matrix.ndim == 2
+        return cls(tuple(map(tuple, matrix.tolist())) if is_matrix else matrix)  # type: ignore[arg-type]
 
     @classmethod
-    def by_angles(cls, axes: str, angles: Sequence[Number]) -> "Orientation":
+    def by_angles(cls, axes: str, angles: Number | Sequence[Number]) -> "Orientation":
         """By successive rotations, rad, about axes such as ``"zyx"`` (turning with the body) or ``"XYZ"`` (fixed).
 
         Small letters name axes that turn with the rotations before (yaw, pitch, roll are ``"zyx"``), capital letters
-        fixed ones (roll, pitch, yaw of URDF are ``"XYZ"``). There may be one to three of them.
+        fixed ones (roll, pitch, yaw of URDF are ``"XYZ"``). There may be one to three of them. A single angle can be a
+        number.
 
         Raises
         ------
         InputError
-            For other letters, mixed ones, or another number of angles.
+            For other letters, mixed ones, another number of angles, or what is no finite number.
+
+        Examples
+        --------
+        >>> Orientation.by_angles("z", 0.3) == Orientation.by_angles("z", [0.3])
+        True
         """
+        given_axes, axes = axes, axes if isinstance(axes, str) else ""
+        turns = _numbers([angles] if is_number(angles) else angles)
+        if not turns:
+            raise InputError(
+                f"Orientation: the angles are {shown(angles)}; expected finite numbers in rad, such as [0.1, 0.0, 0.0]"
+            )
         fixed = axes.isupper()
         letters = axes.lower()
         if not letters or set(letters) - set("xyz") or not (fixed or axes.islower()) or len(letters) > 3:
             raise InputError(
-                f"Orientation: the axes are {axes!r}; expected one to three of 'xyz' (turning with the body) or of "
-                "'XYZ' (fixed)"
+                f"Orientation: the axes are {shown(given_axes)}; expected one to three of 'xyz' (turning with the "
+                "body) or of 'XYZ' (fixed)"
             )
-        if len(angles) != len(letters):
-            raise InputError(f"Orientation: {len(angles)} angles for the axes {axes!r}; expected {len(letters)}")
+        if len(turns) != len(letters):
+            raise InputError(f"Orientation: {len(turns)} angles for the axes {axes!r}; expected {len(letters)}")
         whole = np.eye(3)
-        for letter, angle in zip(letters, angles, strict=True):
+        for letter, angle in zip(letters, turns, strict=True):
             turn = about(np.eye(3)["xyz".index(letter)], angle)
             whole = turn @ whole if fixed else whole @ turn
         return cls.of(whole)
@@ -99,6 +119,11 @@ class Orientation:
         InputError
             For a quaternion of length zero.
         """
+        if not all(map(is_number, (w, x, y, z))):
+            raise InputError(
+                f"Orientation: the quaternion is {shown((w, x, y, z))}; expected four finite numbers, such as "
+                "(1, 0, 0, 0)"
+            )
         given = np.array([w, x, y, z])
         square = given @ given
         if not np.real(square) > 1e-24:
@@ -132,6 +157,8 @@ class Orientation:
 
     def __matmul__(self, other: "Orientation") -> "Orientation":
         """The orientation of a frame that has the orientation ``other`` in this one."""
+        if not isinstance(other, Orientation):
+            return NotImplemented
         return Orientation.of(self.matrix @ other.matrix)
 
 
@@ -190,7 +217,7 @@ def direction(vector: Any, owner: str) -> np.ndarray:
 
 
 def _three(vector: Any, owner: str) -> np.ndarray:
-    given = np.atleast_1d(np.asarray(vector))
-    if given.shape != (3,) or not all(map(is_number, given.tolist())):
+    numbers = _numbers(vector)
+    if len(numbers) != 3:
         raise InputError(f"{owner} is {shown(vector)}; expected three finite numbers, such as (0, 0, 1)")
-    return given
+    return np.array(numbers)

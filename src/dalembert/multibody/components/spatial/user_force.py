@@ -35,7 +35,7 @@ from dalembert.multibody.components.spatial.points import Side
 from dalembert.multibody.components.spatial.vectors import at, dot
 
 _TIME = 0  # signal that holds the time
-_SIZES = Sizes(state=18, answer=6)
+_SIZES = Sizes(state=18, answer=6, words="six finite numbers (fx, fy, fz, tx, ty, tz)")
 _GIVEN, _ANSWER = _SIZES.given, _SIZES.answer
 
 

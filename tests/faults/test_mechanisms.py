@@ -37,11 +37,20 @@ def too_short() -> mb.System:
     return system
 
 
-def redundant() -> mb.System:
+def locked() -> mb.System:
     system = mb.System()
     own = system.add(bar())
     system.add(mb.FixedJoint("weld", system.ground, own.start))
     system.add(mb.RevoluteJoint("pin", system.ground, own.end))
+    return system
+
+
+def redundant() -> mb.System:
+    """A bar with two pins at the same point."""
+    system = mb.System()
+    own = system.add(bar())
+    for name in ("pin", "other pin"):
+        system.add(mb.RevoluteJoint(name, system.ground, own.start))
     return system
 
 
@@ -95,9 +104,14 @@ MECHANISMS = {
         "bodies that it connects; a first placement nearer to the closed position may be needed, or fewer driving "
         "coordinates",
     ),
+    "no freedom": (
+        locked,
+        "the mechanism cannot move: its joints have 5 constraints, its bodies 3 degrees of freedom, and none is left. "
+        "Take joint 'weld' out, or replace it by one that holds less.",
+    ),
     "redundant constraints": (
         redundant,
-        "the constraints are redundant: 5 were given, 3 are independent at the start; those of 'pin' follow from the "
+        "the constraints are redundant: 4 were given, 2 are independent at the start; those of 'other pin' follow from the "
         "others. Take a joint out or replace one by a joint that holds less (a revolute joint instead of a fixed one), "
         "or start from a position that is not singular; RungeKutta4 and OdeSolver take redundant constraints as they "
         "are",

@@ -23,6 +23,7 @@ from dalembert.multibody.evaluate import constraint_jacobian, residual
 from dalembert.multibody.initial_velocities import initial_velocities
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.model import Model
+from dalembert.multibody.lost_freedom import refuse_locked
 from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.lowering import lower
 from dalembert.multibody.rigid_motions import (
@@ -118,11 +119,12 @@ def moves_start(system: Mechanism, placed: Lowered) -> bool:
 def _posed(system: Mechanism, lowered: Lowered, model: Model, free: np.ndarray, begin: float) -> Lowered:
     """Arrays with frames where the joints have the stated coordinates, which are approached in small steps."""
     kept = kept_coordinates(system)
-    _, gaps = _held(system, lowered, dict.fromkeys(kept, 0.0), begin)
+    placed = lowered
+    _, gaps = _held(system, lowered, dict.fromkeys(kept, 0.0), placed, begin)
     with suppress(ModelError):  # joints that cannot be closed as placed may be closed where the coordinates are stated
         frames, x = _close(system.carriers, lowered, model, free)
         lowered = replace(lowered, frames=frames, x=x)
-    held, begins = _held(system, lowered, {key: gaps[".".join(key)] for key in kept}, begin)
+    held, begins = _held(system, lowered, {key: gaps[".".join(key)] for key in kept}, placed, begin)
     own, owners = _model(held), held.structure.owners[held.structure.n :]
     ways = np.array([begins.get(owner, 0.0) for owner in owners])
     steps = max(1, int(np.ceil(np.abs(np.real(ways)).max() / _SWING)))
@@ -138,10 +140,10 @@ def _posed(system: Mechanism, lowered: Lowered, model: Model, free: np.ndarray, 
 
 
 def _held(
-    system: Mechanism, lowered: Lowered, kept: Mapping[tuple[str, str], Any], begin: float
+    system: Mechanism, lowered: Lowered, kept: Mapping[tuple[str, str], Any], placed: Lowered, begin: float
 ) -> tuple[Lowered, dict[str, Any]]:
-    """Arrays with constraints of stated coordinates and kept ones, and by how much these are open."""
-    closed, names = closing(system, kept)
+    """Arrays with constraints of stated coordinates and of those kept as ``placed``, and by how much these are open."""
+    closed, names = closing(system, kept, placed)
     held = like(lower(closed, begin), lowered)
     still, n = np.zeros_like(held.x), held.structure.n
     gaps = residual(held, _model(held), held.x, still, still)[n:]
@@ -151,7 +153,7 @@ def _held(
 
 def _moving(system: Mechanism, lowered: Lowered, begin: float) -> np.ndarray:
     """Initial velocities (N + 1,) with which the joints have the stated rates."""
-    held = like(lower(moving(system), begin), lowered)
+    held = like(lower(moving(system, lowered), begin), lowered)
     try:
         found = initial_velocities(system.carriers, held, _model(held))
     except ModelError as error:
@@ -245,10 +247,11 @@ def refuse_redundancy(lowered: Lowered) -> None:
     Raises
     ------
     ModelError
-        With the joints whose constraints are redundant.
+        With the joints whose constraints are redundant, or that leave no freedom.
     """
     count, rank, names = redundancy(lowered)
     if rank < count:
+        refuse_locked(lowered)
         raise ModelError(
             f"the constraints are redundant: {count} were given, {rank} are independent at the start; "
             f"those of {', '.join(map(repr, names))} follow from the others. Take a joint out or replace one by a "

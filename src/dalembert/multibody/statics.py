@@ -16,6 +16,7 @@ from dalembert.multibody.drawing import Drawing, draw
 from dalembert.multibody.equilibrium_start import resting_place
 from dalembert.multibody.evaluate import tangent
 from dalembert.multibody.kernels.motion import MotionState
+from dalembert.multibody.lost_freedom import refuse_locked
 from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.lowering import lower
 from dalembert.multibody.observe import Observer, observer
@@ -136,6 +137,8 @@ def modes(state: Mechanism | Equilibrium, count: int | None = None) -> Modes:
 
     Raises
     ------
+    ModelError
+        Where the joints leave no freedom.
     InputError
         Where the force of a function of the user's cannot run in complex numbers, or loses the imaginary part of the
         state: its stiffness and damping would be wrong.
@@ -152,6 +155,7 @@ def modes(state: Mechanism | Equilibrium, count: int | None = None) -> Modes:
     """
     state = state if isinstance(state, Equilibrium) else equilibrium(state)
     lowered, x, n = state.lowered, state.x, state.lowered.structure.n
+    refuse_locked(lowered)
     still = np.zeros_like(x)
     at_rest = still[None]
     along = Along(Observer((), ()), np.zeros(1), MotionState(x[None], at_rest, at_rest, at_rest))

@@ -93,7 +93,7 @@ class Mechanism(Displayed):
         ----------
         coordinates, rates : mapping of str to float, optional
             By joint: angles in rad and displacements in m, as the joints' channels are, and their rates. Write
-            ``"bearing.angle"`` for a joint that has both. Planar joints: angles of revolute joints.
+            ``"bearing.angle"`` for a joint that has several. The class of each joint lists its coordinates.
 
         Raises
         ------

@@ -22,6 +22,7 @@ from dalembert.multibody.evaluate import energies, energy_kernels, violations
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.run import Run
 from dalembert.multibody.kernels.motion import MotionState
+from dalembert.multibody.lost_freedom import no_freedom
 from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.observe import beside, channel_names, observer
 from dalembert.multibody.redundant_constraints import redundant_constraints
@@ -74,15 +75,17 @@ class Trajectory(Displayed):
     def findings(self) -> tuple[Finding, ...]:
         """Those of the system and of its motion.
 
-        Skipped samples, redundant constraints, friction that does not suit the motion, bushings that pass half a turn.
+        Skipped samples, redundant constraints, no freedom, unsuited friction, bushings that pass half a turn.
         """
         joints = rubbing(self.system)
         begin = float(np.real(self.lowered.signal_data[0]))
         skipped = skipped_samples(self.system, self.solver.fixed_step, begin, float(self.run.times[-1]))
-        redundant = redundant_constraints(self.lowered) if self.solver.takes_redundancy else ()
+        held = no_freedom(self.lowered)
+        if self.solver.takes_redundancy and not held:
+            held = redundant_constraints(self.lowered)
         bushings = turning_bushings(self.system)
         if not (joints or bushings):
-            return (*self.system.findings, *skipped, *redundant)
+            return (*self.system.findings, *skipped, *held)
         names = [f"{name}.{own.channel}" for name, own in joints.items()]
         names += [f"{name}.{axis}" for name, axes in bushings.items() for axis in axes]
         readers = observer(self.system, self.lowered, names)
@@ -94,7 +97,7 @@ class Trajectory(Displayed):
         )
         vectors = np.split(values[:, len(joints) :], len(bushings), axis=1) if bushings else []
         turned = half_turns(self.run.times, dict(zip(bushings, vectors, strict=True)))
-        return (*self.system.findings, *skipped, *redundant, *chain.from_iterable(unsuited), *turned)
+        return (*self.system.findings, *skipped, *held, *chain.from_iterable(unsuited), *turned)
 
     @property
     def channel_names(self) -> tuple[str, ...]:

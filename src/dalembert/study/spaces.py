@@ -33,14 +33,20 @@ def gravity_key(axes: int) -> Any:
 
 
 def by_joint(derivative: int) -> Any:
-    """Read coordinates of joints (0) or their rates (1): lengths for names that end with ``.displacement``."""
+    """Read coordinates of joints (0) or their rates (1): lengths for displacements, else angles.
+
+    The name of a joint without a coordinate is an angle: write ``"slide.displacement"``.
+    """
     units = {False: ("rad", "rad/s"), True: ("m", "m/s")}
 
     def read(value: Any, info: ValidationInfo) -> Any:
         if not isinstance(value, Mapping):
             raise problem(f"{value!r} was given; expected a table of joints, such as {{ pin = '30 deg' }}")
         names = info.context.names if isinstance(info.context, Context) else None
-        own = {name: units[str(name).endswith(".displacement")][derivative] for name in value}
+        own = {
+            name: units[str(name).rpartition(".")[2].startswith("displacement") and "." in str(name)][derivative]
+            for name in value
+        }
         return {name: checked(read_number, one, own[name], names) for name, one in value.items()}
 
     return read

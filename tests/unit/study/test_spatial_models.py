@@ -441,3 +441,10 @@ def test_the_template_simulates_what_the_script_integrates(tmp_path):
     turned = wires.angle()
     exact = wires.RADIUS * np.column_stack([np.cos(turned), np.sin(turned)])
     np.testing.assert_allclose(outcome.result.channels(["plate.first.x", "plate.first.y"]), exact, atol=1e-5)
+
+
+def test_displacements_of_joints_are_lengths(write):
+    wrong_unit = wrong(write(("space = true", 'space = true\npose = { "pin.displacement_1" = "3 deg" }')))
+    assert any("expected a length" in line for line in wrong_unit)
+    no_such_coordinate = wrong(write(("space = true", 'space = true\npose = { "pin.displacement_1" = "3 cm" }')))
+    assert any("unknown coordinate 'displacement_1'; known: angle" in line for line in no_such_coordinate)

@@ -81,12 +81,21 @@ class BaseJoint(Checked):
 
     @property
     def stated_coordinates(self) -> tuple[str, ...]:
-        """Coordinates of the joint that an initial state may state: ``"angle"``, ``"displacement"``."""
+        """Coordinates that the joint leaves free: an initial state may state them, and keeps them otherwise.
+
+        Those in m are named ``"displacement"``, all others are in rad.
+        """
         return ()
 
     def stating(self, coordinate: str, course: Any) -> "BaseJoint":
         """The joint that makes one of these coordinates follow a signal, named ``"pin.angle"``."""
         raise NotImplementedError
+
+    def keeping(
+        self, coordinate: str, course: Any, numbers: np.ndarray, integers: np.ndarray, x: np.ndarray
+    ) -> "BaseJoint":
+        """The joint that makes the change of a coordinate follow a signal, from the joint's numbers and unknowns."""
+        return self.stating(coordinate, course)
 
     @abstractmethod
     def lower(self, lowering: Any) -> None:

@@ -49,11 +49,18 @@ class DistanceJoint(Joint):
     a, b : Point or ground
     length : float, optional
         m; the first distance of the points if not given.
+
+    An initial state may state ``direction``, the angle of the line from a to b in the axes of a, and ``angle``, that of
+    b against a.
     """
 
     length: Number | None = number("m", None, above=0)
 
     kind = DISTANCE
+
+    @property
+    def stated_coordinates(self) -> tuple[str, ...]:
+        return ("direction", "angle")
 
     def lower(self, lowering: Lowering) -> None:
         pair = lowering.pair(self.a, self.b, self.name)

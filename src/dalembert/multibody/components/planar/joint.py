@@ -40,6 +40,11 @@ class Joint(BaseJoint):
     def lower(self, lowering: Lowering) -> None:
         """Write the rows of the kernels."""
 
+    def stating(self, coordinate: str, course: Any) -> "Joint":
+        from dalembert.multibody.components.planar.joint_state import stated
+
+        return stated(self, coordinate, course)
+
     def position(self, kind: Kind, numbers: np.ndarray, integers: np.ndarray, x: np.ndarray) -> np.ndarray | None:
         """Position of the second side, or of the first one if the second is the ground, (frames, 2)."""
         if kind.integers[:2] != INTEGERS[:2]:  # a joint of another form has no position to draw

@@ -133,7 +133,8 @@ class PrismaticJoint(Joint):
     stribeck_exponent : float
         2 (the default) for a Gaussian decrease, 1 for an exponential one.
 
-    The output ``sliding_velocity`` is the velocity of b against a along the line.
+    The output ``sliding_velocity`` is the velocity of b against a along the line. An initial state may state
+    ``displacement``, the position of b against a along the line.
     """
 
     angle: Number = number("rad", 0.0)
@@ -159,6 +160,10 @@ class PrismaticJoint(Joint):
     @property
     def parts(self) -> dict[str, Kind]:
         return {"friction": PRISMATIC_FRICTION} if friction.coefficients(self) else {}
+
+    @property
+    def stated_coordinates(self) -> tuple[str, ...]:
+        return ("displacement",)
 
     def lower(self, lowering: Lowering) -> None:
         pair = lowering.pair(self.a, self.b, self.name)

@@ -3,7 +3,6 @@
 __all__ = ["RevoluteJoint"]
 
 from dataclasses import dataclass
-from typing import Any
 
 from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined, inner
@@ -159,11 +158,6 @@ class RevoluteJoint(Joint):
     @property
     def stated_coordinates(self) -> tuple[str, ...]:
         return ("angle",)
-
-    def stating(self, coordinate: str, course: Any) -> Joint:
-        from dalembert.multibody.components.planar.prescribed_motion import PrescribedMotion
-
-        return PrescribedMotion(f"{self.name}.{coordinate}", self.a, self.b, coordinate, course)
 
     def lower(self, lowering: Lowering) -> None:
         pair = lowering.pair(self.a, self.b, self.name)

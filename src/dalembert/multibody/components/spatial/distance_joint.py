@@ -47,11 +47,21 @@ class DistanceJoint(Joint):
     a, b : Point or ground
     length : float, optional
         m; the initial distance of the points if not given.
+
+    Notes
+    -----
+    An initial state may state the direction of the line from a to b in the axes of a: ``azimuth``, the angle about the
+    third axis from the first one, and ``elevation``, the angle above the plane of these two axes; and
+    ``rotation_x``, ``rotation_y`` and ``rotation_z`` as those of a spherical joint.
     """
 
     length: Number | None = number("m", None, above=0)
 
     kind = KIND
+
+    @property
+    def stated_coordinates(self) -> tuple[str, ...]:
+        return ("azimuth", "elevation", *self._rotations)
 
     def lower(self, lowering: SpatialLowering) -> None:
         pair = self.pair(lowering)

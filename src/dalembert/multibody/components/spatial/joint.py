@@ -14,7 +14,7 @@ import numpy as np
 from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import stack
 from dalembert.multibody.components.joint import BaseJoint
-from dalembert.multibody.components.points import require_direction
+from dalembert.multibody.components.points import Point, require_direction
 from dalembert.multibody.components.spatial import markers, pairs
 from dalembert.multibody.components.spatial.conditions import Condition, constraint_of, forces_of
 from dalembert.multibody.components.spatial.kinds import pair_kind
@@ -181,10 +181,27 @@ class Joint(BaseJoint):
         outputs = dict(self.kind.outputs)
         return tuple(name for (name, _), _ in (ANGLE, DISPLACEMENT) if name in outputs and not self.kind.driven)
 
-    def stating(self, coordinate: str, course: Any) -> BaseJoint:
-        from dalembert.multibody.components.spatial.joint_state import JointState
+    @property
+    def _rotations(self) -> tuple[str, ...]:
+        """Rotation vector of b relative to a in the axes of marker a, for joints that leave rotations free."""
+        turns = any(isinstance(side, Point) and side.body.turns for side in (self.a, self.b))
+        return ("rotation_x", "rotation_y", "rotation_z") if turns else ()
 
-        return JointState(f"{self.name}.{coordinate}", self.a, self.b, self.turned, coordinate, course)
+    def stating(self, coordinate: str, course: Any) -> BaseJoint:
+        from dalembert.multibody.components.spatial.joint_state import stated
+
+        return stated(self, coordinate, course)
+
+    def keeping(
+        self, coordinate: str, course: Any, numbers: np.ndarray, integers: np.ndarray, x: np.ndarray
+    ) -> BaseJoint:
+        from dalembert.multibody.components.spatial.joint_state import kept
+
+        e, f = (
+            np.column_stack([_direction(side, number, numbers, integers, x) for number in (1, 2, 3)]) for side in (0, 1)
+        )
+        gap = _point(1, numbers, integers, x) - _point(0, numbers, integers, x)
+        return kept(self, coordinate, course, (e, f, gap))
 
     def lower(self, lowering: SpatialLowering) -> None:
         self._add(lowering, self.pair(lowering))
@@ -209,10 +226,7 @@ class Joint(BaseJoint):
         """Position of the second side, or of the first one if the second is the ground, (frames, 3)."""
         if kind.integers[:2] != pairs.INTEGERS:
             return None
-        side = 0 if integers[1] == GROUND else 1
-        k, place = SLOTS * side, numbers[12 * side : 12 * side + 3]
-        own = x[:, k : k + SLOTS].reshape(len(x), 4, 3)
-        return own[:, 0] + (np.einsum("i,fic->fc", place, own[:, 1:]) if integers[side] == BODY else 0.0)
+        return _point(0 if integers[1] == GROUND else 1, numbers, integers, x)
 
     def axis_directions(self, numbers: np.ndarray, integers: np.ndarray, x: np.ndarray) -> np.ndarray:
         return _direction(0, 3, numbers, integers, x)
@@ -230,6 +244,16 @@ class Joint(BaseJoint):
                 angle = np.degrees(np.arccos(np.clip(after, -1.0, 1.0)))
                 return f"axis {number} of b is at {angle:.0f} deg to axis {number} of a, and has to be parallel to it"
         return ""
+
+
+def _point(side: int, numbers: np.ndarray, integers: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Position of a marker in the fixed axes, (..., 3), from unknowns (..., width)."""
+    k, place = SLOTS * side, numbers[SLOTS * side : SLOTS * side + 3]
+    if integers[side] == GROUND:
+        return np.broadcast_to(place, (*x.shape[:-1], 3))
+    if integers[side] == BODY:
+        return x[..., k : k + 3] + place @ x[..., k + 3 : k + SLOTS].reshape(*x.shape[:-1], 3, 3)
+    return x[..., k : k + 3]
 
 
 def _direction(side: int, number: int, numbers: np.ndarray, integers: np.ndarray, x: np.ndarray) -> np.ndarray:

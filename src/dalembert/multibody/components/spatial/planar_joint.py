@@ -22,12 +22,21 @@ class PlanarJoint(Joint):
     a, b : Point or ground
     axis : (float, float, float)
         Normal of the plane, the same in the axes of both markers.
+
+    Notes
+    -----
+    An initial state may state ``angle`` about the normal, and ``displacement_1`` and ``displacement_2``, the position
+    of b relative to a along the joint's first two axes.
     """
 
     axis: Vector = (0.0, 0.0, 1.0)
 
     kind = KIND
     aligned = (3,)
+
+    @property
+    def stated_coordinates(self) -> tuple[str, ...]:
+        return ("angle", "displacement_1", "displacement_2")
 
     def lower(self, lowering: SpatialLowering) -> None:
         self._oriented()

@@ -21,8 +21,17 @@ class PointOnLineJoint(Joint):
     a, b : Point or ground
     axis : (float, float, float)
         Direction of the line in the axes of a.
+
+    Notes
+    -----
+    An initial state may state ``displacement`` along the line, and ``rotation_x``, ``rotation_y`` and ``rotation_z`` as
+    those of a spherical joint.
     """
 
     axis: Vector = (0.0, 0.0, 1.0)
 
     kind = KIND
+
+    @property
+    def stated_coordinates(self) -> tuple[str, ...]:
+        return (*super().stated_coordinates, *self._rotations)

@@ -18,6 +18,15 @@ class SphericalJoint(Joint):
     ----------
     name : str
     a, b : Point or ground
+
+    Notes
+    -----
+    An initial state may state ``rotation_x``, ``rotation_y`` and ``rotation_z``, the rotation vector of b relative to a
+    in the axes of a (rad). Their rates are the angular velocity of b relative to a in these axes.
     """
 
     kind = KIND
+
+    @property
+    def stated_coordinates(self) -> tuple[str, ...]:
+        return self._rotations

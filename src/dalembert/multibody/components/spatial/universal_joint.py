@@ -105,6 +105,10 @@ class UniversalJoint(Joint):
     kind = UNIVERSAL
 
     @property
+    def stated_coordinates(self) -> tuple[str, ...]:
+        return ("angle_a", "angle_b")
+
+    @property
     def turned(self) -> tuple[np.ndarray, np.ndarray]:
         across = np.cross(self.axis_a, self.axis_b)
         parallel = np.real(across @ across) < 1e-12  # of pins that are given in markers that are turned
@@ -127,11 +131,21 @@ class ConstantVelocityJoint(Joint):
     a, b : Point or ground
     axis : (float, float, float)
         Direction of the shafts, the same in the axes of both markers.
+
+    Notes
+    -----
+    The rotation vector of b relative to a is perpendicular to the axis. An initial state may state its components
+    ``rotation_1`` and ``rotation_2`` along the joint's first two axes. Their rates are the components of the relative
+    angular velocity along these axes.
     """
 
     axis: Vector = (0.0, 0.0, 1.0)
 
     kind = CONSTANT_VELOCITY
+
+    @property
+    def stated_coordinates(self) -> tuple[str, ...]:
+        return ("rotation_1", "rotation_2")
 
     def lower(self, lowering: SpatialLowering) -> None:
         self._oriented()

@@ -17,7 +17,7 @@ from dalembert import (
 )
 from dalembert.structure import Dofs, Structure, lumped
 from dalembert.vibration.balance.equations import equations
-from dalembert.vibration.threads import one_thread
+from dalembert.threads import one_thread
 
 HARMONICS, SAMPLES, STEP, REPEATS = 7, 1024, 0.03, 1
 CASES = {

@@ -21,10 +21,11 @@ class Cluster:
     scheduler: subprocess.Popen
     workers: list[subprocess.Popen] = field(default_factory=list)
 
-    def worker(self) -> subprocess.Popen:
-        """Start one more worker, a process of one thread."""
+    def worker(self, sources: Path | None = None) -> subprocess.Popen:
+        """Start one more worker, a process of one thread; ``sources`` replace those of this process."""
         limits = ["--nthreads", "1", "--memory-limit", "0", "--no-dashboard", "--no-nanny"]
-        here = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path.endswith("src"))}
+        folders = [path for path in sys.path if path.endswith("src")] if sources is None else [str(sources)]
+        here = {**os.environ, "PYTHONPATH": os.pathsep.join(folders)}
         self.workers.append(subprocess.Popen([DASK, "worker", self.address, *limits], env=here, **QUIET))
         return self.workers[-1]
 

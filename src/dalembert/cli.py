@@ -277,7 +277,7 @@ def _console(stream: TextIO, **options: Any) -> "Console":
 def _ended(folder: "RunFolder", outcome: "Outcome") -> None:
     """Say what a run found, and where its report is."""
     try:
-        typer.echo(outcome.summary)
+        typer.echo("\n".join([outcome.summary, *map(str, outcome.of_run)]))
         typer.echo(f"report: {folder.report}")
     except BrokenPipeError:
         _without_reader()

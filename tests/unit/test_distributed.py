@@ -1,5 +1,6 @@
 """Batches on a Dask cluster: a real scheduler and real workers, as processes on the loopback."""
 
+import shutil
 import subprocess
 import sys
 import time
@@ -9,14 +10,17 @@ import numpy as np
 import pytest
 
 import dalembert as da
-from dalembert.errors import InputError
+from dalembert.errors import ClusterError, InputError
 from dalembert.forward import distributed, takes_executor
 from dalembert.forward.builders import cores
 from dalembert.structure import lumped
 from dalembert.study import RunFolder, load, run_study
+from dalembert.uncertainty import MonteCarlo
+from dalembert.versions import versions
 from faults.kills import content, kinds
+from faults.slow_runs import written
 from flexible_pendulum import tip
-from loopback_cluster import QUIET
+from loopback_cluster import QUIET, cluster
 from study_texts import SLIDER
 from support import says
 
@@ -51,6 +55,31 @@ def test_a_failed_sample_is_marked_and_the_others_return(client, decay):
     line = slowly.__code__.co_firstlineno + 3
     assert here.failures[-1] == f"RuntimeError: too fast (test_distributed.py, line {line})"
     np.testing.assert_array_equal(there.values, here.values)
+
+
+def test_a_worker_with_another_dalembert_is_refused(tmp_path, decay):
+    """A checkout of the same version with one other source file."""
+    shutil.copytree(Path(da.__file__).parent, tmp_path / "src" / "dalembert", ignore=shutil.ignore_patterns("*.pyc"))
+    with (tmp_path / "src" / "dalembert" / "units.py").open("a") as file:
+        file.write("# another copy\n")
+    written(tmp_path, "[propagate]\nmethod = { kind = 'monte-carlo', runs = 8 }\n")
+    wanted = f"a worker of the cluster has dalembert {da.__version__} with other source files"
+    with cluster(workers=0) as other:
+        other.worker(tmp_path / "src")
+        with pytest.raises(ClusterError, match=wanted):
+            run_study(load(tmp_path / "slow.toml"), tmp_path / "run", executor=other.address)
+        with pytest.raises(ClusterError, match=wanted):
+            da.propagate(decay, {"rate": (0.5, 1.0)}, MonteCarlo(runs=4), executor=other.address)
+
+
+def test_other_packages_of_workers_are_noted(client, tmp_path):
+    written(tmp_path, "[propagate]\nmethod = { kind = 'monte-carlo', runs = 8 }\n")
+    client.run(eval, "__import__('dalembert.versions').versions.versions().update(scipy='1.0')")
+    folder, outcome = run_study(load(tmp_path / "slow.toml"), tmp_path / "run", executor=client)
+    client.run(versions.cache_clear)
+    (finding,) = [finding for finding in outcome.findings if finding.code == "mixed-versions"]
+    assert finding.values == {"package": "scipy", "versions": f"{versions()['scipy']}, 1.0"}
+    assert len(folder.computed_with()) == 2
 
 
 def test_a_worker_that_is_killed_costs_a_retry(client, started, decay):

@@ -6,17 +6,18 @@ import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
-from threadpoolctl import ThreadpoolController
 
 import dalembert as da
 from dalembert.errors import InputError
-from dalembert.forward import PythonModel, prefetch, prefetched
-from dalembert.forward.cluster import packed
+from dalembert.forward import PythonModel, ensembles, prefetch, prefetched
+from dalembert.forward.cluster import Sender, packed
 from dalembert.study import RunFolder, load, run_study
+from dalembert.threads import with_threads
 from faults.kills import content, kinds
 from loopback_cluster import QUIET
 
@@ -216,12 +217,14 @@ def test_sums_are_ordered_on_a_worker_as_they_are_here(model):
     def work(model, numbers):
         model.linearise(np.array([1.0, numbers @ numbers * 1e-9]))
 
-    for threads in (1, 2):
+    for number in (1, 2):
         answers = {}
         answering = prefetch._Answering(model, answers)
-        with ThreadpoolController().limit(limits=threads, user_api="blas"):
+        with with_threads(number):
             wanted = np.array([1.0, numbers @ numbers * 1e-9])
-        ((asked,),) = prefetch._answers(packed((work, answering, [answers])), threads, numbers)
+            sender = Sender()
+        asked_there = partial(prefetch._answers, packed((work, answering, [answers])))
+        ((asked,),) = ensembles._done(asked_there, numbers, sender)
         assert asked == ("linearise", len(TIMES), wanted.tobytes())
     assert not answers
 

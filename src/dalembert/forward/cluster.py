@@ -8,10 +8,13 @@ import sys
 import sysconfig
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
 from functools import wraps
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, cast
 
 from dalembert.errors import ClusterError, DalembertError, InputError, shown
+from dalembert.threads import threads, with_threads
+from dalembert.versions import difference, versions
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -98,7 +101,58 @@ def sent(client: "Client", thing: Any) -> "Future":
         Where it holds what cannot leave this process.
     """
     # Each time under a name of its own: one that is asked for again while the scheduler lets go of it may never come.
-    return client.submit(pickle.loads, packed(thing), pure=False)
+    return client.submit(_received, packed(thing), Sender(), pure=False)
+
+
+@dataclass(frozen=True)
+class Sender:
+    """What a worker must have in common with the process that sends it work, for the same bits."""
+
+    versions: dict[str, str] = field(default_factory=versions)
+    threads: int = field(default_factory=threads)
+
+    @contextmanager
+    def alike(self) -> Iterator[None]:
+        """A block on a worker that computes as the sender does.
+
+        Raises
+        ------
+        ClusterError
+            If the worker has another dalembert.
+        """
+        _refuse_other(versions(), self.versions)
+        with with_threads(self.threads):
+            yield
+
+
+def _refuse_other(worker: dict[str, str], process: dict[str, str]) -> None:
+    if found := difference(worker, process):
+        raise ClusterError(
+            f"a worker of the cluster has {found} as here. Install the same version on all machines, and start the "
+            "workers again"
+        )
+
+
+def _received(content: bytes, sender: Sender) -> Any:
+    with sender.alike():
+        return pickle.loads(content)
+
+
+def worker_versions(client: "Client") -> list[dict[str, str]]:
+    """Return the different versions that the workers of a cluster have.
+
+    Raises
+    ------
+    ClusterError
+        If a worker has another dalembert.
+    """
+    answers: Any = client.run(versions, on_error="return")
+    found: list[dict[str, str]] = []
+    for answer in answers.values():
+        _refuse_other(answer if isinstance(answer, dict) else {"dalembert": "of a former version"}, versions())
+        if answer not in found:
+            found.append(answer)
+    return found
 
 
 @contextmanager

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from dalembert.errors import DalembertError, InputError
-from dalembert.forward.cluster import RETRIES, Executor, asked_of, sent
+from dalembert.forward.cluster import RETRIES, Executor, Sender, asked_of, sent
 from dalembert.forward.model import ForwardModel
 from dalembert.forward.refinement import Refinement, refined
 from dalembert.forward.responses import Responses
@@ -73,7 +73,9 @@ class Distributed(Wrapped):
             workers: Any = self.client.nthreads()
             parts = np.array_split(vectors, min(len(vectors), PARTS * max(1, sum(workers.values()))))
             model = sent(self.client, bare(self.model))
-            asked += self.client.map(_answered, [model] * len(parts), parts, pure=False, retries=RETRIES)
+            asked += self.client.map(
+                _answered, [model] * len(parts), parts, sender=Sender(), pure=False, retries=RETRIES
+            )
             for part in as_completed(asked, loop=self.client.loop):  # gather would complain of each that is cancelled
                 if part.status != "finished":
                     part.result()  # raises what became of it
@@ -155,7 +157,8 @@ def bare(model: ForwardModel) -> ForwardModel:
     return own
 
 
-def _answered(model: ForwardModel, vectors: np.ndarray) -> tuple[np.ndarray, tuple[str | None, ...]]:
+def _answered(model: ForwardModel, vectors: np.ndarray, sender: Sender) -> tuple[np.ndarray, tuple[str | None, ...]]:
     """Values and failures of a part of a batch, on a worker."""
-    found = model.evaluate(vectors)
+    with sender.alike():
+        found = model.evaluate(vectors)
     return found.values, found.failures

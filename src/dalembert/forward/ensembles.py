@@ -5,7 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any, TypeVar
 
 from dalembert.forward.builders import cores
-from dalembert.forward.cluster import RETRIES, Executor, asked_of, connected, sent
+from dalembert.forward.cluster import RETRIES, Executor, Sender, asked_of, connected, sent
 
 Item = TypeVar("Item")
 Answer = TypeVar("Answer")
@@ -59,10 +59,14 @@ def ensemble(
 
 def _on_cluster(work: Callable[[Item], Answer], items: Sequence[Item], client: Any) -> Generator[Answer, None, None]:
     with asked_of(client, f"a part of an ensemble of {len(items)}") as asked:
-        asked += client.map(_done, [sent(client, work)] * len(items), items, pure=False, retries=RETRIES)
+        asked += client.map(
+            _done, [sent(client, work)] * len(items), items, sender=Sender(), pure=False, retries=RETRIES
+        )
         for one in asked:
             yield one.result()
 
 
-def _done(work: Callable[[Item], Answer], item: Item) -> Answer:
-    return work(item)
+def _done(work: Callable[[Item], Answer], item: Item, sender: Sender) -> Answer:
+    """Do the work on a worker."""
+    with sender.alike():
+        return work(item)

@@ -14,7 +14,6 @@ from functools import partial
 from typing import Any, NoReturn, TypeVar
 
 import numpy as np
-from threadpoolctl import ThreadpoolController
 
 from dalembert.errors import DalembertError, SolveError, told
 from dalembert.forward.cluster import packed
@@ -74,7 +73,7 @@ def prefetched(model: ForwardModel, work: Work[Item], items: Sequence[Item]) -> 
     there = rebuilt(model, answering)
     silent = rebuilt(model, lambda one: _Unasked(one.model) if isinstance(one, Distributed) else None)
     missing = [not _known(silent, work, item) for item in items]
-    asked = partial(_answers, packed((work, there, kept)), _threads())
+    asked = partial(_answers, packed((work, there, kept)))
     wanted = [item for item, lacks in zip(items, missing, strict=True) if lacks]
     with closing(ensemble(asked, wanted, executor=parts[0].client)) as found:
         for item, lacks in zip(items, missing, strict=True):
@@ -151,14 +150,9 @@ def _known(silent: ForwardModel, work: Work[Item], item: Item) -> bool:
     return True
 
 
-def _answers(content: bytes, threads: int, item: Any) -> list[Answers]:
+def _answers(content: bytes, item: Any) -> list[Answers]:
     """On a worker: what the parts of a model answered while an item was worked on."""
     work, model, answers = pickle.loads(content)
-    with ThreadpoolController().limit(limits=threads, user_api="blas"), suppress(Exception):  # told where it is asked
+    with suppress(Exception):  # told where it is asked
         work(model, item)
     return answers
-
-
-def _threads() -> int:
-    """Threads of linear algebra, on which the order of sums depends, and so which answers are asked next."""
-    return max((one["num_threads"] for one in ThreadpoolController().select(user_api="blas").info()), default=1)

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any, TypeVar
 
 from dalembert.errors import InputError, shown, unknown
+from dalembert.findings import Finding
 from dalembert.report.section import Section
 
 Kind = TypeVar("Kind")
@@ -26,6 +27,8 @@ class Asked:
     points, channels, dofs : tuple of str
     truth : mapping
     amplitude : str
+    findings : sequence of Finding
+        About the run, before those of the result.
     """
 
     beside: tuple[Any, ...] = ()
@@ -37,6 +40,7 @@ class Asked:
     truth: Mapping[str, Any] = field(default_factory=dict)
     dofs: tuple[str, ...] = ()
     amplitude: str = "peak"
+    findings: Sequence[Finding] = ()
     taken: list[Any] = field(default_factory=list, init=False, repr=False)
     """Results beside that a section shows."""
 

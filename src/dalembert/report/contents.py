@@ -29,7 +29,7 @@ def contents(result: object, wanted: Asked) -> tuple[Headline, *tuple[Section, .
         title=wanted.title or first.title,
         notes=wanted.notes,
         facts={**first.facts, **fixed_facts(result)},
-        findings=getattr(result, "findings", ()),
+        findings=(*wanted.findings, *getattr(result, "findings", ())),
     )
     return headline, *others, *wanted.sections, *provenance(getattr(result, "provenance", {}), wanted.study)
 

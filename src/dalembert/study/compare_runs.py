@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from dalembert.errors import DataError, InputError
 from dalembert.study.folder import RunFolder
+from dalembert.threads import one_thread
 
 if TYPE_CHECKING:
     from dalembert.inverse import Fit, ModelComparison, Posterior
@@ -31,7 +32,8 @@ def compare_runs(folders: Sequence[RunFolder], leave_out: str | None = None) -> 
     for folder in folders:
         name = folder.path.name if folder.path.name not in found else str(folder.path)
         found[name] = fit_or_posterior(folder)
-    return compare_models(found, leave_out=leave_out)
+    with one_thread():
+        return compare_models(found, leave_out=leave_out)
 
 
 def fit_or_posterior(folder: RunFolder) -> "Fit | Posterior":

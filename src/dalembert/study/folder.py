@@ -3,7 +3,7 @@
 import hashlib
 import json
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -26,6 +26,8 @@ PAUSED = "paused"  # never written: stopped by the user, who said that the run w
 KILLED = "killed"  # never written: the process of a running run is gone
 DAMAGED = "damaged"  # never written: state.json holds no state
 WRITTEN = (RUNNING, FINISHED, FAILED, INPUT, INTERRUPTED)
+COMPUTED_WITH = "computed_with"
+"""Key of ``settings.json``: versions and threads of linear algebra of the processes that computed a part of the run."""
 RESUMABLE = (KILLED, INTERRUPTED, PAUSED, FAILED)
 
 
@@ -44,8 +46,8 @@ class RunFolder:
     """A run's folder and the files in it.
 
     ``study.toml`` is the study as run, byte for byte; ``inputs/`` holds the files that it names and ``inputs.json``
-    which is which; ``settings.json`` the study as understood, in SI units; ``events.jsonl``, ``state.json``,
-    ``result.nc`` and ``report.html`` say the rest.
+    which is which; ``settings.json`` the study as understood, in SI units, and what computed it; ``events.jsonl``,
+    ``state.json``, ``result.nc`` and ``report.html`` say the rest.
     """
 
     path: Path
@@ -131,7 +133,7 @@ class RunFolder:
         """Keep what runs: the study's bytes, its settings, its seed, and copies of the files that it names."""
         with replacing(self.study) as temporary:
             temporary.write_bytes(study.content)
-        _write_json(self.settings, study.settings)
+        _write_json(self.settings, study.settings | {COMPUTED_WITH: []})
         copies = {}
         for number, (name, path) in enumerate(study.files.items()):
             (self.path / "inputs").mkdir(exist_ok=True)
@@ -142,6 +144,26 @@ class RunFolder:
         seed = getattr(study.table, "seed", None)
         about = {"name": study.name, "folder": _origin(study), "seed": seed, "sha256": sha256(self.study)}
         _write_json(self.inputs, {**about, "files": copies})
+
+    def computed_with(self) -> list[dict[str, Any]]:
+        """Versions and threads of linear algebra of all processes that computed a part of the run, as far as known.
+
+        Raises
+        ------
+        InputError
+            If the file of the settings is damaged.
+        """
+        try:
+            return list(json.loads(self.settings.read_text(encoding="utf-8")).get(COMPUTED_WITH, []))
+        except (FileNotFoundError, ValueError, TypeError, AttributeError):
+            raise self.damaged(self.settings) from None
+
+    def add_computed_with(self, process: Mapping[str, Any]) -> None:
+        """Keep the versions and threads of linear algebra of a process that computes a part of the run."""
+        known = self.computed_with()
+        if process not in known:
+            settings = json.loads(self.settings.read_text(encoding="utf-8"))
+            _write_json(self.settings, settings | {COMPUTED_WITH: [*known, process]})
 
     def digests(self) -> dict[str, str]:
         """Hashes of the run's results, by the names of their files."""

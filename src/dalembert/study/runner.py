@@ -12,9 +12,11 @@ from time import monotonic, perf_counter
 from dalembert import __version__
 from dalembert.errors import DalembertError, InputError, SolveError, StorageError, not_begun, users_place
 from dalembert.files import write_text
-from dalembert.findings import stored_findings
+from dalembert.findings import Finding, stored_findings
 from dalembert.forward import Checkpoint, Executor, connected
+from dalembert.forward.cluster import worker_versions
 from dalembert.kernels.preparation import observed
+from dalembert.study.computed_with import mixed_versions, refuse_other_sources, this_process
 from dalembert.study.duration import StartFailed, duration, timed, too_long
 from dalembert.study.events import LOST, Event, EventLog, plain
 from dalembert.study.folder import DAMAGED, FAILED, FINISHED, INPUT, INTERRUPTED, RUNNING, RunFolder, new_folder
@@ -23,6 +25,8 @@ from dalembert.study.spoken import spoken
 from dalembert.study.study import Study
 from dalembert.study.tasks import TASKS, Outcome
 from dalembert.study.validation import plan
+from dalembert.threads import one_thread
+from dalembert.versions import versions
 
 Listener = Callable[[Event], None]
 Compilation = tuple[int, int]  # how many kernels are compiled, of how many
@@ -111,6 +115,7 @@ def resume_run(folder: RunFolder, *, listener: Listener | None = None, executor:
             f"{folder.path}: the run was begun with dalembert {state.get('version')}, and this is {__version__}: what "
             "both compute may differ; run the study again, or resume it with the version that began it"
         )
+    refuse_other_sources(folder)
     with folder.locked():
         folder.tidy()
         return _executed(replace(folder.kept(), executor=executor), folder, "run-resumed", listener)
@@ -132,6 +137,7 @@ def _executed(
         began = perf_counter()
         try:
             log.emit(beginning, **about)
+            folder.add_computed_with(this_process(versions()))
             for done, total in compiled:
                 log.emit("run-compiling", done=done, total=total)
             with observed(lambda done, total, _: log.emit("run-compiling", done=done, total=total)):
@@ -139,9 +145,13 @@ def _executed(
                     connected(study.executor) as client,
                     Checkpoint(folder.checkpoint, lambda sentence: log.emit(LOST, message=sentence)) as checkpoint,
                     users_code(),
+                    one_thread(),
                 ):
+                    for workers in [] if client is None else worker_versions(client):
+                        folder.add_computed_with(this_process(workers))
                     placed = replace(study, checkpoint=checkpoint, executor=client)
                     outcome = TASKS[study.task].run(placed, log.emit)
+                outcome = replace(outcome, of_run=of_run(folder))
                 outcome.save(folder.result)
                 outcome.report(folder.report)
         except BaseException as error:
@@ -195,7 +205,7 @@ def looked(study: Study, limit: float = inf) -> Iterator[str]:
         What the first simulations of a run would raise.
     """
     task, began = TASKS[study.task], monotonic()
-    with users_code():
+    with users_code(), one_thread():
         effort = task.effort(study)
         try:
             timing = timed(effort)
@@ -239,9 +249,14 @@ def report_run(folder: RunFolder) -> Path:
     study = folder.kept()
     for name, digest in (state.get("digests") or {}).items():
         folder.check(folder.path / name, digest)
-    with users_code():
-        TASKS[study.task].load(study, folder.result).report(folder.report)
+    with users_code(), one_thread():
+        replace(TASKS[study.task].load(study, folder.result), of_run=of_run(folder)).report(folder.report)
     return folder.report
+
+
+def of_run(folder: RunFolder) -> tuple[Finding, ...]:
+    """Return the findings about a run that do not depend on its result."""
+    return tuple(mixed_versions(folder.computed_with()))
 
 
 def _ending(error: BaseException) -> tuple[str, str]:

@@ -6,12 +6,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import dalembert as da
 from dalembert.errors import InputError, SolveError
 from dalembert.forward import Checkpoint, PythonModel, Recorded
-from dalembert.study import RunFolder, load, resume_run, run_study
+from dalembert.study import RunFolder, load, report_run, resume_run, run_study
 from dalembert.study.folder import new_folder
 from dalembert.study.listing import rows
 from dalembert.study.runner import Stopped
+from dalembert.threads import threads, with_threads
+from dalembert.versions import versions
+from faults.kills import content
+from pages import read_page
 from support import says
 
 MODEL = """
@@ -80,6 +85,77 @@ def test_a_run_of_another_version_is_not_resumed(stopped):
     state.write_text(json.dumps(json.loads(state.read_text()) | {"version": "0.0.1"}))
     with pytest.raises(InputError, match=r"begun with dalembert 0\.0\.1, and this is .*: what both compute may differ"):
         resume_run(stopped)
+
+
+def began_with(folder, **changed):
+    """State that other versions began a run."""
+    settings = json.loads(folder.settings.read_text())
+    settings["computed_with"] = [{**settings["computed_with"][0], **changed}]
+    folder.settings.write_text(json.dumps(settings))
+
+
+def test_a_run_of_other_source_files_is_not_resumed(stopped):
+    """Of two checkouts of one version, for example."""
+    began_with(stopped, sources="0123456789ab")
+    sentence = (
+        f"{stopped.path}: this is dalembert {da.__version__} with other source files (digest {versions()['sources']}, "
+        "not 0123456789ab) as at the start of the run: what both compute may differ; run the study again, or resume it "
+        "with the version that began it"
+    )
+    with pytest.raises(InputError, match=says(sentence)):
+        resume_run(stopped)
+
+
+@pytest.mark.parametrize("package", ["numpy", "scipy", "numba"])
+def test_a_run_of_another_version_of_a_package_is_doubted(stopped, package):
+    began_with(stopped, **{package: "1.0"})
+    outcome = resume_run(stopped)
+    (finding,) = [finding for finding in outcome.findings if finding.code == "mixed-versions"]
+    assert (finding.severity, finding.values) == (
+        "warning",
+        {"package": package, "versions": f"1.0, {versions()[package]}"},
+    )
+    assert stopped.state()["findings"][0]["code"] == "mixed-versions"
+    assert [process[package] for process in stopped.computed_with()] == ["1.0", versions()[package]]
+    for _ in range(2):
+        assert finding.message in read_page(stopped.report).text
+        report_run(stopped)
+
+
+def test_a_run_without_readable_settings_is_not_resumed(stopped):
+    stopped.settings.write_text("{")
+    with pytest.raises(InputError, match=r"the run is damaged: settings\.json is missing, or was changed"):
+        resume_run(stopped)
+
+
+THREADED = """
+import numpy as np
+from dalembert.forward import PythonModel
+
+NUMBERS = np.random.default_rng(0).standard_normal(100_000)
+
+def summed(parameters):
+    return PythonModel(lambda rate: np.array([rate * (NUMBERS @ NUMBERS)]), parameters, ["x"], np.zeros(1))
+"""
+
+
+def test_the_bits_do_not_depend_on_the_threads_of_linear_algebra(tmp_path, monkeypatch):
+    """The order of the sums of a long scalar product depends on them."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "summed.py").write_text(THREADED)
+    (tmp_path / "summed.toml").write_text(STUDY.replace("decay.py:decay", "summed.py:summed"))
+    results, sums = [], []
+    for number in (1, 2):
+        with with_threads(number):
+            folder, _ = run_study(load(tmp_path / "summed.toml"))
+            assert threads() == number
+            numbers = np.random.default_rng(0).standard_normal(100_000)
+            sums.append(numbers @ numbers)
+        results.append(content(folder.result))
+        assert folder.computed_with() == [{**versions(), "linear_algebra_threads": 1}]
+    if sums[0] == sums[1]:
+        pytest.skip("this library of linear algebra orders sums alike with one and two threads")
+    assert results[0] == results[1]
 
 
 def test_a_run_that_goes_on_is_not_resumed(stopped):

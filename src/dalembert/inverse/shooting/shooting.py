@@ -6,7 +6,6 @@ from functools import partial
 from itertools import chain
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from dalembert.arguments import Checked, limited
 from dalembert.errors import InputError, SolveError
@@ -21,6 +20,7 @@ from dalembert.inverse.shooting.nodes import Nodes
 from dalembert.inverse.shooting.segments import ShootingState
 from dalembert.inverse.starts.spread import spread_points
 from dalembert.optimize import Squares
+from dalembert.threads import one_thread
 
 WORSE = 1.1
 """Ratio of misfits up to which fewer segments are taken to explain the data as well as more of them."""
@@ -145,7 +145,7 @@ class Level:
 def _shot(shooting: MultipleShooting, method: Squares, floor: NoiseFloor, problem: Problem, point: np.ndarray) -> End:
     """Segments that meet, from a search point, merged as far as they can be."""
     values = problem.search.vectors(point)
-    with threadpool_limits(1):  # for the many small linear systems
+    with one_thread():  # for the many small linear systems
         try:
             return _merged(problem, list(_levels(problem, shooting, values)), method, floor, len(values))
         except SolveError as error:

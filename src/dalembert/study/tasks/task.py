@@ -33,6 +33,8 @@ class Outcome:
         Of :func:`dalembert.report.report`, beside title, notes and study.
     told : mapping
         Further results, by the names of their files beside that of the result, without ending.
+    of_run : tuple of Finding
+        Findings about the run, which do not depend on the result.
     """
 
     study: Study = field(repr=False)
@@ -40,6 +42,7 @@ class Outcome:
     best: Mapping[str, Any] = field(default_factory=dict)
     options: Mapping[str, Any] = field(default_factory=dict)
     told: Mapping[str, Any] = field(default_factory=dict)
+    of_run: tuple[Finding, ...] = ()
 
     @property
     def success(self) -> bool:
@@ -57,9 +60,13 @@ class Outcome:
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """Findings of the result, and what else it is doubted for."""
+        """Findings about the run, findings of the result, and what else it is doubted for."""
         findings = tuple(getattr(self.result, "findings", ()))
-        return (*findings, *(doubt for doubt in getattr(self.result, "doubts", ()) if doubt not in findings))
+        return (
+            *self.of_run,
+            *findings,
+            *(doubt for doubt in getattr(self.result, "doubts", ()) if doubt not in findings),
+        )
 
     @property
     def beside(self) -> Iterable[Any]:
@@ -77,7 +84,16 @@ class Outcome:
         from dalembert.report import report
 
         notes, text = self.study.file.study.description, self.study.content.decode()
-        report(self.result, path, *self.beside, title=self.study.title, notes=notes, study=text, **self.options)
+        report(
+            self.result,
+            path,
+            *self.beside,
+            title=self.study.title,
+            notes=notes,
+            study=text,
+            findings=self.of_run,
+            **self.options,
+        )
 
 
 def loaded_beside(result: Path, kinds: Mapping[str, Any]) -> dict[str, Any]:

@@ -9,6 +9,7 @@ import numpy as np
 from dalembert.arguments import takes_checked
 from dalembert.errors import InputError
 from dalembert.forward import Checkpoint
+from dalembert.threads import one_thread
 from dalembert.units import unit_of
 from dalembert.vibration.balance.equations import equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
@@ -18,7 +19,6 @@ from dalembert.vibration.paths.continuation import EASY, MOST_POINTS, SHORTEST, 
 from dalembert.vibration.storage import ConvergedResult, Over, versions
 from dalembert.vibration.system.requirements import positive_numbers
 from dalembert.vibration.system.system import StaticForce, VibrationSystem
-from dalembert.vibration.threads import one_thread
 
 SMALLER = (1.0, 0.1, 1e-2, 1e-3, 1e-4)
 """Parts of the first amplitude that are tried in turn."""

@@ -9,6 +9,7 @@ import numpy as np
 from dalembert.errors import InputError
 from dalembert.structure.mode_shapes import drawn_nodes, node_motion
 from dalembert.structure.structure import known_nodes
+from dalembert.threads import one_thread
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.fourier import synthesis
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
@@ -17,7 +18,6 @@ from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.storage import Over, VibrationResult
 from dalembert.vibration.system.lowering import lower
 from dalembert.vibration.system.system import VibrationSystem
-from dalembert.vibration.threads import one_thread
 
 
 @dataclass(frozen=True, eq=False)

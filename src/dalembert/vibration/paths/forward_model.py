@@ -15,6 +15,7 @@ from dalembert.forward.builders import built, check_function, cores, inexact, re
 from dalembert.forward.complex_steps import Compared
 from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES, central_differences
 from dalembert.parameters import Parameter, Parameters
+from dalembert.threads import one_thread
 from dalembert.units import unit_of
 from dalembert.vibration.balance.equations import Equations, equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
@@ -28,7 +29,6 @@ from dalembert.vibration.system.complex_steps import check_laws, check_numbers
 from dalembert.vibration.system.lowering import Lowered, lower
 from dalembert.vibration.system.requirements import positive_numbers
 from dalembert.vibration.system.system import VibrationSystem
-from dalembert.vibration.threads import one_thread
 
 
 @dataclass(frozen=True)

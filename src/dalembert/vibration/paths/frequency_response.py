@@ -9,6 +9,7 @@ import numpy as np
 from dalembert.arguments import takes_checked
 from dalembert.errors import InputError, require_known
 from dalembert.forward import Checkpoint
+from dalembert.threads import one_thread
 from dalembert.vibration.balance.conclusions import (
     free_findings,
     largest,
@@ -26,7 +27,6 @@ from dalembert.vibration.storage import versions
 from dalembert.vibration.system.lowering import Lowered
 from dalembert.vibration.system.requirements import positive_numbers, require_force, require_viscous
 from dalembert.vibration.system.system import VibrationSystem
-from dalembert.vibration.threads import one_thread
 
 NATURAL, ARC_LENGTH = "natural", "arc-length"
 PHASES = 64

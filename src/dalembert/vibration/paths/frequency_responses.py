@@ -17,6 +17,7 @@ from dalembert.errors import DalembertError, InputError, SolveError, StorageErro
 from dalembert.forward import Checkpoint, Executor, ensemble
 from dalembert.forward.builders import check_function
 from dalembert.results import Result
+from dalembert.threads import one_thread
 from dalembert.units import unit_of
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.paths.curve import FrequencyCurve, Peak
@@ -24,7 +25,6 @@ from dalembert.vibration.paths.frequency_response import FollowedPoint, frequenc
 from dalembert.vibration.system.lowering import lower
 from dalembert.vibration.system.requirements import values_of
 from dalembert.vibration.system.system import VibrationSystem
-from dalembert.vibration.threads import one_thread
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -16,6 +16,7 @@ from dalembert.arguments import takes_checked
 from dalembert.errors import InputError
 from dalembert.forward import Checkpoint
 from dalembert.forward.builders import check_function
+from dalembert.threads import one_thread
 from dalembert.units import unit_of
 from dalembert.vibration.balance.equations import Equations, equations
 from dalembert.vibration.balance.fourier import synthesis
@@ -28,7 +29,6 @@ from dalembert.vibration.paths.frequency_response import ARC_LENGTH, frequency_r
 from dalembert.vibration.storage import ConvergedResult, Over, versions
 from dalembert.vibration.system.requirements import values_of
 from dalembert.vibration.system.system import VibrationSystem
-from dalembert.vibration.threads import one_thread
 
 WIDTH = 0.1
 """Change of ω, as part of itself, that counts as much along the path as the whole motion."""

@@ -4,13 +4,13 @@ import numpy as np
 
 from dalembert.arguments import takes_checked
 from dalembert.errors import require_known
+from dalembert.threads import one_thread
 from dalembert.vibration.balance.equations import equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.frequency_response import restarted
 from dalembert.vibration.stability.stability import AUTOMATIC, HILL, TIME_MAP, exponents
 from dalembert.vibration.system.system import VibrationSystem
-from dalembert.vibration.threads import one_thread
 
 
 @takes_checked("way")

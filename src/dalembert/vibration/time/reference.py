@@ -10,6 +10,7 @@ from scipy.sparse.linalg import LinearOperator, gmres
 
 from dalembert.arguments import takes_checked
 from dalembert.errors import InputError, SolveError, require_known
+from dalembert.threads import one_thread
 from dalembert.vibration.balance.equations import equations
 from dalembert.vibration.balance.fourier import Fourier, synthesis
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
@@ -20,7 +21,6 @@ from dalembert.vibration.storage import versions
 from dalembert.vibration.system.lowering import lower
 from dalembert.vibration.system.requirements import require_force
 from dalembert.vibration.system.system import VibrationSystem
-from dalembert.vibration.threads import one_thread
 from dalembert.vibration.time.elements import Elements, Instant, Reaction, react, reaction, settle
 from dalembert.vibration.time.lowering import InTime, address
 from dalembert.vibration.time.newmark import Newmark

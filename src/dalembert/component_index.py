@@ -111,7 +111,7 @@ SPATIAL_HOMES = {
     "Spring": "components.spatial.spring",
     "Surface": "components.spatial.shapes",
     "Torque": "components.spatial.force",
-    "TorsionSpring": "components.spatial.spring",
+    "TorsionSpring": "components.spatial.torsion_spring",
     "UniversalJoint": "components.spatial.universal_joint",
     "UserForce": "components.spatial.user_force",
 }

@@ -36,7 +36,7 @@ from dalembert.multibody.components.spatial.shapes import Shape as Shape
 from dalembert.multibody.components.spatial.shapes import Surface as Surface
 from dalembert.multibody.components.spatial.spherical_joint import SphericalJoint as SphericalJoint
 from dalembert.multibody.components.spatial.spring import Spring as Spring
-from dalembert.multibody.components.spatial.spring import TorsionSpring as TorsionSpring
+from dalembert.multibody.components.spatial.torsion_spring import TorsionSpring as TorsionSpring
 from dalembert.multibody.components.spatial.universal_joint import ConstantVelocityJoint as ConstantVelocityJoint
 from dalembert.multibody.components.spatial.universal_joint import UniversalJoint as UniversalJoint
 from dalembert.multibody.components.spatial.user_force import UserForce as UserForce

@@ -19,7 +19,7 @@ from spatial_scenes import SCENES
 
 TIME = 0.3
 #: Their energies and powers are those of aligned axes, and of points on the axis.
-ALIGNED = {"torsion spring", "torsion spring to ground", "prismatic, rubbing", "motor", "motor to ground"}
+ALIGNED = {"prismatic, rubbing", "motor", "motor to ground"}
 #: Their torques are those of rotations: they do what energies lose where directors are orthonormal.
 RIGID = {"bushing", "bushing to ground", "rigid body"}
 

@@ -92,8 +92,7 @@ class Coupling(Joint):
 
     @property
     def coupled(self) -> tuple[Joint, str]:
-        own = self.coordinates[1]
-        return own.joint, f"{CHANNELS[own.coordinate][2][0]}_b"
+        return self.b, f"{CHANNELS[self.coordinates[1].coordinate][2][0]}_b"
 
     def _couple(self, lowering: SpatialLowering, ratio: Number, offset: Number | None) -> None:
         (i, at_a), (j, at_b) = map(lowering.coordinate, self.coordinates)

@@ -2,11 +2,11 @@
 
 The orientation of two bodies gives their angle up to whole turns. A coordinate u that is tied to it by
 cos(u) e2 . f1 - sin(u) e1 . f1 = 0, which is sin(angle - u) = 0 where the axes are aligned, follows it continuously. So
-couplings and limits are functions of u, and the multiplier of the tie hands their torque to the bodies.
+couplings, limits and torsion springs are functions of u. The multiplier of the tie transmits torques to the bodies.
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.spatial import pairs
 from dalembert.multibody.components.spatial.body import FREE, Body
 from dalembert.multibody.components.spatial.joint import Joint, joint_displacement
-from dalembert.multibody.components.spatial.lowering import SpatialLowering
+from dalembert.multibody.components.spatial.lowering import Pair, SpatialLowering
 from dalembert.multibody.components.spatial.pairs import e1, e2, e3, f1, push_a_axis, push_b_axis, push_pair, separation
 from dalembert.multibody.components.spatial.vectors import dot, minus, times
 from dalembert.multibody.kernels.charts import flat
@@ -68,6 +68,7 @@ def _tie(name: str, constraint: Any, forces: Any) -> Kind:
         forces=forces,
         charts=(*pairs.CHARTS, flat(1)),
         lengths=pairs.LENGTHS,
+        holds=True,
         home=__name__,
     )
 
@@ -122,6 +123,14 @@ def _turns(angle: float, least: float, most: float) -> float:
     return float(np.round((0.5 * (least + most) - angle) / turn))
 
 
+class Paired(Protocol):
+    """What has two markers with an axis: a joint, or a torsion spring."""
+
+    def pair(self, lowering: SpatialLowering) -> Pair:
+        """The markers of both sides, with their axis as the third one."""
+        ...
+
+
 @dataclass(frozen=True)
 class JointCoordinate(Body):
     """A coordinate without mass that is the counted angle of a joint, or its displacement.
@@ -131,14 +140,14 @@ class JointCoordinate(Body):
     Parameters
     ----------
     name : str
-    joint : Joint
+    joint : Joint or TorsionSpring
     coordinate : {"angle", "displacement"}
     within : (float, float)
         The angle at the start is counted from a turn that puts it between these, rad; if none does, it is the one
         nearest to their middle.
     """
 
-    joint: Joint
+    joint: Paired
     coordinate: str = ANGLE
     within: tuple[float, float] = (-np.pi, np.pi)
 

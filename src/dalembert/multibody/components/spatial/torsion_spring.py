@@ -1,0 +1,113 @@
+"""The torsion spring with damper in space, about an axis."""
+
+__all__ = ["TorsionSpring"]
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dalembert.kernels.kernel import inlined
+from dalembert.multibody.components.fields import Number, number
+from dalembert.multibody.components.points import require_direction
+from dalembert.multibody.components.spatial.joint import turned_to
+from dalembert.multibody.components.spatial.joint_coordinate import JointCoordinate
+from dalembert.multibody.components.spatial.load import Load
+from dalembert.multibody.components.spatial.lowering import Pair, SpatialLowering
+from dalembert.multibody.components.spatial.orientation import Vector
+from dalembert.multibody.components.spatial.points import Side
+from dalembert.multibody.components.spring_law import NUMBERS, law_functions, tension
+from dalembert.multibody.kernels.kind import Kind
+
+
+@inlined
+def _twist(x, v, p, m):
+    """Counted angle less the free one, and its rate."""
+    return x[0] - p.rest, v[0]
+
+
+@inlined
+def _residual(x, v, a, p, m, inputs, r):
+    twist, rate = _twist(x, v, p, m)
+    r[0] += tension(twist, rate, p)
+
+
+_energy, _observe = law_functions(_twist)
+TORSION_SPRING = Kind(
+    "torsion_spring_in_space", coordinates=1, numbers=NUMBERS, residual=_residual, energy=_energy,
+    outputs=(("twist", "rad"), ("torque", "N*m")), observe=_observe, dissipates="damping",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class TorsionSpring(Load):
+    """A torsion spring with damper about the axis of a joint.
+
+    Torque = stiffness x twist + cubic x twist^3 + damping x rate of twist. The twist is the angle of b relative to a
+    less the free angle. The angle is counted over whole turns.
+
+    Parameters
+    ----------
+    name : str
+    a, b : Point or ground
+    stiffness : float
+        N m/rad.
+    damping : float
+        N m s/rad.
+    free_angle : float, optional
+        Angle of b relative to a without torque, rad; the initial one if not given.
+    cubic : float
+        N m/rad^3.
+    axis : (float, float, float)
+        Direction of the axis, the same in the axes of both markers.
+    near : float, optional
+        The angle at the start is the one nearest to this, rad; so a spring can start with whole turns. If not given,
+        the twist at the start is within half a turn.
+
+    Notes
+    -----
+    The angle is that of a revolute joint with this axis, also where no such joint is there: its tangent is
+    (e2 . f1)/(e1 . f1). The torque is what does work on it.
+
+    Examples
+    --------
+    A wheel that winds a spring by two turns, and turns back:
+
+    >>> from dalembert.multibody import simulate
+    >>> from dalembert.multibody.spatial import Inertia, RevoluteJoint, RigidBody, SpatialSystem, TorsionSpring
+    >>> system = SpatialSystem()
+    >>> wheel = system.add(RigidBody("wheel", Inertia(1.0, (0.02, 0.02, 0.02)), angular_velocity=(0.0, 0.0, 20.0)))
+    >>> sides = system.ground, wheel.point("origin")
+    >>> _ = system.add(RevoluteJoint("pin", *sides))
+    >>> _ = system.add(TorsionSpring("coil", *sides, stiffness=0.05))
+    >>> simulate(system, end=4.0, solver="auto").channels(["coil.twist"]).max().round(2)  # 20 (J/k)^(1/2)
+    np.float64(12.65)
+    """
+
+    a: Side
+    b: Side
+    stiffness: Number = number("N*m/rad")
+    damping: Number = number("N*m*s/rad", 0.0)
+    free_angle: Number | None = number("rad", None)
+    cubic: Number = number("N*m/rad**3", 0.0)
+    axis: Vector = (0.0, 0.0, 1.0)
+    near: float | None = number("rad", None)
+
+    kind = TORSION_SPRING
+
+    @property
+    def coordinates(self) -> tuple[JointCoordinate]:
+        middle = self.near
+        if middle is None:
+            middle = 0.0 if self.free_angle is None else float(np.real(self.free_angle))
+        return (JointCoordinate(f"{self.name}.joint", self, within=(middle - np.pi, middle + np.pi)),)
+
+    def pair(self, lowering: SpatialLowering) -> Pair:
+        """The markers of both sides, with the axis as their third one."""
+        owner = f"torsion spring {self.name!r}"
+        require_direction(owner, "a spring, or a rigid body", self.a, self.b)
+        return lowering.pair(self.a, self.b, self.name, turned_to(self.axis, owner))
+
+    def lower(self, lowering: SpatialLowering) -> None:
+        index, angle = lowering.coordinate(self.coordinates[0])
+        free = angle if self.free_angle is None else self.free_angle
+        lowering.add(self.kind, [index], [free, self.stiffness, self.damping, self.cubic], name=self.name)

@@ -23,6 +23,12 @@ TENSOR = np.array([[0.031, -0.004, 0.003], [-0.004, 0.022, 0.005], [0.003, 0.005
 TIMES, NOISE = np.arange(101) * 0.04, 0.5  # s, mm
 
 
+def slope(axes: np.ndarray) -> np.ndarray:
+    """Derivative of the angle atan2(R_21, R_11) about the vertical by a rotation, along the axes of the plate."""
+    x, y, _ = axes[:, 0]
+    return axes.T @ np.cross(axes[:, 0], (-y, x, 0.0)) / (x * x + y * y)
+
+
 def swing(angles: tuple[float, float, float], twist: float) -> np.ndarray:
     """Positions of the first two points of the plate, m, (samples, 2, 3)."""
     turned = Rotation.from_euler("XYZ", angles, degrees=True).as_matrix()
@@ -35,7 +41,7 @@ def swing(angles: tuple[float, float, float], twist: float) -> np.ndarray:
         cross = np.array([[0, -first[2], first[1]], [first[2], 0, -first[0]], [-first[1], first[0], 0]])
         matrix = np.block([[mass * np.eye(3), -axes @ cross], [cross @ axes.T, inertia]])
         force = mass * GRAVITY - axes @ np.cross(w, np.cross(w, first))
-        torque = np.cross(first, axes.T @ GRAVITY) - np.cross(w, inertia @ w) - DRAG * axes[2] * (axes[2] @ w)
+        torque = np.cross(first, axes.T @ GRAVITY) - np.cross(w, inertia @ w) - DRAG * slope(axes) * (slope(axes) @ w)
         along = (x + HOOKS @ axes.T - HOOKS) / WIRE
         gradient = np.hstack([along, np.cross(HOOKS, along @ axes)])
         speeds = v + np.cross(w, HOOKS) @ axes.T

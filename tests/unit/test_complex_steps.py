@@ -17,6 +17,8 @@ LOSING: dict[str, Callable] = {
     "real": np.real,
     "norm": lambda x: np.linalg.norm([x, 1.0]),
     "six decimals": lambda x: np.round(x, 6),
+    "logarithm": lambda x: -1j * np.log(np.cos(x) + 1j * np.sin(x)),
+    "a small part from a logarithm": lambda x: x + 1e-3j * np.log(np.cos(x) + 1j * np.sin(x)),
     "beside large numbers": lambda x: 1e9 + abs(x) * 1e3,
 }
 
@@ -83,6 +85,13 @@ def test_a_function_that_carries_the_step_is_accepted(name: str, scale: float) -
     assert lost_step(numbers({**CARRYING, **SMOOTH_OR_KINKED}[name]), scale) is None
 
 
+def test_a_steep_function_whose_slope_is_wrong_is_found() -> None:
+    """Its increment over the step of the differences is saturated, so only smaller steps have its slope."""
+    steep = numbers(lambda x: np.tanh(1e6 * (np.real(x) - 1.2)) + 3e6j * np.imag(x))
+    assert lost_step(numbers(lambda x: np.tanh(1e6 * (x - 1.2))), 1.0) is None
+    assert lost_step(steep, 1.0) is not None
+
+
 def test_a_chaotic_function_carries_the_step_though_differences_cannot_follow_it() -> None:
     for at in (1.2, 1.2345, 0.77):
         assert lost_step(lambda shift, at=at: logistic(at + shift), 1.0) is None
@@ -96,6 +105,14 @@ def test_a_python_model_names_parameter_channel_and_sample() -> None:
     )  # fmt: skip
     with pytest.raises(InputError, match=r"channel 'b' \(sample \d\).* by 'rate' is 0 by the complex step, but"):
         model.jacobian(np.array([1.0, 1.5]))
+
+
+def test_a_python_model_in_complex_numbers_has_no_derivative() -> None:
+    """The imaginary part of the logarithm is rounding, far above that of the complex step."""
+    times = np.linspace(0.1, 1.0, 3)
+    model = PythonModel(lambda rate: np.log(np.exp(1j * rate * times)) / 1j, {"rate": (0.1, 2.0)}, ["a"], times)
+    with pytest.raises(InputError, match="returned complex numbers for real parameters"):
+        model.jacobian(np.array([0.8]))
 
 
 @pytest.mark.parametrize("name", ROUNDING)
@@ -137,27 +154,27 @@ def counted() -> tuple[PythonModel, list]:
 def test_a_python_model_is_compared_once() -> None:
     model, calls = counted()
     model.jacobian(np.array([2.0]))
-    assert len(calls) == 11  # four for the differences, five for wide ones, two in complex numbers
+    assert len(calls) == 12  # the response, four for the differences, five for wide ones, two in complex numbers
     assert all(0.1 <= np.real(rate) <= 2.0 for rate in calls)
     model.jacobian(np.array([1.0]))
     model.first(2).jacobian(np.array([1.0]))
-    assert len(calls) == 13
+    assert len(calls) == 14
 
 
 def test_a_model_is_compared_at_each_vector_once() -> None:
     model, calls = counted()
     wrapped = Wrapped(model.first(2))
     wrapped.check_derivatives(np.array([1.0]))
-    assert len(calls) == 10
+    assert len(calls) == 11
     model.check_derivatives(np.array([1.0]))
-    assert len(calls) == 10
+    assert len(calls) == 11
     model.check_derivatives(np.array([1.5]))
-    assert len(calls) == 15
+    assert len(calls) == 17
 
 
 def test_a_checkpoint_knows_that_a_model_was_compared(tmp_path: Path) -> None:
     at = np.array([1.0])
-    for calls in (10, 0):
+    for calls in (11, 0):
         model, made = counted()
         with Checkpoint(tmp_path / "checkpoint") as checkpoint:
             Recorded(model, checkpoint).check_derivatives(at)

@@ -122,7 +122,8 @@ def test_a_response_of_another_shape_is_refused() -> None:
         (lambda rate, height: 1.0, InputError,
          "{named} returned an array of shape (); expected (samples, channels) = (5, 2)"),
         (lambda rate, height: np.full((5, 2), 1j), InputError,
-         "{named} returned complex numbers for real parameters. Return their real parts"),
+         "{named} returned complex numbers for real parameters. Their imaginary parts would be taken for "
+         "derivatives: compute in real numbers, with atan2 of dalembert for angles"),
         (lambda rate, height: sys.exit(3), SolveError, "SystemExit: 3 ({place})"),
         (lambda rate, height: {}["stiff"], SolveError, "KeyError: 'stiff' ({place})"),
         (lambda rates: None, SolveError,

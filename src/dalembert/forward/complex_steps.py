@@ -28,6 +28,8 @@ _MOST, _ALL_FLAT = 4, 2  # intervals with jumps, of any number, and of one that 
 _DIFFERS = 1e-2  # relative, of an increment and the integral of the derivative
 _TINY = 1e-9  # shifts at which rounding is measured, in scales
 _STEEP = 0.3  # derivative times step, in parts of the largest number, from which differences cannot follow it
+_SMOOTH = 1e-4  # of a number's change over the step of the differences, over the millionth part of that step
+_DECADES = 6  # of smaller steps, with which differences follow a steep number
 _NOISY = 16.0  # times the rounding that a difference must be
 _ENTRIES = 2  # that are halved at most
 _HALVINGS = 40  # until a steep function changes by less than _JUMP of the difference
@@ -69,13 +71,35 @@ def lost_step(numbers: Callable[[complex], np.ndarray], scale: float) -> Lost | 
     excess[~np.isfinite(excess)] = 0.0
     width = DIFFERENCE * scale  # of the differences, over which a chaotic response is not linear
     size = _largest(np.abs(here))
-    excess[np.abs(by_step) * width > (_STEEP * size or np.inf)] = 0.0
+    steep = np.abs(by_step) * width > (_STEEP * size or np.inf)
+    if np.any(steep & (excess > 0)):
+        excess[steep & ~_contradicted(numbers, here, by_step, width)] = 0.0
     if np.any(excess > 0):
         excess[excess * DIFFERENCE * scale < _NOISY * _noise(numbers, 0.0, scale)] = 0.0
     if np.max(excess, initial=0.0) <= 0:
         return None
     worst = int(np.argmax(excess / (np.abs(by_step) + np.abs(slope) + np.finfo(float).tiny)))
     return Lost(worst, float(by_step[worst]), float(f"{slope[worst]:.6g}"))
+
+
+def _contradicted(
+    numbers: Callable[[complex], np.ndarray], here: np.ndarray, by_step: np.ndarray, width: float
+) -> np.ndarray:
+    """Which numbers are smooth, but have at no step the slope of the complex step, (numbers,).
+
+    A chaotic number changes as much over a small step as over a wide one, and a steep one has the slope at some step. A
+    number whose imaginary part is rounding, as of ``-1j * log(...)``, is smooth with another slope.
+    """
+    steps = width * 10.0 ** -np.arange(_DECADES + 1)
+    wide, small = (
+        np.max([np.abs(np.real(numbers(side * step)) - here) for side in (1.0, -1.0, 0.5, -0.5)], axis=0)
+        for step in (steps[0], steps[-1])
+    )
+    contradicted = (small < _SMOOTH * wide) & np.isfinite(by_step)
+    for step in steps[1:] if np.any(contradicted) else ():
+        slope, error = _differences(numbers, here, step)
+        contradicted &= np.abs(by_step - slope) > error + _STEEP * np.abs(by_step)
+    return contradicted
 
 
 @np.errstate(all="ignore")
@@ -238,6 +262,7 @@ def check_steps(
     InputError
         It names the parameter and the entry.
     """
+    _refuse_imaginary(numbers(vector), place)
     margin = np.minimum(DIFFERENCE * parameters.scale, (parameters.upper - parameters.lower) / 4)
     inside = np.clip(vector, parameters.lower + margin, parameters.upper - margin)
     sizes = margin / DIFFERENCE
@@ -260,6 +285,16 @@ def check_steps(
                 f"{lost.by_step:.6g} by the complex step, but {lost.by_differences:.6g} by wide differences. "
                 "Do not round a parameter, nor numbers that depend on it"
             )
+
+
+def _refuse_imaginary(numbers: np.ndarray, place: Callable[[int], str]) -> None:
+    """Raise where real parameters give a complex number: its imaginary part covers that of the complex step."""
+    (wrong,) = np.nonzero(np.imag(numbers))
+    if len(wrong):
+        raise InputError(
+            f"{place(wrong[0])} is {numbers[wrong[0]]:.6g} for real parameters; expected a real number. A function of "
+            "the model computes in complex numbers, as -1j * np.log(...) does: use atan2 of dalembert for angles"
+        )
 
 
 def check_together(

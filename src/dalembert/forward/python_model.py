@@ -170,7 +170,10 @@ class PythonModel:
             raise SolveError(f"{self._named} returned a value that is not finite")
         if np.iscomplexobj(response) and not np.iscomplexobj(vector):
             if np.any(np.imag(response)):
-                raise InputError(f"{self._named} returned complex numbers for real parameters. Return their real parts")
+                raise InputError(
+                    f"{self._named} returned complex numbers for real parameters. Their imaginary "
+                    "parts would be taken for derivatives: compute in real numbers, with atan2 of dalembert for angles"
+                )
             return np.real(response)
         return response
 
@@ -187,6 +190,8 @@ class PythonModel:
         """The response as a vector; NaN where the function fails."""
         try:
             return self._call(vector).ravel()
+        except InputError:
+            raise
         except Exception:  # the derivative itself will report it
             return np.full(int(np.prod(self._shape)), np.nan)
 

@@ -308,3 +308,25 @@ def test_modes_with_a_force_by_safe_functions_are_right() -> None:
     force = lambda t, at, against: (-300.0 * (da.absolute(at[0]) - 1.0), 0.0, 0.0)  # noqa: E731
     frequencies = da.modes(sprung(force)).frequencies
     np.testing.assert_allclose(frequencies, np.sqrt([100.0, 400.0]) / (2 * np.pi), rtol=1e-9)
+
+
+def phase(angle: complex) -> complex:
+    """An angle by the complex logarithm: its imaginary part is rounding, far above the complex step."""
+    return -1j * np.log(np.cos(angle) + 1j * np.sin(angle))
+
+
+def test_an_angle_by_the_complex_logarithm_is_refused() -> None:
+    def build(angle: float) -> da.System:
+        system = da.System()
+        bar = system.add(da.RigidBar("bar", 1.0, 1.0, angle=phase(angle)))
+        system.add(da.RevoluteJoint("pin", system.ground, bar.start))
+        return system
+
+    model = da.TimeResponse(build, {"angle": (0.1, 1.5)}, ["bar.end.x"], TIMES)
+    assert np.isfinite(model.evaluate([[0.7957]]).only()).all()
+    sentence = r"^a coordinate at the start of 'bar' is 0\.34.*j for real parameters; expected a real number\. .* atan2"
+    with pytest.raises(da.InputError, match=sentence):
+        model.jacobian(np.array([0.7957]))
+    data = da.Measurements.of(TIMES, {"bar.end.x": np.cos(TIMES)})
+    with pytest.raises(da.InputError, match=sentence):
+        da.identify(model, data, starts=1, seed=0)

@@ -22,6 +22,7 @@ NAMES = (
     "digits",
     "vibration",
     "events",
+    "bolted",
     "plate",
     "spatial",
     "robots",

@@ -12,13 +12,14 @@ STEPS = 4000
 
 @dataclass(frozen=True)
 class Stops:
-    """M x'' + C x' + K x + sum of stops = force cos(ωt); a stop is k (w·x - gap) where that is positive.
+    """M x'' + C x' + K x + sum of stops = mean + force cos(ωt); a stop is k (w·x - gap) where that is positive.
 
     Parameters
     ----------
     mass, damping, stiffness : array, shape (n, n)
     force : array, shape (n,)
     stops : sequence of (direction, stiffness, gap)
+    mean : array, shape (n,), optional
     """
 
     mass: np.ndarray
@@ -26,6 +27,7 @@ class Stops:
     stiffness: np.ndarray
     force: np.ndarray
     stops: tuple[tuple[np.ndarray, float, float], ...]
+    mean: np.ndarray | None = None
 
     @cached_property
     def _flows(self) -> dict:
@@ -35,6 +37,7 @@ class Stops:
         """Eigenvalues and vectors of the state's rates, the static and the forced motion between changes."""
         if (closed, omega) not in self._flows:
             n, stiffness, static = len(self.mass), self.stiffness.copy(), np.zeros(len(self.mass))
+            static += 0.0 if self.mean is None else self.mean
             for shut, (way, stiff, gap) in zip(closed, self.stops, strict=True):
                 stiffness += shut * stiff * np.outer(way, way)
                 static += shut * stiff * gap * way

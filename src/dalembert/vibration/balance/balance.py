@@ -20,6 +20,7 @@ import numpy as np
 
 from dalembert.vibration.balance.condensation import Point
 from dalembert.vibration.balance.fourier import Fourier, real_blocks
+from dalembert.vibration.balance.free_motions import HeldByElements
 from dalembert.vibration.balance.tangents import BlockTangent, DenseTangent, Tangent
 from dalembert.vibration.laws.contact_sums import ContactSums, Shape, contact_sums
 from dalembert.vibration.laws.friction_law import GAP, NORMAL, STUCK, TANGENTIAL
@@ -108,9 +109,10 @@ class Balance:
     def tangent(self, point: Point, unknowns: np.ndarray) -> Tangent:
         """The tangent of the structure alone, to which :meth:`residual` adds the elements."""
         slope = self.linear(point.slope, point.force_slope, unknowns)
-        if unknowns.size > LARGE and self._separate and point.held:
-            return BlockTangent(point, self.series, slope, *self._references)
-        return DenseTangent(real_blocks(point.stiffness, self.series.mean), slope, point.held)
+        held = None if point.held else self._held_by_elements(point)
+        if unknowns.size > LARGE and self._separate:
+            return BlockTangent(point, self.series, slope, self._reference(point), self._rigid, held)
+        return DenseTangent(real_blocks(point.stiffness, self.series.mean), slope, held)
 
     def stuck(self, point: Point) -> np.ndarray:
         """Unknowns where all elastic contacts are closed and stick, without preload, (q, coefficients)."""
@@ -167,7 +169,7 @@ class Balance:
             if tangent is not None:
                 blocks = series.analysis @ (slopes[:, :, :, None] * series.synthesis)
                 local = np.swapaxes(blocks, 1, 2).reshape(1, len(rows) * series.count, -1)
-                self._spread(rows[None], local, np.zeros((1, len(rows))), tangent)
+                self._spread(rows[None], local, tangent)
 
     def _add_laws(
         self, acting: np.ndarray, unknowns: np.ndarray, omega: float, tangent: Tangent | None, rate: float
@@ -179,15 +181,21 @@ class Balance:
                 force = sums.forces(displacements, omega)
             else:
                 force, local, by_omega = sums.with_slopes(displacements, omega)
-                self._spread(block.rows, local, np.zeros(block.rows.shape), tangent)
+                self._spread(block.rows, local, tangent)
                 shapes = self._combination[block.rows.ravel()]
                 tangent.slope[:] += rate * shapes.T @ by_omega.reshape(len(shapes), -1)
             np.add.at(acting, block.rows, force)
 
-    def _spread(self, rows: np.ndarray, local: np.ndarray, penalties: np.ndarray, tangent: Tangent) -> None:
-        """J += L^T G L, with local Jacobians G (cells, columns · coefficients, columns · coefficients)."""
+    def _spread(
+        self, rows: np.ndarray, local: np.ndarray, tangent: Tangent, penalties: np.ndarray | None = None
+    ) -> None:
+        """J += L^T G L, with local Jacobians G (cells, columns · coefficients, columns · coefficients).
+
+        ``penalties`` (cells, columns): stiffnesses of each cell if it sticks, where several cells share a row.
+        """
         if isinstance(tangent, BlockTangent):
-            tangent.add(self._retained[rows], local, penalties)
+            places = self._retained[rows]
+            tangent.add(places, local, tangent.reference[places] if penalties is None else penalties)
             return
         cells, columns = rows.shape
         split = local.reshape(cells, columns, self.series.count, columns, self.series.count)
@@ -221,7 +229,7 @@ class Balance:
             if isinstance(tangent, DenseTangent) and before is not None:
                 self._spread_rigid(block, local, tangent, before)
             else:
-                self._spread(block.rows, local, _penalties(block), tangent)
+                self._spread(block.rows, local, tangent, _penalties(block))
         for cell in self._undetermined(block, states):
             places = self._retained[block.rows[cell, : block.tangents]]
             penalty = block.numbers[cell, TANGENTIAL]
@@ -292,13 +300,51 @@ class Balance:
         return self.shape[0] == len(self.lowered.row_names) and all(block.memory for block in self.lowered.blocks)
 
     @cached_property
-    def _references(self) -> tuple[np.ndarray, np.ndarray]:
-        """Stiffness of each retained coordinate's contact if it sticks, and whether that is rigid."""
-        stiffness, rigid = np.zeros(self.shape[0]), np.zeros(self.shape[0], dtype=bool)
+    def _stuck(self) -> np.ndarray:
+        """Stiffness of the contact of each row if it is closed and sticks, (rows,); 0 where there is no contact."""
+        stiffness = np.zeros(len(self.lowered.row_names))
         for block in self.lowered.blocks:
-            np.add.at(stiffness, self._retained[block.rows], _penalties(block))
+            np.add.at(stiffness, block.rows, _penalties(block))
+        return stiffness
+
+    @cached_property
+    def _closed(self) -> np.ndarray:
+        """Stiffness of the mean of each row's element where it is closed, (rows,); NaN where none is known.
+
+        0 for elements that remember: after the turns of a period, their forces do not depend on the mean.
+        """
+        stiffness = np.full(len(self.lowered.row_names), np.nan)
+        for block in self.lowered.blocks:
+            stiffness[block.rows] = 0.0
+            if block.normal:
+                np.add.at(stiffness, block.rows[:, -1], block.numbers[:, NORMAL])
+        for block in self.lowered.laws:
+            stiffness[block.rows] = 0.0 if block.states else block.element.closed_stiffness(block)
+        return stiffness
+
+    @cached_property
+    def _rigid(self) -> np.ndarray:
+        """Whether the contact of each retained coordinate is rigid, (q,)."""
+        rigid = np.zeros(self.shape[0], dtype=bool)
+        for block in self.lowered.blocks:
             rigid[self._retained[block.rows]] = block.kind != ELASTIC
-        return stiffness, rigid
+        return rigid
+
+    def _reference(self, point: Point) -> np.ndarray:
+        """Stiffness of the element of each retained coordinate, (q,), with which no motion of the structure is free."""
+        stiffness = self._stuck
+        if not point.held:
+            closed = self._mean_stiffness(point)
+            stiffness = np.where(stiffness > 0, stiffness, np.where(closed > 0, closed, point.stiffest))
+        return stiffness[self.lowered.coordinates.rows]
+
+    def _mean_stiffness(self, point: Point) -> np.ndarray:
+        """Stiffness of the mean of each row's element where it is closed, (rows,); of the structure if not known."""
+        return np.where(np.isnan(self._closed), point.stiffest, self._closed)
+
+    def _held_by_elements(self, point: Point) -> HeldByElements:
+        moved = self._combination @ point.free_motions
+        return HeldByElements(point.free_motions, moved.T @ (self._mean_stiffness(point)[:, None] * moved))
 
     @cached_property
     def _kind(self) -> np.dtype:

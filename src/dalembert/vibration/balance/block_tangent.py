@@ -9,6 +9,9 @@ With few active coordinates the dense system is as large as those (Woodbury), an
 at a frequency. With many, GMRES solves with J as it stands: a product costs one matrix for each harmonic and one block
 for each contact. Its preconditioner is J with the coupling of the harmonics left out of m, so that it too has one
 matrix for each harmonic.
+
+Where the elements alone hold a part, :math:`Z_q` is singular at the mean, and A is not: it has the stiffness of all
+elements. J is singular only along motions that no element resists, where a support is added to A.
 """
 
 from collections.abc import Sequence
@@ -22,6 +25,7 @@ from scipy.sparse.linalg import LinearOperator, gmres
 
 from dalembert.vibration.balance.condensation import Point
 from dalembert.vibration.balance.fourier import Fourier, complex_blocks, real_blocks
+from dalembert.vibration.balance.free_motions import HeldByElements
 
 ACTIVE = 1e-11
 """Difference from its stuck stiffness, as part of that, above which a contact is active."""
@@ -44,8 +48,10 @@ class BlockTangent:
     slope : array, shape (q, coefficients)
         By ω.
     reference : array, shape (q,)
-        Stiffness of each coordinate's contact if it sticks; 0 where there is none.
+        Stiffness of each coordinate's contact if it sticks; 0 where there is none, unless only elements hold a part.
     rigid : array of bool, shape (q,)
+    held : HeldByElements, optional
+        Mean motions that the elements alone may hold, if there are any.
     active : list of (array of int, shape (cells, columns), array, shape (cells, unknowns, unknowns))
         Coordinates, and blocks of m.
     """
@@ -55,6 +61,7 @@ class BlockTangent:
     slope: np.ndarray
     reference: np.ndarray
     rigid: np.ndarray
+    held: HeldByElements | None = None
     active: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)
 
     def add(self, places: np.ndarray, gradients: np.ndarray, stuck: np.ndarray) -> None:
@@ -96,7 +103,7 @@ class BlockTangent:
     def sign(self) -> float:
         r"""Sign of the determinant of J, which is :math:`\det A\,\det(1 + V A^{-1} E m)`."""
         # Blocks of harmonics are complex numbers as pairs of real ones: their determinants are positive.
-        own = np.linalg.slogdet(self._reference_blocks[0].real)[0] if self.series.mean else 1.0
+        own = np.linalg.slogdet(self._supported_blocks[0].real)[0] if self.series.mean else 1.0
         if not self.active:
             return float(own)
         matrix, pivots = self._coupled[1]
@@ -127,6 +134,38 @@ class BlockTangent:
         return blocks
 
     @cached_property
+    def unresisted(self) -> np.ndarray:
+        """Mean motions (q, motions) that neither the structure nor an element resists."""
+        if self.held is None:
+            return np.zeros((len(self.reference), 0))
+        columns = []
+        for motion in self.held.motions.T:
+            values = np.zeros((len(motion), self.series.count))
+            values[:, 0] = motion
+            columns.append(self._unsupported_product(values).ravel())
+        return self.held.unresisted(np.stack(columns, axis=1), self._largest)
+
+    @property
+    def _largest(self) -> float:
+        return max(self.point.stiffest, float(self.reference.max()))
+
+    @cached_property
+    def _support(self) -> np.ndarray | None:
+        """Stiffness (q, q) at the mean that holds the motions which nothing resists; None without such motions."""
+        if self.held is None or not self.unresisted.size:
+            return None
+        return self.held.support(self.unresisted, self._largest)
+
+    @cached_property
+    def _supported_blocks(self) -> np.ndarray:
+        """A with the support, (orders, q, q)."""
+        if self._support is None:
+            return self._reference_blocks
+        blocks = self._reference_blocks.copy()
+        blocks[0] += self._support
+        return blocks
+
+    @cached_property
     def _across(self) -> np.ndarray:
         """V, (orders, active, q)."""
         rows, q = self._rows, len(self.reference)
@@ -136,13 +175,20 @@ class BlockTangent:
 
     def _stuck(self, right: np.ndarray) -> np.ndarray:
         """A⁻¹ times phasors (orders, q, columns)."""
-        if self.rigid.all():
+        if self.rigid.all() and self._support is None:
             return right / self.reference[:, None]
         if "factors" not in self.point.kept:
             self.point.kept["factors"] = [lu_factor(block, check_finite=False) for block in self._reference_blocks]
         factors: Sequence[Any] = self.point.kept["factors"]
+        if self._support is not None:
+            factors = [self._supported_mean, *factors[1:]]
         pairs = zip(factors, right, strict=True)
         return np.stack([lu_solve(own, columns, check_finite=False) for own, columns in pairs])
+
+    @cached_property
+    def _supported_mean(self) -> Any:
+        """Factors of A with the support, at the mean."""
+        return lu_factor(self._supported_blocks[0], check_finite=False)
 
     @cached_property
     def _coupled(self) -> tuple[np.ndarray, Any]:
@@ -188,18 +234,25 @@ class BlockTangent:
         seen = np.where(self.rigid[:, None], self.point.stiffness, 0.0)
         diagonal = np.arange(q)
         seen[:, diagonal, diagonal] += np.where(self.rigid, -self.reference, 1.0)
-        return np.linalg.inv(self._reference_blocks + own @ seen)
+        return np.linalg.inv(self._supported_blocks + own @ seen)
 
     def _product(self, values: np.ndarray) -> np.ndarray:
-        """J times (q * coefficients,)."""
+        """J, with the support, times (q * coefficients,)."""
+        values = values.reshape(len(self.reference), self.series.count)
+        result = self._unsupported_product(values)
+        if self._support is not None:
+            result[:, 0] += self._support @ values[:, 0]
+        return result.ravel()
+
+    def _unsupported_product(self, values: np.ndarray) -> np.ndarray:
+        """J times (q, coefficients)."""
         series, rigid, rows = self.series, self.rigid[:, None], self._rows
-        values = values.reshape(len(self.reference), series.count)
         held = self.reference[:, None] * values
         moved = series.coefficients((self.point.stiffness @ series.phasors(values)[:, :, None])[:, :, 0])
         result = np.where(rigid, held, moved + held)
         seen = np.where(rigid, moved - held, values)[rows]
         np.add.at(result, rows, self._times(seen.reshape(-1, 1)).reshape(len(rows), -1))
-        return result.ravel()
+        return result
 
     def _iterated(self, right: np.ndarray, tolerance: float) -> np.ndarray:
         """J⁻¹ times (q, coefficients) by GMRES, or directly if GMRES does not converge."""

@@ -55,7 +55,7 @@ def unconverged(problem: Equations, solution: Solution) -> Unconverged | None:
 
 
 def _cause(problem: Equations, solution: Solution) -> Finding | None:
-    residual, motions = solution.evaluation.residual, solution.point.free_motions
+    residual, motions = solution.evaluation.residual, solution.tangent.unresisted
     along = motions.T @ residual[:, 0]
     force = float(np.linalg.norm(along))
     if force > max(LEFT * float(np.linalg.norm(residual)), VERIFIED * solution.point.load):

@@ -15,6 +15,7 @@ from dalembert.vibration.balance.condensation import Condensation, Point, norm
 from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.balance.harmonic_balance import AUTOMATIC, MOST_SAMPLES, HarmonicBalance
 from dalembert.vibration.balance.newton import Plane, Solution, correct, scale_of
+from dalembert.vibration.balance.rest import at_rest
 from dalembert.vibration.laws.law_block import LawBlock
 from dalembert.vibration.laws.sampled_sums import forces_from_rest
 from dalembert.vibration.paths.continuation import along
@@ -138,6 +139,8 @@ class Equations:
         """Yield guesses of a first point; the later ones are made if those before lead to no solution."""
         balance = self.balance(self.method.first_samples)
         pressed = any(block.normal and block.kind == ELASTIC for block in self.lowered.blocks)
+        if not point.held and (self.lowered.laws or self.lowered.functions):
+            yield at_rest(balance, point)
         yield balance.stuck(point) if pressed else np.zeros(balance.shape)
         try:
             free = np.linalg.solve(point.stiffness, point.force[:, :, None])[:, :, 0]

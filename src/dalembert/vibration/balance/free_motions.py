@@ -1,5 +1,6 @@
 """Motions that a stiffness does not resist, and the degrees of freedom that move in them."""
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,10 @@ SOFT = 1e-12
 """Stiffness ε, as part of the largest, with which a stiffness that leaves motions free can be factorised."""
 MOST_FREE = 24
 """Free motions of a sparse stiffness that are looked for: four bodies in space."""
+RESISTED = 1e-11
+"""Stiffness of elements along a motion, as part of the largest stiffness, up to which they do not resist it."""
+FAST = 1e6
+"""Stiffness, as part of the largest, that holds a motion where it is."""
 MOVING = 1e-6
 """Part of the largest motion above which a degree of freedom is said to move."""
 NAMED = 4
@@ -44,6 +49,48 @@ def _unresisted(stiffness: Any, basis: np.ndarray) -> np.ndarray:
     """Of the motions of an orthonormal basis (l, motions), those that a stiffness does not resist."""
     values, shapes = np.linalg.eigh(basis.T @ (stiffness @ basis))
     return basis @ shapes[:, np.abs(values) <= FLOATING * (abs(stiffness).max() or 1.0)]
+
+
+@dataclass(frozen=True)
+class HeldByElements:
+    """Mean motions that the structure does not resist, so that its elements alone may hold them.
+
+    Parameters
+    ----------
+    motions : array, shape (q, motions)
+        Of the retained coordinates.
+    stiffness : array, shape (motions, motions)
+        By which the elements' mean forces change with them, N/m, where all contacts and stops are closed. Sliders,
+        which remember, have none: their mean force does not depend on the mean position.
+    """
+
+    motions: np.ndarray
+    stiffness: np.ndarray
+
+    def unresisted(self, forces: np.ndarray, largest: float) -> np.ndarray:
+        """Return the motions (q, motions) that no element resists either.
+
+        Parameters
+        ----------
+        forces : array, shape (unknowns, motions)
+            Of the tangent under each motion.
+        largest : float
+            Stiffness, N/m, of which those that are rounding are parts.
+        """
+        _, sizes, shapes = np.linalg.svd(forces, full_matrices=False)
+        return self.motions @ shapes[sizes <= RESISTED * largest].T
+
+    def support(self, motions: np.ndarray, largest: float) -> np.ndarray:
+        """Return a stiffness (q, q) that holds motions φ which no element resists.
+
+        With the stiffness K of closed contacts, it is :math:`φ (φ^T K φ) φ^T`. Where the forces are in balance it does
+        not act: of all mean positions the solution is the nearest one. Where a mean force is left, the mean position
+        moves by what the closed contacts would yield, towards contact, and along sliders not.
+        """
+        among = self.motions.T @ motions
+        closed, shapes = np.linalg.eigh(among.T @ self.stiffness @ among)
+        motions = motions @ shapes
+        return (motions * np.where(closed > RESISTED * largest, closed, FAST * largest)) @ motions.T
 
 
 def moving_names(names: tuple[str, ...], motion: np.ndarray) -> str:

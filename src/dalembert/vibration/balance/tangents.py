@@ -5,9 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.vibration.balance.block_tangent import EXACT, BlockTangent
-
-FREE = 1e-11
-"""Singular value, as part of the largest, of what nothing holds."""
+from dalembert.vibration.balance.free_motions import HeldByElements
 
 
 @dataclass(frozen=True)
@@ -19,14 +17,13 @@ class DenseTangent:
     jacobian : array, shape (q, coefficients, q, coefficients)
     slope : array, shape (q, coefficients)
         By ω.
-    held : bool
-        Whether the structure holds its mean position. Else contacts may leave it undetermined, and of all solutions
-        the smallest is taken.
+    held : HeldByElements, optional
+        Mean motions that the elements alone may hold, if there are any.
     """
 
     jacobian: np.ndarray
     slope: np.ndarray
-    held: bool = True
+    held: HeldByElements | None = None
 
     def copy(self) -> "DenseTangent":
         """Return a copy of the arrays."""
@@ -37,17 +34,34 @@ class DenseTangent:
         """The Jacobian as a matrix, (unknowns, unknowns)."""
         return self.jacobian.reshape(self.slope.size, self.slope.size)
 
+    @property
+    def supported(self) -> np.ndarray:
+        """The matrix with a support of the mean motions that no element resists."""
+        motions = self.unresisted
+        if self.held is None or not motions.size:
+            return self.matrix
+        jacobian = self.jacobian.copy()
+        jacobian[:, 0, :, 0] += self.held.support(motions, self._largest)
+        return jacobian.reshape(self.slope.size, self.slope.size)
+
+    @property
+    def unresisted(self) -> np.ndarray:
+        """Mean motions (q, motions) that neither the structure nor an element resists."""
+        if self.held is None:
+            return np.zeros((len(self.slope), 0))
+        forces = self.jacobian[:, :, :, 0].reshape(self.slope.size, -1) @ self.held.motions
+        return self.held.unresisted(forces, self._largest)
+
+    @property
+    def _largest(self) -> float:
+        return float(np.abs(self.jacobian).max())
+
     def solve(self, right: np.ndarray, tolerance: float = EXACT) -> np.ndarray:
         """J⁻¹ times right-hand sides (q, coefficients, columns); to rounding, whatever the tolerance."""
-        return solution(self.matrix, right.reshape(self.slope.size, right.shape[2]), self.held).reshape(right.shape)
+        return np.linalg.solve(self.supported, right.reshape(self.slope.size, right.shape[2])).reshape(right.shape)
 
 
 Tangent = DenseTangent | BlockTangent
-
-
-def solution(matrix: np.ndarray, right: np.ndarray, held: bool) -> np.ndarray:
-    """Solution of linear equations; the smallest one that leaves the least, if the mean position may be free."""
-    return np.linalg.solve(matrix, right) if held else np.linalg.lstsq(matrix, right, rcond=FREE)[0]
 
 
 def bordered(
@@ -75,7 +89,7 @@ def bordered(
     size, width, force = scales
     if isinstance(tangent, DenseTangent):
         matrix = _with_row(tangent, direction, scales)
-        change = solution(matrix, np.append(top.ravel(), bottom), tangent.held)
+        change = np.linalg.solve(matrix, np.append(top.ravel(), bottom))
         return change[:-1].reshape(top.shape), float(change[-1])
     # Elimination of the block of J: with J a = top and J b = ∂R/∂ω, turned = (bottom - t·a)/(t_ω - t·b) and
     # change = a - turned b.
@@ -98,7 +112,7 @@ def orientation(tangent: Tangent, direction: np.ndarray, scales: tuple[float, fl
 def _with_row(tangent: DenseTangent, direction: np.ndarray, scales: tuple[float, float, float]) -> np.ndarray:
     size, width, force = scales
     matrix = np.empty((len(direction), len(direction)))
-    matrix[:-1, :-1] = tangent.matrix * (size / force)
+    matrix[:-1, :-1] = tangent.supported * (size / force)
     matrix[:-1, -1] = tangent.slope.ravel() * (width / force)
     matrix[-1] = direction
     return matrix

@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import ClassVar
 
+import numpy as np
+
 from dalembert.arguments import Checked
 from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.laws.contacts import Number
@@ -70,6 +72,10 @@ class LawElement(Checked):
     def numbers(self) -> dict[str, Number]:
         """Numbers of the law by their names."""
         return {one.name: getattr(self, one.name) for one in fields(self) if "unit" in one.metadata}
+
+    def closed_stiffness(self, block: LawBlock) -> np.ndarray:
+        """Stiffness of each column where the law is closed, N/m, (elements, columns); NaN if it has none."""
+        return np.full(block.rows.shape, np.nan)
 
     def sums(self, block: LawBlock, series: Fourier, events: bool) -> Sums:
         """Fourier coefficients of the forces. A kind may have a faster way, or one that corrects events."""

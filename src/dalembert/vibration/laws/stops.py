@@ -38,6 +38,10 @@ class _Stop(LawElement):
     switches = True
     sides: ClassVar[tuple[float, ...]]
 
+    def closed_stiffness(self, block: LawBlock) -> np.ndarray:
+        """Stiffness of the stops."""
+        return block.numbers[:, :1]
+
     def sums(self, block: LawBlock, series: Fourier, events: bool) -> Sums:
         """Sums that are corrected where a side begins and ends to touch."""
         return StopSums(block.numbers, np.array(self.sides), series) if events else super().sums(block, series, events)

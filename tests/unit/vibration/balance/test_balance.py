@@ -25,6 +25,7 @@ from dalembert.vibration.balance import balance as module
 from dalembert.vibration.balance import block_tangent
 from dalembert.vibration.balance.equations import equations
 from dalembert.vibration.balance.fourier import real_blocks
+from dalembert.vibration.balance.rest import at_rest
 from dalembert.vibration.balance.tangents import BlockTangent, DenseTangent, bordered, orientation
 
 Fill = Callable[[VibrationSystem], None]
@@ -164,6 +165,66 @@ def test_the_jacobian_by_its_structure_is_the_dense_one(
     for row in (direction, -direction, rng.normal(size=direction.shape)):
         signs = [orientation(own, row, (0.1, 2.0, 3.0)) for own in (dense, block)]
         assert signs[0] == signs[1] != 0
+
+
+def gears(to: VibrationSystem) -> None:
+    """Contacts and a stop that alone hold two nodes against each other and the ground."""
+    to.add(FrictionContact("joint", "a", "b", friction=0.4, preload=0.3, law=ElasticSlider(3.0, 4.0), **SPATIAL))  # type: ignore[arg-type]
+    to.add(FrictionContact("foot", "b", friction=0.4, preload=0.3, law=Rigid(penalty=3.0), **SPATIAL))  # type: ignore[arg-type]
+    to.add(Gap("stop", "c.z", stiffness=2.0, gap=0.5))
+
+
+def loose(fill: Fill) -> VibrationSystem:
+    """Three bodies that no spring holds."""
+    names = tuple(f"{node}.{axis}" for node in "abc" for axis in "xyz")
+    result = VibrationSystem(Structure(np.diag(np.arange(1.0, 10.0)), np.zeros((9, 9)), Dofs(names), 0.1 * np.eye(9)))
+    result.add(HarmonicForce("c.x", 3.0, 0.3))
+    fill(result)
+    return result
+
+
+@pytest.mark.parametrize("direct", [0, 1000], ids=["iterated", "direct"])
+@pytest.mark.parametrize("size", [0.003, 0.1, 1.0], ids=["closed and open", "slipping", "all open at times"])
+def test_linear_systems_of_a_part_that_elements_alone_hold_are_solved_without_singular_values(
+    size: float, direct: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem = equations(loose(gears), HarmonicBalance(harmonics=3, samples=64))
+    balance, point = problem.balance(64), problem.condensation.at(1.3)
+    assert point.free_motions.shape[1] == 7
+    rng = np.random.default_rng(2)
+    unknowns = rng.normal(size=balance.shape) * size
+    _, dense = balance.linearised(point, unknowns)
+    monkeypatch.setattr(module, "LARGE", 0)
+    monkeypatch.setattr(block_tangent, "DIRECT", direct)
+    _, block = balance.linearised(point, unknowns)
+    assert isinstance(dense, DenseTangent)
+    assert isinstance(block, BlockTangent)
+    np.testing.assert_allclose(block.jacobian, dense.jacobian, atol=1e-11 * np.abs(dense.jacobian).max())
+    # Right-hand sides that are in balance: of all solutions the one with the smallest mean positions.
+    right = (dense.matrix @ rng.normal(size=(unknowns.size, 2))).reshape(*balance.shape, 2)
+    expected = np.linalg.lstsq(dense.matrix, right.reshape(-1, 2), rcond=1e-11)[0].reshape(right.shape)
+    for tangent in (dense, block):
+        np.testing.assert_allclose(tangent.solve(right), expected, atol=1e-8 * np.abs(expected).max())
+    direction = rng.normal(size=unknowns.size + 1)
+    solved = [bordered(own, direction, (0.1, 2.0, 3.0), right[:, :, 0], 0.7) for own in (dense, block)]
+    for one, other in zip(*solved, strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-7, atol=1e-9 * np.abs(one).max())
+    signs = [orientation(own, direction, (0.1, 2.0, 3.0)) for own in (dense, block)]
+    assert signs[0] == signs[1] != 0
+
+
+def test_a_mean_force_that_no_element_resists_moves_towards_contact() -> None:
+    to_stop = VibrationSystem(Structure(np.eye(1), np.zeros((1, 1)), Dofs(("m.x",)), 0.1 * np.eye(1)))
+    to_stop.add(StaticForce("m.x", 0.1))
+    to_stop.add(HarmonicForce("m.x", 0.01))
+    to_stop.add(Gap("stop", "m.x", stiffness=2.0, gap=1.0))
+    problem = equations(to_stop, HarmonicBalance(harmonics=1))
+    balance, point = problem.balance(64), problem.condensation.at(1.0)
+    evaluation, tangent = balance.linearised(point, np.zeros(balance.shape))
+    assert tangent.unresisted.shape == (1, 1)
+    step = -tangent.solve(evaluation.residual[:, :, None])
+    assert step[0, 0, 0] == pytest.approx(0.1 / 2.0)  # as the closed stop would yield
+    np.testing.assert_allclose(at_rest(balance, point), [[1.0 + 0.1 / 2.0, 0.0, 0.0]], rtol=1e-12)
 
 
 def test_curves_by_the_structure_are_the_dense_ones(monkeypatch: pytest.MonkeyPatch) -> None:

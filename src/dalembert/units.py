@@ -2,10 +2,11 @@
 
 import math
 import re
-from functools import cache
+from fractions import Fraction
+from itertools import zip_longest
 
-from dalembert.decimal_units import decimal_unit, in_si
 from dalembert.errors import InputError
+from dalembert.unit_table import BASE, DOUBTFUL, Unit, readings
 
 # Units of a structure's degrees of freedom by their direction: displacements, rotations, twist, modal coordinate.
 OF_DIRECTION = {"x": "m", "y": "m", "z": "m", "rx": "rad", "ry": "rad", "rz": "rad", "rxy": "1/m", "q": "m √kg"}
@@ -34,14 +35,16 @@ KNOWN = {
     "m^2": ("area", "80 cm^2"),
     "m^4": ("second moment of area", "12 cm^4"),
     "J": ("energy", "3 kJ"),
+    "W": ("power", "2 kW"),
+    "A": ("electric current", "200 mA"),
+    "V": ("voltage", "500 mV"),
+    "K": ("temperature", "300 K"),
     "1/s": ("rate", "5 1/ms"),
     "Hz": ("frequency", "2 kHz"),
     "": ("number without a unit", "0.3"),
 }
-_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*((?:[^\W\d_]|[°µμ%]|1/)[^()]{0,60}?)\s*")
-
-_TERM = r"(?:[^\W\d]|[°%])\w*(?:(?:\^|\*\*)[+-]?\d(?:\.\d)?)?"
-_UNIT = re.compile(rf"(?:1\s*/\s*)?{_TERM}(?:(?:\s*[*/·]\s*|\s+){_TERM})*")
+_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*((?:[^\W\d_]|[°º%‰]|1/)[^()]{0,60}?)\s*")
+_RAD, _CYCLE, _COUNT = map(BASE.index, ("rad", "cycle", "count"))
 
 
 def si(value: object, unit: str | None, where: str = "") -> float:
@@ -97,13 +100,10 @@ def symbol(text: str) -> str:
     if match is None:
         return ""
     try:
-        given = _unit(match[2])
+        given = _reading(match[2], None)
     except ValueError as error:
         raise InputError(sentence(text, None, "", str(error))) from None
-    for known in KNOWN:
-        if _unit(known).dimensionality == given.dimensionality and _angular(_unit(known)) == _angular(given):
-            return known
-    return f"{_registry().Quantity(1, given).to_base_units().units:~C}"
+    return si_unit(given)
 
 
 def is_si(unit: str) -> bool:
@@ -112,13 +112,55 @@ def is_si(unit: str) -> bool:
     >>> is_si("Pa"), is_si("rad/s"), is_si("mm"), is_si("deg"), is_si("potato")
     (True, True, False, False, False)
     """
-    known = decimal_unit(unit)
-    if known is not None:
-        return known[0] == 0
+    return any(one.factor == 1 and one.offset == 0 for one in readings(unit)[:1])
+
+
+def factor_of(unit: str, wanted: str | None = None, *, measured: bool = False) -> float:
+    """Return how many SI units a unit is.
+
+    Parameters
+    ----------
+    unit : str
+    wanted : str, optional
+        SI unit of what it measures, which decides on names with two meanings: ``"g"``, ``"lb"``, ``"oz"``.
+    measured : bool
+        Whether it is the unit of measured numbers: ``"g"`` and ``"lb"`` alone are then an acceleration and a force if
+        nothing else decides.
+
+    Raises
+    ------
+    InputError
+        If the unit is unknown, measures something else, or has an offset.
+
+    Examples
+    --------
+    >>> factor_of("mm"), factor_of("g"), factor_of("g", "m/s^2"), factor_of("g", measured=True)
+    (0.001, 0.001, 9.80665, 9.80665)
+    """
     try:
-        return _registry().Quantity(1, _unit(unit)).to_base_units().magnitude == 1
-    except ValueError:
-        return False
+        found = _reading(unit, wanted, measured=measured)
+    except ValueError as error:
+        raise InputError(str(error) or f"the unit {unit!r} was given; expected that of {expected(wanted)}") from None
+    if found.offset:
+        raise InputError(f"the unit {unit!r} has an offset; expected a multiple of an SI unit, such as 'K'")
+    return found.factor
+
+
+def wrong_kind(unit: str, wanted: str) -> str:
+    """Return a sentence if the unit of measured numbers does not suit an SI unit; empty if it does, or is unknown.
+
+    >>> wrong_kind("deg", "rad"), wrong_kind("kg", "rad")
+    ('', "the unit 'kg' was given; expected that of an angle such as '45 deg' or 0.785398 in rad")
+    """
+    if not unit.strip("-1 ") or not readings(unit) or not readings(wanted):
+        return ""
+    try:
+        factor = factor_of(unit, wanted)
+    except InputError:
+        return f"the unit {unit!r} was given; expected that of {expected(wanted)}"
+    if factor != factor_of(unit, measured=True):
+        return f"the unit {unit!r} has two meanings; write 'kg', 'lbm', 'N', 'lbf' or 'g_n'"
+    return ""
 
 
 def expected(unit: str | None) -> str:
@@ -156,19 +198,10 @@ def _converted(value: object, unit: str | None) -> float:
             return float(value)
         except ValueError:
             raise ValueError from None
-    quick = in_si(match[1], match[2], unit)
-    if quick is not None:
-        return quick
-    given = _unit(match[2])
-    quantity = _registry().Quantity(float(match[1]), given)
-    if unit is None:
-        return _tidy(quantity.to_base_units().magnitude)
-    wanted = _unit(unit)
-    if given.dimensionality != wanted.dimensionality:
-        raise ValueError
-    if "hertz" in str(given) and _angular(wanted):
-        raise ValueError("a frequency in Hz is no angular velocity: multiply it by 2 pi, or write it in rpm")
-    return _tidy(quantity.to(wanted).magnitude)
+    number, given = float(match[1]), _reading(match[2], unit)
+    if given.turns or not math.isfinite(number) or number == 0:
+        return _tidy(number * given.factor)
+    return float((Fraction(match[1]) + given.offset) * given.scale)
 
 
 def _tidy(number: float) -> float:
@@ -177,24 +210,64 @@ def _tidy(number: float) -> float:
     return short if abs(short - number) <= 2 * math.ulp(number) else float(number)
 
 
-def _unit(text: str):
-    if text and not _UNIT.fullmatch(text):  # pint would compute a power such as 9**9**9
-        raise ValueError(f"the unit {text!r} is unknown")
-    try:
-        return _registry().parse_units(text)
-    except Exception:  # pint answers malformed text with many types, AssertionError among them
-        raise ValueError(f"the unit {text!r} is unknown") from None
+def _reading(text: str, wanted: str | None, *, measured: bool = False) -> Unit:
+    """What a unit is: of several readings the one that measures what is wanted, or else the usual one.
+
+    Raises
+    ------
+    ValueError
+        With the reason, which is empty where the unit measures something else.
+    """
+    found = readings(text)
+    if not found:
+        more = f" because it has several meanings; write {DOUBTFUL[text]}" if text in DOUBTFUL else ""
+        raise ValueError(f"the unit {text!r} is unknown{more}")
+    if wanted is None or not readings(wanted):
+        if measured and text.strip().isalpha():
+            return found[-1]
+        return next((one for one in found if _is_known(one)), found[0])
+    reasons = [difference(one, readings(wanted)[0]) for one in found]
+    for one, reason in zip(found, reasons, strict=True):
+        if reason is None:
+            return one
+    raise ValueError(reasons[0])
 
 
-def _angular(unit) -> bool:
-    return "radian" in str(_registry().Quantity(1, unit).to_root_units().units)
+def difference(given: Unit, wanted: Unit) -> str | None:
+    """Return why a unit does not measure what another one does, in words or ``""``; None if it does.
+
+    Radians, cycles and counts are numbers, so ``"N*m"`` stands for ``"N*m/rad"`` too.
+    """
+    if given.exponents[:_RAD] != wanted.exponents[:_RAD]:
+        return ""
+    if given.exponents[_COUNT] != wanted.exponents[_COUNT] and any(wanted.exponents[:_COUNT]):
+        return ""
+    if given.exponents[_CYCLE] and wanted.exponents[_RAD]:
+        return "a frequency in Hz is no angular velocity: multiply it by 2 pi, or write it in rpm"
+    if given.exponents[_RAD] and wanted.exponents[_CYCLE]:
+        return "an angular velocity is no frequency: divide it by 2 pi, and write it in Hz"
+    if wanted == readings("rad/s")[0] and not given.exponents[_RAD] and given.scale != 1:
+        return "a rate without an angle is no angular velocity: write it in rpm or rad/s"
+    return None
 
 
-@cache
-def _registry():
-    import pint  # a third of a second that only a study with units such as degrees pays
+def _is_known(unit: Unit) -> bool:
+    return any(readings(known)[0].exponents == unit.exponents for known in KNOWN)
 
-    return pint.UnitRegistry()
+
+def si_unit(unit: Unit) -> str:
+    """Return the coherent SI unit of what a unit measures.
+
+    >>> si_unit(readings("kNm")[0]), si_unit(readings("Nm/A")[0])
+    ('N*m', 'kg*m^2/s^2/A')
+    """
+    for known in KNOWN:
+        if readings(known)[0].exponents == unit.exponents:
+            return known
+    powers = [(name, power) for name, power in zip_longest(BASE, unit.exponents) if power]
+    above = "*".join(name if power == 1 else f"{name}^{power}" for name, power in powers if power > 0)
+    below = "".join(f"/{name}" if power == -1 else f"/{name}^{-power}" for name, power in powers if power < 0)
+    return (above or "1") + below
 
 
 def unit_of(dof: str) -> str:

@@ -79,7 +79,7 @@ def test_expressions_are_no_quantities():
     assert not any(map(is_quantity, ("2*L", "-theta1", "2 * L", "2", "2 / L", "pi/4", "2**3", "3 - L")))
 
 
-@pytest.mark.parametrize("unit", ["9**9**9", "m**9**9**9", "(m)", "m**99", "potato", "2 m", "m +s"])
+@pytest.mark.parametrize("unit", ["9**9**9", "m**9**9**9", "(m", "m**99", "potato", "2 m", "m +s"])
 def test_a_unit_that_is_none_is_refused_at_once(unit):
     assert not is_si(unit)
 

@@ -11,7 +11,7 @@ from dalembert.component_index import HOMES, KINDS
 
 QUIET = 0.12  # s that the loop takes on a quiet machine
 DEMO = Path(__file__).parents[2] / "studies" / "flexible-pendulum" / "identify.toml"
-HEAVY = {"xarray", "pandas", "pint", "scipy.interpolate", "scipy.stats", "dask"}
+HEAVY = {"xarray", "pandas", "scipy.interpolate", "scipy.stats", "dask"}
 HEAVY |= {"dalembert.vibration", "dalembert.uncertainty"}
 MINIMISING = {"scipy.optimize", "scipy.spatial", "scipy.special"}  # the first one imports the others
 INTEGRATORS = {f"dalembert.multibody.{HOMES[name]}" for name in KINDS["Integrator"]}

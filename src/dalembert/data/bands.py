@@ -1,7 +1,7 @@
 """Bands: a lower and an upper bound of each channel along a coordinate."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,6 +24,8 @@ class Bands:
         Names as in the model that is to explain them.
     lower, upper : array, shape (samples, channels)
         In SI units; equal where a value is known exactly.
+    units : mapping of str to str
+        Unit in which the file gave the bounds of a channel, as it was written.
 
     Raises
     ------
@@ -42,6 +44,7 @@ class Bands:
     channels: tuple[str, ...]
     lower: np.ndarray
     upper: np.ndarray
+    units: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for name, value in (

@@ -61,7 +61,9 @@ def read_bands(
     along, table = replace(found, frequency=found.frequency or frequency is not None).converted(units)
     pairs = _pairs(path, table) if columns is None else columns
     with errors_with_file(path):
-        return Bands.of(along, {name: (table[lower], table[upper]) for name, (lower, upper) in pairs.items()})
+        bands = Bands.of(along, {name: (table[lower], table[upper]) for name, (lower, upper) in pairs.items()})
+    named = found.named_units(units)
+    return replace(bands, units={name: named[one] for name, pair in pairs.items() for one in pair if one in named})
 
 
 def _pairs(path: Path, names: Collection[str]) -> dict[str, tuple[str, str]]:

@@ -8,7 +8,8 @@ import numpy as np
 
 from dalembert.errors import DataError, InputError, unknown
 from dalembert.forward import Coordinate
-from dalembert.units import is_si, si
+from dalembert.unit_table import readings
+from dalembert.units import factor_of, is_si
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,30 +53,31 @@ class Columns:
         for name in units or {}:
             if name not in (self.time, *self.table):
                 raise DataError(unknown("column", name, [self.time, *self.table], f"{self.path}, units"))
-        chosen = {**self.units, **(units or {})}
+        chosen = self.named_units(units)
         name, unit = ("frequency", "Hz") if self.frequency else ("time", "s")
         along = self.along * self._factor(self.time, chosen, unit)
         table = {column: values * self._factor(column, chosen, None) for column, values in self.table.items()}
         return Coordinate(name, unit, along), table
 
+    def named_units(self, units: Mapping[str, str] | None) -> dict[str, str]:
+        """Units of columns that are given, or else that the file names."""
+        return {name: unit.strip() for name, unit in {**self.units, **(units or {})}.items() if unit.strip()}
+
     def _factor(self, column: str, units: Mapping[str, str], expected: str | None) -> float:
         """How many SI units the unit of a column is."""
-        unit = units.get(column, "").strip()
-        if unit in ("", "1"):
+        unit = units.get(column, "")
+        if unit in ("", "-", "1"):
             return 1.0
         where = f"{self.path}, column {column!r}"
         try:
-            one, ten = si(f"1 {unit}", None), si(f"10 {unit}", None)
-        except InputError:
-            raise DataError(
-                f"{where}: the unit {unit!r} is unknown; expected one such as 'mm', 'deg' or 'm/s^2'; give it in units"
-            ) from None
-        if abs(ten - 10 * one) > 1e-9 * abs(ten):
-            raise DataError(f"{where}: the unit {unit!r} has an offset; expected a multiple of an SI unit, such as 'K'")
+            factor = factor_of(unit, measured=True)
+        except InputError as error:
+            more = "" if readings(unit) else "; expected one such as 'mm', 'deg' or 'm/s^2'; give it in units"
+            raise DataError(f"{where}: {error}{more}") from None
         if expected is None:
-            return one
+            return factor
         try:
-            return si(f"1 {unit}", expected)
+            return factor_of(unit, expected)
         except InputError:
             kind = "frequency such as 'Hz' or 'kHz'" if self.frequency else "time such as 's' or 'ms'"
             raise DataError(f"{where}: the unit {unit!r} was given; expected a unit of {kind}") from None

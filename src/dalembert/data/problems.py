@@ -10,7 +10,8 @@ from dalembert.data.preview import Preview, PreviewColumn
 from dalembert.data.stretches import gaps
 from dalembert.errors import InputError
 from dalembert.findings import Finding
-from dalembert.units import si
+from dalembert.unit_table import readings
+from dalembert.units import factor_of, wrong_kind
 
 MANY = 20_000
 """Samples from which a fit takes long without learning more."""
@@ -67,7 +68,7 @@ class Use:
         """Number of SI units that the unit of a column is; 1 if it is unknown."""
         unit = self.units.get(key) if key is not None else None
         try:
-            return si(f"1 {unit.name}", None) if unit is not None and unit.name not in ("", "1") else 1.0
+            return factor_of(unit.name, measured=True) if unit is not None and unit.name not in ("", "-", "1") else 1.0
         except InputError:
             return 1.0
 
@@ -131,6 +132,7 @@ def _of_times(found: Preview, times: PreviewColumn, use: Use) -> Iterator[Findin
             "Choose another column of times, or sort the lines of the file and remove repeated ones.",
         )
         return
+    yield from _of_unit(times, "s", use)
     steps, long = np.diff(there), gaps(there)
     usual = float(np.median(steps))
     if unit is not None and unit.source == "steps" and unit.name != "s":
@@ -210,10 +212,33 @@ def _unreadable(column: PreviewColumn, *, times: bool = False, left_out: bool = 
         )
 
 
+def _of_unit(column: PreviewColumn, wanted: str, use: Use) -> Iterator[Finding]:
+    """A unit of a column that is unknown, or measures something else than the SI unit that is wanted."""
+    name = _unit_name(use, column.key)
+    values = {"column": column.key, "unit": name}
+    if name not in ("", "-", "1") and not readings(name):
+        yield Finding(
+            "unknown-unit",
+            "error",
+            values,
+            f"The unit {name!r} of the column {str(column.key)!r} is unknown.",
+            "Choose its unit, such as mm, deg or m/s^2.",
+        )
+    elif wanted and (sentence := wrong_kind(name, wanted)):
+        yield Finding(
+            "wrong-unit",
+            "error",
+            values | {"expected": wanted},
+            f"The column {str(column.key)!r} does not measure what it is used for: {sentence}.",
+            "Choose another column, or correct its unit.",
+        )
+
+
 def _of_channel(
     column: PreviewColumn, channel: str, unit: str, use: Use, along: np.ndarray | None
 ) -> Iterator[Finding]:
     yield from _unreadable(column, left_out=use.missing == "leave-out")
+    yield from _of_unit(column, unit, use)
     there = np.isfinite(column.values)
     values = column.values[there] * use.factor(column.key)
     if len(values) < 2:

@@ -116,7 +116,10 @@ def read(
         channels = {name: table[column] for name, column in chosen.items()}
         data = Measurements.of(along, channels, deviations, missing=missing, wraps=wraps)
         data = data if start is None else data.since(start)
-    return replace(data, origin=f"{path}: {found.layout}" if found.layout else str(path))
+    origin = f"{path}: {found.layout}" if found.layout else str(path)
+    named = found.named_units(units)
+    columns_of = {along.name: found.time, **chosen}
+    return replace(data, origin=origin, units={name: named[of] for name, of in columns_of.items() if of in named})
 
 
 def read_trials(path: str | Path, split: str | int, *arguments: Any, **options: Any) -> dict[str, Measurements]:

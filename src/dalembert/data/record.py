@@ -1,6 +1,7 @@
 """Channels that were recorded along a coordinate: their values, their gaps, and parts of them."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Self, TypeVar
 
 import numpy as np
@@ -31,6 +32,7 @@ class Record:
     wraps: tuple[str, ...] = ()
     origin: str = ""
     sampled: np.ndarray | None = None
+    units: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for name, value in (

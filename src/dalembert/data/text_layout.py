@@ -8,14 +8,19 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from dalembert.errors import InputError
-from dalembert.units import si
+from dalembert.unit_table import readings
 
 AUTO = "auto"
 SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs", " ": "blanks"}
 COMMENTS = ("%", "#")
 GAPS = ("", "na", "nan")
 """What a cell without a value holds, in any case of letters."""
+
+DESCRIBING = (
+    "abs absolute actual calculated command demand desired filtered front left lower max mean measured raw rear ref "
+    "reference rel relative right rms set setpoint simulated smoothed std target top upper"
+)
+"""Words in brackets behind a name that are no units."""
 
 Line = tuple[int, str]
 Row = tuple[int, list[str]]
@@ -102,7 +107,7 @@ def layout(lines: Sequence[Line], time: str | int, separator: str = AUTO, decima
     if rows and begin == 0 and isinstance(time, str) and time in rows[0][1]:
         begin = 1
     before = rows[begin][0] if begin < len(rows) else math.inf
-    names, units = _head(_above(lines, before, cut, width, time), width)
+    names, units = _head(_above(lines, before, cut, width, time), width, time)
     header = tuple(names[1]) if names else tuple(map(str, range(1, width + 1)))
     data = rows[begin:]
     header, data = _without_empty_end(header, data, named=names is not None)
@@ -205,15 +210,17 @@ def _names_with_blanks(text: str, width: int) -> list[str] | None:
     return next((names for names in splits if len(names) == width), None)
 
 
-def _head(above: Sequence[Row], width: int) -> tuple[Row | None, Row | None]:
+def _head(above: Sequence[Row], width: int, time: str | int) -> tuple[Row | None, Row | None]:
     """The row of names and the row of units among those above the numbers."""
-    if len(above) > 1 and _are_units(above[-1][1], width):
+    if len(above) > 1 and _are_units(above[-1][1], width) and (time not in above[-1][1] or time in above[-2][1]):
         return above[-2], above[-1]
     return (above[-1] if above else None), None
 
 
 def _are_units(cells: Sequence[str], width: int) -> bool:
-    return len(cells) == width and all(map(_is_unit, cells))
+    """Whether cells are units: two of three at least are known, so that an unknown one is noticed as one."""
+    named = [cell for cell in map(_unit, cells) if cell]
+    return len(cells) == width and 3 * sum(map(_is_unit, named)) >= 2 * len(named)
 
 
 def _without_empty_end(header: tuple[str, ...], rows: list[Row], *, named: bool) -> tuple[tuple[str, ...], list[Row]]:
@@ -226,23 +233,39 @@ def _without_empty_end(header: tuple[str, ...], rows: list[Row], *, named: bool)
 
 
 def _unit(cell: str) -> str:
-    inner = cell.strip("[]() ")
-    return "" if inner in ("-", "1") else inner
+    inner = cell.strip()
+    for left, right in ("[]", "()"):
+        inner = inner[1:-1].strip() if inner.startswith(left) and inner.endswith(right) else inner
+    return "" if inner.lower() in ("-", "1", "none", "n/a", "unitless", "dimensionless") else inner
 
 
 def _is_unit(cell: str) -> bool:
-    inner = _unit(cell)
-    if not inner:
-        return True
-    try:
-        return math.isfinite(si(f"1 {inner}", None))
-    except InputError:
-        return False
+    return bool(readings(_unit(cell)))
 
 
 def _bracketed(name: str) -> str:
-    """Unit in brackets at the end of a name, such as ``angle [deg]`` or ``Time (ms)``."""
+    """Unit in brackets at the end of a name, also an unknown word; not a number, nor a letter that is no unit.
+
+    >>> [_bracketed(name) for name in ("angle [deg]", "Time (ms)", "x (furlong)", "force (1)", "force (X)", "x")]
+    ['deg', 'ms', 'furlong', '', '', '']
+    """
     for left, right in ("[]", "()"):
-        if name.endswith(right) and left in name and _is_unit(cell := name[name.rindex(left) :]):
-            return _unit(cell)
+        if name.endswith(right) and left in name:
+            unit = _unit(name[_opening(name, left, right) :])
+            described = len(unit) < 2 or is_number(unit) or unit.lower() in DESCRIBING.split()
+            return unit if _is_unit(unit) or not described else ""
     return ""
+
+
+def _opening(name: str, left: str, right: str) -> int:
+    """Place of the bracket that the last one closes.
+
+    >>> _opening("drag (N*m/(rad/s))", "(", ")")
+    5
+    """
+    depth = 0
+    for place in range(len(name) - 1, -1, -1):
+        depth += (name[place] == right) - (name[place] == left)
+        if depth == 0:
+            return place
+    return len(name) - 1

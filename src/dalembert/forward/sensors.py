@@ -136,6 +136,12 @@ class Sensors:
         return self.model.channels
 
     @property
+    def scaled(self) -> frozenset[str]:
+        """Channels with a gain, whose readings may be in another unit than the channel."""
+        givers = [name for name, sensor in self.sensors.items() if sensor.gain is not None]
+        return frozenset(channel.name for channel in self.channels if owners(givers, channel.name))
+
+    @property
     def fingerprint(self) -> str:
         """Hash of the model, the sensors and the time stamps."""
         at_rest = sorted(name for name, sensor in self.sensors.items() if sensor.at_rest)

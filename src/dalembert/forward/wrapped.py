@@ -36,6 +36,11 @@ class Wrapped:
         return self.model.channels
 
     @property
+    def scaled(self) -> frozenset[str]:
+        """Channels with a gain, whose readings may be in another unit than the channel."""
+        return getattr(self.model, "scaled", frozenset())
+
+    @property
     def coordinate(self) -> Coordinate:
         return self.model.coordinate
 

@@ -282,6 +282,7 @@ def identify(
             model,
             method,
             data=data.fingerprint,
+            units=dict(data.units),
             seed=seed,
             starts=starts,
             start=None if start is None else model.parameters.vector(start).tolist(),

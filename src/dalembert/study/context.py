@@ -1,9 +1,11 @@
 """What the validators of a study file know beside the value before them."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+
+from dalembert.unit_table import Unit
 
 
 @dataclass
@@ -14,8 +16,8 @@ class Context:
     ----------
     folder : Path
         Files named in the study are relative to it.
-    names : frozenset of str
-        Parameters and constants, which an expression may use.
+    names : mapping of str to Unit or None
+        Parameters and constants, which an expression may use, with the units that they have.
     series : mapping of str to tuple of str
         Names of the parameters of each series, which a list of numbers may name as a whole.
     files : mapping of str to Path
@@ -25,7 +27,7 @@ class Context:
     """
 
     folder: Path = field(default_factory=Path)
-    names: frozenset[str] = frozenset()
+    names: Mapping[str, Unit | None] = field(default_factory=dict)
     series: dict[str, tuple[str, ...]] = field(default_factory=dict)
     files: dict[str, Path] = field(default_factory=dict)
     used: dict[str, Path] = field(default_factory=dict)

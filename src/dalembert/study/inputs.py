@@ -13,6 +13,7 @@ from dalembert.study.data_table import Column, DataFile, DataTable, FileTable, S
 from dalembert.study.expressions import Expression
 from dalembert.study.numbers import fixed, number
 from dalembert.study.table import Read, StudyTable, problem, told_apart
+from dalembert.units import wrong_kind
 
 if TYPE_CHECKING:
     from dalembert.multibody import Table
@@ -98,7 +99,8 @@ class InputTable(FileTable):
         values = data.continuous[:, data.channels.index(_CHANNEL)]
         there = np.isfinite(values)
         self._refuse_gaps(name, data.coordinate.values, str(table.file))
-        return MeasuredInput(name, self, data.coordinate.values[there], values[there], str(table.file))
+        unit = data.units.get(_CHANNEL, "")
+        return MeasuredInput(name, self, data.coordinate.values[there], values[there], str(table.file), unit)
 
     def _refuse_gaps(self, name: str, times: np.ndarray, source: str) -> None:
         """Refuse an input of which time stamps are missing: what drives the model there is not known."""
@@ -122,6 +124,8 @@ class MeasuredInput:
     times, values : array, shape (samples,)
     source : str
         The file.
+    unit : str
+        That of its column in the file; ``""`` where the file names none.
     """
 
     name: str
@@ -129,6 +133,7 @@ class MeasuredInput:
     times: np.ndarray
     values: np.ndarray
     source: str
+    unit: str = ""
 
     def signal(self, values: Mapping[str, Any]) -> "Table":
         """The signal at values of parameters and constants."""
@@ -140,6 +145,24 @@ class MeasuredInput:
             numbers[key] = given(values) if isinstance(given, Expression) else given
         own: Any = Table
         return own(self.times, self.values, self.table.kind, integrals=self.table.integrals, **numbers)
+
+    def check_kind(self, model: Any) -> None:
+        """Refuse an input in a unit of another kind than that of what it drives, unless a scale turns it into that.
+
+        Raises
+        ------
+        DataError
+        """
+        if "scale" in self.table.model_fields_set:
+            return
+        for name, where, unit in _used(model):
+            if name == self.name and unit:
+                of_column = unit + f"/s^{self.table.integrals}" * bool(self.table.integrals)
+                if sentence := wrong_kind(self.unit, of_column):
+                    raise DataError(
+                        f"[inputs.{name}], column {str(self.table.column)!r}, for {where}: {sentence}; correct "
+                        "unit, or give the scale that turns the column into it"
+                    )
 
     def require(self, end: float) -> None:
         """Refuse an input that does not last as long as a motion until ``end`` (s).
@@ -177,7 +200,7 @@ def wrong_inputs(file: Any) -> list[str]:
     """Sentences about inputs that do not fit to the rest of the file."""
     if file.inputs and (file.vibrates or file.model.forward is not None):
         return ["[inputs] drive mechanisms, and here is another model; leave them out"]
-    wrong, used = [], dict(_used(file.model))
+    wrong, used = [], {name: where for name, where, _ in _used(file.model)}
     wrong += [unknown("input", name, file.inputs, where) for name, where in used.items() if name not in file.inputs]
     for name, table in file.inputs.items():
         if name not in used:
@@ -206,18 +229,20 @@ def wrong_inputs(file: Any) -> list[str]:
     return wrong
 
 
-def _used(model: Any) -> Iterator[tuple[str, str]]:
-    """Names of the inputs that a model uses, and where."""
+def _used(model: Any) -> Iterator[tuple[str, str, str]]:
+    """Names of the inputs that a model uses, where, and the SI units of what they drive; empty if not known."""
     for table, component in model.components:
+        fields = component.target_type.__dataclass_fields__
         for key, value in component.given().items():
             if isinstance(value, InputReference):
-                yield value.input, f"[[model.{table}]] {component.name!r}, {key}"
+                unit = fields[key].metadata.get("unit") or "" if key in fields else ""
+                yield value.input, f"[[model.{table}]] {component.name!r}, {key}", unit
     robot = model.robot_table
     for joint, name in (robot.inputs if robot else {}).items():
-        yield name, f"[model.robot.torques], {joint}"
+        yield name, f"[model.robot.torques], {joint}", robot.drive_units[joint]
     for key, value in model.arguments.items():
         if (name := input_named(value)) is not None:
-            yield name, f"[model.arguments], {key}"
+            yield name, f"[model.arguments], {key}", ""
 
 
 def _varies(given: Any, file: Any) -> bool:

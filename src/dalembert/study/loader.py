@@ -12,6 +12,7 @@ from dalembert.errors import InputError, no_text, unknown
 from dalembert.study.basics import LARGEST, MODEL_FILE
 from dalembert.study.context import Context
 from dalembert.study.parameters import series_in
+from dalembert.study.quantity_kinds import kinds_of
 from dalembert.study.schema import study_file, words_of
 from dalembert.study.sentences import mistakes
 from dalembert.study.spaces import elsewhere, is_in_space
@@ -76,7 +77,8 @@ def load(
     shared = _with_model_file(document, context, path, model)
     names = {name for table in ("parameters", "constants") for name in _table(document, table)}
     context.series = series_in(_table(document, "parameters"))
-    context.names = frozenset(names - set(context.series)).union(*context.series.values())
+    single = (names - set(context.series)).union(*context.series.values())
+    context.names = kinds_of(document, sorted(single), context.series)
     try:
         file = _validated(document, context)
     except ValidationError as error:

@@ -19,6 +19,7 @@ from pydantic_core import CoreSchema
 from dalembert.errors import InputError, unknown
 from dalembert.study.context import Context
 from dalembert.study.expressions import Expression
+from dalembert.study.quantity_kinds import require_kind
 from dalembert.study.table import Read, StudyTable, checked, completed, problem, told_apart
 from dalembert.units import expected, is_quantity, sentence, si
 
@@ -29,6 +30,8 @@ UNIT = "x-unit"
 
 def read_number(value: object, unit: str | None, names: Iterable[str] | None = ()) -> float | Expression:
     """Number in SI units, or an expression of names; ``names`` None leaves those unchecked.
+
+    Names with units, as :func:`kinds_of` gives them, must measure what the unit does.
 
     >>> read_number("400 mm", "m"), read_number("pi/4", "rad")
     (0.4, 0.7853981633974483)
@@ -43,6 +46,8 @@ def read_number(value: object, unit: str | None, names: Iterable[str] | None = (
             return si(expression({}), unit)
         for name in sorted(expression.names - set(names if names is not None else expression.names)):
             raise InputError(unknown("name", name, names or ()))
+        if unit is not None and isinstance(names, Mapping):
+            require_kind(expression, unit, names)
     except InputError as error:
         more = ", or an expression of parameters and constants" if names else ""
         raise InputError(f"{sentence(value, unit, reason=str(error).split('; known: none')[0])}{more}") from None

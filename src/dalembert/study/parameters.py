@@ -13,12 +13,12 @@ from dalembert.study.context import Context
 from dalembert.study.expressions import RESERVED, Expression
 from dalembert.study.numbers import read_number
 from dalembert.study.priors import CorrelationTable, PriorTable, prior
+from dalembert.study.quantity_kinds import OF_BOUNDS, kind_of
 from dalembert.study.table import StudyTable, problem
 from dalembert.units import is_quantity, is_si, symbol
 
 MOST = 10_000
 """Parameters of a series."""
-_NUMBERS = ("lower", "upper", "start", "scale", "deviation")
 
 
 class ParameterTable(StudyTable):
@@ -60,7 +60,7 @@ class ParameterTable(StudyTable):
                 "are; a bound may have another unit with it: lower = '100 MPa'"
             )
         wrong = []
-        for key in _NUMBERS:
+        for key in OF_BOUNDS:
             try:
                 self.number(key)
             except InputError as error:
@@ -77,7 +77,7 @@ class ParameterTable(StudyTable):
         """SI unit: the one given, or that of the first bound with a unit."""
         if self.unit is not None:
             return self.unit
-        texts = [getattr(self, key) for key in _NUMBERS]
+        texts = [getattr(self, key) for key in OF_BOUNDS]
         return next((symbol(text) for text in texts if isinstance(text, str) and is_quantity(text)), None)
 
     def number(self, key: str) -> float | None:
@@ -92,7 +92,7 @@ class ParameterTable(StudyTable):
 
     def parameter(self, name: str) -> Parameter:
         """The parameter."""
-        numbers: dict[str, Any] = {key: self.number(key) for key in _NUMBERS}
+        numbers: dict[str, Any] = {key: self.number(key) for key in OF_BOUNDS}
         known = self.prior and prior(self.prior, (numbers["lower"], numbers["upper"]), self._quantity)
         return Parameter(name, unit=self.symbol or "", log=self.log, prior=known, **numbers)
 
@@ -165,11 +165,14 @@ def read_constants(given: Any, info: ValidationInfo) -> dict[str, float | Expres
     """Constants in their order: each may use parameters, and constants before it."""
     if not isinstance(given, dict):
         raise problem(f"{given!r} was given; expected a table")
-    parameters = set(info.context.names) - set(given) if isinstance(info.context, Context) else set()
+    known = info.context.names if isinstance(info.context, Context) else {}
+    parameters = set(known) - set(given)
     wrong, constants = [], {}
     for name, value in given.items():
         try:
-            constants[name] = read_number(value, None, parameters | set(constants))
+            constants[name] = found = read_number(value, None, parameters | set(constants))
+            if isinstance(found, Expression):
+                kind_of(found, known)
         except InputError as error:
             constants[name] = 0.0
             wrong.append(f"{name}: {error}")

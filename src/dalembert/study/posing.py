@@ -1,6 +1,6 @@
 """The models and data that a study makes of its data, experiments and sensors."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -11,7 +11,7 @@ from dalembert.forward import ForwardModel, Sensor, Sensors
 from dalembert.forward.sensors import QUANTITIES, reading_parameter
 from dalembert.parameters import Parameter
 from dalembert.study.data_table import DataTable
-from dalembert.study.experiments import reads
+from dalembert.study.experiments import SensorTable, reads
 from dalembert.study.numbers import wrong_units
 from dalembert.study.study import Study
 
@@ -71,13 +71,13 @@ def posed(study: Study) -> "tuple[ForwardModel | list[Experiment], Measurements 
     if study.file.data is not None:
         data = study.data()
         model = _model(study, data, study.file.data, later)
-        _check_units(study.file.data, model, "[data]")
+        _check_units(study.file.data, model, "[data]", study.file.sensors)
         return model, data
     experiments = []
     for table in study.file.experiments:
         data, variant = table.read(), study.variant(table)
         model = _model(variant, data, table, later)
-        _check_units(table, model, f"[[experiments]] {table.name!r}")
+        _check_units(table, model, f"[[experiments]] {table.name!r}", study.file.sensors)
         experiments.append(Experiment(table.name, model, data, table.alone))
     return experiments, None
 
@@ -85,7 +85,8 @@ def posed(study: Study) -> "tuple[ForwardModel | list[Experiment], Measurements 
 def channel_units_of(model: "ForwardModel | Sequence[Experiment]") -> dict[str, str | None]:
     """Units of the channels of a model, or of experiments, also by ``"NAME.channel"``; None where there is none."""
     if isinstance(model, ForwardModel):
-        return {channel.name: channel.unit or None for channel in model.channels}
+        scaled = getattr(model, "scaled", frozenset())  # which may have any unit
+        return {item.name: None if item.name in scaled else item.unit or None for item in model.channels}
     found: dict[str, str | None] = {}
     for item in model:
         own = channel_units_of(item.model)
@@ -93,8 +94,8 @@ def channel_units_of(model: "ForwardModel | Sequence[Experiment]") -> dict[str, 
     return found
 
 
-def _check_units(table: DataTable, model: ForwardModel, where: str) -> None:
-    """Refuse deviations whose unit is not that of their channel.
+def _check_units(table: DataTable, model: ForwardModel, where: str, sensors: Mapping[str, SensorTable]) -> None:
+    """Refuse deviations and offsets whose unit is not that of their channel.
 
     Raises
     ------
@@ -104,6 +105,9 @@ def _check_units(table: DataTable, model: ForwardModel, where: str) -> None:
     for file in (table, *table.more):
         for sentence in wrong_units(file.deviations or {}, units, f"{where}, deviations"):
             raise InputError(sentence)
+    offsets = {name: sensor.offset for name, sensor in sensors.items() if sensor.offset is not None}
+    for sentence in wrong_units(offsets, units, "[sensors], offset of"):
+        raise InputError(sentence)
 
 
 def _model(study: Study, data: "Measurements", table: DataTable, later: Sequence[str] = ()) -> ForwardModel:

@@ -60,6 +60,11 @@ class RobotTable(StudyTable):
         return {name: given.input for name, given in self.torques.items() if isinstance(given, InputReference)}
 
     @property
+    def drive_units(self) -> dict[str, str]:
+        """SI units of what drives each joint."""
+        return {joint.name: "N" if joint.kind == "prismatic" else "N*m" for joint in self.tree.moving}
+
+    @property
     def names(self) -> tuple[list[str], list[str]]:
         """Names of the bodies and of the joints of the robot's mechanism."""
         from dalembert.multibody.trees.build import names

@@ -153,7 +153,10 @@ class Study(Displayed):
         if self.beside is None and self.file.experiments and self.file.inputs:
             return self.variant(self.file.experiments[0]).inputs
         beside = self.beside or self.file.data
-        return {name: table.read(name, beside) for name, table in self.file.inputs.items()}
+        found = {name: table.read(name, beside) for name, table in self.file.inputs.items()}
+        for one in found.values():
+            one.check_kind(self.file.model)
+        return found
 
     def variant(self, table: ExperimentTable) -> "Study":
         """The study as it is in one of its experiments."""

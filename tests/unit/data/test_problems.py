@@ -54,6 +54,15 @@ def test_a_problem_is_found_by_itself(code):
     assert finding.message[-1] == finding.advice[-1] == "."
 
 
+@pytest.mark.parametrize(("unit", "code"), [("wombat", "unknown-unit"), ("mm", "wrong-unit"), ("Degree", None)])
+def test_a_unit_is_known_and_measures_what_the_channel_does(unit, code):
+    use = replace(USE, units={"a": Unit(unit, "file")})
+    listed = problems(found(), use)
+    assert [(one.code, one.values["unit"]) for one in listed] == ([(code, unit)] if code else [])
+    times = replace(USE, units={"t": Unit(unit, "file")})
+    assert [one.code for one in problems(found(), times) if one.severity == "error"] == [code or "wrong-unit"]
+
+
 def test_good_data_have_no_problems():
     rough = WAVE + 0.02 * np.random.default_rng(1).normal(size=200)
     for values in (WAVE, rough, np.round(WAVE, 2), np.sign(WAVE), np.exp(-9 * TIMES) * np.cos(300 * TIMES)):

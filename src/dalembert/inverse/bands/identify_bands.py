@@ -152,6 +152,7 @@ def identify_bands(
             model,
             chosen,
             data=bands.fingerprint,
+            units=dict(bands.units),
             seed=seed,
             intervals=unknowns.intervals,
             weights="given" if weights is not None else "one",

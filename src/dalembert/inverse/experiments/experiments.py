@@ -65,6 +65,11 @@ class JointModel:
     active: frozenset[str]
 
     @property
+    def scaled(self) -> frozenset[str]:
+        """Channels with a gain, whose readings may be in another unit than the channel."""
+        return frozenset(f"{part.name}.{name}" for part, model in self._all() for name in getattr(model, "scaled", ()))
+
+    @property
     def fingerprint(self) -> str:
         """Hash of the experiments' names, models and parameters."""
         told = [(part.name, model.fingerprint, sorted(part.channels)) for part, model in self._all()]
@@ -330,4 +335,5 @@ def _measurements(experiments: Sequence[Experiment], model: JointModel) -> Measu
         wraps=tuple(f"{item.name}.{name}" for item in experiments for name in item.data.wraps),
         origin="; ".join(dict.fromkeys(filter(None, (item.data.origin for item in experiments)))),
         sampled=sampled,
+        units={f"{item.name}.{name}": unit for item in experiments for name, unit in item.data.units.items()},
     )

@@ -6,6 +6,7 @@ from numpy.typing import ArrayLike
 from dalembert.data import Bands, Measurements
 from dalembert.errors import DataError, InputError, shown, unknown
 from dalembert.forward import ForwardModel
+from dalembert.units import wrong_kind
 
 
 def check_kinds(owner: str, model: object, data: object, kind: type = Measurements) -> None:
@@ -33,13 +34,30 @@ def columns_of(model: ForwardModel, data: Measurements | Bands) -> np.ndarray:
     Raises
     ------
     DataError
-        For a channel that the model lacks.
+        For a channel that the model lacks, and for one that was measured in a unit of another kind.
     """
     names = tuple(channel.name for channel in model.channels)
     for channel in data.channels:
         if channel not in names:
             raise DataError(unknown("channel", channel, names, "the data name a channel that the model does not give"))
+    _check_kinds(model, data)
     return np.array([names.index(channel) for channel in data.channels])
+
+
+def _check_kinds(model: ForwardModel, data: Measurements | Bands) -> None:
+    """Refuse channels that were measured in a unit of another kind; a sensor of unknown gain may have any unit.
+
+    Raises
+    ------
+    DataError
+    """
+    scaled = getattr(model, "scaled", frozenset())
+    units = {channel.name: channel.unit for channel in model.channels if channel.name not in scaled}
+    for channel, unit in data.units.items():
+        if (expected := units.get(channel)) and (sentence := wrong_kind(unit, expected)):
+            raise DataError(
+                f"the data of channel {channel!r}: {sentence}; choose another column, or correct its unit in units"
+            )
 
 
 def check_samples(model: ForwardModel, data: Measurements | Bands) -> None:

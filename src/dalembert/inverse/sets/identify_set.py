@@ -152,6 +152,7 @@ def identify_set(
             model,
             chosen,
             data=data.fingerprint,
+            units=dict(data.units),
             seed=seed,
             error=errors.tolist(),
             resolution=resolution,

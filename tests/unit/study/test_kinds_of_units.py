@@ -1,0 +1,129 @@
+"""Units of columns, inputs, deviations, offsets and constants are those of what they stand for."""
+
+import numpy as np
+import pytest
+
+from dalembert.errors import DataError, InputError
+from dalembert.study.loader import load
+from dalembert.study.posing import posed
+from dalembert.study.runner import plan
+from dalembert.study.sources import source_lines
+
+STUDY = """
+[parameters]
+drag = {{ lower = 0.0, upper = 0.1, unit = "N*m*s" }}
+[constants]
+L = "{constant}"
+[inputs.torque]
+column = "{torque}"
+{more_input}
+[[model.body]]
+kind = "RigidBar"
+name = "bar"
+length = "{length}"
+mass = 0.4
+angle = "-90 deg"
+[[model.joint]]
+kind = "RevoluteJoint"
+name = "pin"
+a = "ground"
+b = "bar.start"
+viscous = "drag"
+[[model.load]]
+kind = "Torque"
+name = "motor"
+at = "bar.start"
+torque = {{ input = "torque" }}
+[solver]
+step = "20 ms"
+[data]
+file = "run.csv"
+time = "t (s)"
+columns = {{ "{channel}" = "{angle}" }}
+{more}
+[identify]
+"""
+USUAL = {
+    "constant": "50 cm", "length": "L", "torque": "torque (Nm)", "more_input": "", "channel": "bar.start.angle",
+    "angle": "angle (deg)", "more": "",
+}  # fmt: skip
+
+
+@pytest.fixture
+def study(tmp_path):
+    def make(**changed):
+        words = USUAL | changed
+        times = np.arange(11) * 0.1
+        rows = [f"{t:.1f};{30 * t:.3f};{0.1 * t:.4f}" for t in times]
+        (tmp_path / "run.csv").write_text("\n".join([f"t (s);{words['angle']};{words['torque']}", *rows]) + "\n")
+        (tmp_path / "study.toml").write_text(STUDY.format(**words))
+        return load(tmp_path / "study.toml")
+
+    return make
+
+
+def test_a_torque_in_newton_metres_is_read_as_such(study):
+    assert study().inputs["torque"].values[-1] == 0.1
+    assert study(torque="torque (mNm)").inputs["torque"].values[-1] == pytest.approx(1e-4)
+
+
+def test_units_that_fit_are_named(study):
+    assert list(source_lines(study()))[1:] == ["Units: time in s, bar.start.angle in deg", "Input torque: Nm"]
+    assert list(source_lines(study(angle="angle", torque="torque")))[1:] == [
+        "Units: time in s; no unit is given for bar.start.angle, read in SI units",
+        "Input torque: no unit is given, read in SI units",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("changed", "sentence"),
+    [
+        (
+            {"angle": "angle (mm)"},
+            "the data of channel 'bar.start.angle': the unit 'mm' was given; expected that of an angle such as '45 deg' "
+            "or 0.785398 in rad; choose another column, or correct its unit in units",
+        ),
+        (
+            {"channel": "bar.end.ax", "angle": "a (deg/s)"},
+            "the unit 'deg/s' was given; expected that of an acceleration",
+        ),
+        (
+            {"torque": "torque (N)"},
+            "[inputs.torque], column 'torque (N)', for [[model.load]] 'motor', torque: the unit 'N'",
+        ),
+        ({"torque": "torque (N)", "more_input": 'unit = "mm"'}, "the unit 'mm' was given; expected that of a torque"),
+        ({"more": 'deviations = { "bar.start.angle" = "1 s" }'}, "deviations, bar.start.angle: '1 s' was given"),
+        ({"more": 'sensors."bar.start.angle".x = 1'}, "unknown key 'sensors'"),
+        (
+            {"more": '[sensors."bar.start.angle"]\noffset = ["-1 mm", "1 mm"]'},
+            "[sensors], offset of, bar.start.angle: '-1 mm'",
+        ),
+        ({"constant": "0.8 kg"}, "length: 'L' was given, but it measures something else, in kg"),
+        ({"length": "2*L**2/L"}, ""),
+        ({"length": "L*L"}, "length: 'L*L' was given, but it measures something else, in m^2"),
+        ({"length": "drag"}, "length: 'drag' was given, but it measures something else, in N*m*s"),
+        ({"length": "L + drag"}, "'L + drag' adds quantities of different kinds"),
+    ],
+)
+def test_another_kind_is_a_sentence(study, changed, sentence):
+    if not sentence:
+        plan(study(**changed))
+        return
+    with pytest.raises((DataError, InputError)) as caught:
+        plan(study(**changed))
+    assert sentence in str(caught.value)
+
+
+@pytest.mark.parametrize("more", ["scale = 0.5", 'integrals = 1\nunit = "N*m*s^-1"', 'integrals = 2\nunit = "N*m/s^2"'])
+def test_a_scale_or_integrals_change_the_kind_of_an_input(study, more):
+    plan(study(torque="current (A)" if "scale" in more else "torque", more_input=more))
+
+
+def test_a_reading_with_a_gain_may_have_any_unit(study):
+    more = 'deviations = { "bar.start.angle" = "5 mV" }\n[sensors."bar.start.angle"]\ngain = [0.1, 10]\noffset = ["-1 V", "1 V"]'
+    plan(study(angle="angle (V)", more=more))
+
+
+def test_a_gram_of_acceleration_is_the_one_of_gravity(study):
+    _, data = posed(study(channel="bar.end.ax", angle="a (g)"))
+    assert data.values[-1, 0] == pytest.approx(30 * 9.80665)

@@ -15,6 +15,7 @@ from dalembert.findings import Finding
 from dalembert.forward import Refinement, StateChart, error_factor
 from dalembert.forward.builders import check_function, cores
 from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES
+from dalembert.multibody.beam_strains import stretching
 from dalembert.multibody.bushing_rotations import turning_bushings
 from dalembert.multibody.fingerprint import fingerprint
 from dalembert.multibody.integrators.integrator import Integrator
@@ -248,11 +249,11 @@ class TimeResponse(BuiltModel):
     def findings(self, vector: np.ndarray) -> tuple[Finding, ...]:
         """Findings on the mechanism at a parameter vector (parameters,), and on its motion.
 
-        The motion is simulated once if it has Coulomb friction, or bushings in space with torques.
+        The motion is simulated once if it has Coulomb friction, bushings in space with torques, or beams that stretch.
         """
         system, late = self.system(vector), late_samples(self.times)
         try:
-            if not (rubbing(system) or turning_bushings(system)):
+            if not (rubbing(system) or turning_bushings(system) or stretching(system)):
                 step, end = self.solver.fixed_step, float(self.times[-1])
                 return (*system.findings, *late, *skipped_samples(system, step, self.begin, end))
             return (*simulate(system, float(self.times[-1]), self.solver, begin=self.begin).findings, *late)

@@ -15,6 +15,7 @@ from dalembert.errors import require_known
 from dalembert.files import write_contents
 from dalembert.findings import Finding
 from dalembert.kernels.preparation import prepare
+from dalembert.multibody.beam_strains import strain_findings
 from dalembert.multibody.bushing_rotations import half_turns, turning_bushings
 from dalembert.multibody.components.joint import BaseJoint
 from dalembert.multibody.drawing import Drawing, draw
@@ -75,7 +76,8 @@ class Trajectory(Displayed):
     def findings(self) -> tuple[Finding, ...]:
         """Those of the system and of its motion.
 
-        Skipped samples, redundant constraints, no freedom, unsuited friction, bushings that pass half a turn.
+        Skipped samples, redundant constraints, no freedom, stretched beams, unsuited friction, and bushings that pass
+        half a turn.
         """
         joints = rubbing(self.system)
         begin = float(np.real(self.lowered.signal_data[0]))
@@ -84,8 +86,9 @@ class Trajectory(Displayed):
         if self.solver.takes_redundancy and not held:
             held = redundant_constraints(self.lowered)
         bushings = turning_bushings(self.system)
+        of_motion = (*skipped, *held, *strain_findings(self.system, self.lowered, self.run.times, self.run.states.x))
         if not (joints or bushings):
-            return (*self.system.findings, *skipped, *held)
+            return (*self.system.findings, *of_motion)
         names = [f"{name}.{own.channel}" for name, own in joints.items()]
         names += [f"{name}.{axis}" for name, axes in bushings.items() for axis in axes]
         readers = observer(self.system, self.lowered, names)
@@ -97,7 +100,7 @@ class Trajectory(Displayed):
         )
         vectors = np.split(values[:, len(joints) :], len(bushings), axis=1) if bushings else []
         turned = half_turns(self.run.times, dict(zip(bushings, vectors, strict=True)))
-        return (*self.system.findings, *skipped, *held, *chain.from_iterable(unsuited), *turned)
+        return (*self.system.findings, *of_motion, *chain.from_iterable(unsuited), *turned)
 
     @property
     def channel_names(self) -> tuple[str, ...]:

@@ -102,13 +102,14 @@ class Trial:
 def trial_label(value: object) -> str:
     """Label of a trial by a cell or a number.
 
-    >>> trial_label("3.0"), trial_label(3), trial_label(1234567), trial_label("left")
-    ('3', '3', '1234567', 'left')
+    >>> trial_label("3.0"), trial_label(3), trial_label(1234567), trial_label("left"), trial_label("1_0")
+    ('3', '3', '1234567', 'left', '1_0')
     """
+    text = str(value).strip()
     try:
-        return f"{float(str(value)):.15g}"
+        return text if "_" in text else f"{float(text):.15g}"
     except ValueError:
-        return str(value).strip()
+        return text
 
 
 def of_trial(path: Path, labels: Sequence[str], trial: Trial) -> np.ndarray:

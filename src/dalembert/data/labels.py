@@ -88,13 +88,15 @@ def real_numbers(given: Any, what: str) -> np.ndarray:
         )
     if array.dtype.kind in "mM" and array.size:
         raise DataError(f"{what} has dates or time spans, such as {array.flat[0]}; expected numbers in SI units")
+    texts = array.dtype.kind in "USO"
     try:
-        return np.array(array, dtype=float)
+        if not (texts and any("_" in str(entry) for entry in array.flat)):  # which Python alone takes for a number
+            return np.array(array, dtype=float)
     except (TypeError, ValueError):
         pass
     for place, entry in np.ndenumerate(array):
         try:
-            float(entry)
+            float("" if "_" in str(entry) else entry)
         except (TypeError, ValueError):
             at = f", sample {place[0]}" if place else ""
             given_here = entry.item() if isinstance(entry, np.generic) else entry

@@ -14,6 +14,7 @@ from dalembert.data.measurements import Measurements
 from dalembert.data.opening import errors_with_file
 from dalembert.data.record import FIRST
 from dalembert.data.text_layout import AUTO
+from dalembert.errors import DataError, repeated
 
 
 def read(
@@ -107,6 +108,8 @@ def read(
     """
     path = Path(path)
     names = None if columns is None else tuple(columns.values())
+    for column, count in repeated(map(str, names or ())).items():
+        raise DataError(f"{path}, column {column!r} is given for {count} channels; expected one channel for a column")
     one = None if trial is None else Trial(trial[0], trial_label(trial[1]))
     request = Request(frequency or time, names, missing, tuple(units or ()), separator, decimal, one)
     found = columns_in(path, request, format)

@@ -128,8 +128,19 @@ def is_number(cell: str, decimal: str = ".") -> bool:
 
 
 def value(cell: str, decimal: str) -> float:
-    """Number in a cell; a point beside decimal commas may divide thousands, and is refused."""
-    return float("" if decimal == "," and "." in cell else cell.replace(decimal, "."))
+    """Number in a cell; a point beside decimal commas may divide thousands, and is refused, as is Python's ``1_0``."""
+    if (decimal == "," and "." in cell) or not is_plain(cell):
+        raise ValueError
+    return float(cell.replace(decimal, "."))
+
+
+def is_plain(cell: str) -> bool:
+    """Return whether a text has only characters of numbers in data, not those that Python alone allows.
+
+    >>> is_plain("1e-3"), is_plain("1_0"), is_plain("１")
+    (True, False, False)
+    """
+    return cell.isascii() and "_" not in cell
 
 
 def split(lines: Iterable[Line], separator: str) -> list[Row]:

@@ -1,5 +1,6 @@
 """The tables of a study file that name data: measurements, and bounds of them."""
 
+from collections.abc import Mapping
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
@@ -20,10 +21,12 @@ from dalembert.arguments import is_whole
 from dalembert.data.known_formats import known_formats
 from dalembert.data.record import FIRST, beginning
 from dalembert.errors import repeated, unknown
+from dalembert.forward import Sensor
 from dalembert.forward.sensors import START
 from dalembert.parameters import Parameter
 from dalembert.study.context import Context
 from dalembert.study.numbers import Number, Samples, Seconds, fixed, pair, read_number
+from dalembert.study.sensor_table import SensorTable, reads
 from dalembert.study.table import Read, StudyTable, checked, problem, told_apart
 
 if TYPE_CHECKING:
@@ -215,6 +218,11 @@ class DataTable(ChannelFile):
             wrong.append("trial is given, but not split, the column that numbers the trials; give both")
         if self.split is not None and self.trial is None and not self.SEVERAL:
             wrong.append("split is given without trial; give the trial that is read, or use [[experiments]] for all")
+        for file in (self, *self.more):
+            wrong += [
+                f"columns: {column!r} is given for {count} channels; expected one channel for a column"
+                for column, count in repeated(map(str, file.columns.values())).items()
+            ]
         names = [name for file in (self, *self.more) for name in file.columns]
         if several := repeated(names):
             wrong.append(f"more: {', '.join(several)} has a column in several files; expected one for each channel")
@@ -233,6 +241,10 @@ class DataTable(ChannelFile):
     def channels(self) -> tuple[str, ...]:
         """Channels that the data have."""
         return (*(name for file in (self, *self.more) for name in file.columns), *self.derivatives)
+
+    def sensors(self, shared: Mapping[str, SensorTable]) -> dict[str, Sensor]:
+        """The sensors of its channels."""
+        return {name: table.sensor for name, table in shared.items() if reads(name, self.channels)}
 
     def read(self) -> "Measurements":
         """The data."""

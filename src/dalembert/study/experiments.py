@@ -1,50 +1,20 @@
 """The tables of several experiments and of sensors, and that they fit to the rest of the file."""
 
-from collections.abc import Iterable, Mapping
-from typing import Annotated, Any
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
 
 from pydantic import Field, ValidationError
 
 from dalembert.errors import DataError, repeated, unknown
 from dalembert.forward import Sensor
-from dalembert.forward.sensors import QUANTITIES, START, owners
+from dalembert.forward.sensors import QUANTITIES, START
 from dalembert.study.data_table import DataTable
 from dalembert.study.inputs import InputTable
-from dalembert.study.numbers import Number, Seconds, pair
+from dalembert.study.numbers import Number
 from dalembert.study.parameters import OwnParameterTable, ParameterTable
-from dalembert.study.table import Name, Read, StudyTable, problem
-
-TimeBounds = Annotated[list[float], Read(pair(Seconds))]
-Bounds = Annotated[list[float], Read(pair(Number))]
-
-
-class SensorTable(StudyTable):
-    """Bounds of what is not known of a channel's sensor."""
-
-    delay: TimeBounds | None = Field(None, description="positive where the reading comes late")
-    lag: TimeBounds | None = Field(None, description="time constant of a first-order low-pass")
-    gain: Bounds | None = None
-    offset: Bounds | None = Field(None, description="in the channel's unit")
-    at_rest: bool = Field(False, description="whether the channel rests at its first value before the motion begins")
-
-    def _wrong(self) -> list[str]:
-        given = {what: bounds for what, bounds in self.picked(*QUANTITIES).items() if bounds is not None}
-        wrong = [
-            f"{what} is between {lower:g} and {upper:g}; expected the lower bound first"
-            for what, (lower, upper) in given.items()
-            if lower > upper
-        ]
-        if self.lag is not None and self.lag[0] < 0:
-            wrong.append(f"lag may be {self.lag[0]:g} s; expected bounds of zero or more")
-        if not given:
-            wrong.append("none of delay, lag, gain and offset is given; expected bounds of at least one")
-        return wrong
-
-    @property
-    def sensor(self) -> Sensor:
-        """The sensor."""
-        bounds = {what: given and tuple(given) for what, given in self.picked(*QUANTITIES).items()}
-        return Sensor(**bounds, at_rest=self.at_rest)
+from dalembert.study.sensor_table import SensorTable, reads
+from dalembert.study.table import Name, problem
 
 
 class ExperimentTable(DataTable):
@@ -55,8 +25,8 @@ class ExperimentTable(DataTable):
     name: Name
     own: list[str] | dict[str, OwnParameterTable] = Field(
         [],
-        description="parameters that are not shared with the other experiments: names, or a table with the bounds and "
-        "first guesses that differ here",
+        description="parameters that are not shared with the other experiments: names, also of sensors, such as "
+        "'bar.angle offset', or a table with the bounds and first guesses that differ here",
     )
     constants: dict[str, Number] = Field({}, description="constants that have another value in this experiment")
     arguments: dict[str, Any] = Field({}, description="arguments of the model's function in this experiment")
@@ -75,6 +45,20 @@ class ExperimentTable(DataTable):
         """The parameters' tables as they are in this experiment."""
         given = self.own if isinstance(self.own, dict) else {}
         return {name: given[name].over(table) if name in given else table for name, table in shared.items()}
+
+    def sensors(self, shared: Mapping[str, SensorTable]) -> dict[str, Sensor]:
+        """The sensors of its channels, with the bounds that are local to this experiment."""
+        return {name: self._local(name, sensor) for name, sensor in super().sensors(shared).items()}
+
+    def _local(self, name: str, sensor: Sensor) -> Sensor:
+        """A sensor with bounds as they are in this experiment."""
+        given = self.own if isinstance(self.own, dict) else {}
+        for what in QUANTITIES:
+            bounds, own = getattr(sensor, what), given.get(f"{name} {what}")
+            if bounds is not None and own is not None:
+                local = own.over(ParameterTable.model_validate({"lower": bounds[0], "upper": bounds[1]}))
+                sensor = replace(sensor, **{what: local.parameter(f"{name} {what}")})
+        return sensor
 
 
 def expanded(tables: list[ExperimentTable]) -> list[ExperimentTable]:
@@ -117,24 +101,25 @@ def wrong_experiments(file: Any) -> list[str]:
             unknown("constant", name, file.constants, where) for name in table.constants if name not in file.constants
         ]
         where = f"[[experiments]] {table.name!r}, own"
-        wrong += [
-            unknown("parameter", name, file.parameters, where) for name in table.own if name not in file.parameters
-        ]
-        wrong += _wrong_own(table, file.parameters, where)
+        known = [*file.parameters, *_sensor_parameters(file.sensors, table)]
+        wrong += [unknown("parameter", name, known, where) for name in table.own if name not in known]
+        wrong += _wrong_own(table, file, where)
         if table.arguments and not (file.model.function or file.model.forward):
             wrong.append(f"[[experiments]] {table.name!r}: arguments are for a function, and there is none")
     return wrong
 
 
-def reads(sensor: str, channels: Iterable[str]) -> bool:
-    """Whether a sensor is that of a channel, or of the component of some."""
-    return any(owners([sensor], channel) for channel in channels)
+def _sensor_parameters(sensors: Mapping[str, SensorTable], table: DataTable) -> list[str]:
+    """Names of the parameters of the sensors of a table's channels."""
+    seen = [name for name in sensors if reads(name, table.channels)]
+    return [f"{name} {what}" for name in seen for what in QUANTITIES if getattr(sensors[name], what) is not None]
 
 
-def _wrong_own(table: ExperimentTable, shared: Mapping[str, ParameterTable], where: str) -> list[str]:
+def _wrong_own(table: ExperimentTable, file: Any, where: str) -> list[str]:
     """Sentences about bounds and first guesses of a single experiment that do not fit to each other."""
     try:
-        table.parameters(shared)
+        table.parameters(file.parameters)
+        table.sensors(file.sensors)
     except ValidationError as error:
         return [f"{where}: {one['msg']}" for one in error.errors()]
     return []

@@ -11,8 +11,8 @@ from dalembert.forward import ForwardModel, Sensor, Sensors
 from dalembert.forward.sensors import QUANTITIES, reading_parameter
 from dalembert.parameters import Parameter
 from dalembert.study.data_table import DataTable
-from dalembert.study.experiments import SensorTable, reads
 from dalembert.study.numbers import wrong_units
+from dalembert.study.sensor_table import SensorTable
 from dalembert.study.study import Study
 
 if TYPE_CHECKING:
@@ -53,11 +53,11 @@ def _of_readings(study: Study, table: DataTable) -> list[Parameter]:
     """Parameters of the sensors of some data, and of the time at which the motion begins."""
     found = [
         reading_parameter(f"{channel} {what}", bounds, "s" if what in TIMES and study.has_system else "", usual)
-        for channel, sensor in study.file.sensors.items()
-        if reads(channel, table.channels)
+        for channel, sensor in table.sensors(study.file.sensors).items()
         for what, usual in QUANTITIES.items()
-        if (bounds := getattr(sensor.sensor, what)) is not None and bounds[0] < bounds[1]
+        if (bounds := getattr(sensor, what)) is not None
     ]
+    found = [item for item in found if not item.is_fixed]
     start = table.unknown_start
     return found if start is None or start.is_fixed else [*found, start]
 
@@ -112,7 +112,7 @@ def _check_units(table: DataTable, model: ForwardModel, where: str, sensors: Map
 
 def _model(study: Study, data: "Measurements", table: DataTable, later: Sequence[str] = ()) -> ForwardModel:
     """The model at the samples of data, seen by the sensors that there are; with channels that are states later."""
-    sensors = {name: table.sensor for name, table in study.file.sensors.items() if reads(name, data.channels)}
+    sensors = table.sensors(study.file.sensors)
     stamps, start = data.coordinate.values, table.unknown_start
     if study.has_system and start is None:
         _refuse_late(table, data)
@@ -142,7 +142,8 @@ def _refuse_late(table: DataTable, data: "Measurements") -> None:
 
 def _fine(study: Study, stamps: np.ndarray, sensors: dict[str, Sensor], start: Parameter | None = None) -> np.ndarray:
     """Times of the solver's steps until the last reading, every so manyth of them where they are very many."""
-    least = min((sensor.delay[0] for sensor in sensors.values() if isinstance(sensor.delay, tuple)), default=0.0)
+    delays = [sensor.delay for sensor in sensors.values() if sensor.delay is not None]
+    least = min((item.lower if isinstance(item, Parameter) else item[0] for item in delays), default=0.0)
     end = float(stamps[-1]) - min(0.0, least) - (0.0 if start is None else start.lower)
     step = getattr(study.solver, "step", None) or end / 2000
     apart = step * np.ceil(end / step / MOST_SAMPLES)

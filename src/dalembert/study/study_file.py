@@ -7,11 +7,12 @@ from pydantic import AfterValidator, BeforeValidator, Field, PlainValidator, Wit
 
 from dalembert.errors import InputError
 from dalembert.study.data_table import BandsTable, DataTable
-from dalembert.study.experiments import ExperimentTable, SensorTable, expanded, wrong_experiments
+from dalembert.study.experiments import ExperimentTable, expanded, wrong_experiments
 from dalembert.study.inputs import InputTable, wrong_inputs
 from dalembert.study.model_table import ModelTable
 from dalembert.study.parameters import ParameterTable, check_names, parameters_of, read_constants, with_series
 from dalembert.study.priors import CorrelationTable
+from dalembert.study.sensor_table import SensorTable
 from dalembert.study.table import Name, StudyTable, problem
 
 

@@ -93,3 +93,8 @@ def test_a_defect_is_answered_in_a_sentence(wrong, sentence):
     with pytest.raises(DataError) as error:
         wrong()
     assert str(error.value) == sentence
+
+
+def test_text_that_only_python_takes_for_a_number_is_refused():
+    with pytest.raises(DataError, match="channel 'x', sample 1: '1_0'; expected a number"):
+        Measurements.of([0.0, 1.0], {"x": ["1.5", "1_0"]})

@@ -228,3 +228,19 @@ def test_a_time_that_goes_back_late_in_a_long_file_has_its_line(tmp_path):
     (tmp_path / "back.csv").write_text("\n".join(["# rig", "t,x", *rows]))
     with pytest.raises(DataError, match=f"line {HEAD + 8}, column 't': 3 comes after {HEAD + 4}"):
         read(tmp_path / "back.csv")
+
+
+@pytest.mark.parametrize("cell", ["1_0", "１0"])
+@pytest.mark.parametrize("separator", [",", ";"])
+def test_a_number_that_only_python_reads_is_refused(cell, separator, tmp_path):
+    lines = ["t,x", "0.0,1.0", f"1.0,{cell}", "2.0,3.0", "3.0,4.0"]
+    (tmp_path / "run.csv").write_text("\n".join(lines).replace(",", separator) + "\n")
+    with pytest.raises(DataError) as caught:
+        read(tmp_path / "run.csv")
+    assert str(caught.value) == f"{tmp_path / 'run.csv'}, line 3, column 'x': {cell!r} is not a number"
+
+
+def test_a_column_is_read_for_one_channel(tmp_path):
+    (tmp_path / "run.csv").write_text(text(",", "t,i,a"))
+    with pytest.raises(DataError, match="column 'a' is given for 2 channels; expected one channel for a column"):
+        read(tmp_path / "run.csv", columns={"bar.x": "a", "bar.y": "a"})

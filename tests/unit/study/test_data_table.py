@@ -212,6 +212,10 @@ def test_the_settings_of_a_table_are_in_si(study):
             ],
         ),
         (
+            'columns = { a = "run.deg", b = "run.deg" }',
+            ["study.toml: [data]: columns: 'run.deg' is given for 2 channels; expected one channel for a column"],
+        ),
+        (
             'columns = { a = "run.deg" }\nmissing = "ignore"',
             ["study.toml: [data], missing: 'ignore' was given; expected 'refuse' or 'leave-out'"],
         ),

@@ -440,3 +440,58 @@ def test_a_study_says_the_longest_step_that_is_no_gap(write, tmp_path):
     for gap, missing in (("", 20), ('gap = "0.3 s"\n', 0)):
         data = load(write(PENDULUM + FILES + resample + gap + "[identify]\n")).data()
         assert np.count_nonzero(~data.present) == missing
+
+
+OFFSETS = """
+[[experiments]]
+name = "a"
+file = "a.csv"
+columns = { "rod.end.x" = "x" }
+own = ["rod.end.x offset"]
+[[experiments]]
+name = "b"
+file = "b.csv"
+columns = { "rod.end.x" = "x" }
+own = OWN
+[sensors."rod.end.x"]
+offset = [-0.3, 0.3]
+[identify]
+starts = 1
+"""
+
+
+@pytest.mark.parametrize(
+    "own", ['["rod.end.x offset"]', '{ "rod.end.x offset" = { lower = "-30 cm", upper = 0.0, start = -0.05 } }']
+)
+def test_each_experiment_may_have_its_own_zero_of_a_sensor(own, write, tmp_path):
+    times = np.arange(1, 31) * 0.04
+    study = load(write(PENDULUM + "[simulate]\nend = 1.5\n"))
+    exact = study.forward(["rod.end.x"], times).evaluate(np.array([[0.2]])).only()[0, :, 0]
+    for name, offset in (("a", 0.05), ("b", -0.1)):
+        table(tmp_path / f"{name}.csv", times, exact + offset)
+    study = load(write(PENDULUM + OFFSETS.replace("OWN", own)))
+    names = ("a.rod.end.x offset", "drag", "b.rod.end.x offset")
+    assert set(unknowns(study)) == set(names)
+    _, outcome = run_study(study, tmp_path / "run")
+    assert [outcome.best["values"][name] for name in names] == pytest.approx([0.05, 0.2, -0.1], rel=1e-4)
+    posed_parameters = {item.name: item for item in outcome.result.parameters}
+    expected = (-0.3, 0.3) if own.startswith("[") else (-0.3, 0.0)
+    assert (posed_parameters[names[2]].lower, posed_parameters[names[2]].upper) == expected
+
+
+@pytest.mark.parametrize(
+    ("own", "sentence"),
+    [
+        (
+            '["rod.end.x gain"]',
+            "[[experiments]] 'b', own: unknown parameter 'rod.end.x gain'; did you mean 'rod.end.x offset'?",
+        ),
+        ('{ "rod.end.x offset" = { lower = 0.5 } }', "[[experiments]] 'b', own: bounds are (0.5, 0.3)"),
+    ],
+)
+def test_what_is_wrong_with_own_parameters_of_sensors(own, sentence, write, tmp_path):
+    for name in "ab":
+        table(tmp_path / f"{name}.csv", np.arange(3.0), np.arange(3.0))
+    with pytest.raises(InputError) as caught:
+        load(write(PENDULUM + OFFSETS.replace("OWN", own)))
+    assert sentence in str(caught.value)

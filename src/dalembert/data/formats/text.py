@@ -9,7 +9,7 @@ import numpy as np
 
 from dalembert.data.columns import Columns, Trial, of_trial, trial_label
 from dalembert.data.format import Format, Request
-from dalembert.data.text_layout import AUTO, GAPS, Layout, Line, Row, is_number, layout, value
+from dalembert.data.text_layout import AUTO, GAPS, Layout, Line, Row, is_number, is_plain, layout, value
 from dalembert.data.text_lines import text_lines
 from dalembert.data.text_numbers import HEAD, lines_of_numbers, quick_table
 from dalembert.errors import DataError, unknown
@@ -197,9 +197,8 @@ def _numbers(path: Path, found: Layout, places: Iterable[int], missing: str, tim
         try:
             plain = [cell.replace(",", ".") for cell in cells] if found.decimal == "," else cells
             column = np.array(plain, dtype=float)
-            quick = bool(np.all(np.isfinite(column))) and not (
-                found.decimal == "," and any("." in one for one in cells)
-            )
+            quick = bool(np.all(np.isfinite(column))) and all(map(is_plain, cells))
+            quick = quick and not (found.decimal == "," and any("." in one for one in cells))
         except ValueError:
             quick = False
         table[k] = column if quick else _slowly(path, found, k, missing == "leave-out" and k != time)

@@ -11,8 +11,8 @@ import numpy as np
 
 from benchmarks import timing
 from dalembert import HarmonicBalance, frequency_response
-from dalembert.vibration.balance.equations import equations
 from dalembert.threads import one_thread
+from dalembert.vibration.balance.equations import equations
 
 STUDY = Path(__file__).parents[1] / "studies" / "patched-plate" / "plate.py"
 PRELOAD, POINTS, ENDS = 75.0, 700, (394.0, 407.0)

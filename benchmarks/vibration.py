@@ -16,8 +16,8 @@ from dalembert import (
     frequency_response,
 )
 from dalembert.structure import Dofs, Structure, lumped
-from dalembert.vibration.balance.equations import equations
 from dalembert.threads import one_thread
+from dalembert.vibration.balance.equations import equations
 
 HARMONICS, SAMPLES, STEP, REPEATS = 7, 1024, 0.03, 1
 CASES = {

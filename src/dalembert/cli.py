@@ -147,6 +147,7 @@ def check(
     from dalembert.study import load, plan
     from dalembert.study.channels import channel_lines
     from dalembert.study.duration import within
+    from dalembert.study.model_findings import model_lines
     from dalembert.study.runner import looked
     from dalembert.study.sources import source_lines
     from dalembert.study.spoken import spoken
@@ -155,7 +156,7 @@ def check(
     read = load(study)
     with placed(study.name), placed(study.name, ModelError):
         typer.echo(f"{study}: valid; it {plan(read)}")
-        for line in (*source_lines(read), *channel_lines(read)):
+        for line in (*model_lines(read), *source_lines(read), *channel_lines(read)):
             typer.echo(line)
         try:
             for sentence in within(limit, lambda: looked(read, limit)):

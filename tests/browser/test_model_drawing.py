@@ -99,6 +99,18 @@ def test_a_part_selects_its_table_and_a_table_its_part(visit):
     wait_until(page, f"{CURSOR} === '[data]'")
 
 
+def test_what_the_import_of_a_robot_left_out_stands_above_the_text(root, visit):
+    folder = root / "studies" / "arm"
+    text = (begin("robot", folder).parent / "robot.urdf").read_text()
+    (folder / "robot.urdf").write_text(text.replace('type="revolute"', 'type="floating"', 1))
+    (folder / "arm.toml").write_text(
+        '[model]\nspace = true\nrobot = { file = "robot.urdf" }\n[solver]\nstep = "1 ms"\n[simulate]\nend = 0.1\n'
+    )
+    page = visit("arm")
+    item = page.get_by_role("listitem").filter(has_text="is floating, which is not supported")
+    item.locator("[aria-label=warning]").wait_for(timeout=60_000)
+
+
 def test_a_mistake_is_marked_in_the_text_and_in_the_drawing(visit):
     page = visit("identify")
     write(page, "b =", 'b = "rod.strat"')

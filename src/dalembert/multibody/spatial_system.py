@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from dalembert.findings import Finding
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.spatial.body import Body
 from dalembert.multibody.components.spatial.joint import Joint
@@ -53,6 +54,12 @@ class SpatialSystem(Mechanism):
         self.ground = Ground()
         self.ground_shapes: tuple[Shape, ...] = ()
         """What the ground looks like, in the fixed axes: the base of a robot."""
+        self.import_findings: tuple[Finding, ...] = ()
+        """What the import of a robot file left out."""
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        return (*self.import_findings, *super().findings)
 
     @property
     def ground_surface(self) -> Surface | None:

@@ -25,7 +25,7 @@ class RobotTable(StudyTable):
 
     file: DataFile = Field(description="'robot.urdf', or an MJCF file 'robot.xml'; relative to the study file")
     impossible: Literal["refuse", "replace"] = Field(
-        "refuse", description="what becomes of an inertia in a URDF file that no body can have"
+        "refuse", description="what becomes of an inertia in the file that no body can have"
     )
     numbers: Numbers = Field({}, description="numbers in place of those of the file: 'forearm.mass' = 'payload'")
     positions: Numbers = Field({}, description="of joints at the start; 0 where not given")
@@ -78,4 +78,4 @@ def _read(path: Path, changed: int, impossible: str) -> "Tree":
     """The robot of a file; read again when the file changes."""
     from dalembert.multibody.trees import read_mjcf, read_urdf
 
-    return read_urdf(path, impossible) if path.suffix.lower() == URDF else read_mjcf(path)
+    return (read_urdf if path.suffix.lower() == URDF else read_mjcf)(path, impossible)

@@ -12,7 +12,7 @@ from time import monotonic, perf_counter
 from dalembert import __version__
 from dalembert.errors import DalembertError, InputError, SolveError, StorageError, not_begun, users_place
 from dalembert.files import write_text
-from dalembert.findings import Finding, stored_findings
+from dalembert.findings import stored_findings
 from dalembert.forward import Checkpoint, Executor, connected
 from dalembert.forward.cluster import worker_versions
 from dalembert.kernels.preparation import observed
@@ -21,6 +21,7 @@ from dalembert.study.duration import StartFailed, duration, timed, too_long
 from dalembert.study.events import LOST, Event, EventLog, plain
 from dalembert.study.folder import DAMAGED, FAILED, FINISHED, INPUT, INTERRUPTED, RUNNING, RunFolder, new_folder
 from dalembert.study.functions import users_code
+from dalembert.study.model_findings import model_findings
 from dalembert.study.spoken import spoken
 from dalembert.study.study import Study
 from dalembert.study.tasks import TASKS, Outcome
@@ -151,7 +152,7 @@ def _executed(
                         folder.add_computed_with(this_process(workers))
                     placed = replace(study, checkpoint=checkpoint, executor=client)
                     outcome = TASKS[study.task].run(placed, log.emit)
-                outcome = replace(outcome, of_run=of_run(folder))
+                outcome = _with_findings(outcome, folder)
                 outcome.save(folder.result)
                 outcome.report(folder.report)
         except BaseException as error:
@@ -250,13 +251,15 @@ def report_run(folder: RunFolder) -> Path:
     for name, digest in (state.get("digests") or {}).items():
         folder.check(folder.path / name, digest)
     with users_code(), one_thread():
-        replace(TASKS[study.task].load(study, folder.result), of_run=of_run(folder)).report(folder.report)
+        _with_findings(TASKS[study.task].load(study, folder.result), folder).report(folder.report)
     return folder.report
 
 
-def of_run(folder: RunFolder) -> tuple[Finding, ...]:
-    """Return the findings about a run that do not depend on its result."""
-    return tuple(mixed_versions(folder.computed_with()))
+def _with_findings(outcome: Outcome, folder: RunFolder) -> Outcome:
+    """An outcome with the findings about its run and its model that its result has not."""
+    known = outcome.findings
+    of_run = (*mixed_versions(folder.computed_with()), *model_findings(outcome.study))
+    return replace(outcome, of_run=tuple(finding for finding in of_run if finding not in known))
 
 
 def _ending(error: BaseException) -> tuple[str, str]:

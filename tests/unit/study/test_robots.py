@@ -5,12 +5,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from typer.testing import CliRunner
 
+from dalembert.cli import app
 from dalembert.errors import InputError, ModelError
 from dalembert.inverse.inertial import TorquePrediction
 from dalembert.multibody import RungeKutta4, simulate
 from dalembert.multibody.trees import inverse_dynamics, read_urdf
 from dalembert.report import figures, report
+from dalembert.studio.editor.reading import read
 from dalembert.study import load, plan, report_run, run_study
 from dalembert.study.template import begin
 from pages import read_page
@@ -126,6 +129,26 @@ def test_components_are_placed_at_the_joints_that_the_mechanism_has(tmp_path):
     ]
     same = spring.replace("JOINT", "upper joint").replace('"stop"', '"upper"')
     assert wrong(tmp_path, OF_FIXED + same) == ["[model]: 2 components are called 'upper'; expected different names"]
+
+
+def test_what_an_import_left_out_is_listed(tmp_path):
+    """In the check, the run, its report, and what the studio shows above the text."""
+    floating = FIXED.replace("flange", "root").replace('type="fixed"', 'type="floating"', 1)
+    (tmp_path / "arm.urdf").write_text(floating)
+    (tmp_path / "arm.toml").write_text(OF_FIXED)
+    sentence = (
+        "Robot 'arm': the import left out parts of the file on which the motion depends: line 6: joint 'root' is "
+        "floating, which is not supported; it is fixed at its zero position."
+    )
+    checked = CliRunner().invoke(app, ["check", str(tmp_path / "arm.toml")])
+    assert f"Warning: {sentence}" in checked.output
+    folder, outcome = run_study(load(tmp_path / "arm.toml"), tmp_path / "run")
+    findings = [finding for finding in outcome.findings if finding.code == "not-imported"]
+    assert [(finding.severity, finding.values["moves"]) for finding in findings] == [("warning", True)]
+    assert folder.state()["findings"][0]["code"] == "not-imported"
+    assert sentence in outcome.summary
+    assert sentence in read_page(folder.report).text
+    assert read(tmp_path / "arm.toml", OF_FIXED).findings == tuple(findings)
 
 
 REFUSED = (

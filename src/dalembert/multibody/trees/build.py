@@ -149,6 +149,7 @@ def built(
     motion, of = motions(tree, q, q_rates, base), groups(tree)
     root = motion[tree.root]
     system = SpatialSystem(gravity, start=start)
+    system.import_findings = tree.findings
     system.ground_shapes = tuple(_moved(of[tree.root].shapes, (root.position, root.axes)))
     moving = [link for link in tree.links if link.joint.moves]
     described = {link.joint.name: link.joint for link in moving}

@@ -12,16 +12,24 @@ import numpy as np
 from dalembert.errors import InputError, counted, require_known
 from dalembert.multibody.components.spatial.inertia import Inertia
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose
+from dalembert.multibody.trees.omissions import Omission
 from dalembert.multibody.trees.possible_inertia import REFUSE, TREATMENTS, possible
 from dalembert.multibody.trees.tree import FIXED, PRISMATIC, REVOLUTE, Link, Shape, Tree, TreeJoint
 
 _FREE, _BALL, _SLIDE, _HINGE = range(4)  # of mjtJoint
+_ALWAYS = 1  # of mjtInertiaFromGeom
+_MOVING = {
+    "nu": "actuator",
+    "ntendon": "tendon",
+    "neq": "equality constraint",
+    "nflex": "flexible body",
+    "nplugin": "plugin",
+}
 _OTHERS = {
-    "nu": "actuator", "ntendon": "tendon", "neq": "equality constraint", "nsensor": "sensor", "nflex": "flexible body",
-    "nplugin": "plugin", "ncam": "camera", "nlight": "light", "nsite": "site", "nkey": "key frame",
+    "nsensor": "sensor", "ncam": "camera", "nlight": "light", "nsite": "site", "nkey": "key frame",
     "npair": "contact pair", "nmat": "material", "ntex": "texture", "nskin": "skin",
 }  # fmt: skip
-"""Counts of a model that have no counterpart here."""
+"""Counts of a model that have no counterpart here: those that change the motion, and the others."""
 
 
 def read_mjcf(path: str | os.PathLike[str], impossible: str = REFUSE) -> Tree:
@@ -30,7 +38,7 @@ def read_mjcf(path: str | os.PathLike[str], impossible: str = REFUSE) -> Tree:
     Bodies with inertias are imported, hinges and slides with their axis, limits, damping, friction loss and armature,
     and boxes, cylinders and spheres. Positions are relative to the reference of a joint. The frame of a link is
     parallel to that of its body, with the origin at its joint. A body with several joints gets a link without mass for
-    each but the last. All else is listed in :attr:`Tree.unsupported`, such as free and ball joints, which are fixed,
+    each but the last. All else is listed in :attr:`Tree.omissions`, such as free and ball joints, which are fixed,
     springs of joints, contacts, actuators and sensors.
 
     Needs the extra ``mujoco``: ``pip install 'dalembert[mujoco]'``.
@@ -58,19 +66,49 @@ def read_mjcf(path: str | os.PathLike[str], impossible: str = REFUSE) -> Tree:
         raise InputError(
             "read_mjcf: MuJoCo is needed and not installed; run: pip install 'dalembert[mujoco]'"
         ) from None
+    notes: list[Omission] = []
     try:
-        model = mujoco.MjModel.from_xml_path(str(path))
+        parsed = mujoco.MjSpec.from_file(str(path))
+        _replace_impossible(parsed, path, impossible, notes)
+        return _Reader(parsed.compile(), mujoco.mjtDisableBit, path, impossible, notes).tree()
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: a name in the file is no UTF-8 ({error.reason}). Save the file as UTF-8") from None
     except ValueError as error:
         raise InputError(f"{path}: MuJoCo cannot read the file: {' '.join(str(error).split())}") from None
-    return _Reader(model, path, impossible).tree()
+
+
+def _replace_impossible(parsed: Any, path: Path, impossible: str, notes: list[Omission]) -> None:
+    """Refuse the impossible inertias of a parsed file, or replace them, before MuJoCo compiles and refuses them.
+
+    Those of shapes are possible. Where the file lets MuJoCo balance inertias, or compute all from shapes, it does.
+    """
+    if parsed.compiler.balanceinertia or parsed.compiler.inertiafromgeom == _ALWAYS:
+        return
+    for body in parsed.bodies:
+        if not body.explicitinertial:
+            continue
+        xx, yy, zz, xy, xz, yz = body.fullinertia
+        full = not np.isnan(xx)
+        tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) if full else np.diag(body.inertia)
+        noted = len(notes)
+        inertia = possible(float(body.mass), tensor, (0.0, 0.0, 0.0), _place(path, body.name), impossible, notes)
+        if inertia is None or len(notes) == noted:
+            continue
+        if full:
+            body.fullinertia = [*inertia.moments, *inertia.products]
+        else:
+            body.inertia = inertia.moments
+
+
+def _place(path: Path, body: str) -> str:
+    return f"{path.name}: body {body!r}"
 
 
 class _Reader:
     """Makes the tree of a compiled model."""
 
-    def __init__(self, model: Any, path: Path, impossible: str) -> None:
-        self.model, self.path, self.impossible = model, path, impossible
-        self.notes: list[str] = []
+    def __init__(self, model: Any, disable: Any, path: Path, impossible: str, notes: list[Omission]) -> None:
+        self.model, self.disable, self.path, self.impossible, self.notes = model, disable, path, impossible, notes
         self.names = [model.body(i).name or f"body {i}" for i in range(model.nbody)]
         self.origins = [np.zeros(3) for _ in self.names]
         """Origin of each link in the frame of its body."""
@@ -78,18 +116,27 @@ class _Reader:
     def tree(self) -> Tree:
         model = self.model
         links = [link for i in range(1, model.nbody) for link in self._links(i)]
-        for count, what in _OTHERS.items():
+        for count, what in (_MOVING | _OTHERS).items():
             if number := int(getattr(model, count, 0)):
-                self.notes.append(f"{counted(number, what)} not imported")
+                self._note(f"{counted(number, what)} not imported", moves=count in _MOVING)
         if np.any(model.geom_contype) or np.any(model.geom_conaffinity):
-            self.notes.append("contacts of shapes are not imported")
-        if not np.allclose(model.opt.gravity, [0.0, 0.0, -9.81]):
+            self._note("contacts of shapes are not imported")
+        if self._disabled("GRAVITY"):
+            self._note("the file switches gravity off, which is not imported; give gravity (0, 0, 0)", moves=True)
+        elif not np.allclose(model.opt.gravity, [0.0, 0.0, -9.81]):
             gravity = tuple(float(own) for own in model.opt.gravity)
-            self.notes.append(f"the gravity {gravity} is not imported; give it to Tree.system")
+            self._note(f"the gravity {gravity} is not imported; give it to Tree.system", moves=True)
         for name in ("density", "viscosity"):
             if getattr(model.opt, name):
-                self.notes.append(f"the {name} of the fluid, {getattr(model.opt, name):g}, is not imported")
+                self._note(f"the {name} of the fluid, {getattr(model.opt, name):g}, is not imported", moves=True)
         return Tree(self.path.stem, self.names[0], tuple(links), self._shapes(0), tuple(self.notes))
+
+    def _note(self, text: str, *, moves: bool = False) -> None:
+        self.notes.append(Omission(text, moves))
+
+    def _disabled(self, *flags: str) -> bool:
+        """Whether the file disables one of these parts of the physics."""
+        return any(self.model.opt.disableflags & int(getattr(self.disable, f"mjDSBL_{flag}")) for flag in flags)
 
     def _links(self, body: int) -> list[Link]:
         """The links of a body: one for each joint, or one that is fixed to its parent."""
@@ -98,11 +145,10 @@ class _Reader:
         joints = [k for k in range(first, first + number) if model.jnt_type[k] in (_SLIDE, _HINGE)]
         for k in set(range(first, first + number)) - set(joints):
             kind = "free" if model.jnt_type[k] == _FREE else "ball"
-            self.notes.append(
-                f"joint {self._joint_name(k)!r} of body {name!r} is {kind}, which is not supported; it is fixed"
-            )
+            text = f"joint {self._joint_name(k)!r} of body {name!r} is {kind}, which is not supported; it is fixed"
+            self._note(text, moves=True)
         if model.body_gravcomp[body]:
-            self.notes.append(f"the compensation of gravity of body {name!r} is not imported")
+            self._note(f"the compensation of gravity of body {name!r} is not imported", moves=True)
         parent = int(model.body_parentid[body])
         above, at = self.names[parent], self.origins[parent]
         axes = Orientation.by_quaternion(*map(float, model.body_quat[body]))
@@ -130,23 +176,23 @@ class _Reader:
         model, name = self.model, self._joint_name(k)
         dof, reference = int(model.jnt_dofadr[k]), float(model.qpos0[model.jnt_qposadr[k]])
         if reference:
-            self.notes.append(f"joint {name!r}: its reference {reference:g} is the position zero here")
-        if np.any(model.jnt_stiffness[k]):
-            self.notes.append(
-                f"joint {name!r}: its spring is not imported; add a TorsionSpring or a Spring to the system"
-            )
+            self._note(f"joint {name!r}: its reference {reference:g} is the position zero here")
+        if np.any(model.jnt_stiffness[k]) and not self._disabled("SPRING"):
+            text = f"joint {name!r}: its spring is not imported; add a TorsionSpring or a Spring to the system"
+            self._note(text, moves=True)
         lower, upper = map(float, model.jnt_range[k] - reference) if model.jnt_limited[k] else (-np.inf, np.inf)
-        damping, *higher = np.atleast_1d(model.dof_damping[dof])
+        damping, *higher = np.atleast_1d(model.dof_damping[dof]) * (not self._disabled("DAMPER"))
+        friction = model.dof_frictionloss[dof] * (not self._disabled("FRICTIONLOSS", "CONSTRAINT"))
         if np.any(higher):
-            self.notes.append(f"joint {name!r}: its nonlinear damping is not imported")
+            self._note(f"joint {name!r}: its nonlinear damping is not imported", moves=True)
         return TreeJoint(
             name, REVOLUTE if model.jnt_type[k] == _HINGE else PRISMATIC, pose, _row(model.jnt_axis[k]), lower, upper,
-            damping=float(damping), friction=float(model.dof_frictionloss[dof]),
+            damping=float(damping), friction=float(friction),
             armature=float(model.dof_armature[dof]),
         )  # fmt: skip
 
     def _inertia(self, body: int) -> Inertia | None:
-        model, place = self.model, f"{self.path.name}: body {self.names[body]!r}"
+        model, place = self.model, _place(self.path, self.names[body])
         axes = Orientation.by_quaternion(*map(float, model.body_iquat[body])).matrix
         tensor = axes @ np.diag(model.body_inertia[body]) @ axes.T
         centre = _row(model.body_ipos[body] - self.origins[body])
@@ -157,7 +203,7 @@ class _Reader:
         for k in range(int(model.body_geomadr[body]), int(model.body_geomadr[body] + model.body_geomnum[body])):
             solids = _solids(int(model.geom_type[k]), *map(float, model.geom_size[k]))
             if not solids:
-                self.notes.append(f"shape {model.geom(k).name or k!r} of body {self.names[body]!r} is not drawn")
+                self._note(f"shape {model.geom(k).name or k!r} of body {self.names[body]!r} is not drawn")
             turn = Orientation.by_quaternion(*map(float, model.geom_quat[k]))
             centre, axis = model.geom_pos[k] - self.origins[body], turn.matrix[:, 2]
             found += [Shape(kind, sizes, Pose(_row(centre + height * axis), turn)) for kind, sizes, height in solids]

@@ -5,6 +5,7 @@ import numpy as np
 from dalembert.errors import InputError, ModelError
 from dalembert.multibody.components.spatial.inertia import Inertia
 from dalembert.multibody.components.spatial.orientation import Vector
+from dalembert.multibody.trees.omissions import Omission
 
 REFUSE, REPLACE = TREATMENTS = "refuse", "replace"
 _RADIUS = 1e-3
@@ -16,7 +17,7 @@ _SHARE = 1e-6
 
 
 def possible(
-    mass: float, tensor: np.ndarray, centre: Vector, place: str, impossible: str, notes: list[str]
+    mass: float, tensor: np.ndarray, centre: Vector, place: str, impossible: str, notes: list[Omission]
 ) -> Inertia | None:
     """The inertia of a link, from a tensor about its centre of mass (3, 3); None without mass and inertia.
 
@@ -35,15 +36,13 @@ def possible(
         wrong = f"{place}: the mass is {mass:g} kg with an inertia tensor that is not zero"
         if impossible == REFUSE:
             raise ModelError(f"{wrong}; expected a positive mass. Correct it, or read with impossible='replace'")
-        notes.append(f"{wrong}; the link is imported without mass")
+        notes.append(Omission(f"{wrong}; the link is imported without mass", moves=True))
         return None
     second, axes = np.linalg.eigh(0.5 * np.trace(tensor) * np.eye(3) - tensor)
     thin = np.abs(second) < 0.5 * mass * _THIN**2
     if np.any(thin) and np.all(second[~thin] > 0.0):
-        notes.append(
-            f"{place}: {'a point mass' if np.all(thin) else 'a thin body'}, imported with a radius of gyration of "
-            f"{_THIN:g} m where it has none"
-        )
+        kind = "a point mass" if np.all(thin) else "a thin body"
+        notes.append(Omission(f"{place}: {kind}, imported with a radius of gyration of {_THIN:g} m where it has none"))
         return Inertia.of(mass, _tensor(axes, np.maximum(second, mass * _THIN**2)), centre)
     try:
         return Inertia.of(mass, tensor, centre)
@@ -52,7 +51,8 @@ def possible(
             raise ModelError(f"{place}: {error}, or read with impossible='replace'") from None
         replaced = _tensor(axes, np.maximum(second, max(_SHARE * second[2], 0.0) or mass * _RADIUS**2))
         change = np.abs(replaced - tensor).max()
-        notes.append(f"{place}: {error}. Replaced by the nearest possible one, which differs by {change:.3g} kg m^2")
+        instead = f"Replaced by the nearest possible one, which differs by {change:.3g} kg m^2"
+        notes.append(Omission(f"{place}: {error}. {instead}", moves=True))
         return Inertia.of(mass, replaced, centre)
 
 

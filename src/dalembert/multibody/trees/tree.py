@@ -12,11 +12,13 @@ import numpy as np
 
 from dalembert.arguments import Checked
 from dalembert.errors import InputError, ModelError, require_known, unknown
+from dalembert.findings import Finding
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.signals import Course
 from dalembert.multibody.components.spatial.inertia import Inertia
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose, Vector
 from dalembert.multibody.components.spatial.shapes import Shape
+from dalembert.multibody.trees.omissions import Omission, omission_findings
 
 if TYPE_CHECKING:
     from dalembert.multibody.spatial_system import SpatialSystem
@@ -112,8 +114,8 @@ class Tree(Checked):
         Each after its parent.
     shapes : tuple of Shape
         Of the base.
-    unsupported : tuple of str
-        Elements and attributes of an imported file that have no counterpart here.
+    omissions : tuple of Omission
+        What the import of a file left out, since it has no counterpart here.
     inertia : Inertia or None
         Of the base; it does not move, so the inertia changes no motion.
 
@@ -127,7 +129,7 @@ class Tree(Checked):
     root: str
     links: tuple[Link, ...]
     shapes: tuple[Shape, ...] = ()
-    unsupported: tuple[str, ...] = field(default=(), compare=False)
+    omissions: tuple[Omission, ...] = field(default=(), compare=False)
     inertia: Inertia | None = None
     changed: frozenset[str] = field(default=frozenset(), compare=False, repr=False)
 
@@ -159,6 +161,16 @@ class Tree(Checked):
                 circle = " -> ".join(map(repr, [*followed, joint.name]))
                 raise ModelError(f"joints follow each other in a circle (mimic): {circle}. Let one of them move freely")
             followed.append(joint.name)
+
+    @property
+    def unsupported(self) -> tuple[str, ...]:
+        """What the import of a file left out, as texts."""
+        return tuple(omission.text for omission in self.omissions)
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """Findings about what the import of a file left out; those of :meth:`system` have them too."""
+        return omission_findings(self.name, self.omissions)
 
     @property
     def joints(self) -> tuple[TreeJoint, ...]:

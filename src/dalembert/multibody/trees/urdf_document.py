@@ -11,6 +11,12 @@ from xml.parsers import expat
 import numpy as np
 
 from dalembert.errors import InputError, counted, require_known, shown
+from dalembert.multibody.trees.omissions import Omission
+
+MOVING = ("inertial", "mass", "inertia", "axis", "dynamics", "mimic")
+"""Elements of links and joints on which the motion depends."""
+STANDING = ("fixed", "floating", "planar")
+"""Joints that are imported as fixed ones, so that their other elements have no effect."""
 
 
 @dataclass(eq=False)
@@ -133,21 +139,23 @@ class Element:
         inner = [child.size for child in self.children]
         return 1 + sum(own[0] for own in inner), len(self.attributes) + sum(own[1] for own in inner)
 
-    def unread(self) -> Iterator[str]:
-        """A sentence for each element and each attribute that was not read."""
+    def unread(self, moves: bool = True) -> Iterator[Omission]:
+        """Each element and each attribute that was not read; ``moves``: whether they can change the motion."""
         if not self.known:
             elements, attributes = (
                 counted(own, what) for own, what in zip(self.size, ("element", "attribute"), strict=True)
             )
-            yield f"line {self.line}: {self.words} is not imported ({elements}, {attributes})"
+            text = f"line {self.line}: {self.words} is not imported ({elements}, {attributes})"
+            yield Omission(text, moves and self.tag in MOVING)
             return
         for name in self.attributes:
             if name not in self.used:
-                yield f"line {self.line}: attribute {name!r} of {self.words} is not imported"
+                text = f"line {self.line}: attribute {name!r} of {self.words} is not imported"
+                yield Omission(text, moves and self.tag in MOVING)
         if self.text.strip():
-            yield f"line {self.line}: the text {shown(self.text.strip())} in {self.words} is not imported"
+            yield Omission(f"line {self.line}: the text {shown(self.text.strip())} in {self.words} is not imported")
         for child in self.children:
-            yield from child.unread()
+            yield from child.unread(moves and self.attributes.get("type") not in STANDING)
 
 
 def parsed(path: Path, tag: str, what: str) -> Element:
@@ -183,6 +191,8 @@ def parsed(path: Path, tag: str, what: str) -> Element:
     except expat.ExpatError as error:
         reason = expat.errors.messages[error.code]
         raise InputError(f"{path}, line {error.lineno}: the file is no XML ({reason}). Expected {what}") from None
+    except (LookupError, ValueError) as error:  # an encoding that Python has not, or that expat cannot take
+        raise InputError(f"{path}: the file cannot be decoded ({error}). Save it as UTF-8") from None
     require_known("outermost element", whole[0].tag, [tag], str(path))
     whole[0].known = True
     return whole[0]

@@ -13,6 +13,7 @@ from dalembert.errors import InputError, ModelError, listed, repeated, require_k
 from dalembert.multibody.components.spatial.inertia import Inertia
 from dalembert.multibody.components.spatial.mesh_files import unread
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose
+from dalembert.multibody.trees.omissions import Omission
 from dalembert.multibody.trees.possible_inertia import REFUSE, TREATMENTS, possible
 from dalembert.multibody.trees.tree import FIXED, PRISMATIC, REVOLUTE, Link, Shape, Tree, TreeJoint
 from dalembert.multibody.trees.urdf_document import Element, parsed
@@ -35,7 +36,7 @@ def read_urdf(path: str | os.PathLike[str], impossible: str = REFUSE) -> Tree:
 
     Links with inertias and visual shapes are imported, and joints with their kind, pose, axis, limits, damping,
     friction and mimic. Meshes are drawn where their files are there (STL, OBJ, DAE and PLY, with the extra ``meshes``).
-    All other elements and attributes are listed in :attr:`Tree.unsupported`, such as collision shapes, materials,
+    All other elements and attributes are listed in :attr:`Tree.omissions`, such as collision shapes, materials,
     transmissions and sensors. The attribute ``armature`` of ``<dynamics>`` is an addition to URDF; :func:`write_urdf`
     writes it.
 
@@ -73,7 +74,7 @@ def read_urdf(path: str | os.PathLike[str], impossible: str = REFUSE) -> Tree:
     require_known("impossible", impossible, TREATMENTS, "read_urdf")
     path = Path(path)
     robot = parsed(path, "robot", "a URDF file; convert xacro files first")
-    notes: list[str] = []
+    notes: list[Omission] = []
     links = {own.required_word("name"): own for own in robot.all("link")}
     _refuse_repeated(path, robot, "link")
     joints = robot.all("joint")
@@ -162,7 +163,7 @@ def _pose(owner: Element) -> Pose:
     return Pose(origin.numbers("xyz", 3, zero), turn)  # type: ignore[arg-type]
 
 
-def _inertia(link: Element, impossible: str, notes: list[str]) -> Inertia | None:
+def _inertia(link: Element, impossible: str, notes: list[Omission]) -> Inertia | None:
     own = link.child("inertial")
     if own is None:
         return None
@@ -173,13 +174,13 @@ def _inertia(link: Element, impossible: str, notes: list[str]) -> Inertia | None
     return possible(mass, tensor, pose.position, own.place, impossible, notes)
 
 
-def _shapes(link: Element, path: Path, notes: list[str]) -> tuple[Shape, ...]:
+def _shapes(link: Element, path: Path, notes: list[Omission]) -> tuple[Shape, ...]:
     found = []
     for visual in link.all("visual"):
         geometry = visual.child("geometry")
         kinds = [own for own in (geometry.children if geometry else []) if own.tag in _SIZES]
         if not kinds:
-            notes.append(f"line {visual.line}: {visual.words} has no box, cylinder, sphere or mesh")
+            notes.append(Omission(f"line {visual.line}: {visual.words} has no box, cylinder, sphere or mesh"))
             continue
         own = kinds[0]
         own.known = True
@@ -188,9 +189,13 @@ def _shapes(link: Element, path: Path, notes: list[str]) -> tuple[Shape, ...]:
         if file:
             problem = "is not there, so it is not drawn" if mesh is None else unread(mesh)
             if problem:
-                notes.append(f"line {own.line}: the mesh {file!r} of {own.owner} {problem}")
+                notes.append(Omission(f"line {own.line}: the mesh {file!r} of {own.owner} {problem}"))
                 mesh = None
-        found.append(Shape(own.tag, _SIZES[own.tag](own), _pose(visual), file, str(mesh or "")))
+        sizes, pose = _SIZES[own.tag](own), _pose(visual)
+        if own.tag != "mesh" and min(sizes) <= 0.0:
+            notes.append(Omission(f"line {own.line}: the {own.tag} of {own.owner} has a size of zero; it is not drawn"))
+            continue
+        found.append(Shape(own.tag, sizes, pose, file, str(mesh or "")))
     return tuple(found)
 
 
@@ -202,17 +207,16 @@ def _mesh(file: str, path: Path) -> Path | None:
     return next((place for place in places if place.is_file()), None)
 
 
-def _link(own: Element, notes: list[str], inertia: Inertia | None, shapes: tuple[Shape, ...]) -> Link:
+def _link(own: Element, notes: list[Omission], inertia: Inertia | None, shapes: tuple[Shape, ...]) -> Link:
     return Link(_end(own, "child"), _end(own, "parent"), _joint(own, notes), inertia, shapes)
 
 
-def _joint(own: Element, notes: list[str]) -> TreeJoint:
+def _joint(own: Element, notes: list[Omission]) -> TreeJoint:
     name, kind = own.required_word("name"), own.required_word("type")
     require_known("type", kind, [*KINDS, *UNSUPPORTED], own.place)
     if kind in UNSUPPORTED:
-        notes.append(
-            f"line {own.line}: {own.owner} is {kind}, which is not supported; it is fixed at its zero position"
-        )
+        text = f"line {own.line}: {own.owner} is {kind}, which is not supported; it is fixed at its zero position"
+        notes.append(Omission(text, moves=True))
     if KINDS.get(kind, FIXED) == FIXED:
         return TreeJoint(name, FIXED, _pose(own))
     options: dict[str, Any] = {}

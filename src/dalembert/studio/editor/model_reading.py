@@ -57,10 +57,12 @@ def study_with_model(kept: Kept, study: Path, text: str, used: dict[str, Path] |
 def _read(kept: Kept, study: Path, text: str, used: dict[str, Path]) -> Reading:
     from dalembert.study import plan
     from dalembert.study.loader import StudyError
+    from dalembert.study.model_findings import model_findings
 
     try:
         found = study_with_model(kept, study, text, used)
-        return Reading(text, Outline.of(found, text), f"As the model of {study.name}, it {plan(found)}.")
+        does = f"As the model of {study.name}, it {plan(found)}."
+        return Reading(text, Outline.of(found, text), does, model_findings(found))
     except StudyError as error:
         return Reading(text, mistakes=tuple(_mistakes(error, study, text)))
     except DalembertError as error:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from dalembert.errors import DalembertError
+from dalembert.findings import Finding
 from dalembert.studio.editor.cursor import tolerant
 from dalembert.studio.editor.lines import Place, line_of
 from dalembert.studio.editor.model_kind import model_file
@@ -55,6 +56,8 @@ class Reading:
         None if there are mistakes.
     does : str
         What a run of the study does, as a sentence; empty if there are mistakes.
+    findings : tuple of Finding
+        About the model.
     mistakes : tuple of Mistake
     files : mapping of Path to Stamp
         The other files that the text names, also one with mistakes, as they were.
@@ -63,6 +66,7 @@ class Reading:
     text: str
     study: Outline | None = None
     does: str = ""
+    findings: tuple[Finding, ...] = ()
     mistakes: tuple[Mistake, ...] = ()
     files: Mapping[Path, Stamp] = field(default_factory=dict)
 
@@ -85,11 +89,12 @@ def _read(kept: Kept, path: Path, text: str, used: dict[str, Path]) -> Reading:
     """Read a text, and note the other files that it names."""
     from dalembert.study import plan
     from dalembert.study.loader import StudyError
+    from dalembert.study.model_findings import model_findings
 
     try:
         study = study_of(kept, path, text, used)
         does = f"It {plan(study)}."
-        return Reading(text, Outline.of(study, text), does)
+        return Reading(text, Outline.of(study, text), does, model_findings(study))
     except StudyError as error:
         found = ((place, sentence.replace(f"{path.parent}/", "")) for place, sentence in error.mistakes)
         return Reading(text, mistakes=tuple(mistake(text, *one) for one in found))

@@ -37,18 +37,21 @@ def findings_list(folder: RunFolder) -> None:
             counts[code] += len(offered)
 
 
-def _show(finding: dict, offered: list[tuple[int, Change]], run: str) -> None:
-    severity = str(finding.get("severity", "note"))
+def finding_row(severity: str, message: str, advice: str) -> ui.column:
+    """Show a finding in a row, and return the place below its text."""
     icon, colour = ICONS.get(severity, ICONS["note"])
     with ui.row().classes("w-full items-start gap-3 no-wrap border rounded p-3").props("role=listitem"):
         ui.icon(icon, color=colour, size="sm").props(f'role=img aria-label="{severity}"')
-        with ui.column().classes("gap-1 grow min-w-0"):
-            code_text(str(finding.get("message", ""))).classes("break-words")
-            code_text(str(finding.get("advice", ""))).classes("text-sm opacity-80 break-words")
-            with ui.row().classes("gap-2"):
-                for number, change in offered:
-                    asked = urlencode({"code": change.code, "number": number})
-                    go = partial(ui.navigate.to, f"/continue/{quote(run)}?{asked}")
-                    ui.button(change.label, on_click=go, icon="edit_note").props("outline dense no-caps").classes(
-                        "px-2"
-                    )
+        with ui.column().classes("gap-1 grow min-w-0") as column:
+            code_text(message).classes("break-words")
+            code_text(advice).classes("text-sm opacity-80 break-words")
+    return column
+
+
+def _show(finding: dict, offered: list[tuple[int, Change]], run: str) -> None:
+    texts = (str(finding.get(key, "")) for key in ("message", "advice"))
+    with finding_row(str(finding.get("severity", "note")), *texts), ui.row().classes("gap-2"):
+        for number, change in offered:
+            asked = urlencode({"code": change.code, "number": number})
+            go = partial(ui.navigate.to, f"/continue/{quote(run)}?{asked}")
+            ui.button(change.label, on_click=go, icon="edit_note").props("outline dense no-caps").classes("px-2")

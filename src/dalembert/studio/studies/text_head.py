@@ -10,6 +10,7 @@ from dalembert.studio.editor.draft import Draft
 from dalembert.studio.editor.text_editor import TextEditor
 from dalembert.studio.frame import button, complaints, icon_button
 from dalembert.studio.latest import Latest
+from dalembert.studio.runs.findings_list import finding_row
 
 CHECKING = "Checking …"
 SLOW = 1.0
@@ -35,6 +36,7 @@ def text_head(draft: Draft, editor: TextEditor, first: Callable[[], object], cop
         verdict = ui.label(CHECKING).props("role=status aria-live=polite")
     disk_notice(draft, copied)  # after the buttons, which come first by keyboard
     does = ui.label("").classes("break-words")
+    doubts = ui.column().classes("gap-1 w-full").props("role=list aria-label=Findings")
     wrong = ui.column().classes("gap-1 w-full")
     editor.element.map_key("Mod-s", complaints("save")(lambda: save_text(draft)))
 
@@ -47,6 +49,11 @@ def text_head(draft: Draft, editor: TextEditor, first: Callable[[], object], cop
         count = len(draft.mistakes)
         verdict.set_text(f"{count} error{'s' if count > 1 else ''}:" if count else "Valid.")
         does.set_text(draft.reading.does)
+        doubts.clear()
+        doubts.set_visibility(bool(draft.reading.findings))
+        with doubts:
+            for finding in draft.reading.findings:
+                finding_row(finding.severity, finding.message, finding.advice)
         wrong.clear()
         with wrong:
             for mistake in draft.mistakes:

@@ -5,7 +5,7 @@ import sys
 import numpy as np
 import pytest
 
-from dalembert.errors import InputError
+from dalembert.errors import InputError, ModelError
 from dalembert.multibody import GeneralizedAlpha, simulate
 from dalembert.multibody.trees import read_mjcf
 from support import says
@@ -92,3 +92,91 @@ def test_a_capsule_is_drawn_as_a_cylinder_between_spheres(tmp_path):
     np.testing.assert_allclose(places[0], [0.1, 0.0, -0.2], atol=1e-12)
     np.testing.assert_allclose(np.sort(places[1:, 2]), [-0.4, 0.0], atol=1e-12)
     assert "shape 1 of body 'arm' is not drawn" in tree.unsupported
+
+
+LEFT_OUT = """<mujoco><option><flag gravity="disable"/></option>
+<worldbody>
+  <body name="arm"><joint name="turn" axis="0 1 0" stiffness="2"/>
+    <geom name="rod" type="capsule" fromto="0 0 0 0 0 -0.4" size="0.02" contype="0" conaffinity="0"/></body>
+  <body name="ball"><freejoint name="root"/><geom name="egg" type="ellipsoid" size="0.1 0.2 0.3" contype="0" conaffinity="0"/></body>
+  <camera name="eye"/>
+</worldbody>
+<actuator><position joint="turn" kp="10"/></actuator>
+<equality><joint joint1="turn"/></equality>
+</mujoco>"""
+
+
+def test_what_is_left_out_is_listed_with_whether_the_motion_depends_on_it(tmp_path):
+    pytest.importorskip("mujoco")
+    path = tmp_path / "arm.xml"
+    path.write_text(LEFT_OUT)
+    tree = read_mjcf(path)
+    assert {omission.text: omission.moves for omission in tree.omissions} == {
+        "joint 'turn': its spring is not imported; add a TorsionSpring or a Spring to the system": True,
+        "joint 'root' of body 'ball' is free, which is not supported; it is fixed": True,
+        "shape 'egg' of body 'ball' is not drawn": False,
+        "1 actuator not imported": True,
+        "1 equality constraint not imported": True,
+        "1 camera not imported": False,
+        "the file switches gravity off, which is not imported; give gravity (0, 0, 0)": True,
+    }
+    findings = [(finding.code, finding.severity, finding.values) for finding in tree.findings]
+    assert findings == [
+        ("not-imported", "warning", {"robot": "arm", "parts": 5, "moves": True}),
+        ("not-imported", "note", {"robot": "arm", "parts": 2, "moves": False}),
+    ]
+    assert tree.system().findings == tree.findings
+    assert simulate(tree.system(), 0.01).findings[:2] == tree.findings
+
+
+@pytest.mark.parametrize(
+    ("flag", "numbers"), [("damper", [0.0, 0.3]), ("frictionloss", [0.7, 0.0]), ("constraint", [0.7, 0.0])]
+)
+def test_flags_switch_damping_and_friction_off(tmp_path, flag, numbers):
+    pytest.importorskip("mujoco")
+    path = tmp_path / "arm.xml"
+    joint = '<joint name="turn" axis="0 1 0" damping="0.7" frictionloss="0.3"/><geom size="0.1"/>'
+    path.write_text(
+        f'<mujoco><option><flag {flag}="disable"/></option><worldbody><body>{joint}</body></worldbody></mujoco>'
+    )
+    (link,) = read_mjcf(path).links
+    assert [link.joint.damping, link.joint.friction] == numbers
+
+
+IMPOSSIBLE = {
+    "diagonal": ('diaginertia="0.001 0.001 0.01"', [0.005, 0.005, 0.01]),
+    "full": ('fullinertia="0.001 0.001 0.01 0 0 0"', [0.005, 0.005, 0.01]),
+    "negative": ('fullinertia="0.004 -0.001 0.006 0 0 0"', [0.006, 0.0, 0.006]),
+}
+
+
+@pytest.mark.parametrize("kind", IMPOSSIBLE)
+def test_impossible_inertias_are_refused_or_replaced(tmp_path, kind):
+    """The nearest possible one has the second moments of the file, the negative ones raised to zero.
+
+    The second moments tr(J)/2 - J of the first two are 0.005, 0.005 and -0.004; of the last 0.0005, 0.0055 and -0.0015.
+    """
+    pytest.importorskip("mujoco")
+    inertia, moments = IMPOSSIBLE[kind]
+    path = tmp_path / "arm.xml"
+    inertial = f'<inertial pos="0 0 -0.2" mass="1" {inertia}/>'
+    path.write_text(f'<mujoco><worldbody><body name="arm"><joint axis="0 1 0"/>{inertial}</body></worldbody></mujoco>')
+    with pytest.raises(ModelError, match=r"^arm\.xml: body 'arm': Inertia: .*read with impossible='replace'$"):
+        read_mjcf(path)
+    tree = read_mjcf(path, impossible="replace")
+    (link,) = tree.links
+    second = np.sort(np.trace(np.diag(moments)) / 2 - np.array(moments))
+    second = second if kind != "negative" else np.array([0.0, 0.0005, 0.0055])
+    found = np.sort(np.trace(link.inertia.tensor) / 2 - np.linalg.eigvalsh(link.inertia.tensor))
+    np.testing.assert_allclose(found, second, atol=1e-7)
+    (omission,) = tree.omissions
+    assert omission.moves
+    assert "Replaced by the nearest possible one" in omission.text
+
+
+def test_names_that_are_no_utf8_are_refused(tmp_path):
+    pytest.importorskip("mujoco")
+    path = tmp_path / "arm.xml"
+    path.write_bytes(b'<mujoco><worldbody><body name="\xe4"><joint/><geom size="0.1"/></body></worldbody></mujoco>')
+    with pytest.raises(InputError, match="a name in the file is no UTF-8"):
+        read_mjcf(path)

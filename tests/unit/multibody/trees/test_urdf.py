@@ -182,6 +182,37 @@ def test_floating_joints_are_fixed_and_listed(file):
     assert sentence in tree.unsupported
 
 
+def test_the_omissions_on_which_the_motion_depends_are_marked(file):
+    dynamics = '<dynamics damping="0.5" stiffness="3"/><dynamics friction="1"/>'
+    text = ARM.replace("</robot>", '<gazebo reference="tool"/></robot>')
+    text = text.replace('<joint name="turn" type="continuous">', f'<joint name="turn" type="continuous">{dynamics}')
+    moving = [omission.text.partition(": ")[2] for omission in read_urdf(file(text)).omissions if omission.moves]
+    assert moving[:2] == [
+        "attribute 'stiffness' of <dynamics> of joint 'turn' is not imported",
+        "<dynamics> of joint 'turn' is not imported (1 element, 1 attribute)",
+    ]
+    assert len(moving) <= 3  # ARM has <dynamics> too, which is then the third one
+
+
+@pytest.mark.parametrize("shape", ['box size="0.1 0 0.2"', 'sphere radius="0"', 'cylinder radius="0" length="0.2"'])
+def test_shapes_of_size_zero_are_left_out(file, shape):
+    body = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+    link = f'<link name="arm">{body}<visual><geometry><{shape}/></geometry></visual></link>'
+    joint = '<joint name="pin" type="continuous"><parent link="base"/><child link="arm"/></joint>'
+    tree = read_urdf(file(f'<robot name="r"><link name="base"/>{link}{joint}</robot>'))
+    kind = shape.partition(" ")[0]
+    assert tree.unsupported == (f"line 1: the {kind} of link 'arm' has a size of zero; it is not drawn",)
+    assert tree.link("arm").shapes == ()
+
+
+@pytest.mark.parametrize("encoding", ["foo", "utf-32", "shift_jis"])
+def test_encodings_that_cannot_be_decoded_are_refused(tmp_path, encoding):
+    path = tmp_path / "arm.urdf"
+    path.write_text(f'<?xml version="1.0" encoding="{encoding}"?><robot name="r"><link name="a"/></robot>')
+    with pytest.raises(InputError, match=r"the file cannot be decoded \(.*\)\. Save it as UTF-8$"):
+        read_urdf(path)
+
+
 REFUSED = {
     "wrong number": (
         'mass value="4"',

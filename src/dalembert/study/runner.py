@@ -25,6 +25,7 @@ from dalembert.study.model_findings import model_findings
 from dalembert.study.spoken import spoken
 from dalembert.study.study import Study
 from dalembert.study.tasks import TASKS, Outcome
+from dalembert.study.time_scales import time_scale_findings
 from dalembert.study.validation import plan
 from dalembert.threads import one_thread
 from dalembert.versions import versions
@@ -207,6 +208,7 @@ def looked(study: Study, limit: float = inf) -> Iterator[str]:
     """
     task, began = TASKS[study.task], monotonic()
     with users_code(), one_thread():
+        yield from (f"Warning: {finding}" for finding in time_scale_findings(study))
         effort = task.effort(study)
         try:
             timing = timed(effort)

@@ -6,8 +6,9 @@ import pytest
 from dalembert.errors import DataError, InputError
 from dalembert.study.loader import load
 from dalembert.study.posing import posed
-from dalembert.study.runner import plan
+from dalembert.study.runner import looked, plan
 from dalembert.study.sources import source_lines
+from dalembert.study.time_scales import time_scale_findings
 
 STUDY = """
 [parameters]
@@ -127,3 +128,17 @@ def test_a_reading_with_a_gain_may_have_any_unit(study):
 def test_a_gram_of_acceleration_is_the_one_of_gravity(study):
     _, data = posed(study(channel="bar.end.ax", angle="a (g)"))
     assert data.values[-1, 0] == pytest.approx(30 * 9.80665)
+
+
+def test_milliseconds_read_as_seconds_are_named_before_a_fit(study, tmp_path):
+    case = study(torque="torque")
+    times = np.arange(101) * 10.0
+    rows = [f"{t:.1f};{-90 + 20 * np.cos(5e-3 * t):.4f};0.01" for t in times]
+    (tmp_path / "run.csv").write_text("\n".join(["t (s);angle (deg);torque", *rows]) + "\n")
+    (finding,) = time_scale_findings(case)
+    assert (finding.code, finding.values["step"]) == ("suspect-time-unit", 10.0)
+    assert next(looked(case)) == f"Warning: {finding}"
+    (tmp_path / "run.csv").write_text("\n".join(["t (ms);angle (deg);torque", *rows]) + "\n")
+    text = (tmp_path / "study.toml").read_text().replace('"t (s)"', '"t (ms)"')
+    (tmp_path / "study.toml").write_text(text)
+    assert list(time_scale_findings(load(tmp_path / "study.toml"))) == []

@@ -67,6 +67,16 @@ def decimated(data: Recorded, factor: int, cutoff: float | None) -> Recorded:
     return replace(slow, coordinate=replace(slow.coordinate, values=along[rows]), values=values, sampled=sampled)
 
 
+def is_even(data: Record) -> bool:
+    """Return whether the samples of each channel are evenly spaced between gaps, as filters need them."""
+    try:
+        for there in data.present.T:
+            _spacing(data.coordinate.values[there])
+    except DataError:
+        return False
+    return True
+
+
 def _times(data: Record) -> np.ndarray:
     along = data.coordinate
     if along.unit != "s":

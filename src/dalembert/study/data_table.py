@@ -174,7 +174,11 @@ class ChannelFile(FileTable):
         with errors_with_file(self.file):
             if self.decimate is not None:
                 return data.decimated(self.decimate, self.lowpass)
-            return data if self.lowpass is None else data.filtered(self.lowpass)
+            return data if self.lowpass is None or self._filters_later(data) else data.filtered(self.lowpass)
+
+    def _filters_later(self, data: "Measurements") -> bool:
+        """Whether the low-pass filter follows other steps."""
+        return False
 
 
 class DataTable(ChannelFile):
@@ -264,7 +268,17 @@ class DataTable(ChannelFile):
                 data = data.between(*self.between)
             if self.every is not None:
                 data = data.every(self.every)
-            return data if self.resample is None else data.resampled(self.resample, gap=self.gap)
+            if self.resample is None:
+                return data
+            later = self.lowpass is not None and self._filters_later(data)
+            data = data.resampled(self.resample, gap=self.gap)
+            return data.filtered(self.lowpass) if later and self.lowpass is not None else data
+
+    def _filters_later(self, data: "Measurements") -> bool:
+        """Whether samples at uneven times are resampled before they are filtered."""
+        from dalembert.data.filtering import is_even
+
+        return self.resample is not None and not self.more and not is_even(data)
 
     @property
     def begins(self) -> float | str | None:

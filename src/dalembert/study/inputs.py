@@ -11,7 +11,7 @@ from dalembert.data.stretches import gaps
 from dalembert.errors import DataError, unknown
 from dalembert.study.data_table import Column, DataFile, DataTable, FileTable, Start, StartTable
 from dalembert.study.expressions import Expression
-from dalembert.study.numbers import fixed, number
+from dalembert.study.numbers import Times, fixed, number
 from dalembert.study.table import Read, StudyTable, problem, told_apart
 from dalembert.units import wrong_kind
 
@@ -48,6 +48,9 @@ class InputTable(FileTable):
     integrals: Literal[0, 1, 2] = Field(0, description="2 makes the motion of a base of its acceleration")
     lowpass: Annotated[float, Read(fixed("Hz"))] | None = Field(
         None, description="cutoff frequency of a low-pass filter without delay: '40 Hz'"
+    )
+    resample: Times | None = Field(
+        None, description="times at which splines through the samples are taken, before the filter if theirs are uneven"
     )
     missing: Literal["refuse", "leave-out"] = Field("refuse", description="what becomes of values that are not there")
     wraps: bool = Field(False, description="whether it is an angle known up to whole turns")
@@ -94,11 +97,12 @@ class InputTable(FileTable):
             if key not in _OF_TIMES
         }
         own |= {"columns": {_CHANNEL: self.column}, "units": units, "lowpass": self.lowpass}
+        own |= {"resample": self.resample}
         own |= {"missing": self.missing, "wraps": [_CHANNEL] * self.wraps}
         data = table.model_copy(update=own).read()
         values = data.continuous[:, data.channels.index(_CHANNEL)]
         there = np.isfinite(values)
-        self._refuse_gaps(name, data.coordinate.values, str(table.file))
+        self._refuse_gaps(name, data.coordinate.values[there], str(table.file))
         unit = data.units.get(_CHANNEL, "")
         return MeasuredInput(name, self, data.coordinate.values[there], values[there], str(table.file), unit)
 

@@ -297,3 +297,17 @@ def test_a_text_file_with_semicolons_and_decimal_commas(study, tmp_path):
     sentence = "study.toml: [data], decimal: ';' was given; expected 'auto', '.' or ','"
     with pytest.raises(InputError, match=says(sentence)):
         study(columns + 'decimal = ";"', file="run.csv")
+
+
+def test_data_at_uneven_times_are_resampled_before_they_are_filtered(study, tmp_path):
+    times = np.linspace(0, 2, 401) + 4e-4 * np.random.default_rng(1).uniform(-1, 1, 401)
+    times[0], times[-1] = 0.0, 2.0
+    rows = [f"{t!r},{float(np.sin(3 * t))!r}" for t in times.tolist()]
+    (tmp_path / "uneven.csv").write_text("\n".join(["t,x", *rows]))
+    table = 'columns = { "crank.angle" = "x" }\nlowpass = "20 Hz"\n'
+    with pytest.raises(DataError, match="not evenly spaced"):
+        study(table, file="uneven.csv").data()
+    data = study(table + 'resample = { end = 2.0, every = "5 ms" }\n', file="uneven.csv").data()
+    raw = read(tmp_path / "uneven.csv", columns={"crank.angle": "x"})
+    expected_values = raw.resampled(np.linspace(0, 2, 401)).filtered(20.0).values
+    np.testing.assert_array_equal(data.values, expected_values)

@@ -380,3 +380,18 @@ def test_an_input_that_cannot_drive_the_motion_is_refused(folder, text, kind, se
         plan(study(folder, text))
     assert sentence in str(error.value)
     assert isinstance(error.value, DalembertError)
+
+
+def test_an_input_at_uneven_times_is_resampled_and_filtered(folder):
+    times = np.arange(1001) * 1e-3 + 3e-4 * np.random.default_rng(3).uniform(-1, 1, 1001)
+    times[[0, -1]] = 0.0, 1.0
+    values = np.sin(5 * times) + 0.2 * np.sin(2 * np.pi * 100 * times)
+    rows = [f"{t!r},{v!r}" for t, v in zip(times.tolist(), values.tolist(), strict=True)]
+    (folder / "drive.csv").write_text("\n".join(["t,amps", *rows]))
+    table = '[inputs.current]\nfile = "drive.csv"\ncolumn = "amps"\nscale = "constant"\nlowpass = "20 Hz"\n'
+    with pytest.raises(DataError, match="the samples are not evenly spaced"):
+        study(folder, MODEL + table + DATA).inputs  # noqa: B018
+    (one,) = study(folder, MODEL + table + 'resample = { end = 1.0, every = "1 ms" }\n' + DATA).inputs.values()
+    np.testing.assert_allclose(one.times, np.arange(1001) * 1e-3, atol=1e-12)
+    inside = slice(100, -100)
+    np.testing.assert_allclose(one.values[inside], np.sin(5 * one.times)[inside], atol=1e-3)

@@ -8,13 +8,14 @@ from scipy.integrate import solve_ivp
 from typer.testing import CliRunner
 
 from dalembert.cli import app
-from dalembert.errors import InputError, ModelError
+from dalembert.errors import DataError, InputError, ModelError
 from dalembert.inverse.inertial import TorquePrediction
 from dalembert.multibody import RungeKutta4, simulate
 from dalembert.multibody.trees import inverse_dynamics, read_urdf
 from dalembert.report import figures, report
 from dalembert.studio.editor.reading import read
 from dalembert.study import load, plan, report_run, run_study
+from dalembert.study.tasks.identify_inertias import _records as records
 from dalembert.study.template import begin
 from pages import read_page
 
@@ -328,3 +329,49 @@ def test_a_filter_that_does_not_fit_is_refused_before_a_run(folder):
         InputError, match=r"^\[data\]: lowpass: the cutoff frequency is 30 Hz and the sampling rate 50 Hz"
     ):
         plan(load(path))
+
+
+def inertias(folder, *changes):
+    text = (folder / "arm.toml").read_text()
+    for before, after in changes:
+        assert before in text
+        text = text.replace(before, after, 1)
+    (folder / "changed.toml").write_text(text)
+    return load(folder / "changed.toml")
+
+
+DATA_FILE = 'file = "motion.csv"'
+
+
+def test_an_unseen_motion_is_read_whole(folder):
+    """The range and the start of the data are those of one record."""
+    whole = records(inertias(folder))
+    part = records(inertias(folder, (DATA_FILE, f"{DATA_FILE}\nbetween = [1.0, 3.0]\nstart = 0.5")))
+    even = '{ start = 0.0, end = 2.0, every = "20 ms" }'
+    splined = records(inertias(folder, (DATA_FILE, f"{DATA_FILE}\nresample = {even}")))
+    assert len(part[0][0]) < len(whole[0][0])
+    np.testing.assert_array_equal(part[1][2], whole[1][2])
+    assert len(splined[1][0]) >= len(whole[1][0]) - 1
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (
+            (DATA_FILE, f'{DATA_FILE}\nunits = {{ tau1 = "mm" }}'),
+            "torque': the unit 'mm' was given; expected that of a torque",
+        ),
+        (
+            ('cutoff = "12.5 Hz"', 'cutoff = "12.5 Hz"\ndeviations = "1 s"'),
+            "deviations, shoulder: '1 s' was given; expected a torque",
+        ),
+        (
+            (DATA_FILE, f'{DATA_FILE}\nmore = [{{ file = "other.csv", columns = {{ x = "q1" }} }}]'),
+            "unseen: the data have further files",
+        ),
+    ],
+)
+def test_torques_and_deviations_have_units_of_torques(change, sentence, folder):
+    with pytest.raises((InputError, DataError)) as caught:
+        records(inertias(folder, change))
+    assert sentence in str(caught.value)

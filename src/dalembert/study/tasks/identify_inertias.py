@@ -6,17 +6,19 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 from pydantic import Field
 
-from dalembert.errors import unknown
+from dalembert.data.record import FIRST
+from dalembert.errors import DataError, unknown
 from dalembert.study.builder import named_values, resolved, tree_of
 from dalembert.study.data_table import DataFile, DataTable
 from dalembert.study.duration import Effort, whole
 from dalembert.study.events import Emit
-from dalembert.study.numbers import Number, fixed
+from dalembert.study.numbers import Number, fixed, wrong_units
 from dalembert.study.robot_table import RobotTable
 from dalembert.study.study import Study
 from dalembert.study.table import Read, StudyTable, placed
 from dalembert.study.tasks.task import Outcome, ResultTask
 from dalembert.study.tasks.wrong import needs_data, needs_robot
+from dalembert.units import wrong_kind
 
 if TYPE_CHECKING:
     from dalembert.inverse.inertial import TorquePrediction
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
 
 Hertz = Annotated[float, Read(fixed("Hz"))]
 IDENTIFIED = "identified.urdf"
+UNITS = {"angle": "rad", "torque": "N*m", "displacement": "m", "force": "N"}
 
 
 class IdentifyInertiasTable(StudyTable):
@@ -70,11 +73,19 @@ class IdentifyInertias(ResultTask):
         given = file.data.channels
         wrong = [f"[data], columns: no column is given for {name!r}" for name in expected if name not in given]
         wrong += [unknown("channel", name, expected, "[data], columns") for name in given if name not in expected]
+        if file.identify_inertias.unseen is not None and file.data.more:
+            wrong.append(
+                "[identify_inertias], unseen: the data have further files (more), and the unseen motion is one file; "
+                "write all columns of each motion into one file"
+            )
         own = file.identify_inertias.deviations
         if isinstance(own, dict):
             joints, where = [joint.name for joint in tree.moving], "[identify_inertias], deviations"
             wrong += [unknown("joint", name, joints, where) for name in own if name not in joints]
             wrong += [f"{where}: none is given for joint {name!r}" for name in joints if name not in own]
+        elif own is not None:
+            own = dict.fromkeys(file.model.robot_table.drive_units, own)
+        wrong += wrong_units(own or {}, file.model.robot_table.drive_units, "[identify_inertias], deviations")
         return wrong
 
     def plan(self, study: Study) -> str:
@@ -162,6 +173,10 @@ def _record(study: Study, table: DataTable, where: str) -> tuple[np.ndarray, np.
 
     data, cutoff = table.read(), study.table.cutoff
     times, pairs = data.coordinate.values, channels_of(prior_of(study))
+    for channel, unit in data.units.items():
+        kind = UNITS.get(channel.rpartition(".")[2], "")
+        if kind and (sentence := wrong_kind(unit, kind)):
+            raise DataError(f"{where}, columns, {channel!r}: {sentence}; choose another column, or correct its unit")
     positions, torques = (data.values[:, [data.channels.index(pair[k]) for pair in pairs]] for k in (0, 1))
     with placed(where):
         motion = filtered_motion(times, positions, torques, cutoff, decimation=1)
@@ -178,9 +193,20 @@ def _records(study: Study) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
     assert data is not None  # or the study was refused
     found = [_record(study, data, "[data]")]
     if unseen is not None:
-        other = data.model_copy(update={"file": unseen})
-        found.append(_record(study, other, "[identify_inertias], unseen"))
+        found.append(_record(study, _as_read(data, unseen), "[identify_inertias], unseen"))
     return found
+
+
+def _as_read(data: DataTable, file: Path) -> DataTable:
+    """The table of another motion that is read as the data are, without their times, which are those of one motion."""
+    other = data.model_copy(
+        update={"file": file, "between": None, "resample": None, "split": None, "trial": None, "start": FIRST}
+    )
+    if data.resample is None:
+        return other
+    first, last = other.model_copy(update={"lowpass": None}).read().coordinate.values[[0, -1]]
+    step = float(np.median(np.diff(data.resample)))
+    return other.model_copy(update={"resample": tuple(np.arange(first, last, step).tolist())})
 
 
 def _identified(study: Study) -> "TorquePrediction":

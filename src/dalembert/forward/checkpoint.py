@@ -7,7 +7,7 @@ import sqlite3
 import struct
 import warnings
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import closing, suppress
+from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from threading import Lock
 from time import monotonic, perf_counter
@@ -81,6 +81,7 @@ class Checkpoint:
         self._lock = Lock()
         self._written = monotonic()
         self._counted: set[bytes] = set()
+        self._scratch: dict[bytes, None] | None = None
         self.spared = 0.0
         try:
             known = path.is_file()
@@ -106,6 +107,7 @@ class Checkpoint:
                 found = None
         if found is None:
             return None
+        self._note(key)
         _, shapes, content, seconds, _ = found
         if key not in self._counted:
             self.spared += seconds
@@ -123,8 +125,20 @@ class Checkpoint:
         with self._lock:
             self._ask(_INSERT, (key, shapes, content, seconds, _digest(key, shapes, content, seconds)))
             self._counted.add(key)
+            self._note(key)
             if monotonic() - self._written >= EVERY:
                 self._write()
+
+    @contextmanager
+    def scratch(self) -> Iterator[None]:
+        """A block at whose end the results that were recalled or kept in it are forgotten, except the last one."""
+        self._scratch = dict[bytes, None]()
+        yield
+        *forgotten, _ = self._scratch
+        with self._lock:
+            for key in forgotten:
+                self._ask("DELETE FROM results WHERE key = ?", (key,))
+        self._scratch = None
 
     def once(self, key: bytes, compute: Callable[[], Sequence[np.ndarray]]) -> Sequence[np.ndarray]:
         """The arrays kept by a key; where there are none they are computed and kept."""
@@ -143,6 +157,11 @@ class Checkpoint:
                     self._ask("COMMIT")
             finally:
                 self._file.close()
+
+    def _note(self, key: bytes) -> None:
+        if self._scratch is not None:
+            self._scratch.pop(key, None)
+            self._scratch[key] = None
 
     def _write(self) -> None:
         self._ask("COMMIT")

@@ -64,7 +64,7 @@ class Recorded(Wrapped):
         vectors = np.atleast_2d(np.asarray(vectors, dtype=float))
         values = np.full((len(vectors), len(self.coordinate.values), len(self.channels)), np.nan)
         failures: list[str | None] = [None] * len(vectors)
-        keys, missing = [self._key("evaluate", vector) for vector in vectors], []
+        keys, missing = [self.key("evaluate", vector) for vector in vectors], []
         for row, key in enumerate(keys):
             known = self.checkpoint.recall(key)
             if known is None:
@@ -111,7 +111,7 @@ class Recorded(Wrapped):
 
     def _once(self, what: str, vector: np.ndarray, compute: Callable[[], Sequence[np.ndarray]]) -> Sequence[np.ndarray]:
         """Arrays that are known or computed; a solver that could not go on says so again."""
-        key = self._key(what, np.asarray(vector, dtype=float))
+        key = self.key(what, np.asarray(vector, dtype=float))
         known = self.checkpoint.recall(key)
         if known is not None and len(known) == 1 and known[0].dtype == np.uint8:
             raise SolveError(_text(known[0]) or "")
@@ -125,7 +125,7 @@ class Recorded(Wrapped):
             self.checkpoint.keep(key, known, perf_counter() - began)
         return known
 
-    def _key(self, what: str, vector: np.ndarray) -> bytes:
+    def key(self, what: str, vector: np.ndarray) -> bytes:
         """Hash of all that an answer depends on."""
         return hashlib.sha256(self._asked + what.encode() + np.ascontiguousarray(vector).tobytes()).digest()
 

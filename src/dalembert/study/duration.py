@@ -14,7 +14,7 @@ from dalembert.errors import SolveError
 from dalembert.findings import Finding
 from dalembert.forward import ForwardModel, Sensors
 from dalembert.forward.wrapped import Wrapped
-from dalembert.study.spoken import DAY, spoken
+from dalembert.study.spoken import DAY, spoken, spoken_size
 
 ENOUGH = 0.3
 """Seconds of simulation that are extrapolated, at least, where the whole takes longer."""
@@ -24,6 +24,9 @@ SHORTEST = 1e-3
 
 STEPS = 100
 """Steps that are simulated first where their length is given."""
+
+SMALL = 10_000_000
+"""Bytes of a checkpoint that are not worth a sentence."""
 
 TOGETHER = 4
 """Simulations timed at once where a method runs them in batches, over all cores."""
@@ -50,6 +53,10 @@ class Effort:
         What is timed, in words.
     shortest : float
         Share to begin with.
+    response : int
+        Size of the response of a simulation, bytes; 0 if the checkpoint keeps none.
+    kept : int, optional
+        Number of responses that the checkpoint keeps at once; all if not given.
     """
 
     part: Callable[[float], float]
@@ -58,6 +65,8 @@ class Effort:
     most: int | None
     source: str
     shortest: float = 1.0
+    response: int = 0
+    kept: int | None = None
 
 
 @dataclass(frozen=True)
@@ -79,7 +88,14 @@ def whole(once: Callable[[], object]) -> Callable[[float], float]:
     return part
 
 
-def evaluated(model: ForwardModel, vector: ArrayLike, least: int | None, most: int | None, batch: int = 1) -> Effort:
+def evaluated(
+    model: ForwardModel,
+    vector: ArrayLike,
+    least: int | None,
+    most: int | None,
+    batch: int = 1,
+    kept: int | None = None,
+) -> Effort:
     """Return the effort of evaluations at a parameter vector (parameters,), ``batch`` of them at once."""
     runs = list(_simulated(model, np.asarray(vector, dtype=float)))
 
@@ -88,7 +104,8 @@ def evaluated(model: ForwardModel, vector: ArrayLike, least: int | None, most: i
         return float(np.mean(done))
 
     source = "one at the first guesses" if batch == 1 else f"{batch} at once at the first guesses"
-    return Effort(part, batch, least, most, source, max(_shortest(one) for one, _ in runs))
+    response = 8 * len(model.coordinate.values) * len(model.channels)
+    return Effort(part, batch, least, most, source, max(_shortest(one) for one, _ in runs), response, kept)
 
 
 def shortest_of(solver: Any, end: float) -> float:
@@ -125,6 +142,20 @@ def duration(effort: Effort, timing: Timing) -> str:
     times = [spoken(count * each) for count in dict.fromkeys((effort.least, effort.most))]
     counts = " to ".join(str(count) for count in dict.fromkeys((effort.least, effort.most)))
     return f"This takes about {' to '.join(times)}: {counts} simulations of {spoken(each)} ({source})."
+
+
+def storage(effort: Effort) -> str:
+    """Return a sentence on the size of the checkpoint of a run; an empty text if it is small."""
+    number = effort.kept if effort.kept is not None else effort.most
+    if number is None:
+        if effort.response < SMALL / 1000:
+            return ""
+        return (
+            f"Each simulation adds {spoken_size(effort.response)} to the checkpoint, which the run removes at its end."
+        )
+    if number * effort.response < SMALL:
+        return ""
+    return f"The checkpoint takes up to {spoken_size(number * effort.response)} until the run ends."
 
 
 def too_long(effort: Effort, timing: Timing) -> Finding | None:

@@ -17,7 +17,7 @@ from dalembert.forward import Checkpoint, Executor, connected
 from dalembert.forward.cluster import worker_versions
 from dalembert.kernels.preparation import observed
 from dalembert.study.computed_with import mixed_versions, refuse_other_sources, this_process
-from dalembert.study.duration import StartFailed, duration, timed, too_long
+from dalembert.study.duration import StartFailed, duration, storage, timed, too_long
 from dalembert.study.events import LOST, Event, EventLog, plain
 from dalembert.study.folder import DAMAGED, FAILED, FINISHED, INPUT, INTERRUPTED, RUNNING, RunFolder, new_folder
 from dalembert.study.functions import users_code
@@ -216,6 +216,8 @@ def looked(study: Study, limit: float = inf) -> Iterator[str]:
             yield f"Warning: the simulation at the first guesses fails: {error}. Check the model or change the start."
             return
         yield duration(effort, timing)
+        if size := storage(effort):
+            yield size
         long = too_long(effort, timing)
         if long is not None:
             yield f"Warning: {long}"

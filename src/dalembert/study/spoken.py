@@ -1,4 +1,4 @@
-"""Durations in words."""
+"""Durations and sizes in words."""
 
 DAY = 86_400.0
 """Seconds."""
@@ -18,3 +18,16 @@ def spoken(seconds: float) -> str:
             number = seconds / size
             return f"{number:.0f}{unit}" if 9.95 <= number < 1e4 else f"{number:.2g}{unit}"
     return f"{seconds:.2g} s" if seconds >= 0.01 else f"{1e3 * seconds:.2g} ms"
+
+
+def spoken_size(size: float) -> str:
+    """A size in bytes as people say it, to two digits.
+
+    >>> [spoken_size(value) for value in (512, 48_000, 2.4e8, 3.1e12)]
+    ['0.51 kB', '48 kB', '240 MB', '3.1 TB']
+    """
+    for unit in ("kB", "MB", "GB", "TB"):
+        size /= 1000
+        if size < 999.5 or unit == "TB":
+            break
+    return f"{float(f'{size:.2g}'):g} {unit}"

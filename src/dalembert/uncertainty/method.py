@@ -56,6 +56,11 @@ class Extremes:
         nowhere = np.full((*runs.shape, len(runs.box)), np.nan)
         return cls(np.full(runs.shape, np.inf), np.full(runs.shape, -np.inf), nowhere, nowhere)
 
+    @property
+    def arrays(self) -> tuple[np.ndarray, ...]:
+        """The values and the points, as the arguments of the class."""
+        return self.lower, self.upper, self.at_lower, self.at_upper
+
     def __bool__(self) -> bool:
         return bool(np.all(self.lower <= self.upper))
 

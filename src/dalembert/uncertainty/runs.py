@@ -57,6 +57,11 @@ class Runs:
         self._ran(len(points))
         return values
 
+    def repeat(self, runs: int, failures: list[str]) -> None:
+        """Count runs of an earlier process, and those of them that failed."""
+        self.failures += failures
+        self._ran(runs)
+
     def linearised(self, point: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
         """Response (samples, channels) and jacobian (samples, channels, parameters) at a point; None if it failed.
 

@@ -10,6 +10,7 @@ import numpy as np
 from dalembert.arguments import Checked, limited
 from dalembert.errors import InputError
 from dalembert.findings import Finding
+from dalembert.forward.folds import Fold
 from dalembert.intervals import Box
 from dalembert.latin_hypercube import latin_hypercube
 from dalembert.uncertainty.method import Extremes, MethodBounds
@@ -60,12 +61,19 @@ class Sampling(Checked, ABC):
 
 def _extremes(runs: Runs, points: np.ndarray, extremes: Extremes) -> Extremes:
     """Return the extremes with runs at more points (n, parameters)."""
-    for first in range(0, len(points), BATCH):
+    fold = Fold(runs.model, runs.method, points, extremes.arrays)
+    for number, first in enumerate(range(0, len(points), BATCH)):
         batch = points[first : first + BATCH]
-        values = runs.values(batch)
-        kept = ~np.isnan(values[:, 0, 0])
-        extremes = extremes.with_runs(batch[kept], values[kept])
-    return extremes
+        if number < fold.done:
+            runs.repeat(len(batch), fold.notes[number])
+            continue
+        with fold.batch():
+            failed = len(runs.failures)
+            values = runs.values(batch)
+            kept = ~np.isnan(values[:, 0, 0])
+            extremes = Extremes(*fold.state).with_runs(batch[kept], values[kept])
+            fold.used(extremes.arrays, runs.failures[failed:])
+    return Extremes(*fold.state)
 
 
 class Grid(Sampling):

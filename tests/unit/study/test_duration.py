@@ -8,7 +8,7 @@ import pytest
 
 from dalembert.errors import InputError
 from dalembert.study import load
-from dalembert.study.duration import Effort, duration, timed, too_long, within
+from dalembert.study.duration import Effort, duration, storage, timed, too_long, within
 from dalembert.study.runner import looked
 
 MODEL = """
@@ -150,3 +150,17 @@ def failing():
 )
 def test_each_task_says_how_many_simulations_it_expects(sentence, text, count):
     assert count in sentence(text)
+
+
+@pytest.mark.parametrize(
+    ("most", "kept", "sentence"),
+    [
+        (5000, None, "The checkpoint takes up to 240 MB until the run ends."),
+        (5000, 300, "The checkpoint takes up to 14 MB until the run ends."),
+        (5000, 128, ""),
+        (None, None, "Each simulation adds 48 kB to the checkpoint, which the run removes at its end."),
+    ],
+)
+def test_the_size_of_a_checkpoint_is_stated(most, kept, sentence):
+    """Responses of 1,000 samples of 6 channels."""
+    assert storage(Effort(float, 1, most, most, "a part", response=8 * 1000 * 6, kept=kept)) == sentence

@@ -79,11 +79,13 @@ class Propagate(ResultTask):
     def effort(self, study: Study) -> Effort:
         from dalembert.uncertainty.methods import label
         from dalembert.uncertainty.runs import Runs
+        from dalembert.uncertainty.samplings import BATCH, Sampling
 
         model, box = response(study), _box(study)
         known = [method.most(Runs(model, box, label(method))) for method in _methods(study)]
         count = None if None in known else sum(filter(None, known))
-        return evaluated(model, box.middle, count, count, TOGETHER)
+        kept = BATCH if all(isinstance(method, Sampling) for method in _methods(study)) else None
+        return evaluated(model, box.middle, count, count, TOGETHER, kept)
 
     def result(self, study: Study, emit: Emit) -> Any:
         from dalembert.uncertainty import as_record, compare, propagate

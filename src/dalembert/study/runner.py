@@ -21,6 +21,7 @@ from dalembert.study.duration import StartFailed, duration, storage, timed, too_
 from dalembert.study.events import LOST, Event, EventLog, plain
 from dalembert.study.folder import DAMAGED, FAILED, FINISHED, INPUT, INTERRUPTED, RUNNING, RunFolder, new_folder
 from dalembert.study.functions import users_code
+from dalembert.study.interrupts import kept_interrupts
 from dalembert.study.model_findings import model_findings
 from dalembert.study.spoken import spoken
 from dalembert.study.study import Study
@@ -144,6 +145,7 @@ def _executed(
                 log.emit("run-compiling", done=done, total=total)
             with observed(lambda done, total, _: log.emit("run-compiling", done=done, total=total)):
                 with (
+                    kept_interrupts(),
                     connected(study.executor) as client,
                     Checkpoint(folder.checkpoint, lambda sentence: log.emit(LOST, message=sentence)) as checkpoint,
                     users_code(),

@@ -363,3 +363,20 @@ def test_a_start_outside_the_bounds_is_refused() -> None:
     with pytest.raises(InputError) as refused:
         sample(line(), measured(), start={"a": 99.0, "b": 0.0}, **SHORT)
     assert "start: 'a' is 99.0, outside its bounds" in str(refused.value)
+
+
+def test_an_interrupt_of_the_affine_invariant_sampler_prints_nothing(capsys: pytest.CaptureFixture[str]) -> None:
+    """emcee prints a traceback of all that the density raises, of an interrupt too."""
+    calls: list[float] = []
+
+    def stopped(rate: float) -> np.ndarray:
+        calls.append(rate)
+        if len(calls) > 300:
+            raise KeyboardInterrupt
+        return np.exp(-rate * TIMES)
+
+    model = PythonModel(stopped, {"rate": (0.1, 2.0)}, ["x"], TIMES)
+    data = Measurements.of(TIMES, {"x": np.exp(-0.7 * TIMES)}, deviations=0.01)
+    with pytest.raises(KeyboardInterrupt):
+        sample(model, data, draws=200, warmup=50, sampler=AffineInvariant(thin=1), start={"rate": 0.7})
+    assert capsys.readouterr().out == ""

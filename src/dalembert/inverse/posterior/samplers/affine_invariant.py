@@ -65,6 +65,7 @@ class AffineInvariant(Sampler):
         if len(modes.targets) > 1:
             moves = [(emcee.moves.DEMove(), 0.6), *moves[1:], (emcee.moves.MHMove(partial(_jumped, modes)), 0.2)]
         sampler = emcee.EnsembleSampler(walkers, size, target.evaluate, vectorize=True, moves=moves)
+        sampler.log_prob_fn = target.evaluate  # without emcee's wrapper, which prints a traceback of each interrupt
         random = np.random.RandomState(length.chain_seed(0))  # emcee takes the state of this one
         starts = _starts(modes, walkers, random)
         state = emcee.State(starts, random_state=random.get_state())

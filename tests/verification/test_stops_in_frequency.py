@@ -16,6 +16,7 @@ from dalembert.vibration import (
     HarmonicForce,
     StaticForce,
     VibrationSystem,
+    backbone,
     frequency_response,
 )
 from random_vibrations import ACCEPTED, Law, RandomSystem, unbalanced
@@ -125,6 +126,47 @@ def test_a_gear_pair_with_backlash_under_a_mean_torque_moves_as_in_time(record_e
         f"gear pair with backlash held by stops alone ({stop.__name__}): largest error of 14 points, as part of the "
         "motion", 0.0, max(errors), tolerance=1e-4, topic=TOPIC, kind="other method", source=TIME,
     )  # fmt: skip
+
+
+def frequency_on_a_side(k: float, gap: float, size: float) -> float:
+    """Of a unit mass on a unit spring, beyond a gap on springs of 1 + k, from -size on the free side, rad/s."""
+    inner, centre = np.sqrt(1 + k), k * gap / (1 + k)
+    free = np.pi - np.arccos(gap / size)
+    return np.pi / (free + np.arctan2(np.sqrt(size**2 - gap**2) / inner, gap - centre) / inner)
+
+
+def frequency_between_stops(k: float, gap: float, size: float) -> float:
+    """The same with a stop on both sides."""
+    inner, centre = np.sqrt(1 + k), k * gap / (1 + k)
+    angle = np.arccos((gap - centre) / (size - centre))
+    speed = (size - centre) * inner * np.sin(angle)
+    return np.pi / 2 / (angle / inner + np.arctan2(gap, speed))
+
+
+@pytest.mark.parametrize("k", [10.0, 100.0])
+@pytest.mark.parametrize(
+    ("stop", "gap", "exact", "tolerance"),
+    [(Gap, 0.0, frequency_on_a_side, 1e-4), (Gap, 1.0, frequency_on_a_side, 1e-3),
+     (BilinearStop, 1.0, frequency_between_stops, 1e-3)],
+)  # fmt: skip
+def test_backbones_of_a_bilinear_oscillator_are_those_in_closed_form(
+    record_evidence, stop, gap: float, exact, tolerance: float, k: float
+) -> None:
+    system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.0)]))
+    system.add(stop("stop", "m", stiffness=k, gap=gap))
+    for amplitudes in (np.array([1.5, 3.0, 6.0, 12.0]), (1.5, 12.0)):
+        found = backbone(system, amplitudes, 1, HarmonicBalance(31))
+        assert found.converged.all()
+        assert not found.findings
+        waves = np.cos(np.outer(np.linspace(0, TURN, 721), range(32)))
+        lowest = -np.min(found.shapes[:, 0][:, [0, *range(1, 63, 2)]] @ waves.T, axis=1)
+        reference = np.array([exact(k, gap, float(size)) for size in lowest])
+        record_evidence(
+            f"bilinear oscillator, k = {k:g}, gap = {gap:g}, {stop.__name__}: frequencies of the backbone "
+            f"({'given amplitudes' if isinstance(amplitudes, np.ndarray) else 'path'}), rad/s",
+            reference, TURN * found.frequencies, tolerance=tolerance, relative=True, topic=TOPIC, kind="closed form",
+            source="times of the free and the stopped part of a period",
+        )  # fmt: skip
 
 
 CHAIN = {"m1": [1.0, 0, 0], "12": [1.0, -1, 0], "m2": [0, 1.0, 0], "23": [0, 1.0, -1], "m3": [0, 0, 1.0]}

@@ -97,6 +97,35 @@ class _Trial:
 
 
 @dataclass(frozen=True)
+class Softened:
+    """The elements with a part of their nonlinearity: the rest of their force is linear about the position at rest.
+
+    Parameters
+    ----------
+    part : float
+        From 0 (linear) to 1.
+    rest, force : array, shape (q, coefficients)
+        Retained coordinates and forces at rest.
+    stiffness : array, shape (q · coefficients, q · coefficients)
+        At rest.
+    """
+
+    part: float
+    rest: np.ndarray
+    force: np.ndarray
+    stiffness: np.ndarray
+
+    def of(self, local: Local, linear: np.ndarray, unknowns: np.ndarray) -> Local:
+        """Return the elements at a point, whose linear part and retained coordinates (q, coefficients) are these."""
+        along = self.force + (self.stiffness @ (unknowns - self.rest).ravel()).reshape(unknowns.shape)
+        residual = linear + self.part * (local.evaluation.residual - linear) + (1 - self.part) * along
+        stiffness = self.part * local.stiffness + (1 - self.part) * self.stiffness
+        return local._replace(
+            evaluation=replace(local.evaluation, residual=residual), stiffness=stiffness, slope=self.part * local.slope
+        )
+
+
+@dataclass(frozen=True)
 class ModeEquations:
     """The equations of a nonlinear mode, whose amplitude is measured at a row of the structure.
 
@@ -106,6 +135,7 @@ class ModeEquations:
 
     problem: Equations
     row: int
+    softened: Softened | None = None
 
     def system(self, samples: int) -> Uncondensed:
         """The elements with this many samples."""
@@ -150,6 +180,20 @@ class ModeEquations:
         omega = float(np.sqrt(squares[order[mode - 1]]))
         return Linear(omega, growth, rest, moved, self.basis @ moved)
 
+    def softer(self, part: float, rest: np.ndarray) -> "ModeEquations | None":
+        """Return the equations with a part of the nonlinearity, about a position (n, coefficients).
+
+        None with rigid contacts, whose forces are no function of the displacements.
+        """
+        system = self.system(self.problem.method.first_samples)
+        count = system.retained
+        linear = self._linear_part(system, rest, 0.0, 0.0)[:count]
+        local = system.elements(linear, rest[:count], 0.0)
+        if local.weight is not None:
+            return None
+        softened = Softened(part, rest[:count], local.evaluation.residual - linear, local.stiffness)
+        return replace(self, softened=softened)
+
     def scale(self, motion: FreeMotion) -> float:
         """Size of the oscillating part of a motion."""
         return float(np.linalg.norm(motion.harmonics[:, int(self.problem.method.orders[0] == 0) :]))
@@ -184,7 +228,8 @@ class ModeEquations:
 
     @cached_property
     def _system(self) -> bytes:
-        return self.problem.lowered.fingerprint(self.problem.method, self.row).encode()
+        part = () if self.softened is None else (self.softened.part,)
+        return self.problem.lowered.fingerprint(self.problem.method, self.row, *part).encode()
 
     def newton(self, guess: FreeMotion, plane: Plane, samples: int) -> FreeMotion:
         """Solve as :meth:`solve` does, without a look at the checkpoint."""
@@ -241,6 +286,8 @@ class ModeEquations:
         count, harmonics, size = system.retained, motion.harmonics, motion.size
         linear = self._linear_part(system, harmonics, motion.omega, motion.growth)
         local = system.elements(linear[:count], harmonics[:count], motion.omega)
+        if self.softened is not None:
+            local = self.softened.of(local, linear[:count], harmonics[:count])
         residual = np.vstack([local.evaluation.residual, linear[count:]])
         scale = self._scale(system, motion, local)
         first = system.series.mean

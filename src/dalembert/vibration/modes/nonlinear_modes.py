@@ -2,12 +2,14 @@ r"""Nonlinear modes: periodic motions without force, over their amplitude."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
+from itertools import islice
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
 from dalembert.arguments import takes_checked
 from dalembert.errors import InputError
+from dalembert.findings import Finding
 from dalembert.forward import Checkpoint
 from dalembert.threads import one_thread
 from dalembert.units import unit_of
@@ -15,7 +17,8 @@ from dalembert.vibration.balance.equations import equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.modes.mode_equations import FreeMotion, Linear, ModeEquations, Plane
 from dalembert.vibration.paths.amplitudes import Amplitude, observed_column
-from dalembert.vibration.paths.continuation import EASY, MOST_POINTS, SHORTEST, STEADY
+from dalembert.vibration.paths.continuation import EASY, MOST_AROUND, MOST_POINTS, SHORTEST, STEADY
+from dalembert.vibration.paths.path_end import Progress, end_findings
 from dalembert.vibration.storage import ConvergedResult, Over, versions
 from dalembert.vibration.system.requirements import positive_numbers
 from dalembert.vibration.system.system import StaticForce, VibrationSystem
@@ -26,6 +29,10 @@ CORNER = 1e-2
 """Step behind a corner of the path, as part of the longest."""
 RETRACED = 1e-3
 """Relative difference of frequencies below which a path has returned to its start."""
+BEHIND = 2.0
+"""Ratio by which the path between two amplitudes may turn back behind the first."""
+FIRST_PART, LEAST_PART = 0.125, 2.0**-10
+"""First and smallest step of the part of the nonlinearity on the way from the linear mode."""
 SAME = 0.7
 """Cosine of the angle between two motions, weighted by the mass, below which they belong to different modes."""
 Points = Annotated[np.ndarray, Over(("point",))]
@@ -64,6 +71,8 @@ class Backbone(ConvergedResult):
         Of a period.
     provenance : mapping
         Versions, method, settings.
+    findings : tuple of Finding
+        ``"end-not-reached"`` where a path between two amplitudes did not come to the second.
     """
 
     FORMAT: ClassVar[str] = "dalembert backbone 1"
@@ -83,6 +92,7 @@ class Backbone(ConvergedResult):
     converged: Points
     samples: Points
     provenance: Mapping[str, Any]
+    findings: tuple[Finding, ...] = ()
 
     def amplitude(self, dof: str, kind: str = "peak") -> np.ndarray:
         """Size of the motion of a degree of freedom, m, (points,): ``"peak"``, ``"rms"`` or ``"harmonic 1"`` and so on.
@@ -112,7 +122,7 @@ class Backbone(ConvergedResult):
         if not found.all():
             lost = ", ".join(f"{value:.6g} {unit_of(self.dof)}" for value in self.amplitudes[~found][:5])
             lines.append(f"not found: {lost}")
-        return "\n".join(lines)
+        return "\n".join([*lines, *map(str, self.findings)])
 
 
 @takes_checked("amplitudes")
@@ -189,7 +199,11 @@ def backbone(
     own, start = ModeEquations(free, row), _scaled(linear, row, names.names[row])
     first = _first(own, start, float(sizes[0]))
     if isinstance(amplitudes, tuple):
-        return _kept(own, mode, list(_along(own, first, float(sizes[0]), float(sizes[1]))))
+        ends = float(sizes[0]), float(sizes[1])
+        known = _towards(own, first, ends[0], start.rest) if first.converged else first
+        if not known.converged:
+            known = _from_linear(own, start, ends[0]) or known
+        return _kept(own, mode, list(_along(own, known, *ends)), ends)
     return _kept(own, mode, list(_at_sizes(own, first, sizes, start.rest)))
 
 
@@ -208,8 +222,31 @@ def _first(own: ModeEquations, linear: Linear, size: float) -> FreeMotion:
         guess = FreeMotion(harmonics, linear.omega, linear.growth, part * size)
         motion = own.at_size(guess, part * size, own.problem.method.first_samples)
         if _accepted(own, guess, motion):
-            break
-    return motion
+            return motion
+    return _from_linear(own, linear, size) or replace(motion, size=size, converged=False)
+
+
+def _from_linear(own: ModeEquations, linear: Linear, size: float) -> FreeMotion | None:
+    """Return the motion at an amplitude by increasing the nonlinearity from none to all.
+
+    The way of a mode whose stiffness changes at rest, as where a stop just touches: smaller motions are no nearer to
+    the linear mode.
+    """
+    harmonics = linear.rest.copy()
+    harmonics[:, int(own.problem.method.orders[0] == 0)] += size * linear.moved
+    known = FreeMotion(harmonics, linear.omega, linear.growth, size, samples=own.problem.method.first_samples)
+    part, step = 0.0, FIRST_PART
+    while part < 1.0:
+        target = min(part + step, 1.0)
+        softer = own.softer(target, linear.rest)
+        if softer is None:
+            return None
+        found = (own if target == 1.0 else softer).at_size(known, size, known.samples)
+        if _accepted(own, known, found):
+            known, part, step = found, target, 2 * step
+        elif (step := step / 2) < LEAST_PART:
+            return None
+    return known
 
 
 def _accepted(own: ModeEquations, known: FreeMotion, found: FreeMotion) -> bool:
@@ -245,6 +282,9 @@ def _towards(own: ModeEquations, known: FreeMotion, size: float, rest: np.ndarra
             known = found
             way.pop()
         elif len(way) > own.problem.method.halvings:
+            for motion in islice(_along(own, known, known.size, size, BEHIND), MOST_AROUND):
+                if motion.converged and motion.size == size:
+                    return motion
             return replace(worst or found, size=size, converged=False)
         else:
             worst = worst or found
@@ -252,17 +292,21 @@ def _towards(own: ModeEquations, known: FreeMotion, size: float, rest: np.ndarra
     return known
 
 
-def _along(own: ModeEquations, first: FreeMotion, begin: float, end: float) -> Iterator[FreeMotion]:
-    """Yield motions along the path from one amplitude to another, by arc length."""
-    low, high = min(begin, end), max(begin, end)
+def _along(
+    own: ModeEquations, first: FreeMotion, begin: float, end: float, behind: float = 1.0
+) -> Iterator[FreeMotion]:
+    """Yield motions along the path from the first amplitude to another, by arc length.
+
+    It may turn back behind its beginning, by a ratio.
+    """
+    low, high = sorted((begin / behind if end > begin else begin * behind, end))
     known, onward = first, np.zeros(first.harmonics.size + 3)
     onward[-1] = np.sign(end - begin)
-    if first.size == begin:
-        yield known
+    yield known
     if not known.converged:
         return
     longest = 10 * own.problem.method.resolution
-    step, direction = longest / 4, own.direction(known, onward)
+    step, direction, progress = longest / 4, own.direction(known, onward), Progress(longest)
     for _ in range(MOST_POINTS):
         scale = own.scale(known)
         plane = Plane(direction, known, scale)
@@ -286,6 +330,8 @@ def _along(own: ModeEquations, first: FreeMotion, begin: float, end: float) -> I
             return
         if low <= motion.size <= high:
             yield motion
+        if progress.ends(step):
+            return
         known, direction = motion, after
         step = min(longest, step * (1.5 if motion.iterations <= EASY else 0.7))
 
@@ -312,7 +358,7 @@ def _around_a_corner(
     return None
 
 
-def _kept(own: ModeEquations, mode: int, found: list[FreeMotion]) -> Backbone:
+def _kept(own: ModeEquations, mode: int, found: list[FreeMotion], ends: tuple[float, float] | None = None) -> Backbone:
     names = own.problem.lowered.structure.dofs.names
     energies, works = np.array([_energy_and_work(own, motion) for motion in found]).T
     omegas, growths, sizes, iterations, residuals, converged, samples = (
@@ -320,21 +366,25 @@ def _kept(own: ModeEquations, mode: int, found: list[FreeMotion]) -> Backbone:
     )
     shapes = np.stack([own.basis @ motion.harmonics for motion in found])
     # ζ = ξ/(2 ω); the force F = 2 ζ ω²/A Σ h² X_hᵀ M X_h does the work that the negative damping does.
-    numbers = {"frequencies": omegas / (2 * np.pi), "damping": growths / (2 * omegas), "energies": energies,
-               "forces": growths * works / sizes}  # fmt: skip
+    dof = names[own.row]
+    what = f"amplitude of {dof}", unit_of(dof)
     return Backbone(
         mode=mode,
-        dof=names[own.row],
+        dof=dof,
         dofs=tuple(names),
         orders=own.problem.method.orders,
         amplitudes=sizes,
-        **{name: np.where(converged, values, np.nan) for name, values in numbers.items()},
+        frequencies=np.where(converged, omegas / (2 * np.pi), np.nan),
+        damping=np.where(converged, growths / (2 * omegas), np.nan),
+        energies=np.where(converged, energies, np.nan),
+        forces=np.where(converged, growths * works / sizes, np.nan),
         shapes=np.where(converged[:, None, None], shapes, np.nan),
         iterations=iterations,
         residuals=residuals,
         converged=converged,
         samples=samples,
         provenance={**versions(), "method": asdict(own.problem.method)},
+        findings=() if ends is None else end_findings(sizes, converged, ends, *what),
     )
 
 

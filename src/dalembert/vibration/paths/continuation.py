@@ -12,6 +12,7 @@ from dalembert.vibration.balance.condensation import norm
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Plane, Solution
 from dalembert.vibration.balance.tangents import bordered, orientation
+from dalembert.vibration.paths.path_end import Progress
 
 STEADY = 0.9
 """Cosine of the angle between directions of a path, below which a step was too long."""
@@ -30,6 +31,8 @@ MOST_AROUND = 500
 """Points of that curve after which continuation to the second frequency stops."""
 STILL = 1e-3
 """Motion, as part of what the forces would cause on the stiffness of the structure alone, that counts as none."""
+MOST_LOST = 20
+"""Points in succession that are not found, after which continuation stops. Their steps grow to the longest."""
 MOST_POINTS = 20_000
 Found = TypeVar("Found")
 
@@ -151,13 +154,13 @@ def _natural(equations: Problem, begin: float, end: float, start: Solution | Non
     known = start if start is not None else equations.first(begin)
     yield PathPoint(known)
     longest = (end - begin) * equations.method.resolution
-    step = longest / 4
-    while known.omega != end:
+    step, lost = longest / 4, 0
+    while known.omega != end and lost < MOST_LOST:
         target = known.omega + step
         target = end if abs(end - target) < 1e-3 * abs(step) or (end - target) * step < 0 else target
         guess = _predicted(known, target) if known.converged else known.unknowns
         solution = equations.solve(guess, target, known.samples)
-        if not solution.converged and abs(step) > abs(longest) * 2.0**-equations.method.halvings:
+        if not (solution.converged or lost) and abs(step) > abs(longest) * 2.0**-equations.method.halvings:
             step /= 2
             continue
         if not solution.converged:
@@ -165,7 +168,8 @@ def _natural(equations: Problem, begin: float, end: float, start: Solution | Non
             solution = fresh if fresh.converged else solution
         yield PathPoint(solution)
         known = solution if solution.converged else replace(known, omega=target)
-        step = min(2 * step, longest, key=abs) if solution.iterations <= EASY else step
+        lost = 0 if solution.converged else lost + 1
+        step = min(2 * step, longest, key=abs) if lost or solution.iterations <= EASY else step
 
 
 def along(
@@ -184,7 +188,7 @@ def along(
     low, high = sorted((begin - behind * (end - begin), end))
     onward = np.zeros(known.unknowns.size + 1)
     onward[-1] = np.sign(end - begin)
-    step, points = longest / 4, 1
+    step, points, progress = longest / 4, 1, Progress(longest)
     path = Path(known, direction_at(known, onward, width), width)
     while points < MOST_POINTS:
         solution, direction = path.step(equations, step)
@@ -212,6 +216,8 @@ def along(
             yield PathPoint(fold, fold=True)
         yield PathPoint(solution, fold=folds and fold is None)
         points += 1
+        if progress.ends(step):
+            return
         path = Path(solution, direction_at(solution, direction, width), width)
         step = min(longest, step * (1.5 if solution.iterations <= EASY else 0.7))
 

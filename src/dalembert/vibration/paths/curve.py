@@ -68,7 +68,8 @@ class FrequencyCurve(ConvergedResult):
         Versions, method, settings.
     findings : tuple of Finding
         ``"unbalanced-mean"``, ``"force-not-finite"``, ``"undamped-resonance"`` or ``"points-not-found"`` where points
-        were not found; ``"few-harmonics"``; ``"free-mean-position"`` where nothing holds a mean position.
+        were not found; ``"end-not-reached"`` where a path between two frequencies did not come to the second;
+        ``"few-harmonics"``; ``"free-mean-position"`` where nothing holds a mean position.
     """
 
     FORMAT: ClassVar[str] = "dalembert frequency curve 1"

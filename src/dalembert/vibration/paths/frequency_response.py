@@ -22,6 +22,7 @@ from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Solution
 from dalembert.vibration.paths.continuation import PathPoint, across, at_frequencies, natural
 from dalembert.vibration.paths.curve import FrequencyCurve
+from dalembert.vibration.paths.path_end import end_findings
 from dalembert.vibration.stability.bifurcations import FOLD, judged
 from dalembert.vibration.storage import versions
 from dalembert.vibration.system.lowering import Lowered
@@ -161,6 +162,7 @@ def frequency_response(
             come = (omega - omegas[0]) / (omegas[1] - omegas[0]) if ends else len(records) / len(omegas)
             done = float(max(done, min(come, 1.0)))
             on_point(FollowedPoint(records[-1]["frequencies"], records[-1]["response"], dofs, done))
+    limits = float(omegas[0]) / (2 * np.pi), float(omegas[-1]) / (2 * np.pi)
     markers = [one.pop("marker") for one in records]
     settings = {"continuation": continuation, "frequencies": list(map(float, frequencies)) if ends else "given"}
     kept = {name: np.array([one[name] for one in records]) for name in records[0]}
@@ -174,6 +176,7 @@ def frequency_response(
         provenance={**versions(), "method": asdict(method), **settings},
         findings=(
             *unconverged_findings(len(records), filter(None, lost)),
+            *(end_findings(kept["frequencies"], kept["converged"], limits, "frequency", "Hz") if ends else ()),
             *free_findings(problem),
             *(() if top is None else truncation_findings(problem, top)),
         ),

@@ -74,6 +74,28 @@ def test_given_amplitudes_do_not_jump_to_another_mode() -> None:
     assert "not found: 0.9 m, 1.1 m" in given.summary()
 
 
+def test_a_path_that_turns_back_before_its_end_says_so(tmp_path: Path) -> None:
+    """An internal resonance of the chain turns the path of its first mode back at 0.744 m."""
+    path = backbone(chain(), (0.6, 1.1), method=METHOD)
+    assert path.converged.all()
+    (finding,) = path.doubts
+    assert (finding.code, finding.severity) == ("end-not-reached", "warning")
+    assert finding.values["reason"] == "turned-back"
+    assert (finding.values["last"], finding.values["end"]) == (0.6, 1.1)
+    assert finding.values["farthest"] == path.amplitudes.max() == pytest.approx(0.74436, abs=1e-4)
+    assert finding.message in path.summary()
+    path.save(tmp_path / "mode.nc")
+    assert Backbone.load(tmp_path / "mode.nc").findings == path.findings
+    assert not backbone(duffing(), (0.1, 0.2), method=METHOD).findings
+
+
+def test_a_path_without_a_first_motion_is_one_point_that_is_not_found() -> None:
+    path = backbone(two_masses(), (0.1, 10.0), method=HarmonicBalance(5, iterations=1, halvings=0))
+    assert path.converged.tolist() == [False]
+    assert path.amplitudes[0] == 0.1
+    assert path.doubts[0].values["reason"] == "stopped"
+
+
 @pytest.mark.parametrize("amplitudes", [(0.1, 10.0), np.geomspace(0.1, 10.0, 8)], ids=["path", "given"])
 def test_a_mode_that_was_interrupted_goes_on_where_it_was(amplitudes, tmp_path: Path, monkeypatch) -> None:
     solve, turn, places, left = ModeEquations.newton, ModeEquations.tangent, [], [5]

@@ -20,6 +20,7 @@ from dalembert.vibration import (
     frequency_response,
     steady_state,
 )
+from dalembert.vibration.paths.path_end import POINTS, Progress, end_findings
 from sliders_in_time import Sliders
 
 FREQUENCIES = np.array([0.5, 0.8, 1.2, 2.0, 3.0]) / (2 * np.pi)
@@ -105,6 +106,25 @@ def test_what_no_contact_balances_is_named_and_nothing_is_found(law: str, tmp_pa
     assert 1.9 < finding.values["force"] < 3.1
     curve.save(tmp_path / "curve.nc")
     assert FrequencyCurve.load(tmp_path / "curve.nc").findings == curve.findings
+
+
+@pytest.mark.parametrize(("continuation", "points"), [("natural", 21), ("arc-length", 1)])
+def test_a_path_without_progress_ends_with_a_reason(continuation: str, points: int) -> None:
+    ends = 0.5 / (2 * np.pi), 3.0 / (2 * np.pi)
+    curve = frequency_response(pushed(LAWS["elastic"]), ends, HarmonicBalance(5), continuation=continuation)
+    assert len(curve) == points
+    assert [finding.code for finding in curve.findings] == ["unbalanced-mean", "end-not-reached"]
+    assert curve.findings[1].values["reason"] == "stopped"
+    assert curve.findings[1].values["end"] == pytest.approx(ends[1])
+
+
+def test_a_path_whose_steps_lead_nowhere_has_a_reason() -> None:
+    progress = Progress(longest=1.0)
+    assert not any(progress.ends(1e-3) for _ in range(POINTS - 1))
+    assert progress.ends(1e-3)
+    assert not progress.ends(1.0)
+    (finding,) = end_findings(np.array([1.0, 1.1]), np.array([True, True]), (1.0, 2.0), "frequency", "Hz")
+    assert finding.values == {"reason": "no-progress", "last": 1.1, "farthest": 1.1, "end": 2.0}
 
 
 def test_a_point_that_newton_does_not_find_is_a_finding() -> None:

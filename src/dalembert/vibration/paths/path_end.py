@@ -1,0 +1,61 @@
+"""Whether a path came to its end, and why it did not."""
+
+from collections import deque
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from dalembert.findings import Finding
+
+POINTS = 300
+"""Steps that together must be as long as the longest step; else the path makes no progress."""
+ADVICE = {
+    "turned-back": "The response beyond is on another branch. Give single values there in place of two ends.",
+    "stopped": "Use more harmonics or smaller steps, or start behind this place.",
+    "no-progress": "Use more harmonics or samples, or events=True, so that the path has no sharp turns.",
+}
+"""What to do, by the reason."""
+
+
+@dataclass(frozen=True)
+class Progress:
+    """The last steps of a path, whose longest step is ``longest``."""
+
+    longest: float
+    steps: deque[float] = field(default_factory=lambda: deque(maxlen=POINTS))
+
+    def ends(self, step: float) -> bool:
+        """Add a step; return whether the last ones lead nowhere."""
+        self.steps.append(step)
+        return len(self.steps) == POINTS and sum(self.steps) < self.longest
+
+
+def end_findings(
+    places: np.ndarray, converged: np.ndarray, ends: tuple[float, float], what: str, unit: str
+) -> tuple[Finding, ...]:
+    """Return the finding on a path that did not reach its end.
+
+    Parameters
+    ----------
+    places : array, shape (points,)
+        Values of what the path leads over, in its order.
+    converged : array of bool, shape (points,)
+    ends : pair of float
+    what, unit : str
+        Of the values.
+    """
+    (begin, end), last = ends, float(places[-1])
+    if np.isclose(last, end, rtol=1e-12, atol=0.0):  # a point that was not found there has its finding
+        return ()
+    where = f"{last:.6g} {unit} ({what})"
+    if (last - begin) * np.sign(end - begin) <= 0 and len(places) > 1:
+        reason, how = "turned-back", f"The path turns back and leaves the range at {where}."
+    elif not converged[-1]:
+        reason, how = "stopped", f"The path stops at {where}: no further point was found."
+    else:
+        reason, how = "no-progress", f"The path stops at {where}: its steps became too short."
+    found = places[converged]
+    farthest = float(found[np.argmax(found * np.sign(end - begin))]) if found.size else begin
+    values = {"reason": reason, "last": last, "farthest": farthest, "end": end}
+    message = f"{how} It does not reach {end:.6g} {unit}."
+    return (Finding("end-not-reached", "warning", values, message, ADVICE[reason]),)

@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from dalembert.data.bands import Bands
+from dalembert.data.columns import rate_of
 from dalembert.data.format import Request
 from dalembert.data.known_formats import columns_in
 from dalembert.data.opening import errors_with_file
@@ -22,6 +23,7 @@ def read_bands(
     units: Mapping[str, str] | None = None,
     format: str | None = None,  # noqa: A002
     frequency: str | None = None,
+    sampling: float | None = None,
 ) -> Bands:
     """Bands from a file of any format that :func:`read` knows.
 
@@ -33,7 +35,7 @@ def read_bands(
     columns : mapping of str to (str, str), optional
         Columns of each channel's lower and upper bounds, for example ``{"AB.end.x": ("x_lower", "x_upper")}``. If not
         given, every pair of columns ``name_lower`` and ``name_upper`` is the channel ``name``.
-    separator, decimal, units, format, frequency
+    separator, decimal, units, format, frequency, sampling
         As in :func:`read`.
 
     Raises
@@ -56,8 +58,11 @@ def read_bands(
             if isinstance(pair, str) or len(pair) != 2:
                 raise DataError(f"columns, channel {name!r}: {pair!r} was given; expected two names, (lower, upper)")
     names = None if columns is None else tuple(column for pair in columns.values() for column in pair)
-    request = Request(frequency or time, names, units=tuple(units or ()), separator=separator, decimal=decimal)
+    along_column = (frequency or time) if sampling is None else None
+    request = Request(along_column, names, units=tuple(units or ()), separator=separator, decimal=decimal)
     found = columns_in(path, request, format)
+    if sampling is not None:
+        found = replace(found, along=found.along / rate_of(path, sampling))
     along, table = replace(found, frequency=found.frequency or frequency is not None).converted(units)
     pairs = _pairs(path, table) if columns is None else columns
     with errors_with_file(path):

@@ -1,11 +1,14 @@
 """Columns of a file, whatever its format: chosen by name, checked, and in SI units."""
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
+from dalembert.arguments import is_real
+from dalembert.data.clock_times import clock_seconds
 from dalembert.errors import DataError, InputError, unknown
 from dalembert.forward import Coordinate
 from dalembert.unit_table import readings
@@ -130,7 +133,7 @@ def of_trial(path: Path, labels: Sequence[str], trial: Trial) -> np.ndarray:
 def chosen(
     path: Path,
     columns: Mapping[str, np.ndarray],
-    time: str,
+    time: str | None,
     names: Iterable[str] | None,
     missing: str,
     trial: Trial | None = None,
@@ -138,7 +141,7 @@ def chosen(
     """The times (samples,), and columns (samples,) by name, of all that a file holds, or of one of its trials.
 
     Times that are dates become seconds since the first. Without ``names`` all columns of numbers as long as the times
-    are chosen.
+    are chosen. Without ``time`` samples are numbered.
 
     Raises
     ------
@@ -149,10 +152,11 @@ def chosen(
     wanted = None if names is None else list(dict.fromkeys(names))
     if trial is not None:
         columns = _of_trial(path, columns, trial)
-    for column in (time, *(wanted or ())):
+    for column in (*([] if time is None else [time]), *(wanted or ())):
         if column not in columns:
             raise DataError(unknown("column", column, columns, str(path)))
-    along = _numbers(path, time, _seconds(columns[time]))
+    along = _numbered(columns, wanted) if time is None else _numbers(path, time, _seconds(columns[time]))
+    time = time or "sample"
     if wanted is None:
         wanted = [name for name, column in columns.items() if name != time and _fits(column, along)]
         if not wanted:
@@ -208,9 +212,24 @@ def check_growing(path: Path, time: str, along: np.ndarray) -> None:
         )
 
 
+def rate_of(path: Path, sampling: float) -> float:
+    """Return samples a second (Hz), refused if they are no positive number."""
+    if not is_real(sampling) or not 0 < sampling < np.inf:
+        raise DataError(f"{path}: sampling is {sampling}; expected a positive number of samples a second")
+    return float(sampling)
+
+
 def foreign(unit: str) -> bool:
     """Whether a unit that a file names is none, or needs no conversion, the other way round."""
     return unit not in ("", "1", "NONE") and not is_si(unit)
+
+
+def _numbered(columns: Mapping[str, np.ndarray], wanted: Sequence[str] | None) -> np.ndarray:
+    """Numbers of the samples of the columns that are wanted, or of most of them."""
+    if wanted:
+        return np.arange(columns[wanted[0]].size, dtype=float)
+    lengths = Counter(column.size for column in columns.values() if column.dtype.kind in "fiu" and column.ndim == 1)
+    return np.arange(lengths.most_common(1)[0][0] if lengths else 0, dtype=float)
 
 
 def _numbers(path: Path, name: str, column: np.ndarray) -> np.ndarray:
@@ -229,7 +248,10 @@ def _fits(column: np.ndarray, along: np.ndarray) -> bool:
 
 
 def _seconds(column: np.ndarray) -> np.ndarray:
-    """Dates and durations as seconds since the first."""
+    """Dates and durations, also as text, as seconds since the first."""
+    if column.dtype.kind in "UO" and column.ndim == 1:
+        clock = clock_seconds(list(map(str, column)))
+        return column if clock is None else clock
     if column.dtype.kind not in "mM" or len(column) == 0:
         return column
     since = (column - column[0]).astype("timedelta64[ns]")

@@ -18,8 +18,8 @@ class Request:
 
     Parameters
     ----------
-    time : str or int
-        Column of the times.
+    time : str, int or None
+        Column of the times; None where there is none, so that samples are numbered.
     names : tuple of str or int, optional
         Columns; all if not given.
     missing : {"refuse", "leave-out"}
@@ -30,15 +30,23 @@ class Request:
         Marks of a text file.
     trial : Trial, optional
         The one trial to read.
+    absent : tuple of str
+        What else stands for a value that was not measured.
     """
 
-    time: str | int
+    time: str | int | None
     names: tuple[str | int, ...] | None = None
     missing: str = "refuse"
     units: Collection[str] = ()
     separator: str = AUTO
     decimal: str = AUTO
     trial: Trial | None = None
+    absent: tuple[str, ...] = ()
+
+    @property
+    def along(self) -> str | None:
+        """The column of the times by name."""
+        return None if self.time is None else str(self.time)
 
     @property
     def labels(self) -> list[str] | None:

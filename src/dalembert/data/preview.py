@@ -7,9 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
+from dalembert.data.clock_times import clock_seconds, is_clock
 from dalembert.data.known_formats import format_of, known_formats
+from dalembert.data.lines_format import LinesFormat
 from dalembert.data.text_layout import AUTO, GAPS, Layout, Line, Row, is_number, layout, split, value
-from dalembert.data.text_lines import text_lines
 from dalembert.data.text_numbers import BLOCK, HEAD, lines_of_numbers, quick_numbers
 from dalembert.errors import DataError
 
@@ -107,11 +108,10 @@ def preview(path: Path, separator: str = AUTO, decimal: str = AUTO) -> Preview:
     ([20.5, 20.4, nan], (4, 'error'))
     """
     name = format_of(path)
-    if name == "csv":
-        return _text(path, separator, decimal)
-    columns = [
-        PreviewColumn(key, unit, *_real(array)) for key, (array, unit) in known_formats()[name]().held(path).items()
-    ]
+    form = known_formats()[name]()
+    if isinstance(form, LinesFormat):
+        return _text(path, name, form.lines(path), separator, decimal)
+    columns = [PreviewColumn(key, unit, *_real(array)) for key, (array, unit) in form.held(path).items()]
     longest = Counter(len(column.values) for column in columns).most_common(1)
     columns = [column for column in columns if len(column.values) == longest[0][0]]
     if not columns:
@@ -120,8 +120,7 @@ def preview(path: Path, separator: str = AUTO, decimal: str = AUTO) -> Preview:
     return Preview(path, name, tuple(columns), tuple(first))
 
 
-def _text(path: Path, separator: str, decimal: str) -> Preview:
-    lines = text_lines(path)
+def _text(path: Path, name: str, lines: Sequence[Line], separator: str, decimal: str) -> Preview:
     found = layout(lines[:HEAD], 1, separator, decimal)
     if not found.rows:
         raise DataError(f"{path}: the file has no line of numbers; expected column names and then lines of numbers")
@@ -132,12 +131,21 @@ def _text(path: Path, separator: str, decimal: str) -> Preview:
         for place, name in enumerate(found.header, 1)
     ]
     columns = tuple(
-        PreviewColumn(key, unit, *_joined([block.columns[place] for block in blocks]))
+        _clock(PreviewColumn(key, unit, *_joined([block.columns[place] for block in blocks])), rest, found, place)
         for place, (key, unit) in enumerate(zip(keys, found.units, strict=True))
     )
     uneven = next((block.uneven for block in blocks if block.uneven), None)
     first = tuple(tuple(cells[:width]) for _, cells in found.rows[:SHOWN])
-    return Preview(path, "csv", columns, first, str(found), found.separator, found.decimal, uneven)
+    return Preview(path, name, columns, first, str(found), found.separator, found.decimal, uneven)
+
+
+def _clock(column: PreviewColumn, lines: Sequence[Line], found: Layout, place: int) -> PreviewColumn:
+    """A column of times of day or dates as seconds since the first; any other as it is."""
+    if column.wrong is None or not is_clock(column.wrong[1]):
+        return column
+    rows = [cells for _, cells in split(lines, found.separator)]
+    seconds = clock_seconds([cells[place] for cells in rows]) if all(len(cells) > place for cells in rows) else None
+    return column if seconds is None else PreviewColumn(column.key, "s", seconds)
 
 
 _Numbers = tuple[np.ndarray, int, tuple[int, str] | None]

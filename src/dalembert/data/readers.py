@@ -1,19 +1,20 @@
 """Measurements from files."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.data.columns import Trial, trial_label
+from dalembert.data.columns import Columns, Trial, rate_of, trial_label
 from dalembert.data.format import Request
 from dalembert.data.known_formats import columns_in, trial_labels
 from dalembert.data.measurements import Measurements
 from dalembert.data.opening import errors_with_file
 from dalembert.data.record import FIRST
-from dalembert.data.text_layout import AUTO
+from dalembert.data.text_layout import AUTO, is_number
 from dalembert.errors import DataError, repeated
 
 
@@ -24,12 +25,13 @@ def read(
     deviations: Mapping[str, float] | ArrayLike | None = None,
     *,
     units: Mapping[str, str] | None = None,
-    missing: str = "refuse",
+    missing: str | Sequence[str | float] = "refuse",
     wraps: Iterable[str] = (),
     format: str | None = None,  # noqa: A002
     separator: str = AUTO,
     decimal: str = AUTO,
     frequency: str | None = None,
+    sampling: float | None = None,
     start: float | str | None = None,
     trial: tuple[str | int, str | float] | None = None,
 ) -> Measurements:
@@ -53,8 +55,9 @@ def read(
         Unit of each column of the file that is not in SI units, for example ``{"t": "ms", "case1_x": "mm"}``. Units
         that a NetCDF file names are known without it, and so are those of a text file in a line below the names or in
         brackets behind a name, ``angle [deg]``.
-    missing : {"refuse", "leave-out"}
-        With ``"leave-out"`` an empty cell, a null or a NaN is a sample that was not measured, and does not count.
+    missing : {"refuse", "leave-out"}, or sequence of str or float
+        With ``"leave-out"`` an empty cell, a null or a NaN is a sample that was not measured, and does not count; in a
+        text file also ``N/A``, ``-``, ``null`` and the like. A sequence has further words or numbers of such cells.
     wraps : iterable of str
         Channels that are angles known up to whole turns.
     format : {"csv", "json", "parquet", "mat", "uff", "netcdf"}, optional
@@ -65,6 +68,8 @@ def read(
         What stands before the decimals of the numbers of a text file; found from its lines if ``"auto"``.
     frequency : str, optional
         Column of the frequencies along which the samples lie, in place of the times.
+    sampling : float, optional
+        Samples a second (Hz) of a file without a column of times, the first sample at 0 s.
     start : float or "first", optional
         Time of the file, in s, at which the motion begins: times count from there. ``"first"`` is that of the first
         sample.
@@ -81,8 +86,8 @@ def read(
 
     Notes
     -----
-    Times in a Parquet file may be dates: they become seconds since the first. Tables and timeseries of MATLAB cannot be
-    read by anything else: save their columns as vectors.
+    Times may be dates, times of day, or both: they become seconds since the first. Tables and timeseries of MATLAB
+    cannot be read by anything else: save their columns as vectors.
 
     Functions over frequency of a universal file give measurements along a frequency in Hz. Functions of which the file
     says that they are not in SI units are refused until ``units`` names their unit, since that is free text there. An
@@ -111,8 +116,13 @@ def read(
     for column, count in repeated(map(str, names or ())).items():
         raise DataError(f"{path}, column {column!r} is given for {count} channels; expected one channel for a column")
     one = None if trial is None else Trial(trial[0], trial_label(trial[1]))
-    request = Request(frequency or time, names, missing, tuple(units or ()), separator, decimal, one)
-    found = columns_in(path, request, format)
+    absent = () if isinstance(missing, str) else tuple(map(str, missing))
+    missing = missing if isinstance(missing, str) else "leave-out"
+    along_column = (frequency or time) if sampling is None else None
+    request = Request(along_column, names, missing, tuple(units or ()), separator, decimal, one, absent)
+    found = _without(columns_in(path, request, format), absent)
+    if sampling is not None:
+        found = replace(found, along=found.along / rate_of(path, sampling))
     along, table = replace(found, frequency=found.frequency or frequency is not None).converted(units)
     chosen = {name: name for name in table} if columns is None else {name: str(of) for name, of in columns.items()}
     with errors_with_file(path):
@@ -123,6 +133,15 @@ def read(
     named = found.named_units(units)
     columns_of = {along.name: found.time, **chosen}
     return replace(data, origin=origin, units={name: named[of] for name, of in columns_of.items() if of in named})
+
+
+def _without(found: Columns, absent: Iterable[str]) -> Columns:
+    """The columns without the numbers that stand for values that were not measured."""
+    numbers = [float(word) for word in absent if is_number(word)]
+    if not numbers:
+        return found
+    table = {name: np.where(np.isin(values, numbers), np.nan, values) for name, values in found.table.items()}
+    return replace(found, table=table)
 
 
 def read_trials(path: str | Path, split: str | int, *arguments: Any, **options: Any) -> dict[str, Measurements]:

@@ -8,12 +8,16 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import product
 
+from dalembert.data.clock_times import is_clock
 from dalembert.unit_table import readings
 
 AUTO = "auto"
 SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs", " ": "blanks"}
 COMMENTS = ("%", "#")
-GAPS = ("", "na", "nan")
+GAPS = (
+    *("", "na", "nan", "n/a", "#n/a", "-", "--", "---", "?", "null", "none", "nil", "missing", "-nan", "nan(ind)"),
+    *("-nan(ind)", "1.#qnan", "-1.#ind", "#value!", "#div/0!", "#num!", "no data"),
+)
 """What a cell without a value holds, in any case of letters."""
 
 DESCRIBING = (
@@ -64,7 +68,7 @@ class Layout:
         return f"{marks}{comma}, {names}{units}"
 
 
-def layout(lines: Sequence[Line], time: str | int, separator: str = AUTO, decimal: str = AUTO) -> Layout:
+def layout(lines: Sequence[Line], time: str | int | None, separator: str = AUTO, decimal: str = AUTO) -> Layout:
     """Return the layout of lines that are not blank.
 
     All pairs of a separator and a decimal mark are tried on the lines in the middle. The pair is taken that leaves the
@@ -74,9 +78,9 @@ def layout(lines: Sequence[Line], time: str | int, separator: str = AUTO, decima
     Parameters
     ----------
     lines : sequence of (line number, text)
-    time : str or int
-        Name of the column of times, or its number from 1. A first line with a cell of this name is a header, even if
-        all its cells are numbers.
+    time : str, int or None
+        Name of the column of times, or its number from 1, if there is one. A first line with a cell of this name is a
+        header, even if all its cells are numbers.
     separator, decimal : str
         ``"auto"``, or the separator (a blank stands for any number of blanks and tabs) and the decimal mark.
 
@@ -155,7 +159,7 @@ def _suits(sample: Sequence[str], first: Sequence[str], separator: str, decimal:
     """Share of the cells that are numbers or empty times that of the lines of equal length; the number of columns."""
     rows = [cells for _, cells in split(enumerate(sample), separator)]
     cells = [cell for row in rows for cell in row]
-    good = sum(is_number(cell, decimal) or cell.lower() in GAPS for cell in cells)
+    good = sum(is_number(cell, decimal) or cell.lower() in GAPS or is_clock(cell) for cell in cells)
     width = Counter(map(len, rows)).most_common(1)[0][0] if rows else 0
     even = sum(len(cells) == width for _, cells in split(enumerate(first), separator)) / max(1, len(first))
     return even * good / max(1, len(cells)), width
@@ -190,7 +194,7 @@ def _filled(cell: str) -> bool:
     return cell.lower() not in GAPS
 
 
-def _above(lines: Sequence[Line], before: float, separator: str, width: int, time: str | int) -> list[Row]:
+def _above(lines: Sequence[Line], before: float, separator: str, width: int, time: str | int | None) -> list[Row]:
     """The lines above the numbers, comments among them without their marks, where they may name columns or units.
 
     A comment below the line that names the times is text, unless it holds units.
@@ -221,7 +225,7 @@ def _names_with_blanks(text: str, width: int) -> list[str] | None:
     return next((names for names in splits if len(names) == width), None)
 
 
-def _head(above: Sequence[Row], width: int, time: str | int) -> tuple[Row | None, Row | None]:
+def _head(above: Sequence[Row], width: int, time: str | int | None) -> tuple[Row | None, Row | None]:
     """The row of names and the row of units among those above the numbers."""
     if len(above) > 1 and _are_units(above[-1][1], width) and (time not in above[-1][1] or time in above[-2][1]):
         return above[-2], above[-1]

@@ -67,6 +67,14 @@ Column = Annotated[
 ]
 
 
+Missing = Literal["refuse", "leave-out"] | list[str | float]
+MISSING: Any = Field(
+    "refuse",
+    description="what becomes of values that are not there: 'refuse', 'leave-out', or a list of words and numbers that "
+    "stand for such values, besides empty cells, NaN, N/A, - and null, and are left out",
+)
+
+
 class FileTable(StudyTable):
     """A file of columns: text, JSON, Parquet, MAT, UFF or NetCDF."""
 
@@ -75,6 +83,9 @@ class FileTable(StudyTable):
     time: Column = Field("t", description="column of times, by its name, or its number from 1 in a text file")
     frequency: str | None = Field(
         None, description="name of the column of frequencies, where the samples lie along one"
+    )
+    sampling: Annotated[float, Read(fixed("Hz"))] | None = Field(
+        None, gt=0, description="samples a second of a file without a column of times: '200 Hz'"
     )
     units: dict[str, str] = Field({}, description="unit of each column that is not in SI units: case1_x = 'mm'")
     separator: str = Field(
@@ -88,7 +99,7 @@ class FileTable(StudyTable):
     def how(self) -> dict[str, Any]:
         """Arguments that say how the file is read."""
         own = self.picked("format", "units", "separator", "decimal")
-        return own if self.frequency is None else {**own, "frequency": self.frequency}
+        return own | {key: value for key, value in self.picked("frequency", "sampling").items() if value is not None}
 
     @property
     def universal(self) -> bool:
@@ -155,7 +166,7 @@ class ChannelFile(FileTable):
         description="column of each channel: 'AB.end.x' = 'case1_x', or its number from 1 in a text file",
     )
     deviations: dict[str, Number] | None = Field(None, description="standard deviation of each channel's noise")
-    missing: Literal["refuse", "leave-out"] = Field("refuse", description="what becomes of values that are not there")
+    missing: Missing = MISSING
     wraps: list[str] = Field([], description="channels that are angles known up to whole turns")
     lowpass: Annotated[float, Read(fixed("Hz"))] | None = Field(
         None, description="cutoff frequency of a low-pass filter without delay: '40 Hz'"

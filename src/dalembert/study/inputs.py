@@ -9,7 +9,7 @@ from pydantic import Field
 
 from dalembert.data.stretches import gaps
 from dalembert.errors import DataError, unknown
-from dalembert.study.data_table import Column, DataFile, DataTable, FileTable, Start, StartTable
+from dalembert.study.data_table import MISSING, Column, DataFile, DataTable, FileTable, Missing, Start, StartTable
 from dalembert.study.expressions import Expression
 from dalembert.study.numbers import Times, fixed, number
 from dalembert.study.table import Read, StudyTable, problem, told_apart
@@ -52,7 +52,7 @@ class InputTable(FileTable):
     resample: Times | None = Field(
         None, description="times at which splines through the samples are taken, before the filter if theirs are uneven"
     )
-    missing: Literal["refuse", "leave-out"] = Field("refuse", description="what becomes of values that are not there")
+    missing: Missing = MISSING
     wraps: bool = Field(False, description="whether it is an angle known up to whole turns")
 
     def _wrong(self) -> list[str]:

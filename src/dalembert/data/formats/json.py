@@ -34,7 +34,7 @@ class Json(Format):
 
 
 def json_columns(
-    path: Path, time: str | int, names: Iterable[str | int] | None, missing: str, trial: Trial | None = None
+    path: Path, time: str | int | None, names: Iterable[str | int] | None, missing: str, trial: Trial | None = None
 ) -> Columns:
     """Times and columns by name; those of rows by their numbers from 1.
 
@@ -46,9 +46,9 @@ def json_columns(
     content = _content(path)
     columns = {name: _array(path, name, entries) for name, entries in _by_name(path, content).items()}
     rows = isinstance(content, list) and isinstance(content[0], list)
-    label = "1" if rows and time == "t" else str(time)
+    label = "1" if rows and time == "t" else None if time is None else str(time)
     wanted = None if names is None else list(map(str, names))
-    return Columns(path, label, *chosen(path, columns, label, wanted, missing, trial), layout="JSON")
+    return Columns(path, label or "sample", *chosen(path, columns, label, wanted, missing, trial), layout="JSON")
 
 
 def json_labels(path: Path, column: str | int) -> list[str]:

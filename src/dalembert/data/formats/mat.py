@@ -19,7 +19,7 @@ class Mat(Format):
     suffixes = (".mat",)
 
     def columns(self, path: Path, request: Request) -> Columns:
-        return mat_columns(path, str(request.time), request.labels, request.missing)
+        return mat_columns(path, request.along, request.labels, request.missing)
 
     def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
         arrays = _held(path)
@@ -28,7 +28,7 @@ class Mat(Format):
         return {name: (array, "") for name, array in of_numbers(parts).items()}
 
 
-def mat_columns(path: Path, time: str, names: Iterable[str] | None, missing: str) -> Columns:
+def mat_columns(path: Path, time: str | None, names: Iterable[str] | None, missing: str) -> Columns:
     """Times and columns: vectors by name, fields of structs as ``run.x``, columns of a matrix as ``q(:,1)``.
 
     A matrix with a row a channel gives ``q(1,:)``. Text, cells and objects (tables, timeseries) are passed over.
@@ -36,7 +36,7 @@ def mat_columns(path: Path, time: str, names: Iterable[str] | None, missing: str
     held = _held(path)
     samples = len(held[time]) if time in held and held[time].ndim == 1 else 0
     spread = {label: part for name, array in held.items() for label, part in _parts(name, array, samples)}
-    return Columns(path, time, *chosen(path, spread, time, names, missing))
+    return Columns(path, time or "sample", *chosen(path, spread, time, names, missing))
 
 
 def _held(path: Path) -> dict[str, np.ndarray]:

@@ -23,7 +23,7 @@ class Netcdf(Format):
     suffixes = (".nc", ".nc4", ".cdf")
 
     def columns(self, path: Path, request: Request) -> Columns:
-        return netcdf_columns(path, str(request.time), request.labels, request.missing)
+        return netcdf_columns(path, request.along, request.labels, request.missing)
 
     def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
         dataset = _dataset(path)
@@ -33,7 +33,7 @@ class Netcdf(Format):
         return {label: (array, unit) for label, array, unit in parts if label in kept}
 
 
-def netcdf_columns(path: Path, time: str, names: Iterable[str] | None, missing: str) -> Columns:
+def netcdf_columns(path: Path, time: str | None, names: Iterable[str] | None, missing: str) -> Columns:
     """Times and columns: variables along the times' dimension, each with the unit that its ``units`` attribute names.
 
     A variable over another dimension too gives a column an entry: ``response[AB.end.x]`` where that dimension has
@@ -41,11 +41,11 @@ def netcdf_columns(path: Path, time: str, names: Iterable[str] | None, missing: 
     """
     dataset = _dataset(path)
     held = [(label, array, unit) for name in dataset.variables for label, array, unit in _parts(dataset, name, time)]
-    if time not in dataset.variables:
+    if time is not None and time not in dataset.variables:
         raise DataError(unknown("column", time, map(str, dataset.variables), str(path)))
     along, table = chosen(path, {label: array for label, array, _ in held}, time, names, missing)
     units = {label: unit for label, _, unit in held if unit and (label in table or label == time)}
-    return Columns(path, time, along, table, units)
+    return Columns(path, time or "sample", along, table, units)
 
 
 def _dataset(path: Path) -> "Dataset":
@@ -59,7 +59,7 @@ def _dataset(path: Path) -> "Dataset":
         return load_dataset(path, engine=engine, decode_times=False)
 
 
-def _parts(dataset: "Dataset", name: object, time: str) -> Iterator[tuple[str, np.ndarray, str]]:
+def _parts(dataset: "Dataset", name: object, time: str | None) -> Iterator[tuple[str, np.ndarray, str]]:
     """Columns that a variable gives, with their unit."""
     variable = dataset.variables[name]  # pyright: ignore[reportArgumentType]
     along = dataset.variables[time].dims[:1] if time in dataset.variables else ()

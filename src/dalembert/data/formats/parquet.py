@@ -17,15 +17,15 @@ class Parquet(Format):
     suffixes = (".parquet", ".pq")
 
     def columns(self, path: Path, request: Request) -> Columns:
-        return parquet_columns(path, str(request.time), request.labels, request.missing)
+        return parquet_columns(path, request.along, request.labels, request.missing)
 
     def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
         return {name: (array, "") for name, array in of_numbers(_held(path)).items()}
 
 
-def parquet_columns(path: Path, time: str, names: Iterable[str] | None, missing: str) -> Columns:
+def parquet_columns(path: Path, time: str | None, names: Iterable[str] | None, missing: str) -> Columns:
     """Times and columns; a null is a NaN."""
-    return Columns(path, time, *chosen(path, _held(path), time, names, missing))
+    return Columns(path, time or "sample", *chosen(path, _held(path), time, names, missing))
 
 
 def _held(path: Path) -> dict[str, np.ndarray]:

@@ -24,6 +24,8 @@ class Uff(Format):
     suffixes = (".uff", ".unv", ".uf", ".bunv")
 
     def columns(self, path: Path, request: Request) -> Columns:
+        if request.time is None:
+            raise DataError(f"{path}: sampling is given, and a universal file has its own times; leave it out")
         return uff_columns(path, request.labels, request.missing, request.units)
 
 

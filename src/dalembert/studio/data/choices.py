@@ -51,11 +51,13 @@ class Choices:
         Column of each channel.
     start : number, "first" or other, optional
         When the motion begins, as in `[data]`.
-    missing : {"refuse", "leave-out"}
+    missing : {"refuse", "leave-out"}, or list of words that stand for missing values
     wraps : tuple of str
     decimate : int, optional
     between : (float, float), optional
         Times (s) between which samples are kept.
+    sampling : number or str, optional
+        Samples a second of a file without a column of times.
     """
 
     file: str
@@ -65,10 +67,11 @@ class Choices:
     units: Mapping[Key, str] = field(default_factory=dict)
     channels: Mapping[str, Key] = field(default_factory=dict)
     start: Any = None
-    missing: str = "refuse"
+    missing: str | list[str | float] = "refuse"
     wraps: tuple[str, ...] = ()
     decimate: int | None = None
     between: tuple[float, float] | None = None
+    sampling: Any = None
 
     @property
     def used(self) -> tuple[Key | None, ...]:
@@ -93,7 +96,7 @@ class Choices:
             {column.key: self.unit(found, column.key) for column in found.columns},
             {channel: (key, units.get(channel, "")) for channel, key in self.channels.items()},
             self.start if self.start is None or isinstance(self.start, (int, float, str)) else 0.0,
-            self.missing,
+            "refuse" if self.missing == "refuse" else "leave-out",
             self.wraps,
             self.between,
             self.decimate,
@@ -139,7 +142,7 @@ def of_table(table: Mapping[str, Any]) -> Choices:
     plain = len(between) == 2 and all(isinstance(end, (int, float)) for end in between)
     return Choices(
         str(table.get("file", "")),
-        table.get("time", "t"),
+        None if "sampling" in table else table.get("time", "t"),
         table.get("separator", AUTO),
         table.get("decimal", AUTO),
         {numbers.get(key, str(key)): str(unit) for key, unit in table.get("units", {}).items()},
@@ -149,6 +152,7 @@ def of_table(table: Mapping[str, Any]) -> Choices:
         tuple(table.get("wraps", ())),
         table.get("decimate"),
         (between[0], between[1]) if plain else None,
+        table.get("sampling"),
     )
 
 
@@ -160,18 +164,17 @@ def table_of(choices: Choices, found: Preview) -> dict[str, Any]:
     InputError
         If no column is used as the times, or none for a channel.
     """
-    if choices.time is None:
+    if choices.time is None and choices.sampling is None:
         raise InputError("No column has the times. Choose the column of the times.")
     if not choices.channels:
         raise InputError("No column is used for a channel. Choose the channel that a column measures.")
     table: dict[str, Any] = {"file": choices.file}
     marks = {"separator": choices.separator, "decimal": choices.decimal}
     table |= {key: mark for key, mark in marks.items() if mark != AUTO}
-    table |= {"time": choices.time} if choices.time != "t" else {}
+    table |= {"time": choices.time} if choices.time not in ("t", None) else {}
+    table |= {"sampling": choices.sampling} if choices.time is None else {}
     table["columns"] = dict(choices.channels)
-    units = {
-        str(key): choices.unit(found, key).name for key in dict.fromkeys([choices.time, *choices.channels.values()])
-    }
+    units = {str(key): choices.unit(found, key).name for key in dict.fromkeys(choices.used) if key is not None}
     named = {str(column.key): column.unit for column in found.columns}
     units = {
         key: unit for key, unit in units.items() if unit != named.get(key, "") and (named.get(key) or not is_si(unit))
@@ -187,7 +190,20 @@ def table_of(choices: Choices, found: Preview) -> dict[str, Any]:
     return table | {key: value for key, value in options.items() if value not in (None, {}, [])}
 
 
-SET = ("file", "separator", "decimal", "time", "columns", "units", "start", "missing", "wraps", "decimate", "between")
+SET = (
+    "file",
+    "separator",
+    "decimal",
+    "time",
+    "sampling",
+    "columns",
+    "units",
+    "start",
+    "missing",
+    "wraps",
+    "decimate",
+    "between",
+)
 """Keys that choices set, in the order in which they are written."""
 
 

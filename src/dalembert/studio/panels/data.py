@@ -138,8 +138,8 @@ class DataPanel:
         ):
             menu.set_value(value)
             menu.set_visibility(bool(is_text))
-        self._missing.set_value(choices.missing == "leave-out")
-        self._missing.set_visibility(any(curve.missing for curve in shown.curves) or choices.missing == "leave-out")
+        self._missing.set_value(choices.missing != "refuse")
+        self._missing.set_visibility(any(curve.missing for curve in shown.curves) or choices.missing != "refuse")
         self._layout.set_text(f"{shown.samples} rows. {shown.layout[:1].upper()}{shown.layout[1:]}.")
 
     def _show_problems(self) -> None:

@@ -1,0 +1,269 @@
+"""Columns of the lines of a text file, or of what can be written as one."""
+
+import math
+from abc import abstractmethod
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from dalembert.data.clock_times import clock_seconds, is_clock
+from dalembert.data.columns import Columns, Trial, of_trial, trial_label
+from dalembert.data.format import Format, Request
+from dalembert.data.text_layout import AUTO, GAPS, Layout, Line, Row, is_number, is_plain, layout, value
+from dalembert.data.text_numbers import HEAD, lines_of_numbers, quick_table
+from dalembert.errors import DataError, unknown
+
+
+class LinesFormat(Format):
+    """A format whose files are lines of cells: its subclasses give these lines."""
+
+    trials = True
+
+    @abstractmethod
+    def lines(self, path: Path) -> list[Line]:
+        """Return the lines that are not blank, with their numbers.
+
+        Raises
+        ------
+        DataError
+        """
+
+    def columns(self, path: Path, request: Request) -> Columns:
+        one = request
+        marks = one.separator, one.decimal
+        return columns_of(path, self.lines(path), one.time, one.names, one.missing, *marks, one.trial, one.absent)
+
+    def trial_labels(self, path: Path, column: str | int, separator: str, decimal: str) -> list[str]:
+        return labels_of(path, self.lines(path), column, separator, decimal)
+
+
+def columns_of(
+    path: Path,
+    lines: Sequence[Line],
+    time: str | int | None,
+    names: Iterable[str | int] | None,
+    missing: str,
+    separator: str = AUTO,
+    decimal: str = AUTO,
+    trial: Trial | None = None,
+    absent: Iterable[str] = (),
+) -> Columns:
+    """Times and columns by their names in the file, or by their numbers from 1.
+
+    Parameters
+    ----------
+    path : Path
+    lines : sequence of (line number, text)
+    time : str, int or None
+        Column of the times, which must grow, or are times of day; the first one of a file without a header if it is
+        ``"t"``. None numbers the samples.
+    names : iterable of str or int, optional
+        Columns wanted; all but the times if not given.
+    missing : {"refuse", "leave-out"}
+        Whether an empty cell, NA or NaN is a defect, or becomes a NaN.
+    separator : str
+        ``"auto"``, or the character; a blank stands for any number of blanks and tabs.
+    decimal : {"auto", ".", ","}
+        What stands before the decimals of a number.
+    trial : Trial, optional
+        The one trial whose lines are read.
+    absent : iterable of str
+        Further words for a cell without a value.
+
+    Raises
+    ------
+    DataError
+        Naming file, line and column: no such file, empty file, no text, another separator, missing column (with the
+        nearest names) or one that is there twice, a cell that is empty, NaN or not a number, a line too short or too
+        long, a time that does not grow.
+    """
+    _refuse_marks(path, separator, decimal)
+    if not lines:
+        raise DataError(f"{path}: the file holds nothing; expected a line of column names and then lines of numbers")
+    found, rows, numbers = _laid_out(lines, time, separator, decimal, quick=trial is None)
+    if (separator, decimal) != (AUTO, AUTO):
+        _refuse_wrong_marks(path, lines[:HEAD], time, found)
+    _refuse_rows(path, found)
+    place = _places(path, found)
+    if trial is not None:
+        found = _of_trial(path, found, place(trial.column), trial)
+    if time == "t" and found.named is None:
+        time = 1
+    first = None if time is None else place(time)
+    numbering = None if trial is None else place(trial.column)
+    others = [k for k in range(len(found.header)) if k not in (first, numbering)]
+    wanted = [place(found.header[k]) for k in others] if names is None else [place(one) for one in names]
+    labels = [found.header[k] for k in wanted] if names is None else [str(one) for one in names]
+    places: list[int] = list(dict.fromkeys([*([] if first is None else [first]), *wanted]))
+    if numbers is None:
+        gaps = frozenset([*GAPS, *(word.lower() for word in absent)]) if missing == "leave-out" else frozenset()
+        table = _numbers(path, found, places, gaps, first)
+    else:
+        table = {k: np.ascontiguousarray(numbers[:, k]) for k in places}
+    units = {label: found.units[k] for label, k in zip(labels, wanted, strict=True)}
+    columns = dict(zip(labels, (table[k] for k in wanted), strict=True))
+    if first is None:
+        samples = len(found.rows) if numbers is None else len(numbers)
+        return Columns(path, "sample", np.arange(samples, dtype=float), columns, units, layout=str(found))
+    _refuse_order(path, rows or found.rows, found.header[first], table[first])
+    units[str(time)] = "" if is_clock(found.rows[0][1][first]) else found.units[first]
+    return Columns(path, str(time), table[first], columns, units, layout=str(found))
+
+
+def _laid_out(
+    lines: Sequence[Line], time: str | int | None, separator: str, decimal: str, *, quick: bool
+) -> tuple[Layout, list[Line], np.ndarray | None]:
+    """The layout of lines and, of many lines of nothing but numbers, all lines and their numbers."""
+    if quick and len(lines) > HEAD:
+        found = layout(lines[:HEAD], time, separator, decimal)
+        rows = lines_of_numbers(lines, found) if found.rows else []
+        numbers = quick_table(rows, found)
+        if numbers is not None:
+            return found, rows, numbers
+    return layout(lines, time, separator, decimal), [], None
+
+
+def labels_of(
+    path: Path, lines: Sequence[Line], column: str | int, separator: str = AUTO, decimal: str = AUTO
+) -> list[str]:
+    """Label of the trial that each line belongs to, by the column that numbers them.
+
+    Raises
+    ------
+    DataError
+    """
+    _refuse_marks(path, separator, decimal)
+    found = layout(lines, column, separator, decimal)
+    _refuse_rows(path, found)
+    return _labels(path, found, _places(path, found)(column))
+
+
+def _refuse_marks(path: Path, separator: str, decimal: str) -> None:
+    if separator != AUTO and (len(separator) != 1 or separator in '\r\n"'):
+        raise DataError(f"{path}: separator is {separator!r}; expected 'auto', or one character, such as ';'")
+    if decimal not in (AUTO, ".", ","):
+        raise DataError(f"{path}: decimal is {decimal!r}; expected 'auto', '.' or ','")
+    if decimal == separator != AUTO:
+        raise DataError(
+            f"{path}: {decimal!r} stands between the cells and before the decimals; give separator the character that "
+            "stands between the cells, such as ';'"
+        )
+
+
+def _refuse_wrong_marks(path: Path, lines: Sequence[Line], time: str | int | None, found: Layout) -> None:
+    """Refuse a separator or decimal mark with which the times are not there, and without which they are."""
+    if time is None:
+        return
+    other = layout(lines, time)
+    if time not in found.header and time in other.header:
+        raise DataError(
+            f"{path}: there is no column {time!r} with the separator or decimal mark that was given; the file seems to "
+            f"have {other}; leave separator and decimal out"
+        )
+
+
+def _refuse_rows(path: Path, found: Layout) -> None:
+    """Refuse a file without lines of numbers, and lines of another length."""
+    if not found.rows:
+        raise DataError(f"{path}: the file holds no line of numbers; expected column names and then lines of numbers")
+    width = len(found.header)
+    source = "as most lines have" if found.named is None else "as the header has"
+    for line_number, cells in found.rows:
+        if len(cells) != width:
+            raise DataError(f"{path}, line {line_number}: {len(cells)} cells; expected {width}, {source}")
+
+
+def _places(path: Path, found: Layout) -> Callable[[str | int], int]:
+    """The function from the name or number of a column to its place."""
+    header = found.header
+
+    def place(column: str | int) -> int:
+        if isinstance(column, int):
+            if not 1 <= column <= len(header):
+                raise DataError(f"{path}: there is no column {column}; expected a number from 1 to {len(header)}")
+            return column - 1
+        if column not in header:
+            more = "" if found.named else "; the file has no header, and its columns are numbers from 1"
+            raise DataError(unknown("column", column, header, str(path)) + more)
+        if header.count(column) > 1:
+            raise DataError(
+                f"{path}: {header.count(column)} columns are called {column!r}; expected one; name the column by its "
+                f"number, such as {header.index(column) + 1}"
+            )
+        return header.index(column)
+
+    return place
+
+
+def _of_trial(path: Path, found: Layout, place: int, trial: Trial) -> Layout:
+    """The lines of one trial."""
+    mask = of_trial(path, _labels(path, found, place), trial)
+    return replace(found, rows=[row for row, there in zip(found.rows, mask, strict=True) if there])
+
+
+def _labels(path: Path, found: Layout, place: int) -> list[str]:
+    """Label of the trial of each line."""
+    for line, cells in found.rows:
+        if cells[place].lower() in GAPS:
+            where = f"{path}, line {line}, column {found.header[place]!r}"
+            raise DataError(f"{where}: no trial; expected its number or name in each line")
+    return [trial_label(cells[place]) for _, cells in found.rows]
+
+
+def _numbers(
+    path: Path, found: Layout, places: Iterable[int], gaps: frozenset[str], time: int | None
+) -> dict[int, np.ndarray]:
+    """Columns (samples,) by their places; times of day are seconds since the first."""
+    table = {}
+    for k in places:
+        cells = [row[k] for _, row in found.rows]
+        if k == time and is_clock(cells[0]) and (clock := clock_seconds(cells)) is not None:
+            table[k] = clock
+            continue
+        try:
+            plain = [cell.replace(",", ".") for cell in cells] if found.decimal == "," else cells
+            column = np.array(plain, dtype=float)
+            quick = bool(np.all(np.isfinite(column))) and all(map(is_plain, cells))
+            quick = quick and not (found.decimal == "," and any("." in one for one in cells))
+        except ValueError:
+            quick = False
+        table[k] = column if quick else _slowly(path, found, k, frozenset() if k == time else gaps)
+    return table
+
+
+def _slowly(path: Path, found: Layout, column: int, gaps: frozenset[str]) -> np.ndarray:
+    """A column in which some cell is no finite number; NaN where a cell is one of the gaps."""
+    return np.array(
+        [
+            math.nan if cells[column].lower() in gaps else _number(path, (line, cells), column, found)
+            for line, cells in found.rows
+        ]
+    )
+
+
+def _number(path: Path, row: Row, column: int, found: Layout) -> float:
+    line, cell = row[0], row[1][column]
+    where = f"{path}, line {line}, column {found.header[column]!r}"
+    if not cell:
+        raise DataError(f"{where}: the cell is empty; expected a number; fill it or remove the line")
+    try:
+        number = value(cell, found.decimal)
+    except ValueError:
+        comma = found.decimal == "." and is_number(cell, ",")
+        hint = '; for numbers with decimal commas give decimal = ","' if comma else ""
+        raise DataError(f"{where}: {cell!r} is not a number{hint}") from None
+    if not math.isfinite(number):
+        raise DataError(f"{where}: {cell}; expected a finite number; remove the line or the column")
+    return number
+
+
+def _refuse_order(path: Path, rows: Sequence[tuple[int, object]], time: str, along: np.ndarray) -> None:
+    back: Sequence[int] = np.flatnonzero(np.diff(along) <= 0).tolist()
+    if back:
+        before, now = along[back[0]], along[back[0] + 1]
+        raise DataError(
+            f"{path}, line {rows[back[0] + 1][0]}, column {time!r}: {now:.10g} comes after "
+            f"{before:.10g}; expected growing values; sort the lines or remove the repeated one"
+        )

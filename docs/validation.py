@@ -32,6 +32,7 @@ AREAS = {
             "Mechanisms in space",
             "Rigid mechanisms",
             "Robots",
+            "Rotating mechanisms",
         ),
     ),
     "integrators": Area(

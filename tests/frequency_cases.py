@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from dalembert.structure import (
+    Campbell,
     Dofs,
     Material,
     Modal,
@@ -127,6 +128,15 @@ def _shaken() -> tuple[FrequencyCurve, Any]:
     system = strip()
     curve = frequency_response(system, np.linspace(60.0, 90.0, 7), FEW)
     return curve, {"deformation": deformation(system, curve)}
+
+
+def _rotating() -> Campbell:
+    """A backward and a forward mode over the speed, with a motion that grows at the last one."""
+    speeds = np.arange(5.0)
+    roots = 1j * (2.0 + np.outer(speeds, [-0.3, 0.4]))
+    whirl = np.tile([-1.0, 1.0], (5, 1))
+    growth = np.array([0.0, 0.0, 0.0, 0.0, 0.1])
+    return Campbell("speed", "rad/s", speeds, speeds, roots, whirl, growth, "fixed")
 
 
 FREQUENCY_CASES: dict[str, Case] = {
@@ -274,6 +284,15 @@ FREQUENCY_CASES: dict[str, Case] = {
             "Drawn are the first 12.",
         ),
         ("mode-shapes",),
+    ),
+    "a Campbell diagram": Case(
+        _rotating,
+        (
+            "2 modes at 5 speeds, seen in the fixed frame.",
+            "Solid lines: modes that whirl forward; dashed: backward; dotted: along a line.",
+            "The steady rotation is unstable at 1 of 5 speeds, the lowest of them 4 rad/s: a motion grows by up to",
+        ),
+        ("campbell",),
     ),
     "a reduced structure": Case(
         lambda: _reduced().errors(_full(), 5),

@@ -44,7 +44,7 @@ _NAMES = {
     "optimize": "Firefly ImprovedParticleSwarm LeastSquares Minimiser ParticleSwarm ResponseSensitivity",
     "surrogate": "Adaptive ChebyshevPolynomial Surrogate Tensor TotalDegree",
     "structure": """
-        Dofs EigenModes Material Modal ModeShapes Nodes Patch Rayleigh ReducedStructure ReductionErrors
+        Campbell Dofs EigenModes Material Modal ModeShapes Nodes Patch Rayleigh ReducedStructure ReductionErrors
         Structure box combine craig_bampton eigenmodes foot_pairs lumped mode_shapes node_motion pairs
         patched_plate plate read_structure similarity solid tie write_structure
     """,
@@ -61,7 +61,7 @@ _NAMES = {
         RegularisedFit regularise
     """,
     "multibody": """
-        System Point TimeResponse Trajectory WorkPrecision simulate equilibrium modes work_precision
+        System Point TimeResponse Trajectory WorkPrecision simulate campbell equilibrium modes work_precision
         Augmented Baumgarte GaussNewton Partitioning Projection
     """,
     "export": "export_vtk",

@@ -133,6 +133,7 @@ from dalembert.multibody import Trajectory as Trajectory
 from dalembert.multibody import UserForce as UserForce
 from dalembert.multibody import Variational as Variational
 from dalembert.multibody import WorkPrecision as WorkPrecision
+from dalembert.multibody import campbell as campbell
 from dalembert.multibody import equilibrium as equilibrium
 from dalembert.multibody import modes as modes
 from dalembert.multibody import simulate as simulate
@@ -151,6 +152,7 @@ from dalembert.priors import LogNormal as LogNormal
 from dalembert.priors import LogUniform as LogUniform
 from dalembert.priors import Normal as Normal
 from dalembert.priors import Uniform as Uniform
+from dalembert.structure import Campbell as Campbell
 from dalembert.structure import Dofs as Dofs
 from dalembert.structure import EigenModes as EigenModes
 from dalembert.structure import Material as Material

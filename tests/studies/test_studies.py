@@ -76,6 +76,11 @@ def found(study: Study, outcome: Outcome, row: dict[str, Any]) -> float:
             sample = int(np.argmin(np.abs(trajectory.times - row["at"])))
             assert trajectory.times[sample] == pytest.approx(row["at"], abs=1e-9)
             return float(trajectory.channels([quantity])[sample, 0])
+        case "campbell" if "at" in row:
+            diagram: Any = outcome.result
+            return float(diagram.frequencies[np.argmin(np.abs(diagram.values - row["at"])), int(quantity[-1]) - 1])
+        case "campbell":
+            return outcome.best["values"][quantity]
         case "sweep":
             curve = next(curve for curve in outcome.result.curves if curve.parameter == row["along"])
             sample = int(np.argmin(np.abs(curve.values - row["at"])))

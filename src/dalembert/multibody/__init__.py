@@ -8,12 +8,14 @@ from dalembert.component_index import HOMES
 from dalembert.lazy import lazy_names
 
 _NAMES = {
+    "campbell_diagram": "campbell",
     "compare_integrators": "WorkPrecision work_precision",
     "drawing": "Drawing",
     "kernels.debugging": "in_python",
     "kernels.kind": "Kind",
     "simulation": "simulate",
-    "statics": "Equilibrium Modes equilibrium modes",
+    "small_vibrations": "Modes modes",
+    "statics": "Equilibrium equilibrium",
     "system": "System",
     "time_response": "TimeResponse",
     "trajectory": "Trajectory",

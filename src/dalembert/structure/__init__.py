@@ -1,5 +1,6 @@
 """Structures as matrices: mass, stiffness and damping with named degrees of freedom."""
 
+from dalembert.structure.campbell import Campbell
 from dalembert.structure.craig_bampton import ReducedStructure, ReductionErrors, craig_bampton
 from dalembert.structure.damping import Modal, Rayleigh
 from dalembert.structure.dofs import Dofs
@@ -16,6 +17,7 @@ from dalembert.structure.springs import lumped
 from dalembert.structure.structure import Structure
 
 __all__ = [
+    "Campbell",
     "Dofs",
     "EigenModes",
     "Material",

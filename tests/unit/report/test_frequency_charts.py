@@ -1,5 +1,7 @@
 """Figures and tables of responses over frequency show the numbers of the curve."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,7 +13,7 @@ from dalembert.report import charts, figures, report
 from dalembert.report.charts.frequency.contacts import COLOURS, STATES
 from dalembert.report.focus import Look, movers
 from dalembert.report.prefixes import prefixed
-from dalembert.structure import ReductionErrors, eigenmodes, mode_shapes
+from dalembert.structure import Campbell, ReductionErrors, eigenmodes, mode_shapes
 from dalembert.uncertainty import Vertex, propagate
 from dalembert.vibration import (
     FrequencyResponse,
@@ -253,6 +255,23 @@ def test_the_interface_map_shows_the_state_of_each_phase(shape):
     assert list(contacts.marker.color) == list(colours[shape.states[:, 0]])
     assert list(figure.frames[8].data[0].marker.color) == list(colours[shape.states[:, 16]])
     assert figure.layout.xaxis.title.text == "x (m)"
+
+
+def test_a_campbell_diagram_has_modes_rotation_and_critical_speeds():
+    speeds = np.arange(5.0)
+    roots = 1j * (2.0 + np.outer(speeds, [-0.3, 0.4, 0.0]))
+    whirl = np.tile([-1.0, 1.0, 0.0], (5, 1))
+    diagram = Campbell("speed", "rad/s", speeds, speeds, roots, whirl, np.zeros(5), "fixed")
+    figure = charts.campbell(diagram)
+    assert [trace.name for trace in figure.data] == [
+        "mode 1, backward", "mode 2, forward", "mode 3", "rotation", "critical speed",
+    ]  # fmt: skip
+    assert [trace.line.dash for trace in figure.data[:3]] == ["dash", "solid", "dot"]
+    np.testing.assert_allclose(figure.data[1].y, roots[:, 1].imag / (2 * np.pi))
+    np.testing.assert_allclose(figure.data[4].x, [2.0 / 1.3, 2.0, 2.0 / 0.6])
+    assert figure.layout.yaxis.title.text == "frequency in the fixed frame (Hz)"
+    rotating = charts.campbell(replace(diagram, frame="rotating"))
+    assert [trace.name for trace in rotating.data] == ["mode 1, backward", "mode 2, forward", "mode 3"]
 
 
 def test_modes_are_drawn_one_after_another():

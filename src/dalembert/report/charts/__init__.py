@@ -9,6 +9,7 @@ _NAMES = {
     "bounds.methods": "differences methods",
     "bounds.shares": "shares",
     "frequency.backbone": "backbone",
+    "frequency.campbell": "campbell",
     "frequency.contacts": "contact_shares contact_states dissipation",
     "frequency.curve_family": "curve_family",
     "frequency.deformation": "deformation",

@@ -6,6 +6,7 @@ from dalembert.report.charts.bounds.methods import differences as differences
 from dalembert.report.charts.bounds.methods import methods as methods
 from dalembert.report.charts.bounds.shares import shares as shares
 from dalembert.report.charts.frequency.backbone import backbone as backbone
+from dalembert.report.charts.frequency.campbell import campbell as campbell
 from dalembert.report.charts.frequency.contacts import contact_shares as contact_shares
 from dalembert.report.charts.frequency.contacts import contact_states as contact_states
 from dalembert.report.charts.frequency.contacts import dissipation as dissipation

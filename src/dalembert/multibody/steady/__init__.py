@@ -1,0 +1,1 @@
+"""Steady motions: bodies that turn at constant rates, and small vibrations about them."""

@@ -1,0 +1,232 @@
+"""Frequencies of a rotating system over its speed: the Campbell diagram."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.optimize import linear_sum_assignment
+
+from dalembert.contents import Contents
+from dalembert.findings import Finding
+from dalembert.results import Result, text_table
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+FIXED = "fixed"
+_LINE = 0.02
+"""Whirl up to which a mode counts as motion along a line."""
+_GROWS = 1e-6
+"""Growth rate, against the largest root, from which a motion counts as unstable."""
+
+
+class SpeedModes(NamedTuple):
+    """Modes at one speed.
+
+    Parameters
+    ----------
+    speed : float
+        rad/s.
+    roots : complex array, shape (modes,)
+    shapes : complex array, shape (coordinates, modes)
+        In the same coordinates at all speeds.
+    whirl : array, shape (modes,)
+    growth : float
+        1/s.
+    """
+
+    speed: float
+    roots: np.ndarray
+    shapes: np.ndarray
+    whirl: np.ndarray
+    growth: float
+
+
+class CriticalSpeed(NamedTuple):
+    """A speed at which a mode has the frequency of the rotation.
+
+    Parameters
+    ----------
+    speed : float
+        rad/s, interpolated between the speeds of the diagram.
+    mode : int
+        Number of the mode, from 1 on.
+    direction : {"forward", "backward", ""}
+    """
+
+    speed: float
+    mode: int
+    direction: str
+
+
+@dataclass(frozen=True, eq=False)
+class Campbell(Result):
+    """Modes over the speed, as :func:`~dalembert.multibody.campbell` returns them.
+
+    Parameters
+    ----------
+    parameter, unit : str
+        What was varied.
+    values : array, shape (speeds,)
+        Its values.
+    speeds : array, shape (speeds,)
+        Angular velocity of the fastest body, rad/s.
+    roots : complex array, shape (speeds, modes)
+        1/s: decay rate and angular frequency; NaN where a mode does not oscillate.
+    whirl : array, shape (speeds, modes)
+        1 for a mode that whirls forward on circles, -1 for one that whirls backward, 0 along a line.
+    growth : array, shape (speeds,)
+        Largest growth rate of any motion, 1/s; 0 for stable motions.
+    frame : {"fixed", "rotating"}
+        Where the frequencies are observed.
+    """
+
+    FORMAT: ClassVar[str] = "dalembert Campbell diagram 1"
+
+    parameter: str
+    unit: str
+    values: np.ndarray
+    speeds: np.ndarray
+    roots: np.ndarray
+    whirl: np.ndarray
+    growth: np.ndarray
+    frame: str
+
+    @property
+    def frequencies(self) -> np.ndarray:
+        """Hz, (speeds, modes)."""
+        return np.imag(self.roots) / (2.0 * np.pi)
+
+    @property
+    def damping_ratios(self) -> np.ndarray:
+        """Relative to critical damping, (speeds, modes)."""
+        return -np.real(self.roots) / np.abs(self.roots)
+
+    def direction(self, mode: int, row: int | None = None) -> str:
+        """Return how a mode, numbered from 0 on, whirls at one speed, or at most speeds."""
+        own = self.whirl[:, mode] if row is None else self.whirl[[row], mode]
+        return direction(float(np.nanmedian(own))) if np.isfinite(own).any() else ""
+
+    @cached_property
+    def critical_speeds(self) -> tuple[CriticalSpeed, ...]:
+        """Speeds at which a mode has the frequency of the rotation, ascending.
+
+        An unbalance excites modes that whirl forward there, and backward ones only if supports are anisotropic. In a
+        rotating frame, frequencies are measured against the rotor, and there are none.
+        """
+        if self.frame != FIXED or len(self.speeds) < 2:
+            return ()
+        found = []
+        order = np.argsort(self.speeds)
+        for mode in range(self.roots.shape[1]):
+            gap = (np.imag(self.roots[:, mode]) - self.speeds)[order]
+            known = np.isfinite(gap)
+            speeds = self.speeds[order][known]
+            if len(speeds) < 2 or np.any(np.diff(speeds) <= 0.0):
+                continue
+            for speed in CubicSpline(speeds, gap[known]).roots(extrapolate=False):
+                if speed > 0.0:
+                    row = int(np.nanargmin(np.abs(self.speeds - speed)))
+                    found.append(CriticalSpeed(float(speed), mode + 1, self.direction(mode, row)))
+        return tuple(sorted(found))
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:  # type: ignore[override]
+        """Speeds at which a motion grows."""
+        largest = np.nanmax(np.abs(self.roots), axis=1, initial=1e-300)
+        grows = np.flatnonzero(self.growth > _GROWS * largest)
+        if not len(grows):
+            return ()
+        first = int(grows[np.argmin(self.speeds[grows])])
+        worst = int(np.argmax(self.growth))
+        values = {"speed": float(self.speeds[first]), "speeds": len(grows), "growth": float(self.growth[worst])}
+        return (
+            Finding(
+                "unstable-rotation",
+                "warning",
+                values,
+                f"The steady rotation is unstable at {len(grows)} of {len(self.speeds)} speeds, the lowest of them "
+                f"{self.speeds[first]:.6g} rad/s: a motion grows by up to {self.growth[worst]:.3g} 1/s.",
+                "Frequencies there are those of small motions that do not stay small. Add damping of the supports, or "
+                "run at other speeds.",
+            ),
+        )
+
+    @property
+    def success(self) -> bool:
+        """True: speeds without a steady rotation are an error."""
+        return True
+
+    @property
+    def status(self) -> str:
+        """What was computed, in a sentence."""
+        count = self.roots.shape[1]
+        return f"{count} modes at {len(self.speeds)} speeds, seen in the {self.frame} frame."
+
+    def summary(self) -> str:
+        """Status, critical speeds and findings."""
+        rows = [["critical speed (rad/s)", "mode", "whirl"]]
+        rows += [[f"{own.speed:.6g}", str(own.mode), own.direction] for own in self.critical_speeds]
+        lines = [self.status, *(text_table(rows) if len(rows) > 1 else [])]
+        return "\n".join([*lines, *map(str, self.findings)])
+
+    def contents(self) -> Contents:
+        variables = {
+            "values": (("speed",), self.values, {"units": self.unit}),
+            "speeds": (("speed",), self.speeds, {"units": "rad/s"}),
+            "real": (("speed", "mode"), np.real(self.roots), {"units": "1/s"}),
+            "imaginary": (("speed", "mode"), np.imag(self.roots), {"units": "rad/s"}),
+            "whirl": (("speed", "mode"), self.whirl),
+            "growth": (("speed",), self.growth, {"units": "1/s"}),
+        }
+        attributes = {"format": self.FORMAT, "parameter": self.parameter, "unit": self.unit, "frame": self.frame}
+        return Contents(variables, attributes=attributes)
+
+    @classmethod
+    def from_xarray(cls, dataset: "Dataset") -> "Campbell":
+        """The diagram that :meth:`to_xarray` turned into a dataset."""
+        found = {name: dataset[name].values for name in ("values", "speeds", "real", "imaginary", "whirl", "growth")}
+        roots = found["real"] + 1j * found["imaginary"]
+        facts = dataset.attrs
+        own = found["values"], found["speeds"], roots, found["whirl"], found["growth"]
+        return cls(str(facts["parameter"]), str(facts["unit"]), *own, str(facts["frame"]))
+
+
+def direction(whirl: float) -> str:
+    """Return the direction of a whirl in words; empty for a motion along a line."""
+    return "" if abs(whirl) <= _LINE else "forward" if whirl > 0.0 else "backward"
+
+
+def followed(modes: Sequence[SpeedModes], count: int | None) -> tuple[np.ndarray, np.ndarray]:
+    """Return roots and whirl (speeds, modes) with each mode in one column, followed from the highest speed down.
+
+    Modes of neighbouring speeds are paired by their shapes and their roots: 1 - MAC plus the relative distance of the
+    roots. At the highest speed they are in the order of their frequencies.
+    """
+    order = np.argsort([-own.speed for own in modes], kind="stable")
+    first = modes[order[0]]
+    columns = list(range(len(first.roots)))[:count]
+    width = len(columns)
+    roots = np.full((len(modes), width), np.nan, dtype=complex)
+    whirl = np.full((len(modes), width), np.nan)
+    known_roots, known_shapes, known_whirl = (own[..., columns] for own in (first.roots, first.shapes, first.whirl))
+    roots[order[0]], whirl[order[0]] = known_roots, known_whirl
+    for row in order[1:]:
+        own = modes[row]
+        cost = _distance(known_roots, known_shapes, known_whirl, own)
+        for column, other in zip(*linear_sum_assignment(cost), strict=True):
+            roots[row, column], whirl[row, column] = own.roots[other], own.whirl[other]
+            known_roots[column], known_shapes[:, column] = own.roots[other], own.shapes[:, other]
+            known_whirl[column] = own.whirl[other]
+    return roots, whirl
+
+
+def _distance(roots: np.ndarray, shapes: np.ndarray, whirl: np.ndarray, other: SpeedModes) -> np.ndarray:
+    """How unlike modes are, (modes, other modes)."""
+    sizes = np.linalg.norm(shapes, axis=0)[:, None] * np.linalg.norm(other.shapes, axis=0)
+    alike = (np.abs(shapes.conj().T @ other.shapes) / np.where(sizes > 0.0, sizes, 1.0)) ** 2
+    apart = np.abs(roots[:, None] - other.roots) / np.maximum(np.abs(roots)[:, None], np.abs(other.roots))
+    return (1.0 - alike) + apart + 0.5 * np.abs(whirl[:, None] - other.whirl)

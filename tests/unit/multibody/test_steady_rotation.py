@@ -70,6 +70,15 @@ def test_shapes_satisfy_the_joints_and_are_scaled():
     np.testing.assert_allclose(found.shapes[:3], 0.0, atol=1e-12)  # the ball joint holds the origin
 
 
+def test_masses_that_move_along_a_line_vibrate_as_at_rest():
+    system = da.System(gravity=(0.0, 0.0))
+    ends = [system.add(da.PointMass(name, 2.0, (x, 0.0), velocity=(3.0, 0.0))) for name, x in (("a", 0.0), ("b", 1.0))]
+    system.add(da.Spring("spring", ends[0].centre, ends[1].centre, stiffness=400.0, free_length=1.0))
+    found = da.modes(system)
+    np.testing.assert_allclose(found.frequencies * 2 * np.pi, [20.0], rtol=1e-9)
+    assert (found.frame, found.speed) == ("fixed", 0.0)
+
+
 def swinging():
     system = da.System()
     bar = system.add(da.RigidBar("bar", length=1.0, mass=1.0, angular_velocity=3.0))

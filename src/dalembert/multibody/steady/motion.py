@@ -21,6 +21,7 @@ _LONGEST = 0.5  # of the extent, or rad: largest step of Newton's method
 _STEADY = 1e-7  # relative change of the equations along the motion that counts as none
 _INSTANTS = (0.1373, 0.3819, 0.7221)  # of a turn, at which the equations are compared with those of the start
 _RANK = 1e-11
+_AT_REST = 1e-12  # m/s or rad/s: rounding of velocities that follow from joints
 _NEUTRAL = 1e-8  # of the largest stiffness
 
 
@@ -63,7 +64,7 @@ class _Unsteady(Exception):
 
 def moves(lowered: Lowered) -> bool:
     """Whether a mechanism moves at its start."""
-    return bool(np.any(np.abs(np.real(lowered.v[:-1])) > 0.0))
+    return bool(np.any(np.abs(np.real(lowered.v[:-1])) > _AT_REST))
 
 
 def steady_equations(lowered: Lowered, frame: str | None = None) -> SteadyEquations:
@@ -207,7 +208,9 @@ class _Steady:
         state = self.at(0.0)[0]
         self._check(state)
         first = self._matrices(0.0, None)
-        turns = max(float(np.sqrt(rate @ rate)), 1e-300)
+        spin = float(np.sqrt(rate @ rate))
+        # A motion along a line has no turn: it is looked at over its extent.
+        turns = spin or float(np.abs(state.v).max() / scales(self.lowered).max())
         for instant in _INSTANTS:
             later = self._matrices(2.0 * np.pi * instant / turns, first[-1])
             sizes = [np.abs(own).max(initial=0.0) for own in first[:3]]
@@ -216,7 +219,7 @@ class _Steady:
                 if np.abs(now - then).max(initial=0.0) > _STEADY * size:
                     raise _Unsteady(f"the {what} matrix changes along the motion")
         m, c, k, x, shapes, free = first
-        unit = rate / turns
+        unit = rate / turns if spin else rate
         turned = block_diag(*(node.turned(unit) for node in self.nodes))
         whole = np.zeros((len(x), free.shape[1]))
         whole[:n] = shapes[:n] @ free

@@ -81,12 +81,13 @@ class MotionModel(ABC):
                 except Exception as error:  # the user's builder raised: this sample's failure, not the batch's
                     failures[row] = told(error)
             if samples:
-                runs = solver.integrate([*samples.values()], (), problem, self.times[-1], logged=False)
+                end, counted = self.times[-1], self._built.observer.counted
+                runs = solver.integrate([*samples.values()], (), problem, end, logged=False, counted=counted)
                 for (row, lowered), run in zip(samples.items(), runs, strict=True):
                     if run.reason:
                         failures[row] = str(run.reason)
                     else:
-                        values[row] = self._read(lowered, lowered.real, run.states)
+                        values[row] = self._read(lowered, lowered.real, run.states, run.turns)
 
         with in_complex_numbers(strict=False):
             list(ensemble(work, _parts(len(vectors), workers), workers=workers))
@@ -115,14 +116,15 @@ class MotionModel(ABC):
             lowered, perturbed = self._perturbed(vector)
             active = [column for column, own in enumerate(perturbed) if _moves(own)]
             directions = [perturbed[column] for column in active]
-            (run,) = self._built.solver.integrate([lowered], directions, self.problem, self.times[-1])
+            end, counted = self.times[-1], self._built.observer.counted
+            (run,) = self._built.solver.integrate([lowered], directions, self.problem, end, counted=counted)
         if run.reason:
             raise run.reason
         for name, own in zip(self.parameters.names, perturbed, strict=True):
             for error in (*lowered.failures.inexact, *own.failures.inexact):
                 raise inexact(name, error) from error
         self._compare(vector, lowered, run)
-        values = self._read(lowered, lowered.real, run.states)
+        values = self._read(lowered, lowered.real, run.states, run.turns)
         jacobian = np.empty((*values.shape, len(vector)))
         for column, own in enumerate(perturbed):
             states = [part.astype(complex) for part in run.states[:3]]
@@ -142,9 +144,11 @@ class MotionModel(ABC):
         lowered, columns = self._lower(vector), range(len(vector))
         return lowered, [self._built.perturbed_at(vector, column, self.begin, closed=True) for column in columns]
 
-    def _read(self, lowered: Lowered, model: Model, states: Any) -> np.ndarray:
-        """Channels of states x, v and a (samples, N + 1), (samples, channels)."""
-        return self._built.observer.read(lowered, model, states, self.times)
+    def _read(self, lowered: Lowered, model: Model, states: Any, turns: np.ndarray | None = None) -> np.ndarray:
+        """Channels of states x, v and a (samples, N + 1), (samples, channels), with turns (samples, angles)."""
+        observer = self._built.observer
+        counted = {} if turns is None else dict(zip(observer.counted, turns.T, strict=True))
+        return observer.read(lowered, model, states, self.times, counted)
 
     def _compare(self, vector: np.ndarray, lowered: Lowered, run: Run) -> None:
         """Compare the complex step with differences along a motion, where that is due: here it is not."""

@@ -1,6 +1,6 @@
 """Channels by name: what can be read off a motion."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,6 +10,7 @@ from dalembert.errors import InputError, unknown
 from dalembert.forward import Channel
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.evaluate import energies, energy_kernels
+from dalembert.multibody.integrators.turns import CountedAngle, turn_kernels
 from dalembert.multibody.kernels.histories import outputs_history
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.model import Model
@@ -18,6 +19,8 @@ from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.system import Mechanism
 
 _OF_SYSTEM = {"kinetic_energy": (1.0, 0.0), "potential_energy": (0.0, 1.0), "total_energy": (1.0, 1.0)}
+
+_NO_TURNS: Mapping[CountedAngle, np.ndarray] = {}
 
 
 @dataclass(frozen=True)
@@ -36,13 +39,11 @@ class _Row:
     weights: tuple[float, float] = (0.0, 0.0)
 
     @property
-    def turns(self) -> bool:
-        """Whether it is an angle that is known up to whole turns."""
-        if self.kind is None:
-            return False
-        name, wraps = self.kind.outputs[self.output][0], "wraps" in self.kind.integers
-        wrapped = wraps and name == "angle" and self.integers[self.kind.integers.index("wraps")] == 1
-        return wrapped or name in self.kind.angles
+    def angle(self) -> CountedAngle | None:
+        """The angle that it is, if it is one that is known up to whole turns."""
+        if self.kind is None or self.output not in self.kind.turning(self.integers):
+            return None
+        return CountedAngle(self.kind, self.source, self.output)
 
     def numbers(self, lowered: Lowered) -> np.ndarray:
         """The numbers of the component in a sample."""
@@ -70,10 +71,22 @@ class Observer:
         """Kernels that read the channels, and those that differentiate them."""
         kinds, types = dict.fromkeys(row.kind for row in self.rows), (float, complex)[: 1 + derivatives]
         own = [kind.kernel("outputs", dtype) for dtype in types for kind in kinds if kind is not None]
-        return [*[outputs_history] * bool(own), *own, *(energy_kernels(lowered, derivatives) if None in kinds else [])]
+        energies_too = energy_kernels(lowered, derivatives) if None in kinds else []
+        return [*[outputs_history] * bool(own), *own, *energies_too, *turn_kernels(self.counted)]
 
-    def read(self, lowered: Lowered, model: Model, states: Sequence[np.ndarray], times: np.ndarray) -> np.ndarray:
-        """Values (samples, channels) from states x, v and a (samples, N + 1), real or complex, at times in s."""
+    @property
+    def counted(self) -> tuple[CountedAngle, ...]:
+        """Angles among the channels that are known up to whole turns."""
+        return tuple(dict.fromkeys(row.angle for row in self.rows if row.angle))
+
+    def read(
+        self, lowered: Lowered, model: Model, states: Sequence[np.ndarray], times: np.ndarray,
+        turns: Mapping[CountedAngle, np.ndarray] = _NO_TURNS,
+    ) -> np.ndarray:  # fmt: skip
+        """Values (samples, channels) from states x, v and a (samples, N + 1), real or complex, at times in s.
+
+        ``turns`` (samples,) of angles are whole turns that the integration counted.
+        """
         x, v, a = map(np.ascontiguousarray, states[:3])
         out = np.empty((len(x), len(self.channels)), dtype=x.dtype)
         for kind in dict.fromkeys(row.kind for row in self.rows):
@@ -84,23 +97,12 @@ class Observer:
                 out[:, columns] = energies(model, x, v, still, still)[:, :2] @ weights.T
             else:
                 values = _outputs(kind, [self.rows[column] for column in columns], lowered, model, x, v, a, times)
-                names = [name for name, _ in kind.outputs]
                 for place, column in enumerate(columns):
                     row = self.rows[column]
                     out[:, column] = values[:, place, row.output]
-                    if row.turns:
-                        rates = np.real(values[:, place, names.index("rate")]) if "rate" in names else None
-                        out[:, column] += _turned(np.real(out[:, column]), rates, times)
+                    if (angle := row.angle) is not None and angle in turns:
+                        out[:, column] += 2.0 * np.pi * turns[angle]
         return out
-
-
-def _turned(angles: np.ndarray, rates: np.ndarray | None, times: np.ndarray) -> np.ndarray:
-    """Turns to add to angles in rad, so that each is nearest to what the mean rate expects from the one before."""
-    if rates is None:
-        return np.unwrap(angles) - angles
-    expected = 0.5 * (rates[1:] + rates[:-1]) * np.diff(times)
-    turns = np.round((expected - np.diff(angles)) / (2.0 * np.pi))
-    return 2.0 * np.pi * np.concatenate([[0.0], np.cumsum(turns)])
 
 
 def _outputs(

@@ -270,9 +270,9 @@ class MotionSegment(MotionModel):
             perturbed.append(completion.applied(placed, shifted))
         return lowered, perturbed
 
-    def _read(self, lowered: Lowered, model: Model, states: Any) -> np.ndarray:
+    def _read(self, lowered: Lowered, model: Model, states: Any, turns: np.ndarray | None = None) -> np.ndarray:
         """Channels of the model and numbers of the state, (samples, channels)."""
-        values = super()._read(lowered, model, states)
+        values = super()._read(lowered, model, states, turns)
         if self.ends is None:
             return values
         numbers = self.ends.read(np.concatenate([part[:, : lowered.structure.n] for part in states[:2]], axis=1))

@@ -14,6 +14,7 @@ from dalembert.multibody.callbacks import in_complex_numbers
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.run import make_problem
+from dalembert.multibody.integrators.turns import counted_angles, turn_kernels
 from dalembert.multibody.long_runs import MOST_STEPS, check_pace, check_steps, works
 from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.lowering import lower
@@ -82,10 +83,10 @@ def simulate(
     with in_complex_numbers(strict=False):
         lowered, chosen, times, grid = posed(system, end, solver, times, most_steps, begin)
         check_pace(lowered, chosen, end)
-        problem = make_problem(lowered, grid)
-        (result,) = chosen.integrate([lowered], (), problem, end)
+        problem, counted = make_problem(lowered, grid), counted_angles(lowered)
+        (result,) = chosen.integrate([lowered], (), problem, end, counted=counted)
         if other := integrator(solver, end).instead(result.reason):
-            (second,) = other.integrate([lowered], (), problem, end)
+            (second,) = other.integrate([lowered], (), problem, end, counted=counted)
             chosen, result = (chosen, result) if second.reason else (other, second)
     if result.reason:
         raise result.reason
@@ -151,7 +152,7 @@ def prepared(
     """Return the assembled mechanism and the integrator that suits it, compiled and checked; with its channels."""
     placed = lower(system, begin)
     kernels = [*placed.kernels(False), *solver.suiting(placed, end).kernels(placed.structure, False)]
-    prepare([*kernels, *(readers.kernels(placed, False) if readers else ())])
+    prepare([*kernels, *(readers.kernels(placed, False) if readers else turn_kernels(counted_angles(placed)))])
     lowered = assembled(system, placed=placed)
     refuse_unstable_start(system, lowered)
     solver = solver.suiting(lowered, end)

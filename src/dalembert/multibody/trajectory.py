@@ -22,6 +22,7 @@ from dalembert.multibody.drawing import Drawing, draw
 from dalembert.multibody.evaluate import energies, energy_kernels, violations
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.run import Run
+from dalembert.multibody.integrators.turns import CountedAngle, counted_angles
 from dalembert.multibody.kernels.motion import MotionState
 from dalembert.multibody.lost_freedom import no_freedom
 from dalembert.multibody.lowered import Lowered
@@ -93,7 +94,7 @@ class Trajectory(Displayed):
         names += [f"{name}.{axis}" for name, axes in bushings.items() for axis in axes]
         readers = observer(self.system, self.lowered, names)
         prepare(readers.kernels(self.lowered, False))
-        values = readers.read(self.lowered, self.lowered.real, self.run.states, self.run.times)
+        values = readers.read(self.lowered, self.lowered.real, self.run.states, self.run.times, self._turns)
         unsuited = (
             slip_findings(name, own, self.run.times, column, self.solver.fixed_step)
             for (name, own), column in zip(joints.items(), values.T, strict=False)
@@ -101,6 +102,11 @@ class Trajectory(Displayed):
         vectors = np.split(values[:, len(joints) :], len(bushings), axis=1) if bushings else []
         turned = half_turns(self.run.times, dict(zip(bushings, vectors, strict=True)))
         return (*self.system.findings, *of_motion, *chain.from_iterable(unsuited), *turned)
+
+    @cached_property
+    def _turns(self) -> dict[CountedAngle, np.ndarray]:
+        """Whole turns of angles at all times of the run."""
+        return dict(zip(counted_angles(self.lowered), self.run.turns.T, strict=True))
 
     @property
     def channel_names(self) -> tuple[str, ...]:
@@ -117,7 +123,8 @@ class Trajectory(Displayed):
         """
         own = observer(self.system, self.lowered, names_of(names, "Trajectory", "channels"))
         prepare(own.kernels(self.lowered, False))
-        return own.read(self.lowered, self.lowered.real, self.states, self.times)
+        turns = {angle: counted[self.rows] for angle, counted in self._turns.items()}
+        return own.read(self.lowered, self.lowered.real, self.states, self.times, turns)
 
     def reactions(self, joint: str) -> np.ndarray:
         """Force (N) and torque (N m) of a joint on its second side at its point, in the fixed axes.

@@ -51,7 +51,9 @@ def pulled(model: "BuiltModel", vector: np.ndarray) -> tuple[np.ndarray, Pull]:
     with in_complex_numbers(strict=True):
         lowered = model.lowered_at(vector, model.begin, closed=True)
         motion = MotionPullback.of(lowered, solver, model.observer, model.problem, model.times)
-        response = model.observer.read(lowered, lowered.real, motion.motion.samples, model.times)
+        stored, counted = motion.motion, model.observer.counted
+        turns = dict(zip(counted, stored.turns.T, strict=True))
+        response = model.observer.read(lowered, lowered.real, stored.samples, model.times, turns)
 
     def pull(cotangent: np.ndarray) -> np.ndarray:
         with in_complex_numbers(strict=True):

@@ -1,6 +1,6 @@
 """A motion by generalized-alpha with the states of all its steps, for the adjoint."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -13,6 +13,7 @@ from dalembert.multibody.integrators.batch import Batch, make_batch, restarts
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.run import Run
+from dalembert.multibody.integrators.turns import CountedAngle
 from dalembert.multibody.kernels.motion import MotionState
 from dalembert.multibody.lowered import Lowered
 
@@ -53,6 +54,8 @@ class StoredMotion:
         State at the start of each stretch, with its accelerations.
     keeper : Keeper
     samples : MotionState of arrays (samples, N + 1)
+    turns : array (samples, angles)
+        Of the angles that were counted.
     owners, shares : array (samples,)
         Step that each sample lies in, -1 for the start, and the share of that step.
     """
@@ -63,11 +66,18 @@ class StoredMotion:
     starts: tuple[MotionState, ...]
     keeper: Keeper
     samples: MotionState
+    turns: np.ndarray
     owners: np.ndarray
     shares: np.ndarray
 
 
-def stored_motion(lowered: Lowered, solver: GeneralizedAlpha, problem: Problem, times: np.ndarray) -> StoredMotion:
+def stored_motion(
+    lowered: Lowered,
+    solver: GeneralizedAlpha,
+    problem: Problem,
+    times: np.ndarray,
+    counted: Sequence[CountedAngle] = (),
+) -> StoredMotion:
     """Integrate until the last of the times, s, and keep the state of each step, or checkpoints beyond `ROOM`.
 
     Steps that were halved, or chosen by the method, are only known afterwards: then the motion is integrated twice.
@@ -84,7 +94,7 @@ def stored_motion(lowered: Lowered, solver: GeneralizedAlpha, problem: Problem, 
     if expected is not None and 4 * width * len(expected) > ROOM:
         expected = None
     grid = np.union1d(times, [0.0] if expected is None else expected)
-    run, batch = _run(lowered, solver, problem, grid, end)
+    run, batch = _run(lowered, solver, problem, grid, end, counted)
     ends = run.ends
     if run.counts[0] > len(ends):
         raise InputError(
@@ -101,7 +111,7 @@ def stored_motion(lowered: Lowered, solver: GeneralizedAlpha, problem: Problem, 
         if expected is None or len(ends) != len(expected) - 1:
             expected = np.concatenate([[0.0], ends])
             grid = np.union1d(times, expected)
-            run, batch = _run(lowered, solver, problem, grid, end)
+            run, batch = _run(lowered, solver, problem, grid, end, counted)
         rows = np.searchsorted(grid, expected)
         path = Path(*(part[1:] if len(rows) == len(part) else part[rows[1:]] for part in run.states[:3]))
         before = (MotionState(*(part[s.first - 1].copy() for part in (*path, path.a))) for s in stretches[1:])
@@ -109,13 +119,15 @@ def stored_motion(lowered: Lowered, solver: GeneralizedAlpha, problem: Problem, 
         keeper = Stored(path)
     picked = np.searchsorted(grid, times)
     samples = MotionState(*(part[picked] for part in run.states))
-    return StoredMotion(batch.problem, steps, stretches, starts, keeper, samples, *_owners(times, steps))
+    turns = batch.counters[0].turns[picked] if counted else np.zeros((len(times), 0))
+    return StoredMotion(batch.problem, steps, stretches, starts, keeper, samples, turns, *_owners(times, steps))
 
 
 def _run(
-    lowered: Lowered, solver: GeneralizedAlpha, problem: Problem, grid: np.ndarray, end: float
-) -> tuple[Run, Batch]:
-    batch = make_batch([lowered], (), problem._replace(times=grid), end, True)
+    lowered: Lowered, solver: GeneralizedAlpha, problem: Problem, grid: np.ndarray, end: float,
+    counted: Sequence[CountedAngle],
+) -> tuple[Run, Batch]:  # fmt: skip
+    batch = make_batch([lowered], (), problem._replace(times=grid), end, True, counted)
     (run,) = solver.run(batch)
     if run.reason:
         raise run.reason

@@ -96,7 +96,7 @@ class MotionPullback:
         cls, lowered: Lowered, solver: GeneralizedAlpha, observer: Observer, problem: Problem, times: np.ndarray
     ) -> "MotionPullback":
         """Integrate a motion and keep its states."""
-        return cls(lowered, solver, observer, stored_motion(lowered, solver, problem, times), times)
+        return cls(lowered, solver, observer, stored_motion(lowered, solver, problem, times, observer.counted), times)
 
     def gradient(self, cotangent: np.ndarray, active: np.ndarray) -> np.ndarray:
         """Derivative of the sum of cotangent * response by all numbers of the model that are active, (numbers,).

@@ -1,7 +1,7 @@
 """Samples that an integrator runs together: their smooth stretches of motion, their states at the start, their logs."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,6 +9,7 @@ import numpy as np
 from dalembert.errors import SolveError
 from dalembert.multibody.integrators.problem import Log, Models, Problem
 from dalembert.multibody.integrators.run import Run
+from dalembert.multibody.integrators.turns import CountedAngle, TurnCounter
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.model import addresses
 from dalembert.multibody.kernels.motion import MotionState, resting, row
@@ -49,6 +50,8 @@ class Batch:
         At the start; integrators may overwrite them.
     dstates : MotionState of arrays (directions, N + 1)
         Derivatives of the states at the start; integrators may overwrite them.
+    counters : sequence of TurnCounter
+        One a sample, of the turns of angles; empty if none are counted.
     """
 
     samples: Sequence[Lowered]
@@ -58,12 +61,18 @@ class Batch:
     logged: bool
     states: MotionState
     dstates: MotionState
+    counters: Sequence[TurnCounter] = ()
+
+    def begin_counting(self) -> np.ndarray:
+        """Reset the counters; return their addresses, (samples,), zeros if there are none."""
+        counted = [counter.begin().address for counter in self.counters]
+        return np.array(counted or [0] * len(self.samples), dtype=np.int64)
 
     def __iter__(self) -> Iterator[Sample]:
         directions = addresses(entry.complex_model.need("rates") for entry in self.perturbed)
-        for number, lowered in enumerate(self.samples):
+        for number, (lowered, turns) in enumerate(zip(self.samples, self.begin_counting().tolist(), strict=True)):
             edges = self.problem.edges[number, : self.problem.stretches[number] + 1]
-            models = Models(lowered.real.need("rates").address, lowered.tangents.address, directions)
+            models = Models(lowered.real.need("rates").address, lowered.tangents.address, directions, turns)
             yield Sample(lowered, edges, row(self.states, number), models)
 
     @property
@@ -91,14 +100,21 @@ class Batch:
 
     def only(self, number: int) -> "Batch":
         """Return the batch of one of the samples, at the start."""
-        return make_batch([self.samples[number]], self.perturbed, self.problem, self.end, self.logged)
+        batch = make_batch([self.samples[number]], self.perturbed, self.problem, self.end, self.logged)
+        return replace(batch, counters=self.counters[number : number + 1])
 
 
 def make_batch(
-    samples: Sequence[Lowered], perturbed: Sequence[Lowered], problem: Problem, end: float, logged: bool
+    samples: Sequence[Lowered],
+    perturbed: Sequence[Lowered],
+    problem: Problem,
+    end: float,
+    logged: bool,
+    counted: Sequence[CountedAngle] = (),
 ) -> Batch:
-    """Return the batch of samples that share a structure, from 0 to ``end`` (s)."""
-    return Batch(samples, perturbed, cut(samples, problem, end), end, logged, *_starts(samples, perturbed))
+    """Return the batch of samples that share a structure, from 0 to ``end`` (s), with the turns of angles."""
+    counters = [TurnCounter(entry, counted, len(problem.times)) for entry in samples] if counted else ()
+    return Batch(samples, perturbed, cut(samples, problem, end), end, logged, *_starts(samples, perturbed), counters)
 
 
 def smooth_stretches(jumps: Sequence[float], end: float) -> np.ndarray:

@@ -20,6 +20,7 @@ from dalembert.multibody.integrators.partitioning import (
     settle,
 )
 from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, VELOCITY, Models, Problem
+from dalembert.multibody.integrators.turns import STEP_END, count_turns
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.model import Call
 from dalembert.multibody.kernels.motion import Histories, MotionState, MotionStates, copy, resting, row, rows
@@ -180,6 +181,7 @@ def begin(problem: Problem, rule: Rule, models: Models, step: Step, walk: Walk) 
         walk.chosen[1] = 0.0
         if not accelerate(problem, models, t, within, walk.old, walk.dold, walk.consistency):
             return SINGULAR
+        count_turns(models.turns, t, walk.old, STEP_END)
     old, own, work = walk.old, walk.partition, walk.consistency.complex_work
     set_signals(models.complex, t, within, work)
     linearise(problem, models.complex, old, work, own)
@@ -233,7 +235,9 @@ def finish(
         state, dstates = (walk.new, walk.dnew) if share > 0.0 else (walk.old, walk.dold)
         if due < step.last:
             _record(state, dstates, out, dout, due)
+            count_turns(models.turns, problem.times[due], state, due)
     copy(walk.new, walk.old)
+    count_turns(models.turns, step.end, walk.old, STEP_END)
     for d in range(len(models.directions)):
         copy(row(walk.dnew, d), row(walk.dold, d))
     return DONE

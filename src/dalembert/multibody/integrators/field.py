@@ -10,6 +10,7 @@ from dalembert.multibody.integrators.batch import Sample
 from dalembert.multibody.integrators.completion import complete, make_tools, partition
 from dalembert.multibody.integrators.index1 import PARTITIONED, PROJECTED, Terms
 from dalembert.multibody.integrators.problem import DONE, Models, Problem
+from dalembert.multibody.integrators.turns import STEP_END, count_turns
 from dalembert.multibody.kernels.motion import MotionState, resting
 
 
@@ -102,6 +103,11 @@ class Field:
             target[due] = values
         for target, values in zip(self.dout, self._dstates, strict=True):
             target[:, due] = values
+        self.count_turns(self.problem.times[due], due)
+
+    def count_turns(self, t: float, due: int = STEP_END) -> None:
+        """Count the turns of angles at the present state: an output by its number, or the end of a step."""
+        count_turns(self._perturbed.models.turns, t, self.state, due)
 
     def _joined(self, first: np.ndarray, second: np.ndarray, dfirst: np.ndarray, dsecond: np.ndarray) -> np.ndarray:
         n = self.n

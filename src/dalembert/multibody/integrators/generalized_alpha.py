@@ -27,6 +27,7 @@ from dalembert.multibody.integrators.problem import (
     note_step,
 )
 from dalembert.multibody.integrators.run import Run, explain
+from dalembert.multibody.integrators.turns import STEP_END, count_turns
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.model import Call, addresses
 from dalembert.multibody.kernels.motion import (
@@ -122,7 +123,8 @@ class GeneralizedAlpha(Integrator):
         calls = real[0].call(), complex_models[0].call()
         integrate(
             problem, restarts(samples, problem), settings, addresses(real), addresses(complex_models),
-            directions, batch.states, batch.dstates, out, dout, log, ends, _workspace(problem, *calls, len(perturbed)),
+            directions, batch.begin_counting(), batch.states, batch.dstates, out, dout, log, ends,
+            _workspace(problem, *calls, len(perturbed)),
         )  # fmt: skip
         runs, shortened = [], f"the step of {self.step:g} s was cut down {'' if self.adaptive else 'to 1/256 '}for it"
         for number, (lowered, (status, time, moved)) in enumerate(zip(samples, ends, strict=True)):
@@ -171,8 +173,8 @@ def _workspace(problem: Problem, call: Call, complex_call: Call, directions: int
 @kernel
 def integrate(
     problem: Problem, opens: Integers2, settings: Settings, models: Integers, complex_models: Integers,
-    directions: Integers, states: MotionStates, dstates: MotionStates, out: Histories, dout: Histories, log: Log,
-    ends: Reals2, room: Workspace,
+    directions: Integers, turns: Integers, states: MotionStates, dstates: MotionStates, out: Histories,
+    dout: Histories, log: Log, ends: Reals2, room: Workspace,
 ) -> None:  # fmt: skip
     """Run a stack of samples from ``problem.edges[sample, 0]`` to the last edge; fill the states at the output times.
 
@@ -185,6 +187,8 @@ def integrate(
         Models in real and in complex numbers.
     directions : array of addresses
         Complex models, one a direction of differentiation; empty if there is more than one sample.
+    turns : array of addresses, shape (samples,)
+        What counts the turns of angles, 0 for none.
     states : MotionStates
         At the start, (samples, N + 1); overwritten.
     dstates : MotionStates
@@ -200,8 +204,9 @@ def integrate(
         clear(log.counts)
         edges = problem.edges[sample, : problem.stretches[sample] + 1]
         ends[sample, 0], ends[sample, 1], ends[sample, 2] = _integrate(
-            problem, edges, opens[sample], settings, Models(models[sample], complex_models[sample], directions),
-            row(states, sample), dstates, rows(out, sample), dout, log, room,
+            problem, edges, opens[sample], settings,
+            Models(models[sample], complex_models[sample], directions, turns[sample]), row(states, sample), dstates,
+            rows(out, sample), dout, log, room,
         )  # fmt: skip
 
 
@@ -225,6 +230,7 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
             if not accelerate(problem, models, begin, within, new, dstates, room.consistency):
                 return SINGULAR, begin, 0
         if stretch == 0:
+            count_turns(models.turns, begin, new, STEP_END)
             while due < len(problem.times) and problem.times[due] <= begin:
                 _record(n, 1.0, 1.0, new, new, dstates, dstates, out, dout, due)
                 due += 1
@@ -281,7 +287,9 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
             while due < len(problem.times) and problem.times[due] <= target + 1e-9 * length:
                 share = min(1.0, (problem.times[due] - t) / length)
                 _record(n, length, share, old, new, dolds, dstates, out, dout, due)
+                count_turns(models.turns, problem.times[due], row(out, due), due)
                 due += 1
+            count_turns(models.turns, target, new, STEP_END)
             t = target
             if settings.adaptive:
                 if log.counts[0] >= settings.most_steps:

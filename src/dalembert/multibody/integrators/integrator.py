@@ -16,6 +16,7 @@ from dalembert.multibody.integrators.batch import Batch, make_batch, smooth_stre
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.rotors import with_rotors, without_rotors
 from dalembert.multibody.integrators.run import Run, make_problem
+from dalembert.multibody.integrators.turns import CountedAngle
 from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.structure import Structure
 
@@ -43,6 +44,7 @@ class Integrator(Checked, ABC):
         end: float,
         *,
         logged: bool = True,
+        counted: Sequence[CountedAngle] = (),
     ) -> list[Run]:
         """Return runs of samples that share a structure, from 0 to ``end`` (s), with the states at ``problem.times``.
 
@@ -57,6 +59,8 @@ class Integrator(Checked, ABC):
         end : float
         logged : bool
             Keep what happened at each step.
+        counted : sequence of CountedAngle
+            Angles whose turns are counted.
 
         Raises
         ------
@@ -64,7 +68,7 @@ class Integrator(Checked, ABC):
             For masses that change with the coordinates, if the method needs constant ones.
         """
         if not (self.constant_masses and any(map(varying_masses, (*samples, *perturbed)))):
-            return self.run(make_batch(samples, perturbed, problem, end, logged))
+            return self._counted(make_batch(samples, perturbed, problem, end, logged, counted))
         if alone := next((kind.name for kind in samples[0].data if kind.varying_mass and kind.rotor is None), ""):
             raise ModelError(
                 f"{type(self).__name__} needs masses that do not change with the coordinates, as those of {alone!r} "
@@ -72,8 +76,13 @@ class Integrator(Checked, ABC):
             )
         moved, kept = with_rotors([*samples, *perturbed])
         own = make_problem(moved[0], problem.times)
-        runs = self.run(make_batch(moved[: len(samples)], moved[len(samples) :], own, end, logged))
-        return [without_rotors(run, kept) for run in runs]
+        batch = make_batch(moved[: len(samples)], moved[len(samples) :], own, end, logged, counted)
+        return [without_rotors(run, kept) for run in self._counted(batch)]
+
+    def _counted(self, batch: Batch) -> list[Run]:
+        """Runs with the turns that they counted."""
+        runs = self.run(batch)
+        return [replace(run, turns=own.turns) for run, own in zip(runs, batch.counters, strict=False)] or runs
 
     def __str__(self) -> str:
         """The settings that are not the usual ones: ``GeneralizedAlpha(step=0.001)``."""

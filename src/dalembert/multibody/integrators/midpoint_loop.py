@@ -26,6 +26,7 @@ from dalembert.multibody.integrators.problem import (
     note_step,
 )
 from dalembert.multibody.integrators.settling import settle, settle_along
+from dalembert.multibody.integrators.turns import STEP_END, count_turns
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.model import Call
 from dalembert.multibody.kernels.motion import Histories, MotionState, MotionStates, clear, copy, resting, row
@@ -173,6 +174,7 @@ def integrate(
         while True:
             if arrived:  # in one place: what is inlined twice is compiled twice
                 append(t, new, dnews, True, last)
+                count_turns(models.turns, t, new, STEP_END)
             while due < len(times) and times[due] <= t + 1e-9 * h:
                 if not record(problem, matrices, False, models, outputs, within, out, dout, due):
                     return NEWTON_FAILED, times[due], 0

@@ -109,6 +109,7 @@ class OdeSolver(Integrator):
                 own.choose(begin)
                 if (status := own.complete(begin, projected=False)) != DONE:
                     raise explain(own.lowered, status, begin, 0, "the motion begins there")
+                own.count_turns(begin)
                 while due < len(own.problem.times) and own.problem.times[due] <= begin and not ends:
                     own.record(due)
                     due += 1
@@ -145,6 +146,7 @@ class OdeSolver(Integrator):
                 own.record(number)
             due = last
             own.put(solver.y)
+            own.count_turns(reached)
             if own.moves or own.choose(reached):
                 if own.complete(reached, projected=True) != DONE:
                     raise self._explain(own, reached, "the state does not come back to the constraints")

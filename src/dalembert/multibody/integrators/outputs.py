@@ -10,6 +10,7 @@ from dalembert.multibody.integrators.ends import Ends, ends, interpolate_ends, s
 from dalembert.multibody.integrators.matrices import Matrices, renew
 from dalembert.multibody.integrators.problem import POSITION, Models, Problem
 from dalembert.multibody.integrators.settling import settle, settle_along
+from dalembert.multibody.integrators.turns import count_turns
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.motion import Histories, MotionState, MotionStates, copy, resting, row, rows
 
@@ -68,6 +69,7 @@ def record(
         if not settle(problem, matrices, models.real, state, room.moved, room.work, POSITION):
             return False
     write(state, row(out, due))
+    count_turns(models.turns, t, state, due)
     if len(models.directions) > 0:
         _record_along_at(room.along, problem, matrices, models.directions, room, whole, oldest, within, dout, due)
     return True

@@ -44,11 +44,15 @@ class Problem(NamedTuple):
 
 
 class Models(NamedTuple):
-    """Addresses of a sample's models: in real and in complex numbers, and complex ones moved along each direction."""
+    """Addresses of a sample's models: in real and in complex numbers, and complex ones moved along each direction.
+
+    ``turns``: address of the record that counts the turns of angles, 0 for none.
+    """
 
     real: Address
     complex: Address
     directions: Integers
+    turns: Address = 0
 
 
 class Log(NamedTuple):

@@ -25,6 +25,7 @@ from dalembert.multibody.integrators.radau_derivatives import differentiate, set
 from dalembert.multibody.integrators.radau_step import attempt, speed_of
 from dalembert.multibody.integrators.radau_workspace import Along, Settings, Step
 from dalembert.multibody.integrators.settling import settle
+from dalembert.multibody.integrators.turns import STEP_END, count_turns
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.motion import Histories, MotionState, MotionStates, clear, copy, row
 
@@ -107,6 +108,7 @@ def integrate(
         while True:
             if arrived:  # in one place: what is inlined twice is compiled twice
                 append(t, new, dstates, settled, last)
+                count_turns(models.turns, t, new, STEP_END)
             arrived, settled, ready = False, False, False
             while due < len(times) and times[due] <= t + 1e-9 * taken:
                 ready = ready or _settle_ends(

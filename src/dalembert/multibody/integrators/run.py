@@ -1,6 +1,6 @@
 """What a run of an integrator leaves, the problem that its samples share, and why a run ended early."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -26,6 +26,8 @@ class Run:
         Steps, Newton iterations, factorisations, rejected steps.
     iterations, ends : array
         Newton iterations of each step, and the step's end, s.
+    turns : array (samples, angles)
+        Whole turns of the angles that were counted.
     """
 
     reason: SolveError | None
@@ -35,6 +37,7 @@ class Run:
     counts: np.ndarray
     iterations: np.ndarray
     ends: np.ndarray
+    turns: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
 
 
 def make_problem(lowered: Lowered, times: np.ndarray) -> Problem:

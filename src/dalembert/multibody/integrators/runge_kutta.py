@@ -18,6 +18,7 @@ from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.problem import DIVERGED, DONE, SINGULAR, Log, Models, Problem
 from dalembert.multibody.integrators.run import Run, explain
 from dalembert.multibody.integrators.stabilisation import Projection, Stabilisation, posed
+from dalembert.multibody.integrators.turns import STEP_END, count_turns
 from dalembert.multibody.kernels.motion import (
     Histories,
     MotionState,
@@ -208,6 +209,7 @@ def integrate(
         status = complete(problem, terms, models, stage.state, stage.dstates, tools, begin, within, False)
         if status != DONE:
             return status, begin
+        count_turns(models.turns, begin, stage.state, STEP_END)
         while stretch == 0 and due < len(problem.times) and problem.times[due] <= begin:
             _record(stage.stack, out, due)
             due += 1
@@ -244,5 +246,7 @@ def integrate(
                     if status != DONE:
                         return status, t
                 _record(between.stack, out, due)
+                count_turns(models.turns, problem.times[due], between.state, due)
                 due += 1
+            count_turns(models.turns, target, stage.state, STEP_END)
     return DONE, edges[-1]

@@ -287,6 +287,18 @@ def outputs(kind: Declaration, dtype: type) -> BlockKernel:
     return _each(kind, "outputs", dtype, step)
 
 
+def turn(kind: Declaration, dtype: type) -> BlockKernel:
+    """Fill angles and rates of the components, (count, 2 angles), at the call's ``r``."""
+    function: Any = kind.turn
+    wide, (_, view2) = 2 * len(kind.angles), arithmetic(dtype)
+
+    @inlined
+    def step(x, v, a, p, m, inputs, call, block, e):
+        function(x, v, p, m, view2(call.r, block.count, wide)[e])
+
+    return _each(kind, "turn", dtype, step)
+
+
 MAKERS: dict[str, Callable[[Declaration, type], BlockKernel]] = {
-    "residual": residual, "rates": rates, "energy": energy, "outputs": outputs,
+    "residual": residual, "rates": rates, "energy": energy, "outputs": outputs, "turn": turn,
 }  # fmt: skip

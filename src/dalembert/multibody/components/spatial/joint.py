@@ -60,6 +60,12 @@ def joint_rate(x, v, p, m):
 
 
 @inlined
+def observe_turn(x, v, p, m, out):
+    """Fill angle and rate."""
+    out[0], out[1] = joint_angle(x, p, m), joint_rate(x, v, p, m)
+
+
+@inlined
 def joint_displacement(x, p, m):
     """Displacement of b relative to a along e3."""
     return dot(e3(x, p, m), separation(x, p, m))
@@ -145,6 +151,7 @@ def joint_kind(
         "quadratic": all(entry.quadratic for entry in conditions),
         "outputs": (*REACTIONS, *ANGLE * angle, *DISPLACEMENT * displacement),
         "angles": ("angle",) * angle,
+        "turn": observe_turn,
         "observe": observed(forces, pairs.COORDINATES + count, angle, displacement),
         "lengths": pairs.LENGTHS,
         "holds": True,

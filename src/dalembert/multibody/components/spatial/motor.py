@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.motor_law import INTEGERS, NUMBERS, MotorNumbers, Turning, drive_properties
 from dalembert.multibody.components.points import require_direction
-from dalembert.multibody.components.spatial.joint import joint_angle, joint_rate, turned_to
+from dalembert.multibody.components.spatial.joint import joint_angle, joint_rate, observe_turn, turned_to
 from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
@@ -36,8 +36,8 @@ def _twist(x, p, m, torque, r):
 
 _PROPERTIES = drive_properties(_command, Turning(joint_angle, joint_rate, _acceleration, _twist))
 MOTOR = pair_kind(
-    "motor_in_space", __name__, NUMBERS, (*INTEGERS, "command"), angles=("angle",), varying_mass="inertia",
-    rotor=TURNING_ROTOR, **_PROPERTIES,
+    "motor_in_space", __name__, NUMBERS, (*INTEGERS, "command"), angles=("angle",), turn=observe_turn,
+    varying_mass="inertia", rotor=TURNING_ROTOR, **_PROPERTIES,
 )  # fmt: skip
 
 

@@ -18,6 +18,7 @@ from dalembert.multibody.components.spatial.joint import (
     joint_rate,
     joint_speed,
     observe_reactions,
+    observe_turn,
 )  # fmt: skip
 from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
@@ -76,6 +77,7 @@ MOTION = pair_kind(
     energy=_energy,
     outputs=(*REACTIONS, *ANGLE, *DISPLACEMENT),
     angles=("angle",),
+    turn=observe_turn,
     observe=_observe,
     observes_inputs=True,
     lengths=LENGTHS,

@@ -32,12 +32,18 @@ _reactions = observed(forces_of(_CROSS, COORDINATES), COORDINATES + 4, angle=Fal
 
 
 @inlined
+def _observe_turns(x, v, p, m, out):
+    """Angles and rates of both pins."""
+    first, other, spin = e1(x, p, m), f2(x, p, m), relative_spin(x, v, m)
+    out[0], out[1] = angle_of(dot(e2(x, p, m), other), dot(e3(x, p, m), other)), dot(spin, first)
+    out[2], out[3] = angle_of(dot(first, f1(x, p, m)), dot(first, f3(x, p, m))), dot(spin, other)
+
+
+@inlined
 def _observe(x, v, a, p, m, inputs, out):
     """Reactions, the turns about both pins, b = R(e1, angle_a) R(f2, angle_b) a, and rates spin . e1 and spin . f2."""
     _reactions(x, v, a, p, m, inputs, out)
-    first, other, spin = e1(x, p, m), f2(x, p, m), relative_spin(x, v, m)
-    out[12], out[13] = angle_of(dot(e2(x, p, m), other), dot(e3(x, p, m), other)), dot(spin, first)
-    out[14], out[15] = angle_of(dot(first, f1(x, p, m)), dot(first, f3(x, p, m))), dot(spin, other)
+    _observe_turns(x, v, p, m, out[12:])
 
 
 UNIVERSAL = joint_kind(
@@ -46,6 +52,7 @@ UNIVERSAL = joint_kind(
     *_CROSS,
     outputs=(*REACTIONS, *ANGLES),
     angles=("angle_a", "angle_b"),
+    turn=_observe_turns,
     observe=_observe,
 )
 

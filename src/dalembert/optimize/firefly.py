@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from dalembert.arguments import Checked, limited
 from dalembert.intervals import corners
 from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, fitness_of
+from dalembert.optimize.swarm import MOST_PARTICLES
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,7 @@ class Firefly(Checked):
     ('the fitness fell below the target of 1e-15', [0.3, 0.3])
     """
 
-    fireflies: int = limited(60, least=1)
+    fireflies: int = limited(60, least=1, most=MOST_PARTICLES)
     absorption: float = limited(1.0, least=0)
     attraction: float = limited(0.7, above=0)
     randomness: float = limited(0.7, least=0, below=1)

@@ -53,6 +53,10 @@ class SwarmState:
         return float(np.min(self.own_fitness))
 
 
+MOST_PARTICLES = 1_000_000
+"""A swarm of 1e9 would take the memory of the machine before it computes anything."""
+
+
 @dataclass(frozen=True)
 class Swarm(Checked, ABC):
     """Base of the swarms: a whole swarm is one batch, and ``advance`` is one iteration.
@@ -66,7 +70,7 @@ class Swarm(Checked, ABC):
 
     name: ClassVar[str]
     """Name in study files; a subclass needs no other registration."""
-    particles: int = limited(40, least=1)
+    particles: int = limited(40, least=1, most=MOST_PARTICLES)
     iterations: int = limited(100, least=1)
 
     def start(

@@ -95,6 +95,10 @@ def users_code() -> Iterator[None]:
     """
     try:
         yield
+    except MemoryError as error:
+        raise InputError(
+            f"the study needs more memory than there is: {told(error)}. Choose fewer samples, simulations or starts"
+        ) from error
     except (Exception, SystemExit) as error:
         if isinstance(error, DalembertError) or not users_place(error):
             raise

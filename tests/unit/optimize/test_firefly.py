@@ -122,7 +122,7 @@ def test_progress_tells_a_best_that_never_rises():
 @pytest.mark.parametrize(
     ("settings", "sentence"),
     [
-        ({"fireflies": 0}, "Firefly: fireflies is 0; expected a whole number of at least 1"),
+        ({"fireflies": 0}, "Firefly: fireflies is 0; expected a whole number from 1 to 1e+06"),
         ({"absorption": -1.0}, "Firefly: absorption is -1; expected zero or a positive number"),
         ({"attraction": 0.0}, "Firefly: attraction is 0; expected a positive number"),
         ({"randomness": 1.0}, "Firefly: randomness is 1; expected a number of at least 0 and below 1"),

@@ -11,6 +11,7 @@ from dalembert.study.study import Study
 from dalembert.study.table import Read, StudyTable, told_apart
 from dalembert.study.tasks.task import Outcome, ResultTask
 from dalembert.study.tasks.wrong import needs_parameters, needs_solver, unnamed
+from dalembert.study.unused import few, unused_parameters
 
 ROUND = 40
 """Simulations of a round beside its sensitivities, about: ten gradients by the adjoint."""
@@ -56,7 +57,13 @@ class Regularise(ResultTask):
             wrong.append("[regularise] needs a [data] table")
         elif table.weight == "discrepancy" and file.data.deviations is None:
             wrong.append("[regularise], weight: 'discrepancy' compares with the noise; give deviations in [data]")
-        return [*wrong, *unnamed(_smooth(file) or (), file.parameters, "[regularise], smooth")]
+        smooth = _smooth(file)
+        unused = [name for name in unused_parameters(file) if smooth is None or name in smooth]
+        if unused:
+            wrong.append(
+                f"[regularise], smooth: no number of the model depends on {few(unused)}; use them in the model"
+            )
+        return [*wrong, *unnamed(smooth or (), file.parameters, "[regularise], smooth")]
 
     def plan(self, study: Study) -> str:
         model, data = posed(study)

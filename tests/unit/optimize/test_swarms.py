@@ -133,7 +133,7 @@ def test_the_standard_move_is_the_textbook_formula():
         (lambda: ParticleSwarm(particles=0), "ParticleSwarm: particles is 0; expected a whole number from 1 to 1e+06"),
         (
             lambda: ImprovedParticleSwarm(iterations=0),
-            "ImprovedParticleSwarm: iterations is 0; expected a whole number from 1 to 1e+06",
+            "ImprovedParticleSwarm: iterations is 0; expected a whole number of at least 1",
         ),
         (
             lambda: ParticleSwarm(velocity_limit=-1.0),

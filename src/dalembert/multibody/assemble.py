@@ -227,6 +227,12 @@ def redundancy(lowered: Lowered) -> Redundancy:
     return Redundancy(len(order), rank, tuple(names))
 
 
+def inner_constraints(lowered: Lowered) -> int:
+    """Number of constraints inside of bodies, such as those between the axes of a rigid body in space."""
+    structure = lowered.structure
+    return sum(owner in lowered.bodies for owner in structure.owners[structure.n : structure.size])
+
+
 def _is_regular(jacobian: csr_matrix) -> bool:
     """Whether the rows are independent beyond doubt: by the squared distances of each from those before it.
 
@@ -252,9 +258,11 @@ def refuse_redundancy(lowered: Lowered) -> None:
     count, rank, names = redundancy(lowered)
     if rank < count:
         refuse_locked(lowered)
+        inside = inner_constraints(lowered)
+        followers = ", ".join(map(repr, names))
         raise ModelError(
-            f"the constraints are redundant: {count} were given, {rank} are independent at the start; "
-            f"those of {', '.join(map(repr, names))} follow from the others. Take a joint out or replace one by a "
+            f"the constraints are redundant: {count - inside} were given, {rank - inside} are independent at the "
+            f"start; those of {followers} follow from the others. Take a joint out or replace one by a "
             "joint that holds less (a revolute joint instead of a fixed one), or start from a position that is not "
             "singular; RungeKutta4 and OdeSolver take redundant constraints as they are"
         )

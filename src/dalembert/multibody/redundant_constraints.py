@@ -1,7 +1,7 @@
 """Findings on joints whose constraints follow from those of others."""
 
 from dalembert.findings import Finding
-from dalembert.multibody.assemble import redundancy
+from dalembert.multibody.assemble import inner_constraints, redundancy
 from dalembert.multibody.lowered import Lowered
 
 
@@ -13,8 +13,7 @@ def redundant_constraints(lowered: Lowered) -> tuple[Finding, ...]:
     count, rank, joints = redundancy(lowered)
     if not joints:
         return ()
-    structure = lowered.structure
-    inside = sum(owner in lowered.bodies for owner in structure.owners[structure.n : structure.size])
+    inside = inner_constraints(lowered)
     names = ", ".join(map(repr, joints))
     return (
         Finding(

@@ -1,6 +1,9 @@
 """The finding on joints whose constraints follow from those of others."""
 
-from dalembert.multibody import RungeKutta4, simulate
+import pytest
+
+from dalembert.errors import ModelError
+from dalembert.multibody import GeneralizedAlpha, RungeKutta4, simulate
 from dalembert.multibody.spatial import Inertia, RevoluteJoint, RigidBody, SpatialSystem
 
 
@@ -28,6 +31,11 @@ def test_a_door_needs_one_hinge():
         "one that holds less, or a bushing."
     )
     assert str(found) in motion.summary()
+
+
+def test_the_error_counts_the_constraints_of_joints_alone():
+    with pytest.raises(ModelError, match=r"^the constraints are redundant: 10 were given, 5 are independent"):
+        simulate(door(2), 0.01, GeneralizedAlpha(step=5e-3))
 
 
 def test_nothing_follows_from_others_on_one_hinge():

@@ -13,6 +13,8 @@ import numpy as np
 from dalembert.errors import InputError, counted, require_known, shown
 from dalembert.multibody.trees.omissions import Omission
 
+UNLIMITED = float(np.finfo(float).max)
+"""The largest number stands for no limit: most readers of URDF know no infinite numbers."""
 MOVING = ("inertial", "mass", "inertia", "axis", "dynamics", "mimic")
 """Elements of links and joints on which the motion depends."""
 STANDING = ("fixed", "floating", "planar")
@@ -126,12 +128,13 @@ class Element:
         return self.numbers(name, 1, None if default is None else (default,))[0]
 
     def limit(self, name: str, default: float) -> float:
-        """A number of an attribute that may be infinite."""
+        """A number of an attribute that may be infinite, or so large that it stands for no limit."""
         given = self.attributes.get(name, "").strip().lower()
         if given in ("inf", "-inf"):
             self.used.add(name)
             return float(given)
-        return self.number(name, default)
+        value = self.number(name, default)
+        return float(np.copysign(np.inf, value)) if abs(value) >= UNLIMITED else value
 
     @property
     def size(self) -> tuple[int, int]:

@@ -13,6 +13,7 @@ from dalembert.files import replacing
 from dalembert.multibody.components.spatial.inertia import Inertia
 from dalembert.multibody.components.spatial.orientation import Pose
 from dalembert.multibody.trees.tree import REVOLUTE, Shape, Tree, TreeJoint
+from dalembert.multibody.trees.urdf_document import UNLIMITED
 
 _ATTRIBUTES = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",), "mesh": ("scale",)}
 
@@ -20,7 +21,8 @@ _ATTRIBUTES = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("r
 def write_urdf(tree: Tree, path: str | os.PathLike[str]) -> None:
     """Write a robot to a URDF file, with all digits of its numbers; :func:`read_urdf` reads the same tree.
 
-    What was not imported is not written. An armature inertia is written as the attribute ``armature`` of
+    What was not imported is not written, such as collision shapes. A limit that the tree has not is written as the
+    largest number, since other programs require limits. An armature inertia is written as the attribute ``armature`` of
     ``<dynamics>``, which is an addition to URDF; other programs ignore it.
 
     Raises
@@ -97,7 +99,7 @@ def _link(robot: Element, name: str, inertia: Inertia | None, shapes: tuple[Shap
 
 
 def _joint(robot: Element, joint: TreeJoint, parent: str, child: str) -> None:
-    endless = joint.kind == REVOLUTE and np.isinf(joint.lower) and np.isinf(joint.upper)
+    endless = joint.kind == REVOLUTE and joint.lower == -np.inf and joint.upper == np.inf
     own = SubElement(robot, "joint", name=joint.name, type="continuous" if endless else joint.kind)
     SubElement(own, "parent", link=parent)
     SubElement(own, "child", link=child)
@@ -105,11 +107,11 @@ def _joint(robot: Element, joint: TreeJoint, parent: str, child: str) -> None:
     if not joint.moves:
         return
     SubElement(own, "axis", xyz=_text(*joint.axis))
+    # The specification requires the element with effort and velocity, and other readers know no infinite numbers.
     limits = {} if endless else {"lower": joint.lower, "upper": joint.upper}
-    rates = {"effort": joint.effort, "velocity": joint.velocity}
-    limits |= {name: value for name, value in rates.items() if np.isfinite(value)}
-    if any(map(np.isfinite, limits.values())):
-        SubElement(own, "limit", {name: _text(value) for name, value in limits.items()})
+    limits |= {"effort": joint.effort, "velocity": joint.velocity}
+    finite = {name: float(np.clip(value, -UNLIMITED, UNLIMITED)) for name, value in limits.items()}
+    SubElement(own, "limit", {name: _text(value) for name, value in finite.items()})
     resisting = {name: getattr(joint, name) for name in ("damping", "friction", "armature")}
     if any(resisting.values()):
         given = {name: _text(value) for name, value in resisting.items() if value or name != "armature"}

@@ -367,3 +367,49 @@ def test_complex_numbers_are_not_written(file, tmp_path):
     links = (*tree.links[:-1], replace(tree.links[-1], joint=TreeJoint("end", "fixed", Pose((1j, 0.0, 0.0)))))
     with pytest.raises(InputError, match="expected real numbers"):
         write_urdf(replace(tree, links=links), tmp_path / "again.urdf")
+
+
+UNLIMITED_JOINTS = {
+    "turn": TreeJoint("turn"),
+    "slide": TreeJoint("slide", "prismatic"),
+    "one side": TreeJoint("bend", lower=-0.5),
+    "limited": TreeJoint("bend", lower=-0.5, upper=1.5, effort=20.0, velocity=3.0),
+}
+
+
+@pytest.mark.parametrize("name", UNLIMITED_JOINTS)
+def test_written_joints_have_the_limits_that_other_programs_require(tmp_path, name):
+    """The element with finite effort and velocity; for joints other than continuous ones also lower and upper."""
+    joint, path = UNLIMITED_JOINTS[name], tmp_path / "arm.urdf"
+    write_urdf(Tree("robot", "base", (Link("arm", "base", joint, Inertia.sphere(2.0, 0.1)),)), path)
+    element = minidom.parse(str(path)).getElementsByTagName("joint")[0]
+    (limit,) = element.getElementsByTagName("limit")
+    required = {"effort", "velocity"} | (set() if element.getAttribute("type") == "continuous" else {"lower", "upper"})
+    assert set(limit.attributes.keys()) == required
+    assert all(np.isfinite(float(value)) for _, value in limit.attributes.items())
+    assert read_urdf(path).joints == (joint,)
+
+
+@pytest.mark.parametrize("name", UNLIMITED_JOINTS)
+def test_pinocchio_reads_written_joints(tmp_path, name):
+    pinocchio = pytest.importorskip("pinocchio")
+    joint, path = UNLIMITED_JOINTS[name], tmp_path / "arm.urdf"
+    write_urdf(Tree("robot", "base", (Link("arm", "base", joint, Inertia.sphere(2.0, 0.1)),)), path)
+    model = pinocchio.buildModelFromUrdf(str(path))
+    assert model.nv == 1
+    largest = np.finfo(float).max
+    assert model.velocityLimit[0] == min(joint.velocity, largest)
+    assert model.effortLimit[0] == min(joint.effort, largest)
+    if joint.kind == "prismatic" or np.isfinite(joint.lower):
+        assert model.lowerPositionLimit[0] == max(joint.lower, -largest)
+
+
+@pytest.mark.parametrize("name", UNLIMITED_JOINTS)
+def test_mujoco_reads_written_joints(tmp_path, name):
+    mujoco = pytest.importorskip("mujoco")
+    path = tmp_path / "arm.urdf"
+    write_urdf(Tree("robot", "base", (Link("arm", "base", UNLIMITED_JOINTS[name], Inertia.sphere(2.0, 0.1)),)), path)
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data)
+    assert np.all(np.isfinite(data.qacc))

@@ -47,6 +47,8 @@ class Modes:
         Angular velocity of the fastest body, rad/s; 0 at rest.
     frame : {"fixed", "rotating"}
         Where the frequencies are observed: in the fixed axes, or in axes that turn with a body.
+    frame_speed : float
+        Angular velocity of the frame, rad/s.
     whirl : array, shape (modes,)
         1 for a mode whose bodies move forward on circles about the axis of the fastest body, -1 for backward, 0 for a
         motion along a line, and in between for ellipses; 0 at rest.
@@ -59,6 +61,7 @@ class Modes:
     growth: float
     speed: float
     frame: str
+    frame_speed: float
     whirl: np.ndarray
 
 
@@ -137,7 +140,7 @@ def modes(state: Mechanism | Equilibrium, count: int | None = None, *, frame: st
     shapes[:n] = free @ vectors[:, kept]
     shapes /= shapes[np.argmax(np.abs(shapes), axis=0), np.arange(len(kept))]
     growth = growth if growth > _FREE * largest else 0.0
-    return _modes(roots[kept], shapes, growth, 0.0, FIXED, np.zeros(len(kept)))
+    return _modes(roots[kept], shapes, growth, 0.0, FIXED, 0.0, np.zeros(len(kept)))
 
 
 def _about_rotation(lowered: Lowered, count: int | None, frame: str | None) -> Modes:
@@ -151,12 +154,22 @@ def _about_rotation(lowered: Lowered, count: int | None, frame: str | None) -> M
     shapes = equations.shapes @ found.shapes[:, kept]
     shapes = shapes / shapes[np.argmax(np.abs(shapes), axis=0), np.arange(shapes.shape[1])]
     direction = whirl(found.shapes[:, kept], equations.mass, equations.turn)
-    return _modes(found.roots[kept], shapes, found.growth, equations.speed, equations.frame, direction)
+    return _modes(
+        found.roots[kept], shapes, found.growth, equations.speed, equations.frame, equations.frame_speed, direction
+    )
 
 
-def _modes(roots: np.ndarray, shapes: np.ndarray, growth: float, speed: float, frame: str, whirl: np.ndarray) -> Modes:
+def _modes(
+    roots: np.ndarray,
+    shapes: np.ndarray,
+    growth: float,
+    speed: float,
+    frame: str,
+    frame_speed: float,
+    whirl: np.ndarray,
+) -> Modes:
     frequencies, ratios = np.imag(roots) / (2 * np.pi), -np.real(roots) / np.abs(roots)
-    return Modes(frequencies, ratios, shapes, roots, growth, speed, frame, whirl)
+    return Modes(frequencies, ratios, shapes, roots, growth, speed, frame, frame_speed, whirl)
 
 
 def _undamped(k: np.ndarray, m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

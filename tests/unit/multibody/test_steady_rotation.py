@@ -6,7 +6,16 @@ import pytest
 import dalembert as da
 from dalembert.errors import InputError, ModelError
 from dalembert.multibody.assemble import assembled
-from dalembert.multibody.spatial import Inertia, RigidBody, SpatialSystem, SphericalJoint, Spring
+from dalembert.multibody.spatial import (
+    Bushing,
+    Inertia,
+    RevoluteJoint,
+    RigidBody,
+    SpatialSystem,
+    SphericalJoint,
+    Spring,
+    UniversalJoint,
+)
 from dalembert.multibody.steady.motion import steady_equations
 from support import says
 
@@ -62,6 +71,24 @@ def test_an_unbalanced_rotor_whirls_steadily_in_the_rotating_frame():
     found = da.modes(jeffcott(speed, eccentricity))
     np.testing.assert_allclose(found.frequencies * 2 * np.pi, np.sqrt(square) + np.array([-speed, speed]), rtol=1e-9)
     np.testing.assert_allclose(found.whirl, [1.0, -1.0], atol=1e-9)
+
+
+def test_a_rotor_on_a_turntable_is_seen_from_the_table():
+    system, table_speed = SpatialSystem(gravity=(0.0, 0.0, 0.0)), 5.0
+    around = {"angular_velocity": (0.0, 0.0, table_speed), "points": {"mount": (0.4, 0.0, 0.2)}}
+    table = system.add(RigidBody("table", Inertia(10.0, (1.0, 1.0, 2.0)), **around))
+    mount, ball = table.point("mount"), Inertia(1.0, (0.01, 0.01, 0.01))
+    wheel = Inertia(1.0, (0.01, 0.01, 0.016))
+    gyro = system.add(RigidBody("gyro", wheel, mount, angular_velocity=(0.0, 0.0, 100.0)))
+    bob = system.add(RigidBody("bob", ball, mount, angular_velocity=(0.0, 0.0, table_speed)))
+    system.add(RevoluteJoint("base", system.ground, table.point("origin")))
+    system.add(RevoluteJoint("axle", mount, gyro.point("origin")))
+    system.add(UniversalJoint("cross", mount, bob.point("origin")))
+    system.add(Bushing("springs", mount, bob.point("origin"), stiffness=(0.0, 0.0, 0.0, 5.0, 5.0, 0.0)))
+    found = da.modes(system)
+    assert (found.frame, found.frame_speed, found.speed) == ("rotating", table_speed, 100.0)
+    # the bob is a ball: w^2 - W w - k/I = 0 in the frame of the table
+    np.testing.assert_allclose(found.frequencies * 2 * np.pi, [20.0, 25.0], rtol=1e-7)
 
 
 def test_shapes_satisfy_the_joints_and_are_scaled():

@@ -32,8 +32,8 @@ class SteadyEquations:
     Parameters
     ----------
     frame : {"fixed", "rotating"}
-    rate : array, shape (1,) or (3,)
-        Fastest angular velocity of a body, rad/s, in the fixed axes.
+    frame_rate, rate : array, shape (1,) or (3,)
+        Angular velocities of the frame and of the fastest body, rad/s, in the fixed axes.
     x : array, shape (N + 1,)
         Coordinates and multipliers of the motion at the time 0.
     mass, damping, stiffness : array, shape (freedoms, freedoms)
@@ -44,6 +44,7 @@ class SteadyEquations:
     """
 
     frame: str
+    frame_rate: np.ndarray
     rate: np.ndarray
     x: np.ndarray
     mass: np.ndarray
@@ -55,7 +56,12 @@ class SteadyEquations:
     @property
     def speed(self) -> float:
         """Magnitude of the rate, rad/s."""
-        return float(np.sqrt(self.rate @ self.rate))
+        return float(np.linalg.norm(self.rate))
+
+    @property
+    def frame_speed(self) -> float:
+        """Magnitude of the rate of the frame, rad/s."""
+        return float(np.linalg.norm(self.frame_rate))
 
 
 class _Unsteady(Exception):
@@ -224,7 +230,7 @@ class _Steady:
         whole = np.zeros((len(x), free.shape[1]))
         whole[:n] = shapes[:n] @ free
         mass = shapes[:n].T @ self.tangents(x, state, 0.0)[2][:n, :n] @ shapes[:n]
-        return SteadyEquations(name, rate, x, m, c, k, whole, free.T @ mass @ turned @ free)
+        return SteadyEquations(name, self.frame.rate, rate, x, m, c, k, whole, free.T @ mass @ turned @ free)
 
     def _check(self, state: Motion) -> None:
         """Refuse functions of the user's that lose the complex step: stiffness and damping would be wrong."""

@@ -15,7 +15,7 @@ from dalembert.structure.structure import OPTIONAL, Matrix, Structure
 ROLES = {
     "mass": ("mass", "m", "maa", "mgg"),
     "stiffness": ("stiffness", "k", "kaa", "kgg"),
-    "damping": ("damping", "c", "baa", "bgg"),
+    "damping": ("damping", "c", "d", "baa", "bgg"),
     "loss": ("loss", "k4aa", "k4gg"),
 }
 """What matrices are usually called in files, in small letters; the last ones are Nastran's."""
@@ -48,6 +48,7 @@ def read_structure(
         damping). The imaginary part of a complex stiffness becomes the loss matrix.
     names : mapping of str to str, optional
         Which matrix of the file is which, such as ``{"mass": "MXX"}``; the usual ones (mass, M, MAA, …) are found.
+        Without it, a matrix of the same size that is none of these is an error; with it, such a matrix is left out.
     dofs : sequence of str, optional
         Names of the rows, where the file has none.
     directions : sequence of str
@@ -60,8 +61,8 @@ def read_structure(
     Raises
     ------
     DataError
-        For a file that is missing, damaged, of no known kind, without a mass or stiffness matrix, or whose library is
-        not installed.
+        For a file that is missing, damaged, of no known kind, without a mass or stiffness matrix, with further matrices
+        of the same size, or whose library is not installed.
     InputError
         For names that are no roles, and matrices that make no structure.
 
@@ -92,6 +93,8 @@ def read_structure(
                 f"{file}: no {role} matrix is found; name it, such as names={{{role!r}: NAME}}; the file has "
                 f"{', '.join(read[file]) or 'no square matrices'}"
             )
+    if whole and not names:
+        _require_all_read(path, read[path], found)  # pyright: ignore[reportArgumentType]
     rows = _rows(found, dofs, directions)
     aligned = {role: _aligned(one, rows) for role, one in found.items()}
     for role in ("mass", "stiffness"):
@@ -138,6 +141,18 @@ def _of_role(role: str, held: Mapping[str, NamedMatrix], name: str | None, alone
         return next(iter(held.values()))
     usual = [one for key, one in held.items() if key.lower() in ROLES[role]]
     return usual[0] if len(usual) == 1 else None
+
+
+def _require_all_read(file: str | Path, held: Mapping[str, NamedMatrix], found: Mapping[str, NamedMatrix]) -> None:
+    """Refuse matrices of the structure's size that have no role: one may be the damping."""
+    sizes, read = {one.matrix.shape for one in found.values()}, list(found.values())
+    left = [name for name, one in held.items() if one.matrix.shape in sizes and not any(one is own for own in read)]
+    if left:
+        known = {role: next(name for name, one in held.items() if one is own) for role, own in found.items()}
+        raise DataError(
+            f"{file}: it is not known what the matrix {left[0]!r} is. Name the matrices to read, such as "
+            f"names={known | {'damping': left[0]}}, or names={known} to leave it out"
+        )
 
 
 def _rows(found: Mapping[str, NamedMatrix], dofs: Sequence[str] | None, directions: Sequence[str]) -> tuple[str, ...]:

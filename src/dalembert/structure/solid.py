@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 
 from dalembert.arguments import takes_checked
-from dalembert.errors import DataError, InputError, require_known, shown, told, unknown
+from dalembert.errors import InputError, require_known, shown, unknown
 from dalembert.structure.assembly import assemble, library, require_counts, require_lengths
 from dalembert.structure.dofs import Dofs
 from dalembert.structure.material import Material
+from dalembert.structure.mesh_files import read_mesh
 from dalembert.structure.nodes import Nodes
 from dalembert.structure.structure import Structure
 
@@ -80,9 +81,10 @@ def solid(mesh: Any, material: Material | Mapping[str, Material], element: str |
     Parameters
     ----------
     mesh : skfem mesh or path
-        Hexahedra or tetrahedra with straight edges, made by :func:`box`, by scikit-fem, or read by meshio from a file
-        (Gmsh, VTK, Abaqus, Nastran and others). Its named boundaries become sets of nodes, and so do sets of nodes in
-        the file (``*NSET`` of Abaqus): all nodes at the places of theirs.
+        Hexahedra or tetrahedra, made by :func:`box`, by scikit-fem, or read by meshio from a file (Gmsh, VTK, Abaqus,
+        Nastran and others), of first or second order (bricks of 20 and 27 nodes, tetrahedra of 10). Its named
+        boundaries become sets of nodes, and so do sets of nodes in the file (``*NSET`` of Abaqus): all nodes at the
+        places of theirs.
     material : Material, or mapping of str to Material
         One for all, or one for each named subdomain of the mesh; where subdomains overlap the last one holds.
     element : str, optional
@@ -120,7 +122,7 @@ def solid(mesh: Any, material: Material | Mapping[str, Material], element: str |
     skfem = library("skfem", "solid")
     points, sets = np.zeros((0, 3)), {}
     if isinstance(mesh, (str, Path)):
-        mesh, points, sets = _from_file(mesh)
+        mesh, points, sets = read_mesh(mesh)
     if not isinstance(mesh, skfem.Mesh):
         raise InputError(f"solid: mesh is {shown(mesh)}; expected a mesh of scikit-fem, such as box(...), or a path")
     kind = element or ("tetrahedron 10" if isinstance(mesh, skfem.MeshTet) else "brick 20")
@@ -153,22 +155,6 @@ def solid(mesh: Any, material: Material | Mapping[str, Material], element: str |
         Dofs(tuple(f"{name}.{direction}" for name in names for direction in "xyz")),
         nodes=Nodes(names, places, boundaries | node_sets, mesh.facets[:, mesh.boundary_facets()].T),
     )
-
-
-def _from_file(path: str | Path) -> tuple[Any, np.ndarray, dict[str, np.ndarray]]:
-    """Mesh of a file, its points (points, 3), and rows of these in the sets of nodes that it names."""
-    meshio = library("meshio", "solid")
-    from skfem.io.meshio import from_meshio
-
-    if not Path(path).is_file():
-        raise DataError(f"{path}: there is no such file")
-    try:
-        read = meshio.read(path)
-        mesh = from_meshio(read)
-    except (Exception, SystemExit) as error:  # meshio ends the process for an ending that it does not know
-        raise DataError(f"{path}: no mesh can be read from it: {told(error)}") from error
-    sets = {name: np.unique(np.asarray(own, dtype=int)) for name, own in (read.point_sets or {}).items()}
-    return mesh, read.points, sets
 
 
 def _nodes_at(places: np.ndarray, points: np.ndarray) -> tuple[str, ...]:

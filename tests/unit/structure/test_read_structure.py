@@ -213,3 +213,18 @@ def test_files_of_no_known_kind_and_damaged_ones_are_told(tmp_path: Path) -> Non
     sentence = f"{tmp_path / 'e.mat'}: it is a MAT file of version 7.3; save it in MATLAB with save(..., '-v7')"
     with pytest.raises(DataError, match=says(sentence)):
         read_structure(tmp_path / "e.mat")
+
+
+def test_a_damping_matrix_named_d_is_read_and_others_are_not_dropped_silently(tmp_path: Path) -> None:
+    mass, stiffness, damping = np.eye(2), 3 * np.eye(2), 0.1 * np.eye(2)
+    path = tmp_path / "own.npz"
+    np.savez(path, M=mass, K=stiffness, D=damping)
+    np.testing.assert_array_equal(read_structure(path).damping, damping)
+    for further in ({"C": mass, "D": damping}, {"DD": damping}):
+        np.savez(path, M=mass, K=stiffness, **further)
+        with pytest.raises(DataError, match=r"it is not known what the matrix '[CD]+' is\. Name the matrices to read"):
+            read_structure(path)
+        left = read_structure(path, names={"mass": "M", "stiffness": "K"})
+        if "DD" in further:
+            assert left.damping is None
+    np.testing.assert_array_equal(read_structure(path, names={"damping": "DD"}).damping, damping)

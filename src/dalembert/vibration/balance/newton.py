@@ -115,6 +115,7 @@ def line_search(trial: Callable[[float], Trial], error: float) -> Trial | None:
     return min((one for one in trials if np.isfinite(one.error)), key=lambda one: one.error, default=None)
 
 
+@np.errstate(over="ignore", invalid="ignore")  # a trial may lie beyond what a law is for: the search returns
 def correct(
     balance: Balance,
     structure: Callable[[float], Point],

@@ -17,6 +17,7 @@ DOUBLINGS = 40
 """Of a step, after which nothing stops the motion."""
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def at_rest(balance: Balance, point: Point) -> np.ndarray:
     """Return the unknowns (q, coefficients) of the place of rest, or where the search for it ended.
 

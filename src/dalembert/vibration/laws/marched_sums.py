@@ -31,6 +31,8 @@ SETTLED_SLOPE = 1e-10
 """The same for a derivative of the state."""
 NEUTRAL = 1e-6
 """Smallest singular value of 1 - Φ_z at which a state forgets its start."""
+BEYOND = np.errstate(over="ignore", invalid="ignore")
+"""A trial of Newton's method may lie beyond what a law is for. Forces are not finite there, and the search returns."""
 
 
 @dataclass(frozen=True)
@@ -50,12 +52,14 @@ class MarchedSums:
     series: Fourier
     events: bool
 
+    @BEYOND
     def forces(self, displacements: np.ndarray, omega: float) -> np.ndarray:
         """Coefficients of forces; see :class:`dalembert.vibration.laws.sums.Sums`."""
         runs = self._runs(displacements, omega)
         force = np.array([run.forces([UNPERTURBED], run.periodic()[0][None])[0] for run in runs])
         return force if np.iscomplexobj(displacements) or np.iscomplexobj(self.block.numbers) else np.real(force)
 
+    @BEYOND
     def with_slopes(self, displacements: np.ndarray, omega: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Coefficients of forces, Jacobians and derivatives by ω; see :class:`dalembert.vibration.laws.sums.Sums`."""
         require_complex_steps(self.block, self.series, displacements, omega)
@@ -65,6 +69,7 @@ class MarchedSums:
         by_omega = slopes[:, :, unknowns].reshape(displacements.shape)
         return force, slopes[:, :, :unknowns], by_omega if self.block.element.rated else 0.0 * by_omega
 
+    @BEYOND
     def derivatives(self, displacements: np.ndarray, omega: float) -> np.ndarray:
         """Derivatives at samples, (elements, samples, columns + states, 2 columns + states).
 

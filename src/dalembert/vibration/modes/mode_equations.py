@@ -231,6 +231,7 @@ class ModeEquations:
         part = () if self.softened is None else (self.softened.part,)
         return self.problem.lowered.fingerprint(self.problem.method, self.row, *part).encode()
 
+    @np.errstate(over="ignore", invalid="ignore")
     def newton(self, guess: FreeMotion, plane: Plane, samples: int) -> FreeMotion:
         """Solve as :meth:`solve` does, without a look at the checkpoint."""
         method = self.problem.method

@@ -386,3 +386,22 @@ def test_a_law_that_drops_the_imaginary_part_is_refused() -> None:
     wrong = system(UserLaw("mine", "a.x", function=lossy, values=[0.4]))
     with pytest.raises(InputError, match=r"^element 'mine': the derivative of its force"):
         frequency_response(wrong, np.array([0.1]), HarmonicBalance(3))
+
+
+def growing(u, v, z, numbers, force):
+    """Forces that are not finite at large displacements."""
+    force[0] = numbers[0] * u[0] ** 3 + z[0]
+    z[0] = force[0] * numbers[0]
+
+
+def test_trials_beyond_what_a_law_is_for_cause_no_warnings() -> None:
+    system = VibrationSystem(lumped({"a": 1.0}, [("a", None, 1.0, 0.1)]))
+    system.add(HarmonicForce("a", 1.0))
+    system.add(UserLaw("law", "a", function=growing, values=[2.0], internal=1))
+    problem = equations(system, HarmonicBalance(3))
+    (block,) = problem.lowered.laws
+    sums = block.sums(problem.balance(64).series)
+    assert isinstance(sums, MarchedSums)
+    moved = np.full((1, 1, 7), 1e3)
+    assert not np.all(np.isfinite(sums.forces(moved, 1.0)))
+    assert not np.all(np.isfinite(sums.with_slopes(moved, 1.0)[0]))

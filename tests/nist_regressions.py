@@ -24,6 +24,7 @@ def ratio(x, above, below):
 
 
 MODELS = {
+    "Bennett5": lambda x, a, b, c: a * (b + x) ** (-1 / c),
     "BoxBOD": lambda x, a, b: a * (1 - np.exp(-b * x)),
     "Chwirut2": lambda x, a, b, c: np.exp(-a * x) / (b + c * x),
     "DanWood": lambda x, a, b: a * x**b,
@@ -34,12 +35,16 @@ MODELS = {
     "Kirby2": lambda x, *b: ratio(x, b[:3], b[3:]),
     "Lanczos3": lambda x, a, b, c, d, e, f: a * np.exp(-b * x) + c * np.exp(-d * x) + e * np.exp(-f * x),
     "MGH09": lambda x, a, b, c, d: a * x * (x + b) / (x * (x + c) + d),
+    "MGH10": lambda x, a, b, c: a * np.exp(b / (x + c)),
     "MGH17": lambda x, a, b, c, d, e: a + b * np.exp(-x * d) + c * np.exp(-x * e),
     "Misra1a": lambda x, a, b: a * (1 - np.exp(-b * x)),
     "Rat42": lambda x, a, b, c: a / (1 + np.exp(b - c * x)),
     "Roszman1": lambda x, a, b, c, d: a - b * x - np.arctan(c / (x - d)) / np.pi,
     "Thurber": lambda x, *b: ratio(x, b[:4], b[4:]),
 }
+
+TOO_FAR = ("MGH10", 0)
+"""A start in a valley that is 46 decades of the first parameter long; a fit from there is no success."""
 
 ALIKE = {  # groups of parameters that may be exchanged
     "ENSO": [(3, 4, 5), (6, 7, 8)],

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from dalembert.arguments import check_whole, takes_checked
 from dalembert.data import Measurements
 from dalembert.errors import InputError, SolveError, require_known, shown
+from dalembert.findings import Finding
 from dalembert.forward import Executor, ForwardModel, check_derivatives, findings_at, takes_executor
 from dalembert.forward.adjoint import GRADIENTS
 from dalembert.forward.provenance import provenance
@@ -48,6 +49,7 @@ from dalembert.inverse.starts.repeated import repeated
 from dalembert.inverse.starts.rivals import rival_findings, rivals
 from dalembert.inverse.starts.runs import Method, polished, runs
 from dalembert.inverse.starts.spread import SPREADS
+from dalembert.inverse.starts.unconfirmed import look_white, unconfirmed_findings
 from dalembert.optimize import LeastSquares, Minimiser, Squares
 
 
@@ -249,6 +251,9 @@ def identify(
     one_run = best.nodes is None or best.nodes.segments == 1
     looked = None if exact or rounded or not one_run else at
     parts_of_time, followed = misfit_conclusions(problem, looked, known=known)
+    unconfirmed: tuple[Finding, ...] = ()
+    if squares and shooting is None:
+        unconfirmed = tuple(unconfirmed_findings(*searched[:2], ends, floor, white=look_white(problem, response)))
     others = rivals(*searched, deviations, known=known if settled is None else given)
     whole = response if problem is posed else posed.responses(vector[None])[0]
     predicted = parted.validation(whole)
@@ -265,16 +270,17 @@ def identify(
         weights=np.where(parted.fitted, posed.weights, 0.0) if settled is None else whole_weights(parted, problem),
         history=tuple(journal.history),
         starts=tuple(journal.starts),
-        success=best.success and not undetermined,
-        outcome=tuple(
-            outcome(
+        success=best.success and not undetermined and not unconfirmed,
+        outcome=(
+            *outcome(
                 problem,
                 best,
                 response,
                 floor,
                 correlated=not (correlated is None and settled is None),
                 searched=searched[1].fitness,
-            )
+            ),
+            *unconfirmed,
         ),
         method=method.name if isinstance(method, Minimiser) else type(method).__name__,
         simulations=journal.simulations,

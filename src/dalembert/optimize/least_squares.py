@@ -8,6 +8,7 @@ from dalembert.arguments import limited
 from dalembert.optimize.minimum import Minimum, Progress, reachable
 from dalembert.optimize.stopping import WINDOW, Stopped, Stopping
 from dalembert.optimize.sum_of_squares import SquaresMinimiser, SumOfSquares
+from dalembert.optimize.valley import follow_valley
 
 LEAST_GAIN = 1e-14
 """Fraction of the sum of squares. A step that gains less ends a descent, whatever is foreseen."""
@@ -54,7 +55,8 @@ class LeastSquares(SquaresMinimiser):
     A descent also ends when 10 trial points for each parameter, or 4 with a ``gain`` from 1e-3 on, and at least 20,
     lowered the sum of squares by less than 2 %, and the foreseen fall did not shrink tenfold either: the residuals are
     rough then, the jacobian is wrong, or the descent follows a long curved valley. If the foreseen fall is below
-    0.01 %, the minimum is reached up to the roughness, otherwise the descent has not converged.
+    0.01 %, the minimum is reached up to the roughness. Otherwise, with a ``gain`` below 1e-3, steps with geodesic
+    acceleration follow the valley, judged by the same rule. If they come no further, the descent has not converged.
 
     Examples
     --------
@@ -70,15 +72,25 @@ class LeastSquares(SquaresMinimiser):
     gain: float = reachable(1e-13)
 
     def descend(self, problem: SumOfSquares, start: np.ndarray) -> Minimum:
+        window = max(WINDOW, (10 if self.gain < COARSE else 4) * len(start))
+        most = TRIALS * (1 + len(start)) if self.trials is None else self.trials
+        path = _Path(problem, start, Stopping(self.gain, window), most)
+        found = self._trust_region(path)
+        if found.success or self.gain >= COARSE or not np.isfinite(found.fitness):
+            return found
+        path.stopping = Stopping(self.gain, window)
+        try:
+            follow_valley(path, path.x, path.stopping, self.tolerance)
+        except Stopped as stopped:
+            return path.minimum(stopped)
+
+    def _trust_region(self, path: "_Path") -> Minimum:
         from scipy.optimize import least_squares  # what does not minimise starts without it
 
-        window = max(WINDOW, (10 if self.gain < COARSE else 4) * len(start))
-        stopping = Stopping(self.gain, window)
-        path = _Path(problem, start, stopping)
-        trials = TRIALS * (1 + len(start)) if self.trials is None else self.trials
+        problem, start = path.problem, path.origin
         try:
             if not np.all(np.isfinite(path.residual(path.one))):
-                return path.minimum(False, "the first point could not be simulated")
+                return path.minimum(Stopped("the first point could not be simulated", success=False))
             result = least_squares(
                 path.residual,
                 path.one,
@@ -91,16 +103,15 @@ class LeastSquares(SquaresMinimiser):
                 xtol=self.tolerance,
                 # An absolute threshold on the gradient would depend on the units of the data.
                 gtol=None,  # pyright: ignore[reportArgumentType]
-                max_nfev=trials,
+                max_nfev=path.most,
             )
         except Stopped as stopped:
-            return path.minimum(stopped.success, str(stopped), stopped.stationary, stopped.rough)
-        message = {
-            0: f"stopped after {trials} trial points, not converged; allow more with LeastSquares(trials=...)",
-            2: "converged: the sum of squares falls no more",
-        }.get(result.status, "converged: the parameters move no more")
-        still = result.status in (3, 4)
-        return path.minimum(result.status > 0, message, still, still and stopping.foreseen > max(SMOOTH, self.gain))
+            return path.minimum(stopped)
+        if result.status == 0:
+            return path.minimum(path.spent())
+        if result.status == 2:
+            return path.minimum(Stopped("converged: the sum of squares falls no more"))
+        return path.minimum(path.stopping.at_rest(max(SMOOTH, self.gain)))
 
 
 @dataclass(eq=False)
@@ -110,6 +121,7 @@ class _Path:
     problem: SumOfSquares
     origin: np.ndarray
     stopping: Stopping
+    most: int
     best: float = np.inf
     evaluations: int = 0
     iterations: int = 0
@@ -117,6 +129,7 @@ class _Path:
     def __post_init__(self) -> None:
         self.x, self.one = self.origin, np.ones_like(self.origin)
         self.last = (np.full_like(self.origin, np.nan), self.origin)
+        self.seen = np.zeros(len(self.origin), dtype=bool)
 
     def place(self, u: np.ndarray) -> np.ndarray:
         return np.clip(self.origin + (u - 1) * self.problem.unit, self.problem.low, self.problem.high)
@@ -124,35 +137,58 @@ class _Path:
     def residual(self, u: np.ndarray) -> np.ndarray:
         if np.array_equal(self.last[0], u):  # SciPy asks again for the first point
             return self.last[1]
-        value = self.problem.residual(self.place(u))
-        self.evaluations += 1
-        if not np.all(np.abs(value) < LARGEST):
-            value = np.full_like(value, np.nan)
+        value = self.residual_at(self.place(u))
         self.last = (u.copy(), value)
-        squares = float(value @ value)
-        if squares < self.best:
-            self.best, self.x = squares, self.place(u)
-        if squares == 0:
-            self.tell()
-            raise Stopped("converged: the fit is perfect", stationary=True)
         self.stopping.tried(self.best)
         return value
 
+    def residual_at(self, x: np.ndarray) -> np.ndarray:
+        if self.evaluations >= self.most:
+            raise self.spent()
+        value = self.problem.residual(x)
+        self.evaluations += 1
+        if not np.all(np.abs(value) < LARGEST):
+            value = np.full_like(value, np.nan)
+        squares = float(value @ value)
+        if squares < self.best:
+            self.best, self.x = squares, x
+        if squares == 0:
+            self.tell()
+            raise Stopped("converged: the fit is perfect", stationary=True)
+        return value
+
     def jacobian(self, u: np.ndarray) -> np.ndarray:
-        self.tell()
         x, problem = self.place(u), self.problem
-        slopes = problem.jacobian(x) * problem.unit
+        slopes = self.slopes_at(x)
+        self.stopping.at(self.last[1], slopes, (problem.low - x) / problem.unit, (problem.high - x) / problem.unit)
+        return np.where(_significant(slopes), slopes, 0.0)  # in such units a parameter would move far for nothing
+
+    def slopes_at(self, x: np.ndarray) -> np.ndarray:
+        self.tell()
+        slopes = self.problem.jacobian(x) * self.problem.unit
         if not slopes.any():
             raise Stopped("converged: the residual does not change with the parameters", stationary=True)
-        size = np.linalg.norm(slopes, axis=0)
-        slopes[:, size < ROUNDING * size.max()] = 0.0  # in such units a parameter would move far for nothing
-        self.stopping.at(self.last[1], slopes, (problem.low - x) / problem.unit, (problem.high - x) / problem.unit)
+        # On a plateau a column falls below the rounding of others that it stood above before: no minimum is there.
+        self.seen |= _significant(slopes)
+        slopes[:, ~self.seen] = 0.0
         return slopes
 
     def tell(self) -> None:
         self.problem.on_iteration(Progress(self.iterations, self.evaluations, self.best, self.x))
         self.iterations += 1
 
-    def minimum(self, success: bool, message: str, stationary: bool = False, rough: bool = False) -> Minimum:
+    def spent(self) -> Stopped:
+        allow = "not converged; allow more with LeastSquares(trials=...)"
+        return Stopped(f"stopped after {self.most} trial points, {allow}", success=False)
+
+    def minimum(self, end: Stopped) -> Minimum:
         iterations = max(0, self.iterations - 1)
-        return Minimum(self.x, self.best, success, message, iterations, self.evaluations, stationary, rough)
+        return Minimum(
+            self.x, self.best, end.success, str(end), iterations, self.evaluations, end.stationary, end.rough
+        )
+
+
+def _significant(slopes: np.ndarray) -> np.ndarray:
+    """Return the mask (parameters,) of the columns of slopes (values, parameters) that are not rounding."""
+    size = np.linalg.norm(slopes, axis=0)
+    return size >= ROUNDING * size.max()

@@ -16,6 +16,9 @@ ROUGH = 1e-4
 """Fraction of the sum of squares. A minimum where the linear model foresees a smaller fall is reached, up to the
 roughness of the residuals."""
 
+FAR = 1e-3
+"""Length of a foreseen step, in units of the parameters, that roughness hardly feigns."""
+
 
 class Stopped(Exception):
     """The descent stops; the message says why."""
@@ -43,6 +46,7 @@ class Stopping:
     gain: float
     window: int
     foreseen: float = np.inf
+    length: float = np.inf
     _trials: list[tuple[float, float]] = field(default_factory=list)
 
     def at(self, residual: np.ndarray, slopes: np.ndarray, down: np.ndarray, up: np.ndarray) -> None:
@@ -58,7 +62,11 @@ class Stopping:
         # Its triangular factor has the same steps and falls, and is decomposed sooner.
         factor = np.asarray(np.linalg.qr(np.column_stack([slopes / size, residual]), mode="r"))
         model = LinearModel(factor[:, -1], factor[:, :-1], down * size, up * size)
-        self.foreseen = model.foreseen(model.step(0.0)) / float(residual @ residual)
+        step = model.step(0.0)
+        self.foreseen, self.length = (
+            model.foreseen(step) / float(residual @ residual),
+            float(np.linalg.norm(step / size)),
+        )
         if self.foreseen < self.gain:
             raise Stopped("converged: the sum of squares falls no more")
 
@@ -82,5 +90,19 @@ class Stopping:
         raise Stopped(
             f"stopped, not converged: the last {self.window} trial points lowered the sum of squares by "
             f"{100 * fall:.2g} %, and the sensitivities foresee {100 * self.foreseen:.2g} %",
+            success=False,
+        )
+
+    def at_rest(self, smooth: float) -> Stopped:
+        """Return how a descent ends whose parameters move no more.
+
+        A foreseen fall above ``smooth`` shows roughness, a fall far away that there is a valley or a plateau instead.
+        """
+        if self.foreseen < ROUGH or self.length < FAR:
+            message = "converged: the parameters move no more"
+            return Stopped(message, stationary=True, rough=self.foreseen > smooth)
+        return Stopped(
+            "stopped, not converged: the parameters move no more, and the sensitivities foresee "
+            f"{100 * self.foreseen:.2g} %",
             success=False,
         )

@@ -258,7 +258,8 @@ def identify(
     whole = response if problem is posed else posed.responses(vector[None])[0]
     predicted = parted.validation(whole)
     unexplained = () if predicted is None else explained_findings(predicted.explained)
-    doubtful = best.fitness > floor.fitness and (correlated is not None or floor.known or not best.success)
+    detected = correlated is not None and len(correlated.detected) > 0
+    doubtful = best.fitness > floor.fitness and (detected or floor.known or not best.success)
     grown = tuple(growth_findings(problem, vector)) if squares and shooting is None and doubtful else ()
     fit = Fit(
         parameters=model.parameters,
@@ -277,7 +278,7 @@ def identify(
                 best,
                 response,
                 floor,
-                correlated=not (correlated is None and settled is None),
+                correlated=detected or settled is not None,
                 searched=searched[1].fitness,
             ),
             *unconfirmed,
@@ -317,7 +318,7 @@ def identify(
                 deviations,
                 best.fitness,
                 known=known,
-                white=correlated is None and settled is None,
+                white=not detected and settled is None,
             ),
             *unexplained,
             *grown,

@@ -169,7 +169,7 @@ def _threshold(fit: Fit, level: float) -> float:
     """
     if fit.noise_is_known:
         return float(chdtri(1, 1 - level))
-    freedom = fit.degrees_of_freedom
+    freedom = fit.effective_degrees_of_freedom
     quantile = float(fdtri(1, freedom, level))
     return quantile if fit.noise is None else float(freedom * np.log1p(quantile / freedom))
 

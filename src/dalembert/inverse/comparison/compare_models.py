@@ -119,7 +119,7 @@ def compare_models(
             )
         rms = float(np.sqrt(np.mean(at.residual[at.fitted] ** 2)))
         found[name] = Criteria(at.parameters, rms, at.log_likelihood(), densities[name])
-    correlated = [name for name, fit in fits.items() if fit.correlated is not None]
+    correlated = [name for name, fit in fits.items() if fit.correlated is not None and fit.correlated.detected]
     data = next(iter(fits.values())).provenance["data"]
     number = int(np.count_nonzero(numbers >= 0))
     return _result(found, number, how, left_out, {"data": data}, correlated)

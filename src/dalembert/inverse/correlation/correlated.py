@@ -42,6 +42,10 @@ class NoiseProcess:
         Of the coordinate.
     first_order : bool
         Whether a process of first order leaves white noise.
+    detected : bool
+        Whether the tests take the channel for correlated. Weaker signs only enter the standard deviations.
+    degrees : float
+        Degrees of freedom of the variance of a slow combination of the samples, which the process predicts.
     """
 
     channel: str
@@ -54,6 +58,8 @@ class NoiseProcess:
     period: float
     unit: str
     first_order: bool = False
+    detected: bool = True
+    degrees: float = np.inf
 
     @property
     def systematic(self) -> bool:
@@ -84,3 +90,8 @@ class CorrelatedResiduals:
     deviations: Annotated[np.ndarray, Over("parameter", name="plain_deviations")]
     correlation: Annotated[np.ndarray, Over("parameter", "parameter_", name="plain_correlation")]
     noise: Annotated[np.ndarray, Over("combination", "combination_", name="noise_of_combinations")]
+
+    @property
+    def detected(self) -> tuple[NoiseProcess, ...]:
+        """Processes of the channels that the tests take for correlated."""
+        return tuple(process for process in self.processes if process.detected)

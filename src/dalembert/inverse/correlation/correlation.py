@@ -1,6 +1,7 @@
 """The covariance of weighted residuals, as far as they are correlated."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,6 +18,9 @@ ROUNDS = 4
 
 SMALL = 0.5
 """Part of the given variance below which residuals are small: the remainder then counts as independent noise."""
+
+WEAK = 0.05
+"""Probability with which white noise shows signs of correlation that enter the covariance, over all series of a fit."""
 
 SLIGHT = 1.1
 """Ratio of corrected to plain deviations up to which small residuals are not corrected for."""
@@ -52,7 +56,8 @@ def correlation(
     -----
     The covariance of the estimate is (JᵀWJ)⁻¹ JᵀW Σ W J (JᵀWJ)⁻¹, with the covariance Σ of processes fitted to each
     correlated channel, and s² for the others. The tests together take white noise for correlated once in a hundred
-    fits.
+    fits. Short records hide correlation from them, so that weaker signs, which white noise shows in one of twenty fits,
+    enter the covariance, too.
 
     Source: H. White, I. Domowitz, Nonlinear regression with dependent observations, Econometrica 52 (1984).
     """
@@ -61,11 +66,15 @@ def correlation(
     scale = problem.model.parameters.scale
     number = len(scale)
     basis = np.zeros((len(residual), number)) if slopes is None else left_vectors(slopes)
-    found = correlated_series(list(series_of(problem)), residual, basis)
+    series = list(series_of(problem))
+    found = correlated_series(series, residual, basis, WEAK)
     if not found:
         return None
     fitted = fitted_processes(list(found), residual, basis, variance)
-    processes = summaries(found, fitted, response, residual, basis)
+    processes = tuple(
+        replace(process, detected=process.p_value < LEVEL / len(series))
+        for process in summaries(found, fitted, response, residual, basis)
+    )
     if slopes is None:
         nothing = unknown_estimate(number)
         return CorrelatedResiduals(processes, nothing.deviations, nothing.correlation, nothing.correlation)
@@ -80,13 +89,15 @@ def correlation(
     return CorrelatedResiduals(processes, plain.deviations, plain.correlation, noise)
 
 
-def correlated_series(series: Sequence[Series], residual: np.ndarray, basis: np.ndarray) -> dict[Series, float]:
-    """Return the series that the tests do not take for white noise, with their probabilities.
+def correlated_series(
+    series: Sequence[Series], residual: np.ndarray, basis: np.ndarray, level: float = LEVEL
+) -> dict[Series, float]:
+    """Return the series that tests of a level do not take for white noise, with their probabilities.
 
     ``residual`` (values,) are weighted, ``basis`` (values, columns) is orthonormal and spans what was fitted.
     """
     tested = {own: p_value(own, residual[own.rows], basis[own.rows]) for own in series}
-    return {own: p for own, p in tested.items() if p < LEVEL / len(tested)}
+    return {own: p for own, p in tested.items() if p < level / len(tested)}
 
 
 def fitted_processes(
@@ -153,9 +164,29 @@ def summaries(
                 period=period_of(own, response.ravel()[own.rows]),
                 unit=own.unit,
                 first_order=first_order,
+                degrees=degrees_of_freedom(len(own.rows), process.first),
             )
         )
     return tuple(told)
+
+
+def degrees_of_freedom(number: int, first: float) -> float:
+    """Return the degrees of freedom of the variance of a slow combination of ``number`` samples of a process.
+
+    Notes
+    -----
+    With innovations of variance s² that variance is V = s²/(1 − φ)². The relative variance of its estimate is that of
+    s², 2/n, and that of φ, 4 (1 + φ)/(n (1 − φ)). By Satterthwaite it has 2/(relative variance) degrees of freedom,
+    n/(1 + 2 (1 + φ)/(1 − φ)). Two remain at least. Faster combinations have more.
+
+    Source: F. E. Satterthwaite, An approximate distribution of estimates of variance components, Biometrics Bulletin 2
+    (1946).
+
+    >>> [round(degrees_of_freedom(60, first), 1) for first in (0.0, 0.4, 0.8)]
+    [20.0, 10.6, 3.2]
+    """
+    slow = min(max(first, 0.0), 1 - 1 / number)
+    return max(2.0, number / (1 + 2 * (1 + slow) / (1 - slow)))
 
 
 def period_of(series: Series, response: np.ndarray) -> float:

@@ -24,10 +24,10 @@ def correlation_findings(
     explained : bool
         Whether the rounding of the data explains the misfit, so that the correlation does not count against the model.
     """
-    if correlated is None:
+    if correlated is None or not correlated.detected:
         return
-    systematic = [process for process in correlated.processes if process.systematic and not explained]
-    worst = max(correlated.processes, key=lambda process: abs(process.first))
+    systematic = [process for process in correlated.detected if process.systematic and not explained]
+    worst = max(correlated.detected, key=lambda process: abs(process.first))
     seen = np.isfinite(deviations) & (correlated.deviations > 0)
     ratios = deviations[seen] / correlated.deviations[seen]
     factors, sentence = {}, ""
@@ -38,14 +38,14 @@ def correlation_findings(
             " The standard deviations allow for this: they are "
             f"{' to '.join(shown)} times those for independent residuals."
         )
-    names = listed([repr(process.channel) for process in correlated.processes])
-    note = explained or len(systematic) == len(correlated.processes)
+    names = listed([repr(process.channel) for process in correlated.detected])
+    note = explained or len(systematic) == len(correlated.detected)
     yield Finding(
         "correlated-residuals",
         "note" if note else "warning",
         {
             "channel": worst.channel,
-            "channels": len(correlated.processes),
+            "channels": len(correlated.detected),
             "autocorrelation": worst.first,
             "order": worst.order,
             "p_value": worst.p_value,

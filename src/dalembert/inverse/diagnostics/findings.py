@@ -21,6 +21,9 @@ DECIDES = 1.0
 FREEDOM = 10
 """Fewest degrees of freedom with which a single sample that decides is reported: of few samples each one does."""
 
+PROPOSED = "mixed"
+"""Noise model of residuals that grow with the response: proportional noise alone has none where the response is 0."""
+
 SHOWN = 3
 """Outliers that a message lists."""
 
@@ -62,7 +65,7 @@ class Outlier:
 
 
 def diagnostic_findings(
-    names: Sequence[str], series: Sequence[SeriesResiduals], outliers: Sequence[Outlier], *, robust: bool
+    names: Sequence[str], series: Sequence[SeriesResiduals], outliers: Sequence[Outlier], *, robust: bool, plain: bool
 ) -> Iterator[Finding]:
     """Yield what the tests conclude, at most one finding for each test.
 
@@ -75,6 +78,8 @@ def diagnostic_findings(
         Largest first.
     robust : bool
         Whether the loss makes outliers count less.
+    plain : bool
+        Whether a noise model can be given: there is none yet, and no other loss or segments.
     """
     if outliers:
         yield _of_outliers(outliers, robust=robust)
@@ -84,7 +89,7 @@ def diagnostic_findings(
         yield _of_period(worst)
     over = [(one, key) for key in ("size over response", "size over coordinate") if (one := _worst(series, key, 2))]
     if over:
-        yield _of_size(*min(over, key=lambda pair: pair[0].p_values[pair[1]]))
+        yield _of_size(*min(over, key=lambda pair: pair[0].p_values[pair[1]]), plain=plain)
     if (worst := _worst(series, "normality")) is not None:
         yield _of_normality(worst)
     yield from _of_influence(names, series)
@@ -144,7 +149,7 @@ def _of_period(one: SeriesResiduals) -> Finding:
     return Finding("periodic-residuals", "note" if one.correlated else "warning", values, message, advice)
 
 
-def _of_size(one: SeriesResiduals, test: str) -> Finding:
+def _of_size(one: SeriesResiduals, test: str, *, plain: bool) -> Finding:
     there = np.isfinite(one.standardised)
     over_response = test == "size over response"
     along = np.abs(one.response) if over_response else one.series.along
@@ -154,6 +159,13 @@ def _of_size(one: SeriesResiduals, test: str) -> Finding:
     values = {"channel": one.name, "over": what, "correlation": correlation, "p_value": probability}
     message = f"The residuals of {one.name!r} {how} with {what} (rank correlation {correlation:.2f})."
     advice = "Weight the samples by their noise: the standard deviations assume that it is constant in a channel."
+    if plain and over_response and correlation > 0:
+        values["noise"] = PROPOSED
+        advice = (
+            "The standard deviations assume that the noise is constant in a channel. Estimate how it grows: give "
+            f'`identify` the argument `noise="{PROPOSED}"`, or write `noise = "{PROPOSED}"` under `[identify]` in a '
+            "study file."
+        )
     return Finding("unequal-variance", "warning", values, message, advice)
 
 

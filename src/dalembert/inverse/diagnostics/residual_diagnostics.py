@@ -75,7 +75,7 @@ def residual_diagnostics(fit: "Fit") -> ResidualDiagnostics:
     known = _unknown(fit) if slopes is None else influence(slopes, residual, free, variance, freedom)
     basis = np.zeros((len(residual), 0)) if slopes is None else left_vectors(slopes[:, free])[: len(residual)]
     tested = _tested(fit)
-    correlated = {} if fit.correlated is None else {item.channel: item for item in fit.correlated.processes}
+    correlated = {} if fit.correlated is None else {item.channel: item for item in fit.correlated.detected}
     found = []
     for own in series_of_record(fit.data, fit.weights, fit.parts):
         made = _standardised(fit, own, residual, known, robust=robust, correlated=own.name in correlated)
@@ -83,7 +83,8 @@ def residual_diagnostics(fit: "Fit") -> ResidualDiagnostics:
         tests = _tests(made, residual, basis) if judged else {}
         found.append(replace(made, p_values=tests))
     outliers = _outliers(fit, found, robust=robust) if tested else ()
-    findings = tuple(diagnostic_findings(fit.parameters.names, found, outliers, robust=robust)) if tested else ()
+    plain = fit.noise is None and not robust and fit.nodes is None
+    findings = diagnostic_findings(fit.parameters.names, found, outliers, robust=robust, plain=plain) if tested else ()
     judged = [one for one in found if one.p_values]
     pairs = correlated_pairs(judged, residual, basis, fit.weights.shape[1], correlated, LEVEL)
     grown = np.zeros(0)

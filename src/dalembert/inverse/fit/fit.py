@@ -207,14 +207,29 @@ class Fit(EndedResult):
         """Return the number of fitted values and priors, less that of parameters."""
         return int(np.count_nonzero(self.weights)) + len(priors(self.parameters)) - len(self.parameters)
 
+    @property
+    def effective_degrees_of_freedom(self) -> float:
+        """Return the degrees of freedom of the standard deviations: fewer than those of independent residuals.
+
+        Of channels with correlated residuals those of their processes count in place of the number of values.
+        """
+        freedom = float(self.degrees_of_freedom)
+        if self.correlated is None:
+            return freedom
+        values = dict(zip(self.data.channels, np.count_nonzero(self.weights, axis=0), strict=True))
+        lost = sum(values[process.channel] - process.degrees for process in self.correlated.processes)
+        return min(freedom, float(np.count_nonzero(self.weights)) - lost)
+
     def quantile(self, level: float) -> float:
         """Return the standard deviations on either side of a value that contain the true one with a probability.
 
-        Of the normal distribution where the noise is known, else of Student's t.
+        Of the normal distribution where the noise is known, else of Student's t with
+        :attr:`effective_degrees_of_freedom`.
         """
         if self.noise_is_known:
             return float(ndtri((1 + level) / 2))
-        return float(stdtrit(self.degrees_of_freedom, (1 + level) / 2)) if self.degrees_of_freedom > 0 else np.nan
+        freedom = self.effective_degrees_of_freedom
+        return float(stdtrit(freedom, (1 + level) / 2)) if freedom > 0 else np.nan
 
     @property
     def residual_variance(self) -> float:

@@ -187,3 +187,15 @@ def test_bands_and_profiles_allow_for_the_correlation():
     np.testing.assert_allclose(found, fit.intervals()["b"], rtol=1e-4)
     uncorrected = profile(model, fit.data, replace(fit, correlated=None, deviations=fit.plain_deviations), names=["b"])
     assert np.ptp(uncorrected.intervals["b"]) < 0.7 * np.ptp(found)
+
+
+@pytest.mark.parametrize("seed", [18, 23])
+def test_weak_signs_of_correlation_enter_deviations_and_quantiles_without_a_finding(seed):
+    """Noise of lag-1 0.4 that the tests at 1 % do not show, but at 5 %."""
+    fit = fitted(straight(TIMES[::3][:60]), autoregressive(seed, 60, 0.4), known=False)
+    assert fit.correlated is not None
+    assert not fit.correlated.detected
+    assert np.all(fit.deviations > fit.plain_deviations)
+    assert 2 < fit.effective_degrees_of_freedom < fit.degrees_of_freedom == 58
+    assert "correlated-residuals" not in [found.code for found in fit.findings]
+    assert "uncorrelated-residuals" in [found.code for found in fit.outcome]

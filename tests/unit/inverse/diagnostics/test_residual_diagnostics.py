@@ -92,6 +92,23 @@ def test_a_fault_of_the_noise_is_found(errors, code):
     assert code in codes(fitted(errors).diagnostics())
 
 
+def test_noise_that_grows_with_the_response_has_a_proposal_that_cures_it():
+    plain = fitted(noise(3) * (1 + 2 * TIMES))
+    (finding,) = (item for item in plain.findings if item.code == "unequal-variance")
+    assert finding.values["noise"] == "mixed"
+    assert 'noise="mixed"' in finding.advice
+    assert 'noise = "mixed"' in finding.advice
+    cured = identify(LINE, plain.data, starts=1, horizon=None, noise=finding.values["noise"])
+    assert "unequal-variance" not in codes(cured.diagnostics())
+
+
+def test_noise_that_shrinks_with_the_response_has_no_proposed_model():
+    plain = fitted(noise(3) * (2.2 - TIMES))
+    (finding,) = (item for item in plain.findings if item.code == "unequal-variance")
+    assert finding.values["correlation"] < 0
+    assert "noise" not in finding.values
+
+
 def test_the_period_of_a_hum_is_that_of_the_finding():
     found = fitted(noise(4) + 0.1 * np.sin(2 * np.pi * 7.3 * TIMES)).diagnostics()
     (finding,) = (item for item in found.findings if item.code == "periodic-residuals")

@@ -81,6 +81,8 @@ class Integrator(Checked, ABC):
 
     def _counted(self, batch: Batch) -> list[Run]:
         """Runs with the turns that they counted."""
+        for counter in batch.counters:
+            counter.follow(even=self.fixed_step is not None)
         runs = self.run(batch)
         return [replace(run, turns=own.turns) for run, own in zip(runs, batch.counters, strict=False)] or runs
 

@@ -2,8 +2,9 @@
 
 An angle a with the rate w at the time t follows the angle a_0 with the rate w_0 at the last end of a step, t_0: of
 a + 2 pi k it is the one nearest to a_0 + (t - t_0) (w + w_0)/2. So output times may be turns apart, and within a step
-the error of the trapezoidal rule may be almost half a turn. While the angles change slowly, each fourth end of a step
-is enough. The count is no unknown: the motion keeps its bits.
+the error of the trapezoidal rule may be almost half a turn. While the angles change slowly, each sixteenth end of
+even steps is enough; steps that a method chooses are all visited, as they may be short after an impact. The count is no
+unknown: the motion keeps its bits.
 """
 
 from collections.abc import Iterator, Sequence
@@ -20,15 +21,16 @@ from dalembert.multibody.lowered import Lowered
 #: ``blocks``: of components with angles, with a kernel in place of ``outputs`` whose values stand at ``offsets``
 #: among ``values``. ``columns`` (angles, 2): where angle and rate stand there, -1 for no rate. ``memory`` (angles, 3):
 #: angle, rate and whole turns at the last end of a step that was visited, at ``time``; ``begun``: whether one was;
-#: ``skip``: how many ends of steps need no visit. ``out`` (outputs, angles): turns at output times. ``work``: a call.
+#: ``even``: whether steps are even; ``skip``: how many of their ends need no visit. ``out`` (outputs, angles): turns at
+#: output times. ``work``: a call.
 #: ``x v now due``: the state to visit, its time, and its number among the outputs, -1 for the end of a step.
 TURNS = np.dtype(
-    [(name, "i8") for name in "count blocks block_count offsets values width columns memory begun skip".split()]
+    [(name, "i8") for name in "count blocks block_count offsets values width columns memory begun even skip".split()]
     + [(name, "i8") for name in "out outputs work visit x v due".split()]
     + [(name, "f8") for name in ("time", "now")]
 )
 turns_at = record(TURNS)
-_SLOW, _SKIPPED = 0.2, 3  # rad since the last visit below which the next ends of steps are not visited, and how many
+_SLOW, _SKIPPED = 0.2, 15  # rad since the last visit below which the next ends of steps are not visited, and how many
 
 
 def _visit(address, _):
@@ -57,7 +59,7 @@ def _visit(address, _):
         if own.due < 0 or own.begun == 0:
             memory[j, 0], memory[j, 1], memory[j, 2] = angle, rate, turns
     if own.due < 0 or own.begun == 0:
-        own.skip = _SKIPPED if own.begun == 1 and moved < _SLOW else 0
+        own.skip = _SKIPPED if own.even == 1 and own.begun == 1 and moved < _SLOW else 0
         own.time, own.begun = own.now, 1
 
 
@@ -183,6 +185,10 @@ class TurnCounter:
     def address(self) -> int:
         """Address of the record, for `count_turns`."""
         return self._words.ctypes.data
+
+    def follow(self, even: bool) -> None:
+        """Say whether the steps to come are even."""
+        self._words["even"] = even
 
     def begin(self) -> "TurnCounter":
         """Forget what was counted, and return the counter."""

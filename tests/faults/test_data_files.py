@@ -220,10 +220,10 @@ FILES = {
         "{path}: unknown format 'matlab'; did you mean 'mat'?",
     ),
     "an unknown suffix": (
-        "a.xlsx",
+        "a.xls",
         mat(t=TIMES, x=ANGLE),
         {},
-        "{path}: the suffix '.xlsx' stands for no format; expected one of {suffixes}; rename the file, or say "
+        "{path}: the suffix '.xls' stands for no format; expected one of {suffixes}; rename the file, or say "
         "which format it has: {formats}",
     ),
     "a column that is there twice": (

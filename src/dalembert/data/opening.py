@@ -4,6 +4,7 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -45,10 +46,25 @@ def library(name: str, path: Path, what: str, extra: str = "data", package: str 
     try:
         return import_module(name)
     except ImportError:
-        package = package or name.partition(".")[0]
-        raise DataError(
-            f"{path}: {package} is needed to read {what}, and is not installed; run: pip install 'dalembert[{extra}]'"
-        ) from None
+        raise _missing(package or name.partition(".")[0], path, what, extra) from None
+
+
+def require(name: str, path: Path, what: str, extra: str) -> None:
+    """Refuse a file if the package that another process reads it with is not installed.
+
+    Raises
+    ------
+    DataError
+        Saying what to install.
+    """
+    if find_spec(name) is None:
+        raise _missing(name, path, what, extra)
+
+
+def _missing(package: str, path: Path, what: str, extra: str) -> DataError:
+    return DataError(
+        f"{path}: {package} is needed to read {what}, and is not installed; run: pip install 'dalembert[{extra}]'"
+    )
 
 
 @contextmanager

@@ -76,7 +76,7 @@ MISSING: Any = Field(
 
 
 class FileTable(StudyTable):
-    """A file of columns: text, JSON, Parquet, MAT, UFF or NetCDF."""
+    """A file of columns: text, JSON, MAT, NetCDF, a workbook, or another known format."""
 
     file: DataFile = Field(description="relative to the study file")
     format: Format | None = Field(None, description="by the suffix of the file if not given")

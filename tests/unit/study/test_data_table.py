@@ -222,8 +222,8 @@ def test_the_settings_of_a_table_are_in_si(study):
         (
             'columns = { a = "run.deg" }\nformat = "xls"',
             [
-                "study.toml: [data], format: 'xls' was given; expected 'csv', 'json', 'mat', 'netcdf', 'parquet' or "
-                "'uff'",
+                "study.toml: [data], format: 'xls' was given; expected 'csv', 'hdf5', 'json', 'lvm', 'mat', 'mcap', 'mdf', "
+                "'netcdf', 'npz', 'parquet', 'tdms', 'uff', 'xlsx' or 'zip'; did you mean 'xlsx'?",
             ],
         ),
     ],

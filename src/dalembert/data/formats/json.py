@@ -1,7 +1,7 @@
 """Columns of a JSON file: an object of arrays, or an array of objects or of rows."""
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -76,11 +76,14 @@ def _content(path: Path) -> Any:
 
 
 def _by_name(path: Path, content: Any) -> dict[str, list[Any]]:
-    if isinstance(content, dict) and any(isinstance(entries, list) for entries in content.values()):
-        return {name: entries for name, entries in content.items() if isinstance(entries, list)}
+    if isinstance(content, dict):
+        columns = dict(_nested("", path, content))
+        if columns:
+            return columns
     if isinstance(content, list) and content and all(isinstance(entry, dict) for entry in content):
-        names = dict.fromkeys(name for entry in content for name in entry)
-        return {name: [entry.get(name) for entry in content] for name in names}
+        rows = [dict(_flat("", entry)) for entry in content]
+        names = dict.fromkeys(name for row in rows for name in row)
+        return {name: [row.get(name) for row in rows] for name in names}
     if isinstance(content, list) and content and all(isinstance(entry, list) for entry in content):
         width = len(content[0])
         for number, entry in enumerate(content):
@@ -90,6 +93,27 @@ def _by_name(path: Path, content: Any) -> dict[str, list[Any]]:
                 )
         return {str(k + 1): [entry[k] for entry in content] for k in range(width)}
     raise DataError(f"{path}: the file holds something else than {_FORMS}")
+
+
+def _nested(front: str, path: Path, content: dict[str, Any]) -> Iterator[tuple[str, list[Any]]]:
+    """Columns in an object, in objects in it, and in arrays of objects in it, by their path."""
+    for name, entries in content.items():
+        label = f"{front}{name}"
+        if isinstance(entries, dict):
+            yield from _nested(f"{label}.", path, entries)
+        elif isinstance(entries, list) and entries and all(isinstance(entry, dict) for entry in entries):
+            yield from ((f"{label}.{key}", column) for key, column in _by_name(path, entries).items())
+        elif isinstance(entries, list):
+            yield label, entries
+
+
+def _flat(front: str, entry: dict[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Values of an object and of objects in it, by their path."""
+    for name, value in entry.items():
+        if isinstance(value, dict):
+            yield from _flat(f"{front}{name}.", value)
+        else:
+            yield f"{front}{name}", value
 
 
 def _array(path: Path, name: str, entries: list[Any]) -> np.ndarray:

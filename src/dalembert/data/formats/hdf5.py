@@ -1,0 +1,66 @@
+"""Columns of an HDF5 file of any program."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dalembert.data.array_parts import parts, spread
+from dalembert.data.columns import Columns, chosen, of_numbers
+from dalembert.data.format import Format, Request
+from dalembert.data.opening import reading
+
+
+class Hdf5(Format):
+    """HDF5: datasets by path, ``run/x``; columns of a matrix as ``run/q[:,0]``, fields of records as ``run/log.x``."""
+
+    name = "hdf5"
+    suffixes = (".h5", ".hdf5", ".hdf", ".he5")
+
+    def columns(self, path: Path, request: Request) -> Columns:
+        arrays, units = _held(path)
+        table = spread(arrays, request.along)
+        along, columns = chosen(path, table, request.along, request.labels, request.missing)
+        named = {label: units[_array(label)] for label in (*columns, request.along or "") if _array(label) in units}
+        return Columns(path, request.along or "sample", along, columns, named)
+
+    def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
+        arrays, units = _held(path)
+        return {name: (array, units.get(_array(name), "")) for name, array in of_numbers(parts(arrays)).items()}
+
+
+def _array(label: str) -> str:
+    """The array of a column."""
+    return label.partition("[")[0]
+
+
+def _held(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
+    """Arrays by their paths, and the units that their attributes name."""
+    import h5py
+
+    found: dict[str, np.ndarray] = {}
+    units: dict[str, str] = {}
+
+    def look(name: str, item: Any) -> None:
+        if not isinstance(item, h5py.Dataset) or item.shape is None:
+            return
+        array = np.asarray(item[()])
+        fields = (
+            {f"{name}.{field}": array[field] for field in array.dtype.names} if array.dtype.names else {name: array}
+        )
+        for label, part in fields.items():
+            if part.dtype.kind in "fiubc" and part.ndim:
+                found[label] = np.squeeze(part) if part.ndim > 1 and part.size > 1 else part
+                if unit := _unit(item.attrs):
+                    units[label] = unit
+
+    with reading(path, "HDF5"), h5py.File(path, "r") as file:
+        file.visititems(look)
+    return found, units
+
+
+def _unit(attributes: Mapping[str, Any]) -> str:
+    """The unit that attributes name."""
+    given = next((attributes[key] for key in ("units", "unit", "Unit", "Units") if key in attributes), "")
+    return given.decode(errors="replace") if isinstance(given, bytes) else given if isinstance(given, str) else ""

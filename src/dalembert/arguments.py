@@ -6,7 +6,7 @@ import typing
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import MISSING, InitVar, field, fields
 from functools import cache, wraps
-from typing import Any, NamedTuple, TypeVar, Union, cast
+from typing import Any, ClassVar, NamedTuple, TypeVar, Union, cast
 
 import numpy as np
 
@@ -115,7 +115,7 @@ def _owner(made: Any, argument: str) -> str:
 
 @cache
 def _arguments(made: type) -> tuple[_Argument, ...]:
-    entries = [entry for entry in made.__dataclass_fields__.values() if entry.init]  # type: ignore[attr-defined]
+    entries = [entry for entry in made.__dataclass_fields__.values() if entry.init and not of_class(entry.type)]  # type: ignore[attr-defined]
     try:
         annotations = typing.get_type_hints(made)
     except Exception:  # a name that only type checkers know
@@ -128,8 +128,21 @@ def _arguments(made: type) -> tuple[_Argument, ...]:
         kinds = kinds_of(annotation if entry.metadata.get("checked", True) else Any)
         unit = entry.metadata.get("unit", "")
         tests, within = tuple(map(_test, kinds)), entry.metadata.get("range")
+        if unit and float in kinds:  # a quantity
+            tests = tuple(_is_finite if kind is float else _test(kind) for kind in kinds)
         found.append(_Argument(entry.name, tests, place, entry.default, kinds, unit, within))
     return tuple(found)
+
+
+def of_class(annotation: Any) -> bool:
+    """Whether an annotation is that of a class variable."""
+    if isinstance(annotation, str):
+        return annotation.startswith(("ClassVar", "typing.ClassVar"))
+    return annotation is ClassVar or typing.get_origin(annotation) is ClassVar
+
+
+def _is_finite(value: Any) -> bool:
+    return is_real(value) and is_number(value)
 
 
 @cache
@@ -255,6 +268,19 @@ def _is_scalar(value: Any, kinds: str = "iufc") -> bool:
     except Exception:  # whatever an object of the user's raises
         return False
     return array.shape == () and array.dtype.kind in kinds
+
+
+def array_of(value: Any) -> np.ndarray:
+    """Numbers of a model as an array; an empty one for anything else.
+
+    >>> array_of([[1, 2j], [3, 4]]).shape, array_of("ab").shape, array_of([[1.0], [2.0, 3.0]]).shape
+    ((2, 2), (0,), (0,))
+    """
+    try:
+        array = np.asarray(value)
+    except ValueError:  # rows of different lengths
+        return np.zeros(0)
+    return array if all(map(is_number, array.ravel().tolist())) else np.zeros(0)
 
 
 def is_whole(value: Any) -> bool:

@@ -129,8 +129,8 @@ class Mechanism(Displayed):
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """What there is to say about the choice of bodies, such as elements that lock."""
-        return tuple(finding for body in self.bodies for finding in body.findings)
+        """What there is to say about the choice of bodies, such as elements that lock, and about numbers of loads."""
+        return tuple(finding for part in (*self.bodies, *self.loads) for finding in part.findings)
 
     @property
     def carriers(self) -> list[Any]:

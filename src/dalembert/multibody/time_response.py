@@ -15,6 +15,7 @@ from dalembert.findings import Finding
 from dalembert.forward import Refinement, StateChart, error_factor
 from dalembert.forward.builders import check_function, cores
 from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES
+from dalembert.multibody.assemble import assembled
 from dalembert.multibody.beam_strains import stretching
 from dalembert.multibody.bushing_rotations import turning_bushings
 from dalembert.multibody.fingerprint import fingerprint
@@ -25,6 +26,7 @@ from dalembert.multibody.restart import MotionSegment, chart
 from dalembert.multibody.simulation import begin_time, checked, integrator, simulate
 from dalembert.multibody.skipped_samples import late_samples, skipped_samples
 from dalembert.multibody.slip_rates import rubbing
+from dalembert.multibody.start_findings import joined, start_findings
 from dalembert.multibody.system import Mechanism
 from dalembert.parameters import Parameter, Parameters
 
@@ -255,10 +257,18 @@ class TimeResponse(BuiltModel):
         try:
             if not (rubbing(system) or turning_bushings(system) or stretching(system)):
                 step, end = self.solver.fixed_step, float(self.times[-1])
-                return (*system.findings, *late, *skipped_samples(system, step, self.begin, end))
+                skipped = skipped_samples(system, step, self.begin, end)
+                return (*system.findings, *self._start_findings(system), *late, *skipped)
             return (*simulate(system, float(self.times[-1]), self.solver, begin=self.begin).findings, *late)
         except (ModelError, SolveError, InputError):  # no motion, or one that does not fit into memory
             return (*system.findings, *late)
+
+    def _start_findings(self, system: Mechanism) -> tuple[Finding, ...]:
+        """Findings on components that act on joints, which need no motion."""
+        if not joined(system):
+            return ()
+        lowered = assembled(system, begin=self.begin)
+        return start_findings(system, lowered, lowered.x)
 
     def _sampled(self, times: ArrayLike, *, begin: float | None = None, solver: Integrator | None = None) -> Self:
         """The same model with other samples, start or solver, whose derivatives were compared if this model's were."""

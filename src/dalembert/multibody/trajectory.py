@@ -30,6 +30,7 @@ from dalembert.multibody.observe import beside, channel_names, observer
 from dalembert.multibody.redundant_constraints import redundant_constraints
 from dalembert.multibody.skipped_samples import skipped_samples
 from dalembert.multibody.slip_rates import rubbing, slip_findings
+from dalembert.multibody.start_findings import start_findings
 from dalembert.multibody.system import Mechanism
 from dalembert.notebook_display import Displayed
 
@@ -87,7 +88,9 @@ class Trajectory(Displayed):
         if self.solver.takes_redundancy and not held:
             held = redundant_constraints(self.lowered)
         bushings = turning_bushings(self.system)
-        of_motion = (*skipped, *held, *strain_findings(self.system, self.lowered, self.run.times, self.run.states.x))
+        x = self.run.states.x
+        started = start_findings(self.system, self.lowered, x[0])
+        of_motion = (*started, *skipped, *held, *strain_findings(self.system, self.lowered, self.run.times, x))
         if not (joints or bushings):
             return (*self.system.findings, *of_motion)
         names = [f"{name}.{own.channel}" for name, own in joints.items()]

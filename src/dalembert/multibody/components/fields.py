@@ -1,9 +1,9 @@
 """Fields of components: numbers with a unit, and checks of their values."""
 
 from dataclasses import MISSING, Field, field
-from typing import Any, ClassVar, get_origin
+from typing import Any
 
-from dalembert.arguments import limited
+from dalembert.arguments import limited, of_class
 
 #: A number of a model; complex while a derivative is taken.
 Number = float | complex
@@ -26,4 +26,4 @@ def arguments(component: type) -> tuple[Field, ...]:
     bar, where the attribute is the point and not its place.
     """
     entries = component.__dataclass_fields__.values()
-    return tuple(entry for entry in entries if entry.init and get_origin(entry.type) is not ClassVar)
+    return tuple(entry for entry in entries if entry.init and not of_class(entry.type))

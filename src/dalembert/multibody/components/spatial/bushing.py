@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from dalembert.arguments import is_number
+from dalembert.arguments import array_of
 from dalembert.errors import InputError, shown
 from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import stack
@@ -39,6 +39,7 @@ from dalembert.multibody.components.spatial.points import Side
 from dalembert.multibody.components.spatial.rotations import rotation_vector, vector_rate, vector_torque
 from dalembert.multibody.components.spatial.vectors import at, combined, dot, times
 
+_ROUNDING = 1e-9  # of the smallest eigenvalue
 _ENTRIES = [(i, j) for i in range(6) for j in range(i, 6)]
 _NUMBERS = tuple(f"{what}_{i + 1}{j + 1}" for what in ("stiffness", "damping") for i, j in _ENTRIES)
 _PUSH_A = tuple(push_a_axis(number) for number in (1, 2, 3))
@@ -202,6 +203,11 @@ class Bushing(Load):
     damping : six float, or (6, 6) symmetric
         N s/m, then N m s/rad.
 
+    Raises
+    ------
+    InputError
+        For a stiffness or a damping that is not symmetric, or not positive semidefinite.
+
     Notes
     -----
     Channels: ``x``, ``y``, ``z``, the displacement; ``rotation_x``, ``rotation_y``, ``rotation_z``, the rotation
@@ -239,10 +245,28 @@ class Bushing(Load):
 
 def _matrix(owner: str, what: str, given: Any) -> Sequence[Sequence[Number]]:
     """A symmetric matrix (6, 6), from its diagonal or whole."""
-    array = np.asarray(given)
-    numbers = array.size and all(map(is_number, array.ravel().tolist()))
-    if array.shape == (6,) and numbers:
+    array = array_of(given)
+    if array.shape == (6,):
         array = np.diag(array)
-    if array.shape != (6, 6) or not numbers or np.abs(array - array.T).max() > 1e-9 * np.abs(array).max():
+    if array.shape != (6, 6) or np.abs(array - array.T).max() > 1e-9 * np.abs(array).max():
         raise InputError(f"{owner}: {what} is {shown(given)}; expected six numbers, or a symmetric matrix (6, 6)")
+    least = _least_eigenvalue(np.real(array))
+    if least < -_ROUNDING:
+        raise InputError(
+            f"{owner}: {what} is {shown(given)}; expected "
+            + ("numbers that are not negative" if np.shape(given) == (6,) else "a positive semidefinite matrix")
+            + f". Its smallest eigenvalue is {least:.3g} relative to its diagonal"
+        )
     return array.tolist()
+
+
+def _least_eigenvalue(matrix: np.ndarray) -> float:
+    """Smallest eigenvalue of a matrix whose rows and columns are scaled to a diagonal of 1, -1 or 0.
+
+    Scales keep the signs of the eigenvalues (Sylvester), and make N/m and N m/rad comparable. A zero on the diagonal is
+    scaled by the largest entry of its row.
+    """
+    sizes = np.abs(np.diag(matrix))
+    sizes = np.where(sizes > 0, sizes, np.abs(matrix).max(axis=1))
+    scales = 1.0 / np.sqrt(np.where(sizes > 0, sizes, 1.0))
+    return float(np.linalg.eigvalsh(scales[:, None] * matrix * scales)[0])

@@ -71,6 +71,14 @@ class Coupling(Joint):
     ends: ClassVar[tuple[str | None, str | None]] = (None, None)
     """Coordinates of a and b; None: the angle if the joint has one, or else the displacement."""
 
+    def __post_init__(self) -> None:
+        of_a, of_b = self.coordinates
+        if self.a.name == self.b.name and of_a.coordinate == of_b.coordinate:
+            raise InputError(
+                f"{type(self).__name__} {self.name!r}: a and b are the {of_a.coordinate} of the same joint "
+                f"{self.a.name!r}; expected two joints, or two coordinates of one"
+            )
+
     @property
     def coordinates(self) -> tuple[JointCoordinate, JointCoordinate]:
         """Those of a and b."""
@@ -136,6 +144,10 @@ class CouplingJoint(Coupling):
     near_a: float = number("rad", 0.0)
     near_b: float = number("rad", 0.0)
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _require_ratio(f"coupling joint {self.name!r}", "ratio", self.ratio)
+
     @property
     def ends(self) -> tuple[str | None, str | None]:
         return self.of_a, self.of_b
@@ -196,6 +208,7 @@ class GearJoint(Coupling):
     ends = (ANGLE, ANGLE)
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         _require_ratio(f"gear joint {self.name!r}", "ratio", self.ratio)
 
     def lower(self, lowering: SpatialLowering) -> None:
@@ -250,6 +263,7 @@ class RackJoint(Coupling):
     ends = (ANGLE, DISPLACEMENT)
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         _require_ratio(f"rack joint {self.name!r}", "radius", self.radius)
 
     def lower(self, lowering: SpatialLowering) -> None:

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from dalembert.arguments import Checked
-from dalembert.errors import InputError
+from dalembert.arguments import Checked, array_of, is_number
+from dalembert.errors import InputError, shown
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.spatial.orientation import Vector
 
@@ -87,7 +87,9 @@ class Inertia(Checked):
     @classmethod
     def of(cls, mass: Number, tensor: np.ndarray, centre: Any = (0.0, 0.0, 0.0)) -> "Inertia":
         """From a tensor about the centre of mass, (3, 3), kg m^2."""
-        t = np.asarray(tensor)
+        t = array_of(tensor)
+        if t.shape != (3, 3) or not _is_symmetric(t):
+            raise InputError(f"Inertia: the tensor is {shown(tensor)}; expected a symmetric matrix (3, 3) in kg m^2")
         products = (t[0, 1], t[0, 2], t[1, 2])
         return cls(mass, *(tuple(np.asarray(own).tolist()) for own in (np.diagonal(t), products, centre)))
 
@@ -102,12 +104,28 @@ class Inertia(Checked):
     @classmethod
     def box(cls, mass: Number, sides: Sequence[Number]) -> "Inertia":
         """A solid box with sides (m) along the axes, centred at the origin."""
-        x, y, z = (side * side for side in sides)
+        _require("Inertia.box", mass=mass)
+        given = list(sides) if isinstance(sides, Sequence | np.ndarray) else []
+        if len(given) != 3 or not all(is_number(side) and np.real(side) > 0 for side in given):
+            raise InputError(f"Inertia.box: sides is {shown(sides)}; expected three positive numbers in m")
+        x, y, z = (side * side for side in given)
         return cls(mass, (mass * (y + z) / 12.0, mass * (x + z) / 12.0, mass * (x + y) / 12.0))
 
     @classmethod
     def cylinder(cls, mass: Number, radius: Number, length: Number, inner: Number = 0.0) -> "Inertia":
-        """A cylinder along z, centred at the origin, or a tube with an ``inner`` radius, m."""
+        """A cylinder along z, centred at the origin, or a tube with an ``inner`` radius, m.
+
+        Raises
+        ------
+        InputError
+            For an inner radius that is not smaller than the outer one, and for what is no positive number.
+        """
+        _require("Inertia.cylinder", mass=mass, radius=radius, length=length)
+        if not (is_number(inner) and 0.0 <= np.real(inner) < np.real(radius)):
+            raise InputError(
+                f"Inertia.cylinder: inner is {shown(inner)}; expected a radius from 0 to less than the outer radius, "
+                f"{np.real(radius):g} m"
+            )
         squares = radius * radius + inner * inner
         across = mass * (3.0 * squares + length * length) / 12.0
         return cls(mass, (across, across, 0.5 * mass * squares))
@@ -115,6 +133,7 @@ class Inertia(Checked):
     @classmethod
     def sphere(cls, mass: Number, radius: Number) -> "Inertia":
         """A solid sphere, centred at the origin; the radius in m."""
+        _require("Inertia.sphere", mass=mass, radius=radius)
         own = 0.4 * mass * radius * radius
         return cls(mass, (own, own, own))
 
@@ -122,6 +141,18 @@ class Inertia(Checked):
         """The same body with its centre of mass shifted by a vector, m."""
         centre = tuple(np.add(self.centre, to).tolist())
         return Inertia(self.mass, self.moments, self.products, centre)
+
+
+def _require(owner: str, **values: Any) -> None:
+    """Refuse values that are no positive numbers."""
+    for name, value in values.items():
+        if not (is_number(value) and np.real(value) > 0):
+            unit = "kg" if name == "mass" else "m"
+            raise InputError(f"{owner}: {name} is {shown(value)}; expected a positive number in {unit}")
+
+
+def _is_symmetric(matrix: np.ndarray) -> bool:
+    return bool(np.abs(matrix - matrix.T).max() <= 1e-9 * np.abs(matrix).max())
 
 
 def _direction(axis: np.ndarray) -> str:

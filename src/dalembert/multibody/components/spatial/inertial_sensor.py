@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from dalembert.arguments import is_number
+from dalembert.arguments import array_of
 from dalembert.errors import InputError, shown
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
@@ -132,8 +132,10 @@ class InertialSensor(Load):
 
 def _gain(owner: str, what: str, given: Any) -> list[Number]:
     """Entries of a gain, column by column."""
-    array = np.asarray(given)
-    if array.shape not in ((3,), (3, 3)) or not all(map(is_number, array.ravel().tolist())):
+    array = array_of(given)
+    if array.shape not in ((3,), (3, 3)):
         raise InputError(f"{owner}: {what} is {shown(given)}; expected three numbers, or a matrix (3, 3)")
     matrix = np.diag(array) if array.ndim == 1 else array
+    if not np.all(np.any(np.real(matrix) != 0, axis=1)):
+        raise InputError(f"{owner}: {what} is {shown(given)}; a gain of 0 shows nothing, so leave the channel out")
     return matrix.T.ravel().tolist()

@@ -82,8 +82,8 @@ ANGLE_LIMIT, DISPLACEMENT_LIMIT = _limit(ANGLE), _limit(DISPLACEMENT)
 
 
 @dataclass(frozen=True)
-class _Limit(Load):
-    """What limits share."""
+class Limit(Load):
+    """Base of limits."""
 
     joint: Joint
     stiffness: Number
@@ -127,7 +127,7 @@ class _Limit(Load):
 
 
 @dataclass(frozen=True)
-class AngleLimit(_Limit):
+class AngleLimit(Limit):
     """Stops at the ends of the range of a joint's angle, which is counted over whole turns.
 
     Beyond a limit by d rad, a torque stiffness d^(3/2) (1 + damping d') pushes back (Hunt and Crossley 1975).
@@ -181,7 +181,7 @@ class AngleLimit(_Limit):
 
 
 @dataclass(frozen=True)
-class DisplacementLimit(_Limit):
+class DisplacementLimit(Limit):
     """Stops at the ends of the range of a joint's displacement along its axis.
 
     Beyond a limit by d, a force stiffness d^(3/2) (1 + damping d') pushes back (Hunt and Crossley 1975).

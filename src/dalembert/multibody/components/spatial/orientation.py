@@ -18,8 +18,14 @@ _ALIKE = 1e-9  # of what should be orthonormal axes
 
 def _numbers(row: Any) -> list[Number]:
     """The finite numbers of a row; none of what is no row of finite numbers."""
-    is_row = row.ndim == 1 if isinstance(row, np.ndarray) else isinstance(row, Sequence) and not isinstance(row, str)
-    return list(row) if is_row and all(map(is_number, row)) else []
+    return list(row) if _is_row(row) and all(map(is_number, row)) else []
+
+
+def _is_row(value: Any) -> bool:
+    """Whether something has several entries, as a list and an array do."""
+    return (
+        value.ndim > 0 if isinstance(value, np.ndarray) else isinstance(value, Sequence) and not isinstance(value, str)
+    )
 
 
 @dataclass(frozen=True)
@@ -42,7 +48,7 @@ class Orientation:
     IN_WORDS = "an orientation such as Orientation.by_angles('zyx', [0.1, 0.0, 0.0])"
 
     def __post_init__(self) -> None:
-        rows = [_numbers(row) for row in self.rows] if isinstance(self.rows, tuple | list | np.ndarray) else []
+        rows = [_numbers(row) for row in self.rows] if _is_row(self.rows) else []
         wrong = [len(row) for row in rows] != [3, 3, 3]
         matrix = np.eye(3) if wrong else np.array(rows)
         if wrong or np.abs(np.real(matrix.T @ matrix) - np.eye(3)).max() > _ALIKE or np.linalg.det(np.real(matrix)) < 0:

@@ -23,6 +23,7 @@ from dalembert.multibody.system import Mechanism
 from dalembert.multibody.trajectory import Trajectory
 
 _ADAPTIVE_OUTPUTS = 1001
+_FEW_JUMPS = 100  # of loads, at which states are kept for their work; a held table has one a sample
 _ROOM = 20_000_000  # numbers up to which the states of all steps are kept, where loads and losses may do work
 
 
@@ -118,7 +119,8 @@ def posed(
     if steps is None:
         steps = np.linspace(0.0, end, _ADAPTIVE_OUTPUTS)
     times = steps if times is None else checked(times, end)
-    return lowered, chosen, times, np.union1d(times, steps if worked else 0.0)
+    jumps = [time for time in lowered.jumps if 0.0 < time < end] if len(lowered.jumps) <= _FEW_JUMPS else []
+    return lowered, chosen, times, np.union1d(times, [*steps, *jumps] if worked else 0.0)
 
 
 def _check_memory(solver: Integrator, end: float, numbers: float) -> None:

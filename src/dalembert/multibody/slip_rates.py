@@ -12,6 +12,8 @@ CROSSING = 1.0  # steps, at least, in which the motion should cross the smoothed
 SMOOTH = 3.0  # steps in a crossing with the proposed slip rate
 CREEP = 2e-3  # part of the joint's motion that may be creep where friction should hold it
 LARGE = 0.05  # part of the joint's largest rate that a slip rate should not exceed
+SLOW = 1e-3  # part of the joint's largest rate; friction stops a vibration that is slower within a few reversals
+REVERSALS = 5  # of a slow rate between neighbouring samples, from which the stick phase is not that of the law
 STAY = 10.0  # crossings at the mean acceleration, after which friction holds the joint
 
 
@@ -23,7 +25,7 @@ def rubbing(system: Mechanism) -> dict[str, Smoothing]:
 def slip_findings(
     name: str, smoothing: Smoothing, times: np.ndarray, rates: np.ndarray, step: float | None
 ) -> Iterator[Finding]:
-    """Yield whether a joint creeps where friction should hold it, or crosses the smoothed zone in too few steps.
+    """Yield whether a joint creeps or chatters where friction should hold it, or crosses its zone in too few steps.
 
     Parameters
     ----------
@@ -58,6 +60,16 @@ def slip_findings(
         advice = f"Set {setting} to {proposed:.2g} {unit} or less."
         yield Finding("slip-rate", "warning", values, message, advice)
         return
+    reversals = _reversals(slip, rates)
+    if reversals >= REVERSALS:
+        yield Finding(
+            "stick-chatter",
+            "warning",
+            {"joint": name, setting: slip, "reversals": reversals},
+            f"Joint {name!r} chatters where friction should hold it: its rate changes its sign {reversals} times from "
+            f"sample to sample, at more than twice its {setting} of {slip:.3g} {unit}. It may slip early.",
+            f"Use RadauIIA, which follows the {setting}, or a larger {setting}.",
+        )
     change = _crossing(slip, rates)
     if step is None or np.max(np.diff(times)) > 1.5 * step or not change or 2 * slip / change >= CROSSING:
         return
@@ -87,6 +99,13 @@ def _held(slip: float, times: np.ndarray, rates: np.ndarray) -> tuple[float, flo
     held = [slice(begin, end) for begin, end in edges if times[end - 1] - times[begin] > least]
     angle = sum(np.trapezoid(np.abs(rates[part]), times[part]) for part in held)
     return float(angle), float(sum(np.ptp(times[part]) for part in held))
+
+
+def _reversals(slip: float, rates: np.ndarray) -> int:
+    """Return how often a rate that is slow, but outside the smoothed zone, changes its sign from sample to sample."""
+    sizes = np.abs(rates)
+    slow = (sizes > 2 * slip) & (sizes < SLOW * np.max(sizes))
+    return int(np.sum(slow[1:] & slow[:-1] & (rates[1:] * rates[:-1] < 0)))
 
 
 def _travel(times: np.ndarray, rates: np.ndarray) -> float:

@@ -32,6 +32,7 @@ from dalembert.multibody.skipped_samples import skipped_samples
 from dalembert.multibody.slip_rates import rubbing, slip_findings
 from dalembert.multibody.start_findings import start_findings
 from dalembert.multibody.system import Mechanism
+from dalembert.multibody.work import works_of_steps
 from dalembert.notebook_display import Displayed
 
 if TYPE_CHECKING:
@@ -163,8 +164,8 @@ class Trajectory(Displayed):
     def energies(self) -> dict[str, np.ndarray]:
         """Energies in J, each (samples,): kinetic, potential, total, work of loads and losses, and their balance.
 
-        The work is the trapezoidal integral of the power over the steps; balance = total - work - first total, which an
-        exact motion keeps at zero.
+        The work is the integral of the power over the steps, with an error of fourth order. balance = total - work -
+        first total; an exact motion keeps it at zero.
         """
         return {name: values[self.rows] for name, values in self._energies.items()}
 
@@ -173,12 +174,8 @@ class Trajectory(Displayed):
         """Energies at all times of the run."""
         prepare(energy_kernels(self.lowered, False))
         states, times = self.run.states, self.run.times
-        kinetic, potential, power = energies(self.lowered.real, states.x, states.v, times, beside(times, -1)).T
-        after = power
-        if self.lowered.jumps:  # the power at the beginning of an interval may not be that at the end of the one before
-            after = energies(self.lowered.real, states.x, states.v, times, beside(times, 1))[:, 2]
-        steps = np.diff(times) * (power[1:] + after[:-1]) / 2
-        work = np.concatenate([[0.0], np.cumsum(steps)])
+        kinetic, potential, _ = energies(self.lowered.real, states.x, states.v, times, beside(times, -1)).T
+        work = np.concatenate([[0.0], np.cumsum(works_of_steps(self.lowered, times, states))])
         total = kinetic + potential
         balance = total - work - total[0]
         return {"kinetic": kinetic, "potential": potential, "total": total, "work": work, "balance": balance}

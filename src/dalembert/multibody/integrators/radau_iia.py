@@ -22,12 +22,14 @@ from dalembert.multibody.integrators.radau_workspace import Settings, workspace
 from dalembert.multibody.integrators.run import Run, cut_down, explain, users_error
 from dalembert.multibody.kernels.motion import resting
 from dalembert.multibody.lowered import Lowered
+from dalembert.multibody.scales import slip_scale
 from dalembert.multibody.singular_positions import singular_position
 from dalembert.multibody.structure import Structure
 
 _ABOVE = 100.0  # times the smallest error: a tolerance at which rounding hardly changes the step
 _FINEST = 1e-12  # tolerance from which rounding does not limit the steps of stiff mechanisms (measured)
 _ROUNDED = 1e-7  # tolerance that no rounding asks for
+_STICKING = 0.01  # of the slip rate: error of velocities in a step, so that dry friction can hold a joint
 
 
 @dataclass(frozen=True)
@@ -45,8 +47,10 @@ class RadauIIA(Integrator):
     tolerance : float
         Of the estimated error of a step, relative to each coordinate's scale: the extent of the mechanism for
         positions, 1 for angles and gradients. The scale of a velocity is that of its coordinate times the largest
-        velocity so far relative to the scale of its coordinate, 1/s. The estimate is of the order of the stages, so
-        errors of fine steps are much smaller. Rounding allows 1e-12 and more for stiff mechanisms.
+        velocity so far relative to the scale of its coordinate, 1/s. Where joints have dry friction, errors of
+        velocities are below 1 % of the smallest slip rate, so that friction can hold a joint. The estimate is of the
+        order of the stages, so errors of fine steps are much smaller. Rounding allows 1e-12 and more for stiff
+        mechanisms.
     step : float, optional
         Fixed step in s; chosen by ``tolerance`` if not given.
     stages : {5, 3, 7}
@@ -111,8 +115,10 @@ class RadauIIA(Integrator):
         runs = []
         for lowered, edges, start, models in batch:
             log, states = batch.log(fixed), resting(*batch.shape)
-            settings = self.step or 0.0, self.tolerance, self.newton_tolerance, self.most_steps, lowered.dissipates
-            status, time, unknown, least = run(edges, Settings(*settings), models, start, states, log)
+            slow = _STICKING * slip_scale(lowered) / self.tolerance
+            steps = self.step or 0.0, self.tolerance, self.newton_tolerance, self.most_steps
+            settings = Settings(*steps, lowered.dissipates, slow)
+            status, time, unknown, least = run(edges, settings, models, start, states, log)
             reason = None if status == DONE else self._explain(lowered, status, time, unknown, least, spare.new.x)
             runs.append(batch.result(reason, states, dout, log))
         return runs

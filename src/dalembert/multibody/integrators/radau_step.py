@@ -58,7 +58,7 @@ def attempt(
     error, end = 0.0, len(method.c) - 1
     if converged and settings.step == 0.0:
         speed = max(speed, speed_of(n, scale, s.v[end]))
-        error = max(gap, rate_error / speed) / settings.tolerance
+        error = max(gap, rate_error / min(speed, settings.slow)) / settings.tolerance
     if converged and error <= 1.0:
         stages.read(n, s, new)
         accelerate_roughly(problem, matrices, models.real, new, works[end], room.moved)

@@ -19,13 +19,18 @@ _ENDS = 4  # of steps, through which outputs are interpolated
 
 
 class Settings(NamedTuple):
-    """What the compiled loop needs of `RadauIIA`; ``step`` 0: chosen by the error; whether forces may be ``damped``."""
+    """What the compiled loop needs of `RadauIIA`.
+
+    ``step`` 0: chosen by the error; ``damped``: whether forces may be; ``slow``: velocity in parts of the scales, 1/s,
+    that errors of velocities are relative to, if it is less than the largest velocity of the motion.
+    """
 
     step: float
     tolerance: float
     newton_tolerance: float
     most_steps: int
     damped: bool
+    slow: float
 
 
 class Step(NamedTuple):

@@ -141,9 +141,14 @@ def test_singular_bushings_are_accepted(right) -> None:
 
 @pytest.mark.parametrize("gain", [(0.0, 1.0, 1.0), np.diag([1.0, 0.0, 1.0])])
 @pytest.mark.parametrize("what", ["acceleration_gain", "rate_gain"])
-def test_a_gain_of_zero_is_refused(what: str, gain) -> None:
-    with pytest.raises(InputError, match=f"^InertialSensor 'imu': {what} is .*; a gain of 0 shows nothing"):
-        sp.InertialSensor("imu", BODY.point("origin"), **{what: gain})
+def test_a_gain_of_zero_is_a_finding(what: str, gain) -> None:
+    (found,) = sp.InertialSensor("imu", BODY.point("origin"), **{what: gain}).findings
+    assert (found.code, found.severity, found.values) == ("zero-gain", "warning", {"sensor": "imu", "gain": what})
+
+
+def test_other_gains_are_no_finding() -> None:
+    across = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.1, 1.0]])
+    assert sp.InertialSensor("imu", BODY.point("origin"), acceleration_gain=across).findings == ()
 
 
 @pytest.mark.parametrize(("kind", "numbers"), [(sp.GearJoint, {"ratio": 2.0}), (sp.CouplingJoint, {"ratio": -1.0})])

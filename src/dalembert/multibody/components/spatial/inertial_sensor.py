@@ -9,6 +9,7 @@ import numpy as np
 
 from dalembert.arguments import array_of
 from dalembert.errors import InputError, shown
+from dalembert.findings import Finding
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.points import Point, require_direction
@@ -118,6 +119,21 @@ class InertialSensor(Load):
         for what in ("acceleration_gain", "rate_gain"):
             _gain(f"InertialSensor {self.name!r}", what, getattr(self, what))
 
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """Which gains leave an output without a signal; parameters may pass through such a gain."""
+        return tuple(
+            Finding(
+                "zero-gain",
+                "warning",
+                {"sensor": self.name, "gain": what},
+                f"InertialSensor {self.name!r}: an output has the gain 0 in {what}, so it shows nothing but its bias.",
+                "Give a gain other than zero, or leave its channel out.",
+            )
+            for what in ("acceleration_gain", "rate_gain")
+            if not np.all(np.any(np.reshape(np.real(_gain("", what, getattr(self, what))), (3, 3)) != 0, axis=0))
+        )
+
     def lower(self, lowering: SpatialLowering) -> None:
         owner = f"InertialSensor {self.name!r}"
         require_direction(owner, "the channels ax, ay and az of the point mass, or a rigid body", self.at)
@@ -136,6 +152,4 @@ def _gain(owner: str, what: str, given: Any) -> list[Number]:
     if array.shape not in ((3,), (3, 3)):
         raise InputError(f"{owner}: {what} is {shown(given)}; expected three numbers, or a matrix (3, 3)")
     matrix = np.diag(array) if array.ndim == 1 else array
-    if not np.all(np.any(np.real(matrix) != 0, axis=1)):
-        raise InputError(f"{owner}: {what} is {shown(given)}; a gain of 0 shows nothing, so leave the channel out")
     return matrix.T.ravel().tolist()

@@ -10,7 +10,7 @@ from dalembert.findings import Finding
 POINTS = 300
 """Steps that together must be as long as the longest step; else the path makes no progress."""
 ADVICE = {
-    "turned-back": "The response beyond is on another branch. Give single values there in place of two ends.",
+    "fold": "The response beyond is on another branch. Give single values there in place of two ends.",
     "stopped": "Use more harmonics or smaller steps, or start behind this place.",
     "no-progress": "Use more harmonics or samples, or events=True, so that the path has no sharp turns.",
 }
@@ -49,7 +49,7 @@ def end_findings(
         return ()
     where = f"{last:.6g} {unit} ({what})"
     if (last - begin) * np.sign(end - begin) <= 0 and len(places) > 1:
-        reason, how = "turned-back", f"The path turns back and leaves the range at {where}."
+        reason, how = "fold", f"The path passes a fold and leaves the range at {where}."
     elif not converged[-1]:
         reason, how = "stopped", f"The path stops at {where}: no further point was found."
     else:

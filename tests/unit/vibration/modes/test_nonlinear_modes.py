@@ -80,7 +80,7 @@ def test_a_path_that_turns_back_before_its_end_says_so(tmp_path: Path) -> None:
     assert path.converged.all()
     (finding,) = path.doubts
     assert (finding.code, finding.severity) == ("end-not-reached", "warning")
-    assert finding.values["reason"] == "turned-back"
+    assert finding.values["reason"] == "fold"
     assert (finding.values["last"], finding.values["end"]) == (0.6, 1.1)
     assert finding.values["farthest"] == path.amplitudes.max() == pytest.approx(0.74436, abs=1e-4)
     assert finding.message in path.summary()

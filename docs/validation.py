@@ -33,6 +33,7 @@ AREAS = {
             "Rigid mechanisms",
             "Robots",
             "Rotating mechanisms",
+            "Stick and slip",
         ),
     ),
     "integrators": Area(

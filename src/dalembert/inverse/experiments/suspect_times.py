@@ -34,7 +34,7 @@ def first_times(data: Measurements) -> np.ndarray:
 def time_unit_findings(data: Measurements, times: np.ndarray, response: np.ndarray) -> tuple[Finding, ...]:
     """Return a finding on the first channel that changes smoothly where the response does not follow.
 
-    The response swings several times between two samples, or comes to rest within the first of them.
+    The response swings several times between two samples, or settles within the first of them.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def _has_settled(values: np.ndarray, times: np.ndarray, response: np.ndarray, st
 
 
 def _finding(channel: str, step: float, swings: int) -> Finding:
-    does = f"swings about {swings / 2:.3g} times" if swings >= SWINGS else "comes to rest"
+    does = f"swings about {swings / 2:.3g} times" if swings >= SWINGS else "settles"
     return Finding(
         "suspect-time-unit",
         "warning",

@@ -156,7 +156,12 @@ class Fit(EndedResult):
     def identifiability(self) -> Identifiability:
         """What the data can identify: singular values, combinations, and findings on what they cannot."""
         known = Estimate(self.deviations, self.correlation, self.singular_values, self.directions)
-        found = tuple(identifiability_findings(self.parameters, self.values, known))
+        plain = (
+            known
+            if self.correlated is None
+            else replace(known, deviations=self.correlated.deviations, correlation=self.correlated.correlation)
+        )
+        found = tuple(identifiability_findings(self.parameters, self.values, known, plain))
         return Identifiability(self.singular_values, self.directions, found, self.deviations, self.correlation)
 
     def diagnostics(self) -> ResidualDiagnostics:
@@ -247,7 +252,7 @@ class Fit(EndedResult):
         facts = [
             *fact_lines(
                 method=self.method,
-                misfit=f"{self.fitness:.6g} (weighted sum of squares of {int(self.data.present.sum())} values)",
+                misfit=f"{self.fitness:.6g} (weighted sum of squares of {np.count_nonzero(self.weights)} values)",
                 simulations=self.simulations,
                 starts=len(self.starts),
             ),

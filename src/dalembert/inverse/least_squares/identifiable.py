@@ -18,7 +18,9 @@ INDISTINGUISHABLE = 0.99
 SEPARATE = "Fix one of them, or measure a quantity that separates them."
 
 
-def identifiability_findings(parameters: Parameters, values: np.ndarray, known: Estimate) -> Iterator[Finding]:
+def identifiability_findings(
+    parameters: Parameters, values: np.ndarray, known: Estimate, plain: Estimate | None = None
+) -> Iterator[Finding]:
     """Yield findings on parameters at a bound, not identifiable, or hardly distinguishable.
 
     Parameters
@@ -28,6 +30,9 @@ def identifiability_findings(parameters: Parameters, values: np.ndarray, known: 
         Identified values.
     known : Estimate
         Of these values.
+    plain : Estimate, optional
+        For independent residuals; ``known`` if not given. A prior that contradicts the data leaves correlated ones,
+        whose larger standard deviations would hide the conflict.
     """
     width = parameters.upper - parameters.lower
     for k, item in enumerate(parameters):
@@ -42,7 +47,8 @@ def identifiability_findings(parameters: Parameters, values: np.ndarray, known: 
                 f"{item.name!r} is at its {side} bound {bound:.6g}.",
                 "Widen the bound if the true value may lie beyond it.",
             )
-    yield from conflicts_of_minimum(parameters, values, known.deviations, known.correlation)
+    plain = known if plain is None else plain
+    yield from conflicts_of_minimum(parameters, values, plain.deviations, plain.correlation)
     yield from prior_findings(parameters, known.deviations, known.correlation)
     yield from unidentifiable(parameters.names, width, parameters.scale, known)
 

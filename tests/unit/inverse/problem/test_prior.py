@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from inline_snapshot import snapshot
 
+import dalembert as da
 from dalembert.data import Measurements
 from dalembert.errors import InputError
 from dalembert.forward import PythonModel
@@ -75,3 +76,24 @@ def test_priors_need_known_noise() -> None:
     assert str(error.value) == snapshot(
         "parameter 'a' has a prior (log-normal), but the noise level of the data is not known; give the data's deviations, or weights that are 1/variance"
     )
+
+
+def test_a_narrow_prior_that_contradicts_the_data_is_named_by_a_fit():
+    """10 ± 0.01 against data of 2: the residuals that it leaves are correlated, which must not hide it."""
+    times = np.linspace(0.0, 1.0, 50)
+    parameter = da.Parameter("slope", 0.1, 20.0, start=10.0, prior=da.Normal(10.0, 0.01))
+    model = da.PythonModel(lambda slope: slope * times, [parameter], ["x"], times)
+    noise = 0.05 * np.random.default_rng(0).standard_normal(50)
+    fit = da.identify(model, da.Measurements.of(times, {"x": 2 * times + noise}, 0.05))
+    (found,) = (item for item in fit.conclusions if item.code == "prior-conflict")
+    assert found.values["parameter"] == "slope"
+    estimate, deviation = 2 + times @ noise / (times @ times), 0.05 / np.linalg.norm(times)
+    assert found.values["deviations"] == pytest.approx((10 - estimate) / np.hypot(0.01, deviation), rel=1e-3)
+
+
+def test_the_misfit_of_a_summary_counts_the_values_that_were_fitted():
+    times = np.linspace(0.0, 1.0, 50)
+    model = da.PythonModel(lambda slope: slope * times, {"slope": (0.1, 20.0)}, ["x"], times)
+    noise = 0.05 * np.random.default_rng(0).standard_normal(50)
+    fit = da.identify(model, da.Measurements.of(times, {"x": 2 * times + noise}), validation=0.2)
+    assert "(weighted sum of squares of 40 values)" in fit.summary()

@@ -409,7 +409,7 @@ CASES: dict[str, Case] = {
     ),
     "noise that grows": Case(
         lambda: da.identify(LINE_IN_TIME, _noisy(factor=0.2 + LONG)),
-        ("The residuals of 'x' grow with", "Weight the samples by their noise:"),
+        ("The residuals of 'x' grow with", "Estimate how it grows:"),
     ),
     "signs that stay": Case(
         lambda: da.identify(LINE_IN_TIME, _signs_stay()),

@@ -36,6 +36,8 @@ from dalembert.inverse.least_squares.estimate import Estimate, estimate, estimat
 from dalembert.inverse.least_squares.roughness import roughness_findings
 from dalembert.inverse.likelihood.placing import Noise
 from dalembert.inverse.misfit.misfit import misfit_conclusions
+from dalembert.inverse.mistakes.findings import with_mistakes
+from dalembert.inverse.mistakes.record import FittedRecord
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.loss import loss_of
 from dalembert.inverse.problem.noise import noise_floor
@@ -254,6 +256,8 @@ def identify(
     unconfirmed: tuple[Finding, ...] = ()
     if squares and shooting is None:
         unconfirmed = tuple(unconfirmed_findings(*searched[:2], ends, floor, white=look_white(problem, response)))
+    if looked is not None:
+        followed = with_mistakes(followed, FittedRecord(problem, looked, known), _seen(journal))
     others = rivals(*searched, deviations, known=known if settled is None else given)
     whole = response if problem is posed else posed.responses(vector[None])[0]
     predicted = parted.validation(whole)
@@ -348,6 +352,12 @@ def _method(given: Squares | Method | str | None) -> Squares | Method:
             f"ImprovedParticleSwarm(), Firefly(), or a Minimiser or its name{hint}"
         )
     return given
+
+
+def _seen(journal: Journal) -> list[np.ndarray]:
+    """Vectors (parameters,) of the first guesses and of the ends of starts, the best first."""
+    ends = sorted((start for start in journal.starts if np.isfinite(start.fitness)), key=lambda start: start.fitness)
+    return [*([] if journal.first is None else [journal.first.vector]), *(start.end for start in ends)]
 
 
 def _origin(problem: Problem, start: Mapping[str, float] | ArrayLike) -> np.ndarray:

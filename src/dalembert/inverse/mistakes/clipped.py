@@ -1,0 +1,35 @@
+"""Samples at the end of the range of a sensor."""
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+
+import numpy as np
+
+from dalembert.findings import Finding
+from dalembert.inverse.correlation.series import Series
+from dalembert.inverse.mistakes.patterns import plateaus
+from dalembert.inverse.mistakes.record import NONE, FittedRecord, Mistake, Verdict, without
+
+
+def clipped(record: FittedRecord) -> Iterator[Mistake]:
+    """Yield the mistake for all series with several values at their largest or smallest value."""
+    found = {own: there for own in record.series if np.any(there := plateaus(record.data_of(own)))}
+    if found:
+        rows = np.concatenate([own.rows[there] for own, there in found.items()])
+        counts = [int(np.count_nonzero(there)) for there in found.values()]
+        levels = [float(np.max(np.abs(record.data_of(own)[there]))) for own, there in found.items()]
+        finding = partial(_finding, list(found), counts, levels)
+        yield Mistake(partial(without, rows), finding, NONE, blamed=rows, visible=True)
+
+
+def _finding(series: Sequence[Series], counts: Sequence[int], levels: Sequence[float], verdict: Verdict) -> Finding:
+    most = int(np.argmax(counts))
+    return Finding(
+        "clipped-samples",
+        "warning",
+        {"channel": series[most].name, "samples": counts[most], "level": levels[most], "explained": verdict.explained},
+        f"{counts[most]} samples of {series[most].name!r} are at the end of their range, up to {levels[most]:.4g}, and "
+        f"seem to be clipped. {verdict.sentence}",
+        "Measure with a larger range, or leave these samples out: empty cells with missing = 'leave-out' in the study "
+        "file, NaN in Python.",
+    )

@@ -1,0 +1,79 @@
+"""Times of a record that are shifted or stretched."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from dalembert.inverse.correlation.series import Series
+from dalembert.inverse.mistakes.record import TIME, FittedRecord
+
+RESOLUTION = 12
+"""Times in a period of the response at which it is interpolated."""
+
+FEWEST = 8
+"""Fewest values of a series whose times are judged."""
+
+
+@dataclass(frozen=True, eq=False)
+class Clock:
+    """Series that share a clock.
+
+    Parameters
+    ----------
+    name : str
+        Of the experiment, or of the channel; empty for all.
+    series : tuple of Series
+    period : float
+        Shortest time in which the response of one of them swings: 2π rms/rms of its rate.
+    """
+
+    name: str
+    series: tuple[Series, ...]
+    period: float
+    last: list[tuple[np.ndarray, list[CubicSpline]]] = field(default_factory=list)
+    """The last response and its splines: many numbers are tried with one response."""
+
+    @cached_property
+    def rows(self) -> np.ndarray:
+        return np.concatenate([own.rows for own in self.series])
+
+    @property
+    def length(self) -> float:
+        """Duration of the longest record."""
+        return max(own.length for own in self.series)
+
+    def read(self, response: np.ndarray, times: Sequence[np.ndarray]) -> np.ndarray:
+        """Return a response (samples × channels, ...) whose series are read at other times; NaN outside the record."""
+        if not self.last or self.last[0][0] is not response:
+            splines = [CubicSpline(own.along, response[own.rows], extrapolate=False) for own in self.series]
+            self.last[:] = [(response, splines)]
+        shown = response.copy()
+        for own, spline, at in zip(self.series, self.last[0][1], times, strict=True):
+            shown[own.rows] = spline(at)
+        return shown
+
+
+def clocks(record: FittedRecord, *, channels: bool) -> Iterator[Clock]:
+    """Yield the clock of each experiment, that of all, and with ``channels`` that of each channel of an experiment."""
+    known = [own for own in record.series if own.unit == TIME and len(own.rows) >= FEWEST]
+    names = dict.fromkeys(own.experiment for own in known)
+    groups = [(name, [own for own in known if own.experiment == name]) for name in names]
+    if len(groups) > 1:
+        groups.append(("", known))
+    if channels and len(known) > len(names):
+        groups += [(own.name, [own]) for own in known]
+    for name, series in groups:
+        period = min((_period(record, own) for own in series), default=0.0)
+        if period > 0:
+            yield Clock(name, tuple(series), period)
+
+
+def _period(record: FittedRecord, own: Series) -> float:
+    """2π rms/rms of the rate, of the data's response; infinite where it does not move."""
+    response = record.response_of(own)
+    rate = np.gradient(response, own.along)
+    size = np.sqrt(np.mean((response - response.mean()) ** 2) / max(np.mean(rate**2), np.finfo(float).tiny))
+    return max(2 * np.pi * float(size), 4 * own.step)

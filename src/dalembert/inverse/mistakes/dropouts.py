@@ -1,0 +1,32 @@
+"""Samples that are zero because they were lost."""
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+
+import numpy as np
+
+from dalembert.findings import Finding
+from dalembert.inverse.correlation.series import Series
+from dalembert.inverse.mistakes.patterns import FEWEST
+from dalembert.inverse.mistakes.record import NONE, FittedRecord, Mistake, Verdict, without
+
+
+def dropouts(record: FittedRecord) -> Iterator[Mistake]:
+    """Yield the mistake for all series with zeros."""
+    lost = {own: record.data_of(own) == 0 for own in record.series}
+    found = {own: zero for own, zero in lost.items() if FEWEST <= np.count_nonzero(zero) < len(zero)}
+    if found:
+        rows = np.concatenate([own.rows[zero] for own, zero in found.items()])
+        counts = [int(np.count_nonzero(zero)) for zero in found.values()]
+        yield Mistake(partial(without, rows), partial(_finding, list(found), counts), NONE, blamed=rows, visible=True)
+
+
+def _finding(series: Sequence[Series], counts: Sequence[int], verdict: Verdict) -> Finding:
+    most = int(np.argmax(counts))
+    return Finding(
+        "zero-dropouts",
+        "warning",
+        {"channel": series[most].name, "samples": counts[most], "explained": verdict.explained},
+        f"{counts[most]} samples of {series[most].name!r} are exactly 0, and seem to be lost. {verdict.sentence}",
+        "Leave the lost samples out: empty cells with missing = 'leave-out' in the study file, NaN in Python.",
+    )

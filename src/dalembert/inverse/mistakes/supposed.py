@@ -1,0 +1,181 @@
+"""The residuals of a fit if its record has a supposed mistake."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from dalembert.errors import SolveError
+from dalembert.inverse.mistakes.record import FittedRecord, Mistake
+from dalembert.inverse.problem.journal import Journal
+from dalembert.inverse.problem.prior import prior_residual, prior_slopes
+from dalembert.inverse.problem.problem import Linearisation
+from dalembert.optimize import LeastSquares
+
+TRIALS = 25
+"""Most residuals of a descent."""
+
+GAIN = 1e-3
+"""A descent ends when a step lowers the sum of squares by less than this part of it."""
+
+LEAST = 1e-20
+"""Ratio of squares below which residuals are rounding."""
+
+NUMBER = 4.0
+"""Log-likelihood by which a mistake with a number must be better than one without: a delay by half a period explains a
+wrong sign, too."""
+
+STEP = 0.02
+"""Step of the differences by the number of a mistake, in distances of the numbers that are tried."""
+
+
+@dataclass(frozen=True, eq=False)
+class Supposed:
+    """A supposed mistake and what it leaves.
+
+    Parameters
+    ----------
+    mistake : Mistake
+    at : Linearisation
+        Where the parameters are.
+    number : float
+        That describes the mistake.
+    ratio : float
+        Mean of the squares of weighted residuals over that of the fit; over the values that the mistake leaves, but in
+        the fit over those, too, that it blames.
+    values : int
+        Number of compared values.
+    squares : array, shape (values of all channels,)
+        Of the weighted residuals; 0 where the mistake blames a value, NaN where it leaves a value out.
+    """
+
+    mistake: Mistake
+    at: Linearisation
+    number: float
+    ratio: float
+    values: int
+    squares: np.ndarray
+
+    @property
+    def by_chance(self) -> float:
+        """Gain in log-likelihood that a free number brings by chance."""
+        return NUMBER + np.log(len(self.mistake.numbers)) if np.isfinite(self.number) else 0.0
+
+    @property
+    def gain(self) -> float:
+        """Gain in log-likelihood, n/2 ln(before/after), less that which a free number brings by chance."""
+        return -self.values / 2 * np.log(max(self.ratio, LEAST)) - self.by_chance
+
+    def better_than(self, other: "Supposed") -> float:
+        """Gain in log-likelihood over another mistake, by the values that both compare."""
+        common = np.isfinite(self.squares) & np.isfinite(other.squares)
+        own, its = (max(float(np.sum(one.squares[common])), np.finfo(float).tiny) for one in (self, other))
+        return np.count_nonzero(common) / 2 * np.log(its / own) - self.by_chance + other.by_chance
+
+
+def linear(record: FittedRecord, mistake: Mistake, at: Linearisation) -> Supposed:
+    """Return the best number of a mistake, with the parameters by one step of Gauss and Newton within their bounds."""
+    search = record.problem.search
+    slopes, point = search.slope(at.vector), search.points(at.vector)
+    jacobian = at.jacobian.reshape(-1, len(slopes)) * slopes
+    tables = np.column_stack([at.response.ravel(), jacobian])
+    best = Supposed(mistake, at, np.nan, np.inf, 0, np.zeros(0))
+    for number in mistake.numbers:
+        shown = mistake.shown(tables, float(number))
+        kept = _kept(record, shown[:, 0]) & np.all(np.isfinite(shown), axis=1)
+        residual, rows = _compared(record, shown, kept)
+        residual = np.concatenate([residual, prior_residual(record.problem.model.parameters, at.vector)])
+        rows = np.concatenate([rows, prior_slopes(record.problem.model.parameters, at.vector, slopes)])
+        # Normal equations are exact enough to rank mistakes, and ten times as fast as singular values of the rows.
+        step = np.linalg.lstsq(rows.T @ rows, -rows.T @ residual, rcond=1e-12)[0]
+        step = np.clip(point + step, search.lower, search.upper) - point
+        found = _ratio(record, mistake, residual + rows @ step, kept)
+        if found < best.ratio:
+            best = Supposed(mistake, at, float(number), found, record.problem.compared, np.zeros(0))
+    return best
+
+
+def refitted(record: FittedRecord, supposed: Supposed) -> Supposed:
+    """Return a supposed mistake with the parameters, and its number, by least squares from where they are."""
+    problem = replace(record.problem, journal=Journal(record.problem.samples), loss=None)
+    search, mistake, count = problem.search, supposed.mistake, len(supposed.at.vector)
+    numbered = bool(np.isfinite(supposed.number))
+    spacing = float(np.min(np.diff(mistake.numbers))) if numbered else 0.0
+    numbers = supposed.number + spacing * np.array([-1.0, 0.0, 1.0]) if numbered else np.array([np.nan])
+    reach = supposed.number + (1 + STEP) * (numbers - supposed.number) if numbered else numbers
+    kept = np.all([_kept(record, mistake.shown(supposed.at.response.ravel(), float(one))) for one in reach], axis=0)
+    known: dict[bytes, Linearisation] = {search.points(supposed.at.vector).tobytes(): supposed.at}
+
+    def at(point: np.ndarray) -> Linearisation:
+        key = point[:count].tobytes()
+        if key not in known:
+            known.clear()
+            known[key] = problem.linearise(search.vectors(point[:count]))
+        return known[key]
+
+    def number(point: np.ndarray) -> float:
+        return float(point[count]) if numbered else np.nan
+
+    def residual(point: np.ndarray) -> np.ndarray:
+        try:
+            now = at(point)
+        except SolveError:
+            return np.full(np.count_nonzero(kept) + problem.priors, np.nan)
+        own, _ = _compared(record, mistake.shown(now.response.ravel()[:, None], number(point)), kept)
+        return np.concatenate([own, prior_residual(problem.model.parameters, now.vector)])
+
+    def jacobian(point: np.ndarray) -> np.ndarray:
+        now = at(point)
+        slopes = search.slope(now.vector)
+        flat = now.jacobian.reshape(-1, count) * slopes
+        _, rows = _compared(record, mistake.shown(np.column_stack([now.response.ravel(), flat]), number(point)), kept)
+        rows = np.concatenate([rows, prior_slopes(problem.model.parameters, now.vector, slopes)])
+        if not numbered:
+            return rows
+        moved = point.copy(), point.copy()
+        moved[0][count] += STEP * spacing
+        moved[1][count] -= STEP * spacing
+        return np.column_stack([rows, (residual(moved[0]) - residual(moved[1])) / (2 * STEP * spacing)])
+
+    ends = np.array([numbers[0], numbers[-1]]) if numbered else np.zeros(0)
+    lower, upper = (np.concatenate([side, ends[k : k + 1]]) for side, k in ((search.lower, 0), (search.upper, 1)))
+    if not numbered:
+        lower, upper = search.lower, search.upper
+    start = np.concatenate([search.points(supposed.at.vector), [supposed.number] if numbered else []])
+    method = LeastSquares(trials=TRIALS, gain=GAIN)
+    scale = np.concatenate([np.ones(count), [spacing] if numbered else []])
+    try:
+        found = method.minimise(residual, jacobian, lower, upper, start, scale=scale)
+        end = at(found.x)
+    except SolveError:
+        return replace(supposed, ratio=np.inf)
+    finally:
+        record.problem.journal.simulations += problem.journal.simulations
+    left = residual(found.x)
+    ratio = _ratio(record, mistake, left, kept)
+    squares = np.full(kept.shape, np.nan)
+    squares[kept] = left[: np.count_nonzero(kept)] ** 2
+    squares[mistake.blamed] = 0.0
+    return Supposed(mistake, end, number(found.x), ratio, problem.compared, squares)
+
+
+def _kept(record: FittedRecord, shown: np.ndarray) -> np.ndarray:
+    """Mask (values,) of the values that are compared with what a record shows (values,)."""
+    return np.isfinite(shown) & (record.problem.weights.ravel() > 0)
+
+
+def _compared(record: FittedRecord, shown: np.ndarray, kept: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Weighted residuals (kept,) of a response in the first column, and weighted derivatives (kept, parameters)."""
+    problem = record.problem
+    response = np.where(np.isfinite(shown[:, 0]), shown[:, 0], 0.0).reshape(problem.weights.shape)
+    root = np.sqrt(problem.weights).ravel()[kept]
+    return root * problem.misfit(response).ravel()[kept], root[:, None] * shown[kept, 1:]
+
+
+def _ratio(record: FittedRecord, mistake: Mistake, residual: np.ndarray, kept: np.ndarray) -> float:
+    """Mean square of residuals, those of priors behind them, over that of the fit."""
+    before = kept.copy()
+    before[mistake.blamed] = record.problem.weights.ravel()[mistake.blamed] > 0
+    mean = float(np.sum(record.residual[before] ** 2)) / max(1, np.count_nonzero(before))
+    if 2 * np.count_nonzero(kept) < np.count_nonzero(record.problem.weights) or not mean > 0:
+        return np.inf
+    return float(np.sum(residual**2)) / max(1, np.count_nonzero(kept)) / mean

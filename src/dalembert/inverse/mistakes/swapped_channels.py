@@ -1,0 +1,56 @@
+"""Two channels of a record are swapped."""
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+from itertools import combinations
+
+import numpy as np
+
+from dalembert.findings import Finding
+from dalembert.inverse.correlation.series import Series
+from dalembert.inverse.mistakes.record import NONE, FittedRecord, Mistake, Verdict
+
+MOST = 12
+"""Channels of an experiment up to which all pairs are tested."""
+
+
+def swapped_channels(record: FittedRecord) -> Iterator[Mistake]:
+    """Yield the mistake for each pair of channels with the same samples, in one experiment and in all."""
+    pairs: dict[tuple[str, str], list[tuple[Series, Series]]] = {}
+    for several in record.experiments.values():
+        if len(several) > MOST:
+            continue
+        for one, other in combinations(several, 2):
+            if np.array_equal(one.along, other.along):
+                pairs.setdefault((one.channel, other.channel), []).append((one, other))
+                yield _mistake([(one, other)])
+    yield from (_mistake(found) for found in pairs.values() if len(found) > 1)
+
+
+def _mistake(pairs: Sequence[tuple[Series, Series]]) -> Mistake:
+    rows = [np.concatenate([pair[side].rows for pair in pairs]) for side in (0, 1)]
+    return Mistake(partial(_swapped, *rows), partial(_finding, pairs), NONE)
+
+
+def _swapped(first: np.ndarray, second: np.ndarray, response: np.ndarray, _: float) -> np.ndarray:
+    shown = response.copy()
+    shown[first], shown[second] = response[second], response[first]
+    return shown
+
+
+def _finding(pairs: Sequence[tuple[Series, Series]], verdict: Verdict) -> Finding:
+    one, other = pairs[0]
+    where = f" of experiment {one.experiment!r}" if one.experiment and len(pairs) == 1 else ""
+    return Finding(
+        "suspect-swap",
+        "warning",
+        {
+            "channel": one.channel,
+            "other": other.channel,
+            "experiment": one.experiment if len(pairs) == 1 else "",
+            "explained": verdict.explained,
+        },
+        f"The data of {one.channel!r} and {other.channel!r}{where} seem to be swapped. {verdict.sentence}",
+        f"Check the columns of the file. If they are swapped, swap the columns of {one.channel!r} and "
+        f"{other.channel!r} in columns.",
+    )

@@ -1,0 +1,43 @@
+"""A channel is measured in the opposite direction."""
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+
+import numpy as np
+
+from dalembert.findings import Finding
+from dalembert.inverse.correlation.series import Series
+from dalembert.inverse.mistakes.record import NONE, FittedRecord, Mistake, Verdict
+
+
+def wrong_sign(record: FittedRecord) -> Iterator[Mistake]:
+    """Yield the mistake for each channel of each experiment, and for each channel in all experiments."""
+    for own in record.series:
+        yield _mistake([own])
+    for channel in dict.fromkeys(own.channel for own in record.series):
+        several = [own for own in record.series if own.channel == channel]
+        if len(several) > 1:
+            yield _mistake(several)
+
+
+def _mistake(series: Sequence[Series]) -> Mistake:
+    rows = np.concatenate([own.rows for own in series])
+    return Mistake(partial(_negated, rows), partial(_finding, series), NONE)
+
+
+def _negated(rows: np.ndarray, response: np.ndarray, _: float) -> np.ndarray:
+    shown = response.copy()
+    shown[rows] *= -1
+    return shown
+
+
+def _finding(series: Sequence[Series], verdict: Verdict) -> Finding:
+    name = series[0].channel if len(series) > 1 else series[0].name
+    return Finding(
+        "suspect-sign",
+        "warning",
+        {"channel": name, "explained": verdict.explained},
+        f"The data of {name!r} seem to have the wrong sign. {verdict.sentence}",
+        f"Check the direction of the sensor. If it is reversed, write [sensors] {series[0].channel!r} = "
+        "{ gain = [-1, -1] } in the study file, or negate the values in Python.",
+    )

@@ -43,7 +43,12 @@ SENSITIVITY_CASES = {
                 lambda a: np.stack([a * TIMES, 0 * a * TIMES + 1.0], axis=1), {"a": (0, 1)}, ["x", "y"], TIMES
             )
         ),
-        ("The response of 'y' is constant: it has no indices.", "or widen the intervals."),
+        (
+            "The response of 'y' is constant: it has no indices.",
+            "or widen the intervals.",
+            "Samples without indices, where the response does not vary:",
+            "The indices there are NaN.",
+        ),
     ),
     "indices where runs fail": Case(
         lambda: da.global_sensitivity(

@@ -135,6 +135,7 @@ def global_sensitivity(
         findings=(
             *failed_runs(runs),
             *_constant(names, whole),
+            *_without_indices(names, whole, each.variance.reshape(samples, channels)),
             *_negligible(inputs, whole),
             unseen(made.surrogate, inputs.box.names),
             *findings_at(model, inputs.box.middle),
@@ -219,6 +220,21 @@ def _constant(names: tuple[str, ...], whole: SobolIndices) -> list[Finding]:
     message = f"The response of {listed(list(map(repr, still)))} is constant: it has no indices."
     advice = "Check that the channels depend on the parameters, or widen the intervals."
     return [Finding("constant-response", "warning", {"channels": ", ".join(still)}, message, advice)]
+
+
+def _without_indices(names: tuple[str, ...], whole: SobolIndices, variances: np.ndarray) -> list[Finding]:
+    """Finding on samples without a variance, (samples, channels), of channels that vary at others."""
+    still = np.count_nonzero(~(variances > 0), axis=0)
+    values = {
+        name: int(count)
+        for name, count, variance in zip(names, still, whole.variance, strict=True)
+        if count and variance > 0
+    }
+    if not values:
+        return []
+    where = listed([f"{count} of {len(variances)} of {name!r}" for name, count in values.items()])
+    message = f"Samples without indices, where the response does not vary: {where}. The indices there are NaN."
+    return [Finding("samples-without-indices", "note", values, message, "")]
 
 
 def _negligible(inputs: Inputs, whole: SobolIndices) -> list[Finding]:

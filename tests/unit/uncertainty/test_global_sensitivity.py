@@ -32,6 +32,25 @@ def test_indices_over_time_and_of_whole_channels(found):
     assert found.whole_total[0, 2] == pytest.approx(0.0, abs=1e-9)
 
 
+def test_samples_without_a_variance_are_named(found):
+    (finding,) = (item for item in found.findings if item.code == "samples-without-indices")
+    assert (finding.severity, finding.values) == ("note", {"y": 1})  # y is 0 at first
+    assert str(finding) == snapshot(
+        "Samples without indices, where the response does not vary: 1 of 9 of 'y'. The indices there are NaN."
+    )
+    rising = da.PythonModel(lambda a, b: a + b * TIMES, {"a": (0.0, 1.0), "b": (0.0, 1.0)}, ["x"], TIMES)
+    assert "samples-without-indices" not in [item.code for item in da.global_sensitivity(rising).findings]
+
+
+def test_a_channel_without_a_variance_is_named_once():
+    still = da.PythonModel(
+        lambda a: np.stack([a * TIMES + a, 1 + 0 * a * TIMES], 1), {"a": (0.0, 1.0)}, ["x", "y"], TIMES
+    )
+    codes = {item.code: item.values for item in da.global_sensitivity(still).findings}
+    assert codes["constant-response"] == {"channels": "y"}
+    assert "samples-without-indices" not in codes
+
+
 def test_total_index_of_a_product_is_that_of_its_moments(found):
     """Var(g h) of independent factors: V_g = μ_h² v_g, V_h = μ_g² v_h, interaction v_g v_h."""
     low, high = BOX["rate"]

@@ -1,6 +1,6 @@
 """Findings of residual diagnostics."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +20,12 @@ DECIDES = 1.0
 
 FREEDOM = 10
 """Fewest degrees of freedom with which a single sample that decides is reported: of few samples each one does."""
+
+PERIODIC = 0.01
+"""Share of the power from which a periodic part is reported: it adds 0.5 % to the root mean square of the residuals.
+
+Of many samples, a much smaller part is significant as well.
+"""
 
 PROPOSED = "mixed"
 """Noise model of residuals that grow with the response: proportional noise alone has none where the response is 0."""
@@ -85,7 +91,7 @@ def diagnostic_findings(
         yield _of_outliers(outliers, robust=robust)
     if (worst := _worst(series, "runs")) is not None:
         yield _of_runs(worst)
-    if (worst := _worst(series, "period")) is not None:
+    if (worst := _worst(series, "period", enough=_strongly_periodic)) is not None:
         yield _of_period(worst)
     over = [(one, key) for key in ("size over response", "size over coordinate") if (one := _worst(series, key, 2))]
     if over:
@@ -95,11 +101,20 @@ def diagnostic_findings(
     yield from _of_influence(names, series)
 
 
-def _worst(series: Sequence[SeriesResiduals], test: str, tests: int = 1) -> SeriesResiduals | None:
-    """Return the series of the least probability, if that is significant among all series and ``tests``."""
+def _worst(
+    series: Sequence[SeriesResiduals],
+    test: str,
+    tests: int = 1,
+    enough: Callable[[SeriesResiduals], bool] = lambda one: True,
+) -> SeriesResiduals | None:
+    """Return the series of the least probability that is significant among all series and ``tests``, and ``enough``."""
     tried = [one for one in series if test in one.p_values]
-    worst = min(tried, key=lambda one: one.p_values[test], default=None)
-    return worst if worst is not None and worst.p_values[test] < LEVEL / (len(tried) * tests) else None
+    significant = [one for one in tried if one.p_values[test] < LEVEL / (len(tried) * tests) and enough(one)]
+    return min(significant, key=lambda one: one.p_values[test], default=None)
+
+
+def _strongly_periodic(one: SeriesResiduals) -> bool:
+    return one.periodic_part()[2] >= PERIODIC
 
 
 def _of_outliers(outliers: Sequence[Outlier], *, robust: bool) -> Finding:

@@ -40,7 +40,8 @@ class Halves:
     differences : array, shape (parameters,)
         Second less first value in standard deviations of that difference; NaN where a half does not determine it.
     refitted : bool
-        Whether each half was fitted; if not, the values are those of one Gauss–Newton step from the whole fit.
+        Whether each half was fitted; if not, the values are those of one Gauss–Newton step from the whole fit, as far
+        as the bounds allow.
     """
 
     values: Annotated[np.ndarray, Over("half", "parameter", name="half_values")]
@@ -84,14 +85,12 @@ def halves(residuals: Residuals) -> Halves | None:
     deviation = np.sqrt(np.diag(_spread(residuals, apart)))
     guess = (parameters.upper - parameters.lower)[free] / np.sqrt(12)
     made = partial(_halves, free, sizes, deviation, np.array(known) & (sizes < guess))
-    steps = np.array([-residuals.values @ columns for columns in maps])
-    found = made(at.vector[free] + steps, refitted=False)
-    if not np.any(found.drifting):
-        return found
-    again = [_refitted(problem, mask, at.vector) for mask in (first, second)]
-    if any(values is None for values in again):
-        return found
-    return made(np.array(again)[:, free], refitted=True)
+    stepped = at.vector[free] + np.array([-residuals.values @ columns for columns in maps])
+    if np.any(made(stepped, refitted=False).drifting):
+        again = [_refitted(problem, mask, at.vector) for mask in (first, second)]
+        if all(values is not None for values in again):
+            return made(np.array(again)[:, free], refitted=True)
+    return made(np.clip(stepped, parameters.lower[free], parameters.upper[free]), refitted=False)
 
 
 def halves_findings(found: Halves | None, problem: Problem) -> Iterator[Finding]:

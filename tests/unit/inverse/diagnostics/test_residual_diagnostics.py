@@ -118,6 +118,19 @@ def test_the_period_of_a_hum_is_that_of_the_finding():
     )
 
 
+@pytest.mark.parametrize(("share", "reported"), [(0.005, False), (0.02, True)])
+def test_a_periodic_part_is_reported_from_a_hundredth_of_the_power(share, reported):
+    """A sine of amplitude a has the power a² / 2; of 10,001 samples, a part of 0.005 is significant."""
+    times = np.linspace(0, 2, 10001)
+    model = PythonModel(lambda a, b: a + b * times, {"a": (-5.0, 5.0), "b": (-5.0, 5.0)}, ["x"], times)
+    amplitude = SIZE * np.sqrt(2 * share / (1 - share))
+    found = fitted(noise(4, 10001) + amplitude * np.sin(2 * np.pi * 50 * times), model).diagnostics()
+    assert found.series[0].p_values["period"] < 1e-5
+    items = [item for item in found.findings if item.code == "periodic-residuals"]
+    assert bool(items) is reported
+    assert [item.values["share"] for item in items] == pytest.approx([share] * reported, rel=0.2)
+
+
 def test_heavy_tails_that_hide_a_drift_have_few_runs():
     rng = np.random.default_rng(8)
     errors = 0.04 * rng.standard_cauchy(201).clip(-40, 40) + 0.06 * np.sign(np.sin(9 * TIMES))

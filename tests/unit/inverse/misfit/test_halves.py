@@ -4,6 +4,7 @@ import pytest
 from dalembert.data import Measurements
 from dalembert.forward import PythonModel
 from dalembert.inverse import Fit, identify
+from dalembert.optimize import LeastSquares
 from free_oscillations import NOISE, TIMES, TRUTH, oscillation, oscillator, recorded, rubbing
 
 LINE = PythonModel(lambda slope: slope * np.sin(3 * TIMES), {"slope": (0.5, 2.0)}, ["x"], TIMES)
@@ -31,6 +32,21 @@ def test_halves_are_those_of_two_fits():
         alone = identify(LINE, data, weights=kept[:, None].astype(float), start=fit.values)
         np.testing.assert_allclose(fit.halves.values[half], alone.values, rtol=1e-5)
     np.testing.assert_allclose(fit.halves.values, [[1.0], [1.1]], rtol=2e-3)
+
+
+@pytest.mark.parametrize("trials", [30, 1], ids=["refitted", "not-refitted"])
+def test_values_of_the_halves_are_within_the_bounds(trials, monkeypatch):
+    """A half whose fit stops early has the value of one linear step, here 1.1 with the upper bound 1.08."""
+    monkeypatch.setattr("dalembert.inverse.misfit.halves.REFITTED", LeastSquares(trials=trials))
+    model = PythonModel(lambda slope: slope * np.sin(3 * TIMES), {"slope": (0.5, 1.08)}, ["x"], TIMES)
+    fit = identify(model, recorded(np.where(TIMES <= 4, 1.0, 1.1) * np.sin(3 * TIMES)), starts=1)
+    (finding,) = drifts(fit)
+    assert fit.halves.refitted is (trials > 1)
+    assert finding.values["first"] == pytest.approx(1.0, rel=2e-3)
+    assert 1.08 * (1 - 1e-6) <= finding.values["second"] <= 1.08
+    assert "1.08 in the second half" in finding.message
+    difference = np.diff(fit.halves.values[:, 0]) / np.hypot(*fit.halves.deviations[:, 0])
+    assert finding.values["deviations"] == pytest.approx(difference[0], rel=0.02)
 
 
 @pytest.mark.parametrize("correlation", [0.0, 0.7])

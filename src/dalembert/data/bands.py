@@ -24,7 +24,7 @@ class Bands:
         Names as in the model that is to explain them.
     lower, upper : array, shape (samples, channels)
         In SI units; equal where a value is known exactly.
-    units : mapping of str to str
+    source_units : mapping of str to str
         Unit in which the file gave the bounds of a channel, as it was written.
 
     Raises
@@ -44,7 +44,7 @@ class Bands:
     channels: tuple[str, ...]
     lower: np.ndarray
     upper: np.ndarray
-    units: Mapping[str, str] = field(default_factory=dict)
+    source_units: Mapping[str, str] = field(default_factory=dict, kw_only=True)
 
     def __post_init__(self) -> None:
         for name, value in (

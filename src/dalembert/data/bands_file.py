@@ -68,7 +68,9 @@ def read_bands(
     with errors_with_file(path):
         bands = Bands.of(along, {name: (table[lower], table[upper]) for name, (lower, upper) in pairs.items()})
     named = found.named_units(units)
-    return replace(bands, units={name: named[one] for name, pair in pairs.items() for one in pair if one in named})
+    return replace(
+        bands, source_units={name: named[one] for name, pair in pairs.items() for one in pair if one in named}
+    )
 
 
 def _pairs(path: Path, names: Collection[str]) -> dict[str, tuple[str, str]]:

@@ -41,7 +41,7 @@ class Measurements(Record):
     sampled : array of bool, shape (samples, channels), optional
         Where the sensor of each channel takes samples, if not at all of the coordinate: a missing value elsewhere is
         no gap. See :func:`merged`.
-    units : mapping of str to str
+    source_units : mapping of str to str
         Unit in which the file gave a channel, or the coordinate by its name, as it was written; none where it gave SI
         units without naming them. The values are in SI units.
 
@@ -257,7 +257,7 @@ def merged(parts: Sequence[Measurements]) -> Measurements:
         wraps=tuple(name for part in parts for name in part.wraps),
         origin="; ".join(filter(None, (part.origin for part in parts))),
         sampled=np.hstack(sampled),
-        units={name: unit for part in reversed(parts) for name, unit in part.units.items()},
+        source_units={name: unit for part in reversed(parts) for name, unit in part.source_units.items()},
     )
 
 

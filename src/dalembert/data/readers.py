@@ -132,7 +132,9 @@ def read(
     origin = f"{path}: {found.layout}" if found.layout else str(path)
     named = found.named_units(units)
     columns_of = {along.name: found.time, **chosen}
-    return replace(data, origin=origin, units={name: named[of] for name, of in columns_of.items() if of in named})
+    return replace(
+        data, origin=origin, source_units={name: named[of] for name, of in columns_of.items() if of in named}
+    )
 
 
 def _without(found: Columns, absent: Iterable[str]) -> Columns:

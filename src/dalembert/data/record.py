@@ -32,7 +32,7 @@ class Record:
     wraps: tuple[str, ...] = ()
     origin: str = ""
     sampled: np.ndarray | None = None
-    units: Mapping[str, str] = field(default_factory=dict)
+    source_units: Mapping[str, str] = field(default_factory=dict, kw_only=True)
 
     def __post_init__(self) -> None:
         for name, value in (

@@ -293,7 +293,7 @@ def identify(
             model,
             method,
             data=data.fingerprint,
-            units=dict(data.units),
+            units=dict(data.source_units),
             seed=seed,
             starts=starts,
             start=None if start is None else model.parameters.vector(start).tolist(),

@@ -103,7 +103,7 @@ class InputTable(FileTable):
         values = data.continuous[:, data.channels.index(_CHANNEL)]
         there = np.isfinite(values)
         self._refuse_gaps(name, data.coordinate.values[there], str(table.file))
-        unit = data.units.get(_CHANNEL, "")
+        unit = data.source_units.get(_CHANNEL, "")
         return MeasuredInput(name, self, data.coordinate.values[there], values[there], str(table.file), unit)
 
     def _refuse_gaps(self, name: str, times: np.ndarray, source: str) -> None:

@@ -24,11 +24,11 @@ def _units(data: "Measurements") -> str:
     """The units in which channels were read.
 
     >>> from dalembert.data import Measurements
-    >>> _units(Measurements((0.0, 1.0), ("a.x", "a.y"), [[0, 1], [2, 3]], units={"a.x": "mm", "time": "ms"}))
+    >>> _units(Measurements((0.0, 1.0), ("a.x", "a.y"), [[0, 1], [2, 3]], source_units={"a.x": "mm", "time": "ms"}))
     'Units: time in ms, a.x in mm; no unit is given for a.y, read in SI units'
     """
-    named = ", ".join(f"{name} in {data.units[name]}" for name in _labels(data) if name in data.units)
-    plain = ", ".join(name for name in _labels(data) if name not in data.units)
+    named = ", ".join(f"{name} in {data.source_units[name]}" for name in _labels(data) if name in data.source_units)
+    plain = ", ".join(name for name in _labels(data) if name not in data.source_units)
     rest = f"no unit is given for {plain}, read in SI units" if plain else ""
     return "Units: " + "; ".join(filter(None, (named, rest)))
 

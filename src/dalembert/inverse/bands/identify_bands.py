@@ -152,7 +152,7 @@ def identify_bands(
             model,
             chosen,
             data=bands.fingerprint,
-            units=dict(bands.units),
+            units=dict(bands.source_units),
             seed=seed,
             intervals=unknowns.intervals,
             weights="given" if weights is not None else "one",

@@ -109,7 +109,7 @@ class Part:
             deviations=None if joint.deviations is None else joint.deviations[self.columns],
             wraps=tuple(own[name] for name in joint.wraps if name in own),
             sampled=None if joint.sampled is None else joint.sampled[self.block],
-            units={own.get(name, name): unit for name, unit in joint.units.items() if name in own},
+            source_units={own.get(name, name): unit for name, unit in joint.source_units.items() if name in own},
         )
 
 

@@ -335,5 +335,7 @@ def _measurements(experiments: Sequence[Experiment], model: JointModel) -> Measu
         wraps=tuple(f"{item.name}.{name}" for item in experiments for name in item.data.wraps),
         origin="; ".join(dict.fromkeys(filter(None, (item.data.origin for item in experiments)))),
         sampled=sampled,
-        units={f"{item.name}.{name}": unit for item in experiments for name, unit in item.data.units.items()},
+        source_units={
+            f"{item.name}.{name}": unit for item in experiments for name, unit in item.data.source_units.items()
+        },
     )

@@ -105,8 +105,8 @@ def _variables(data: Measurements) -> dict[str, tuple]:
         variables["data_deviations"] = ("channel", data.deviations)
     if data.wraps:
         variables["data_wraps"] = ("channel", data.wrapping)
-    if data.units:
-        variables["data"][2]["units"] = json.dumps(dict(data.units))
+    if data.source_units:
+        variables["data"][2]["units"] = json.dumps(dict(data.source_units))
     if data.sampled is not None:
         variables["data_sampled"] = (("sample", "channel"), data.taken)
     return variables
@@ -123,5 +123,5 @@ def _measurements(dataset: "Dataset") -> Measurements:
         dataset["data"].attrs.get("missing", "refuse"),
         tuple(name for name, wrap in zip(channels, wraps, strict=True) if wrap),
         sampled=dataset["data_sampled"].values.astype(bool) if "data_sampled" in dataset else None,
-        units=json.loads(dataset["data"].attrs.get("units", "{}")),
+        source_units=json.loads(dataset["data"].attrs.get("units", "{}")),
     )

@@ -205,7 +205,7 @@ def _result(modes: Modes, found: Chains, sampler: Sampler, length: Length, block
         "warmup": length.warmup,
         "seed": length.seed,
         "data": target.problem.data.fingerprint,
-        "units": dict(target.problem.data.units),
+        "units": dict(target.problem.data.source_units),
         "priors": {item.name: str(item.prior or item.distribution) for item in parameters},
     }
     return Posterior(

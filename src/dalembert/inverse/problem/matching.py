@@ -53,7 +53,7 @@ def _check_kinds(model: ForwardModel, data: Measurements | Bands) -> None:
     """
     scaled = getattr(model, "scaled", frozenset())
     units = {channel.name: channel.unit for channel in model.channels if channel.name not in scaled}
-    for channel, unit in data.units.items():
+    for channel, unit in data.source_units.items():
         if (expected := units.get(channel)) and (sentence := wrong_kind(unit, expected)):
             raise DataError(
                 f"the data of channel {channel!r}: {sentence}; choose another column, or correct its unit in units"

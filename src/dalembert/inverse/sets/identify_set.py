@@ -152,7 +152,7 @@ def identify_set(
             model,
             chosen,
             data=data.fingerprint,
-            units=dict(data.units),
+            units=dict(data.source_units),
             seed=seed,
             error=errors.tolist(),
             resolution=resolution,

@@ -223,7 +223,7 @@ def _compare(values: Values, document: TOMLDocument, best: Best) -> Iterator[tup
         yield "Compare with the method chebyshev", _setting("propagate", compare=["chebyshev"])
 
 
-@_advises("few-harmonics")
+@_advises("few-harmonics", "stability-near-fold")
 def _more_harmonics(values: Values, document: TOMLDocument, best: Best) -> Iterator[tuple[str, Apply]]:
     most = 2 * int(values["harmonics"]) + 1
     yield f"Keep {most} harmonics", _setting("harmonic_balance", harmonics=most)

@@ -35,6 +35,11 @@ class DenseTangent:
         return self.jacobian.reshape(self.slope.size, self.slope.size)
 
     @property
+    def sign(self) -> float:
+        """Sign of the determinant of the Jacobian."""
+        return float(np.linalg.slogdet(self.supported)[0])
+
+    @property
     def supported(self) -> np.ndarray:
         """The matrix with a support of the mean motions that no element resists."""
         motions = self.unresisted

@@ -63,6 +63,8 @@ class PathPoint:
         1, 0, or -1 where it is not known.
     marker : str
         Kind of the bifurcation that lies here, or nothing.
+    across_fold : bool
+        Whether stability is not known because a fold lies between the motion and its perturbations.
     """
 
     solution: Solution
@@ -70,6 +72,7 @@ class PathPoint:
     returned: bool = False
     stable: int = -1
     marker: str = ""
+    across_fold: bool = False
 
 
 def at_frequencies(equations: Problem, omegas: np.ndarray, start: Solution | None) -> Iterator[PathPoint]:

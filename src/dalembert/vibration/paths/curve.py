@@ -60,7 +60,8 @@ class FrequencyCurve(ConvergedResult):
         Change of the residual with twice as many, as part of the forces.
     stable : array of int8, shape (points,)
         1 stable, 0 unstable, -1 where it was not asked for, the point was not found, or a stop is touched and twice
-        the harmonics change the largest growth by more than this growth. A fold has what comes before.
+        the harmonics change the largest growth by more than this growth, or a fold lies between the motion and the
+        one with more harmonics, by which the stability is judged. A fold has what comes before.
     markers : tuple of (str, int)
         Bifurcations and their points: ``"fold"``, and where stability was asked for ``"torus"``, ``"period doubling"``
         and ``"branch point"``.
@@ -69,7 +70,8 @@ class FrequencyCurve(ConvergedResult):
     findings : tuple of Finding
         ``"unbalanced-mean"``, ``"force-not-finite"``, ``"undamped-resonance"`` or ``"points-not-found"`` where points
         were not found; ``"end-not-reached"`` where a path between two frequencies did not come to the second;
-        ``"few-harmonics"``; ``"free-mean-position"`` where nothing holds a mean position.
+        ``"few-harmonics"``; ``"stability-near-fold"`` where a fold moves with more harmonics;
+        ``"free-mean-position"`` where nothing holds a mean position.
     """
 
     FORMAT: ClassVar[str] = "dalembert frequency curve 1"

@@ -23,7 +23,7 @@ from dalembert.vibration.balance.newton import Solution
 from dalembert.vibration.paths.continuation import PathPoint, across, at_frequencies, natural
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.path_end import end_findings
-from dalembert.vibration.stability.bifurcations import FOLD, judged
+from dalembert.vibration.stability.bifurcations import FOLD, fold_findings, judged
 from dalembert.vibration.storage import versions
 from dalembert.vibration.system.lowering import Lowered
 from dalembert.vibration.system.requirements import positive_numbers, require_force, require_viscous
@@ -150,12 +150,13 @@ def frequency_response(
     else:
         found = at_frequencies(problem, omegas, known)
     rows = observed(problem.lowered, observe)
-    lowered, records, lost, done = problem.lowered, [], [], 0.0
+    lowered, records, lost, across_fold, done = problem.lowered, [], [], [], 0.0
     top: Solution | None = None
     dofs = tuple(lowered.structure.dofs.names[row] for row in rows)
     for one in judged(problem, found, located=ends) if stability else found:
         records.append(_kept(problem, one, rows))
         lost.append(unconverged(problem, one.solution))
+        across_fold += [float(one.solution.omega) / (2 * np.pi)] * one.across_fold
         top = largest(top, one.solution) if check else None
         if on_point is not None:
             omega = one.solution.omega
@@ -178,6 +179,7 @@ def frequency_response(
             *unconverged_findings(len(records), filter(None, lost)),
             *(end_findings(kept["frequencies"], kept["converged"], limits, "frequency", "Hz") if ends else ()),
             *free_findings(problem),
+            *fold_findings(across_fold, kept["frequencies"][kept["fold"]], method.harmonics),
             *(() if top is None else truncation_findings(problem, top)),
         ),
     )

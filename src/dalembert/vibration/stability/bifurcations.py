@@ -1,19 +1,21 @@
 """Bifurcations: points at which the stability of periodic motions changes."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from dalembert.errors import counted
+from dalembert.findings import Finding
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.newton import Plane, Solution
 from dalembert.vibration.paths.continuation import PathPoint, zero_between
-from dalembert.vibration.stability.stability import Exponents, exponents, remembers
+from dalembert.vibration.stability.stability import REAL, Exponents, exponents, remembers
 
 FOLD, TORUS, DOUBLING, BRANCH = "fold", "torus", "period doubling", "branch point"
 STABLE, UNSTABLE, NOT_ASKED = 1, 0, -1
-REAL = 1e-3
-"""Imaginary part of an exponent, as part of ω and beside a half or none of it, that is none."""
+AT_FOLD = 1e-5
+"""Distance from a fold, as part of the frequency, that is none."""
 PLACED = 1e-4
 """Part of the way between two points to which a change is found."""
 
@@ -45,7 +47,7 @@ def judged(problem: Equations, path: Iterable[PathPoint], located: bool) -> Iter
             own = exponents(problem, one.solution)
             if not own.judged and np.isfinite(own.error):
                 # A change of sign within the error is no bifurcation: points further on show whether there is one.
-                yield one
+                yield replace(one, across_fold=own.across_fold)
                 adjacent = False
                 continue
             kind = ""
@@ -55,12 +57,37 @@ def judged(problem: Equations, path: Iterable[PathPoint], located: bool) -> Iter
                     kind = ""
                 place = _located(problem, before, (one.solution, own)) if located and adjacent and kind else None
                 if place is not None:
-                    stable = _said(before[1]) if place[1].judged else NOT_ASKED
+                    # Where an exponent is zero, rounding decides whether it grows.
+                    stable = _said(before[1]) if replace(place[1], across_fold=False).judged else NOT_ASKED
                     marker = _kind(place[1], place[1], _rank(before[1], own))
                     yield PathPoint(place[0], stable=stable, marker=marker)
                     kind = ""
             yield replace(one, stable=_said(own), marker=kind)
             before, folded, adjacent = (one.solution, own), False, True
+
+
+def fold_findings(frequencies: Sequence[float], folds: np.ndarray, harmonics: int) -> tuple[Finding, ...]:
+    """Return the finding on points whose stability is not known because a fold lies between motion and perturbations.
+
+    Parameters
+    ----------
+    frequencies : sequence of float
+        Of these points, Hz.
+    folds : array, shape (folds,)
+        Frequencies of the folds, Hz. The steps of a time map move a fold a little, which is no finding.
+    harmonics : int
+        Of the curve.
+    """
+    apart = [one for one in frequencies if not np.any(np.abs(folds - one) <= AT_FOLD * one)]
+    if not apart:
+        return ()
+    low, high = float(min(apart)), float(max(apart))
+    message = (
+        f"The stability of {counted(len(apart), 'point')} between {low:.6g} and {high:.6g} Hz is not known: a fold "
+        f"lies at another frequency with {counted(harmonics, 'harmonic')} than with more."
+    )
+    values = {"points": len(apart), "lowest": low, "highest": high, "harmonics": harmonics}
+    return (Finding("stability-near-fold", "warning", values, message, "Keep more harmonics."),)
 
 
 def _said(own: Exponents) -> int:
@@ -91,8 +118,7 @@ def _branches(problem: Equations, before: Solution, after: Solution) -> bool:
     """
     if not remembers(problem):
         return True
-    signs = [np.linalg.slogdet(one.tangent.jacobian.reshape(one.unknowns.size, -1))[0] for one in (before, after)]
-    return bool(signs[0] * signs[1] < 0)
+    return before.tangent.sign * after.tangent.sign < 0
 
 
 def _located(

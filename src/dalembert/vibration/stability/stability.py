@@ -16,6 +16,8 @@ NEUTRAL = 1e-8
 """Growth, in parts of ω, that is none: rounding of undamped motions."""
 SPLIT = 1e-6
 """Exponent of a free motion, in parts of ω, that is rounding: the root of that of the equations."""
+REAL = 1e-3
+"""Imaginary part of an exponent, as part of ω and beside a half or none of it, that is none."""
 FEWEST = 512
 """Steps of the map over a period, if the motion does not have more samples."""
 FINER = "hill with twice the harmonics"
@@ -40,15 +42,18 @@ class Exponents:
         In parts of ω, those that grow fastest first.
     error : float
         Of their real parts, in parts of ω; infinite where it is not known.
+    across_fold : bool
+        Whether a fold lies between the motion and the one with all harmonics, to which the exponents belong.
     """
 
     values: np.ndarray
     error: float = 0.0
+    across_fold: bool = False
 
     @property
     def judged(self) -> bool:
-        """Whether the fastest growth exceeds its error."""
-        return bool(abs(np.max(np.real(self.values), initial=-np.inf)) >= self.error)
+        """Whether the fastest growth exceeds its error, and belongs to the motion."""
+        return not self.across_fold and bool(abs(np.max(np.real(self.values), initial=-np.inf)) >= self.error)
 
     @property
     def unstable(self) -> int:
@@ -68,7 +73,8 @@ def exponents(problem: Equations, solution: Solution, way: str = AUTOMATIC) -> E
     with twice the harmonics, and their change is the error.
     """
     if way == TIME_MAP or (way == AUTOMATIC and remembers(problem)):
-        return Exponents(_held(problem, problem.once(TIME_MAP, solution, lambda: _by_time_map(problem, solution))))
+        values = _held(problem, problem.once(TIME_MAP, solution, lambda: _by_time_map(problem, solution)))
+        return Exponents(values, across_fold=_across_fold(problem, solution, values))
     values = _held(problem, problem.once(HILL, solution, lambda: hill(problem, solution)))
     if not _touches(problem, solution):
         return Exponents(values)
@@ -79,7 +85,21 @@ def exponents(problem: Equations, solution: Solution, way: str = AUTOMATIC) -> E
     if not finer.size:
         return Exponents(values, np.inf)
     finer = _held(problem, finer)
-    return Exponents(finer, _change(values, finer))
+    return Exponents(finer, _change(values, finer), _across_fold(problem, solution, finer))
+
+
+def _across_fold(problem: Equations, solution: Solution, values: np.ndarray) -> bool:
+    r"""Whether exponents with more harmonics than the balance lie on the other side of a fold.
+
+    With all harmonics, the determinant of the balance has the sign of :math:`\det(1 - \Phi)`, where Φ is the map of
+    disturbances over a period: each real multiplier above 1 changes it. Odd harmonics alone do not see disturbances
+    that break the symmetry, which have multipliers too.
+    """
+    if problem.method.odd_only:
+        return False
+    turns = np.abs(np.imag(values) - np.round(np.imag(values)))
+    growing = int(np.sum((np.real(values) > NEUTRAL) & (turns < REAL)))
+    return bool(solution.tangent.sign * (-1) ** growing < 0)
 
 
 def _held(problem: Equations, values: np.ndarray) -> np.ndarray:

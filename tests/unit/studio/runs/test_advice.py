@@ -143,6 +143,12 @@ CASES = [
         "[frequency_response]\n",
         {"Keep 7 harmonics": ["[harmonic_balance]", "harmonics = 7"]},
     ),
+    (
+        "stability-near-fold",
+        {"harmonics": 9},
+        "[harmonic_balance]\nharmonics = 9 # default\n",
+        {"Keep 19 harmonics": ["harmonics = 19 # default"]},
+    ),
     ("beam-locking", {"body": "rod"}, PENDULUM, {"Use the structural formulation": ['formulation = "structural"']}),
     ("late-samples", {"first": 1.0}, PENDULUM, {"Start the motion with the record": ['start = "first"']}),
     ("paving-unfinished", {}, "[identify_set]\nmost_boxes = 50\n", {"Allow 200 boxes": ["most_boxes = 200"]}),

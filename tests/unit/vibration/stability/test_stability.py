@@ -7,8 +7,9 @@ import pytest
 
 from dalembert.errors import InputError
 from dalembert.forward import Checkpoint
-from dalembert.structure import Dofs, Structure
+from dalembert.structure import Dofs, Structure, lumped
 from dalembert.vibration import (
+    BilinearStop,
     CubicSpring,
     ElasticSlider,
     FrequencyCurve,
@@ -95,6 +96,44 @@ def test_a_slider_is_stable_and_points_that_are_not_found_are_not_judged() -> No
     hard = HarmonicBalance(5, samples=128, iterations=2, halvings=0)
     curve = frequency_response(one_mass(), np.linspace(0.05, 0.3, 6), hard, stability=True)
     np.testing.assert_array_equal(curve.stable, np.where(curve.converged, 1, -1))
+
+
+def test_no_point_behind_a_fold_is_stable_by_perturbations_of_a_motion_before_its_fold() -> None:
+    """Between two folds of one degree of freedom a real multiplier is above 1.
+
+    The fold with one harmonic is before that of the perturbations, which all harmonics of the stop enter.
+    """
+    system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.05)]))
+    system.add(HarmonicForce("m", 0.18))
+    system.add(BilinearStop("stop", "m", stiffness=5.0, gap=0.5))
+    system.add(FrictionContact("slider", "m", friction=0.5, preload=0.05, law=ElasticSlider(0.8)))
+    ends = 0.8 / TURN, 2.5 / TURN
+
+    def follow(harmonics: int) -> FrequencyCurve:
+        return frequency_response(
+            system, ends, HarmonicBalance(harmonics), continuation="arc-length", stability=True, check=False
+        )
+
+    curve = follow(1)
+    first, last = np.flatnonzero(curve.fold)
+    unknown = np.flatnonzero(curve.stable < 0)
+    assert [kind for kind, _ in curve.markers] == ["fold", "fold"]
+    assert np.all(curve.stable[first + 1 : last] <= 0)
+    assert np.all(curve.stable[[*range(first), *range(last + 1, len(curve))]] == 1)
+    (finding,) = curve.findings
+    assert (finding.code, finding.severity) == ("stability-near-fold", "warning")
+    apart = np.abs(curve.frequencies[unknown, None] - curve.folds).min(axis=1) > 1e-5 * curve.frequencies[unknown]
+    places = curve.frequencies[unknown[apart]]
+    assert finding.values == {
+        "points": len(places), "lowest": places.min(), "highest": places.max(), "harmonics": 1,
+    }  # fmt: skip
+    assert finding.message == (
+        f"The stability of {len(places)} points between 0.244165 and {places.max():.6g} Hz is not known: a fold lies at another "
+        "frequency with 1 harmonic than with more."
+    )
+    finer = follow(9)
+    assert not finer.findings
+    assert np.all(finer.stable >= 0)
 
 
 def test_with_given_frequencies_the_first_point_behind_a_change_is_marked() -> None:

@@ -125,7 +125,9 @@ def test_a_file_gives_the_numbers_that_were_written(case):
     data = read(path, time, {"bar.rate": rate, "bar.angle": angle}, units=units)
     np.testing.assert_allclose(data.coordinate.values, TIMES, rtol=0, atol=1e-12)
     np.testing.assert_allclose(data.values, np.deg2rad(np.stack([RATE, ANGLE], axis=1)), rtol=1e-14)
-    assert data.source_units == {"bar.rate": "deg/s", "bar.angle": "deg"} | ({"time": "s"} if "time" in data.units else {})
+    assert data.source_units == {"bar.rate": "deg/s", "bar.angle": "deg"} | (
+        {"time": "s"} if "time" in data.units else {}
+    )
 
 
 @pytest.mark.parametrize("case", SLOW_MDF, indirect=True)

@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 
 from dalembert.arguments import takes_checked
-from dalembert.errors import InputError
+from dalembert.errors import InputError, counted
 from dalembert.findings import Finding
 from dalembert.forward import Checkpoint
 from dalembert.threads import one_thread
@@ -104,10 +104,21 @@ class Backbone(ConvergedResult):
         """
         return Amplitude(kind, self.orders).of(self.shapes[:, observed_column(self.dofs, dof)])
 
+    @property
+    def extent(self) -> str:
+        """How many motions were found, in words, and how far a path came that did not reach its end."""
+        found = int(self.converged.sum())
+        short = next((one.values for one in self.findings if one.code == "end-not-reached"), None)
+        if short is None:
+            return f"{found} of {len(self)} amplitudes of {self.dof}"
+        unit = unit_of(self.dof)
+        points = f"{counted(found, 'point')} of a path over the amplitude of {self.dof}"
+        return f"{points}, which came to {short['farthest']:.6g} {unit} and not to {short['end']:.6g} {unit}"
+
     def summary(self) -> str:
         """A few lines: points, and the ranges of frequency, damping and energy."""
         found = self.converged
-        lines = [f"mode {self.mode} at {found.sum()} of {len(self)} amplitudes of {self.dof}"]
+        lines = [f"mode {self.mode} at {self.extent}"]
         if found.any():
             ranges = [
                 f"{name} {values[found].min():.6g} to {values[found].max():.6g}{unit}"

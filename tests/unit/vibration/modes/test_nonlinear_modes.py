@@ -84,6 +84,10 @@ def test_a_path_that_turns_back_before_its_end_says_so(tmp_path: Path) -> None:
     assert (finding.values["last"], finding.values["end"]) == (0.6, 1.1)
     assert finding.values["farthest"] == path.amplitudes.max() == pytest.approx(0.74436, abs=1e-4)
     assert finding.message in path.summary()
+    assert path.summary().splitlines()[0] == (
+        f"mode 1 at {len(path)} points of a path over the amplitude of {path.dof}, which came to "
+        f"{path.amplitudes.max():.6g} m and not to 1.1 m"
+    )
     path.save(tmp_path / "mode.nc")
     assert Backbone.load(tmp_path / "mode.nc").findings == path.findings
     assert not backbone(duffing(), (0.1, 0.2), method=METHOD).findings

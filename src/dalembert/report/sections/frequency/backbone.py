@@ -26,8 +26,9 @@ def backbone(mode: Backbone, asked: Asked) -> list[Section]:
         facts["frequency"] = f"{' to '.join(dict.fromkeys(ends))} Hz"
         facts["largest damping ratio"] = percent(np.asarray(mode.damping)[found].max())
     facts["amplitudes"] = counted(len(found))
-    status = f"Mode {mode.mode} was found at {int(found.sum())} of {len(found)} amplitudes of {mode.dof}."
-    headline = Headline.of("Nonlinear mode", bool(found.all()), ("computed", "incomplete"), status, facts)
+    status = f"Mode {mode.mode} was found at {mode.extent}."
+    complete = bool(found.all()) and all(finding.code != "end-not-reached" for finding in mode.findings)
+    headline = Headline.of("Nonlinear mode", complete, ("computed", "incomplete"), status, facts)
     return [headline, nonlinear_mode(mode)]
 
 

@@ -1,7 +1,7 @@
 """Channels whose data are suspected to be in another unit than the response."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import islice
 
 import numpy as np
@@ -12,8 +12,10 @@ from dalembert.forward import ForwardModel
 from dalembert.inverse.correlation.series import Series, series_of
 from dalembert.inverse.experiments.explained import GOOD, explained
 from dalembert.inverse.experiments.without_outliers import without_outliers
+from dalembert.inverse.least_squares.descent import End, refine
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import Problem, pose
+from dalembert.optimize import LeastSquares
 
 PREFIX, ANGLE = 1e3, 180 / np.pi
 """Usual factors between units: a metric prefix, such as mm and m, and degrees for radians."""
@@ -23,6 +25,9 @@ TOLERATED = {PREFIX: 4.0, 1 / PREFIX: 4.0, ANGLE: 3.0, 1 / ANGLE: 3.0}
 
 FLAT = 1e-9
 """Range of a channel, as a part of its largest value, below which it is constant but for rounding."""
+
+FITTED = LeastSquares(trials=25)
+"""Descent to data in another unit."""
 
 ROUGH = 1.5
 """Mean square of successive differences over the variance from which data are mostly noise: white noise has 2."""
@@ -68,10 +73,14 @@ def suspect_units(problem: Problem, response: np.ndarray) -> tuple[SuspectUnit, 
 
 
 def unit_findings(problem: Problem, vector: np.ndarray, response: np.ndarray) -> Iterator[Finding]:
-    """Yield the units that the first response of a fit makes suspect, and that its end leaves so.
+    """Yield the units that the first response of a fit makes suspect, if another unit explains the data.
 
-    The end clears a channel that it explains, unless a parameter changed by the suspected factor or its square root.
-    Where it explains a channel badly, the first response is computed for all samples, if the fit began with fewer.
+    A unit is wrong if the response explains a channel badly, and explains it and the suspected one where the model is
+    fitted to the data in the other unit, from the same starts. Where the response explains all channels, a parameter
+    may have made up for the unit: it changed by the suspected factor or its square root, and the first response
+    explains the data in the other unit as it is.
+
+    Where the end explains a channel badly, the first response is computed for all samples, if the fit began with fewer.
 
     Parameters
     ----------
@@ -84,16 +93,18 @@ def unit_findings(problem: Problem, vector: np.ndarray, response: np.ndarray) ->
     first = problem.journal.first
     if first is None:
         return
-    names = [series.name for series in series_of(problem)]
-    shares = [item.share for item in explained(problem, response, problem.weights, np.inf)]
-    poor = {name for name, share in zip(names, shares, strict=True) if not share >= GOOD}
-    suspects = suspect_units(problem.first(len(first.response)), first.response)
+    poor = {name for name, share in _shares(problem, response).items() if not share >= GOOD}
+    begun = problem.first(len(first.response))
+    suspects = suspect_units(begun, first.response)
     if poor and len(first.response) < problem.samples:
         suspects += suspect_units(problem, problem.responses(first.vector[None])[0])
-    for channel, suspect in {suspect.channel: suspect for suspect in suspects}.items():
-        changed = _changed(problem, first.vector, vector, suspect.factor)
-        if changed or channel in poor:
-            yield unit_finding(suspect, changed)
+    suspects = {suspect.channel: suspect for suspect in suspects}
+    changed = {name: _changed(problem, first.vector, vector, one.factor) for name, one in suspects.items()}
+    wrong = _explaining(problem, first.vector, list(suspects.values()), poor) if poor else []
+    for name, suspect in suspects.items():
+        absorbed = not poor and changed[name] and _good(begun, first.response, [suspect]) >= {name}
+        if suspect in wrong or absorbed:
+            yield unit_finding(suspect, changed[name])
 
 
 def first_unit_findings(model: ForwardModel, data: Measurements) -> tuple[Finding, ...]:
@@ -113,6 +124,48 @@ def unit_finding(suspect: SuspectUnit, changed: str = "") -> Finding:
     )
     advice = "Give the unit of the column in units. If the unit is right, start closer to the true values."
     return Finding("suspect-unit", "warning", values, message, advice)
+
+
+def _shares(problem: Problem, response: np.ndarray) -> dict[str, float]:
+    """Part of the variation of each channel that a response explains."""
+    names = [series.name for series in series_of(problem)]
+    return dict(zip(names, (one.share for one in explained(problem, response, problem.weights, np.inf)), strict=True))
+
+
+def _explaining(
+    problem: Problem, first: np.ndarray, suspects: Sequence[SuspectUnit], poor: set[str]
+) -> Sequence[SuspectUnit]:
+    """Return the suspects with which their channels and a poor one are explained: all together, or a single one.
+
+    The fits begin where those of the data began. The first that explains the channels ends the search.
+    """
+    together = [suspects] if len(suspects) > 1 else []
+    begun = first, *(start.start for start in problem.journal.starts)
+    starts = [start for start in begun if np.all(np.isfinite(start))]  # NaN where a swarm scattered its points
+    for tried in (*together, *([suspect] for suspect in suspects)):
+        part = replace(_converted(problem, tried), journal=Journal(problem.samples), loss=None)
+        ends = (refine(part, FITTED, End(part.search.points(start), np.inf, False, "")) for start in starts)
+        good = (_good(problem, part.responses(part.search.vectors(end.point)[None])[0], tried) for end in ends)
+        found = any(names & poor and names >= {suspect.channel for suspect in tried} for names in good)
+        problem.journal.simulations += part.journal.simulations
+        if found:
+            return tried
+    return []
+
+
+def _good(problem: Problem, response: np.ndarray, suspects: Sequence[SuspectUnit]) -> set[str]:
+    """Names of the channels that a response explains after a change of the suspected units."""
+    return {name for name, share in _shares(_converted(problem, suspects), response).items() if share >= GOOD}
+
+
+def _converted(problem: Problem, suspects: Sequence[SuspectUnit]) -> Problem:
+    """The problem of data whose suspected units are changed; their weights change as those of converted deviations."""
+    factors = np.ones(problem.weights.size)
+    for series in series_of(problem):
+        factors[series.rows] = next((one.factor for one in suspects if one.channel == series.name), 1.0)
+    factors = factors.reshape(problem.weights.shape)
+    data = replace(problem.data, values=problem.data.values / factors)
+    return replace(problem, data=data, weights=problem.weights * factors**2)
 
 
 def _ratio(problem: Problem, response: np.ndarray, series: Series) -> float:

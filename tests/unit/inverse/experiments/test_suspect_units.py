@@ -64,12 +64,12 @@ def suspects(fit):
     return {finding.values["channel"]: finding for finding in fit.findings if finding.code == "suspect-unit"}
 
 
-def drawn(seed):
-    """A model whose first guesses are wrong by up to 3 either way, its values with noise, and their deviations."""
+def drawn(seed, wrong=3.0):
+    """A model whose first guesses are wrong by a factor, either way, its values with noise, and their deviations."""
     rng = np.random.default_rng(seed)
     motion = MOTIONS[rng.integers(len(MOTIONS))]
     truth = {name: rng.uniform(*bounds) for name, bounds in motion.ranges.items()}
-    starts = {name: value * 3.0 ** rng.uniform(-1, 1) for name, value in truth.items()}
+    starts = {name: value * wrong ** rng.uniform(-1, 1) for name, value in truth.items()}
     box = {
         name: Parameter(name, min(value, starts[name]) / 3, max(value, starts[name]) * 3, start=starts[name])
         for name, value in truth.items()
@@ -98,6 +98,23 @@ def test_ninety_five_of_a_hundred_wrong_units_are_suspected_and_at_most_one_righ
         detected += model.channels[column].name in suspects(fitted(model, values, deviations, seed))
     assert detected >= 95
     assert alarms <= 1
+
+
+@pytest.mark.parametrize("seed", [4, 5, 8, 9, 10, 27, 28])
+def test_first_guesses_that_are_far_off_are_no_wrong_unit(seed):
+    """The fit explains the data, although a parameter changes by about the factor of a unit."""
+    model, values, deviations, *_ = drawn(seed, 100.0)
+    assert suspects(fitted(model, values, deviations, seed)) == {}
+
+
+def test_a_shape_that_no_unit_explains_is_no_wrong_unit():
+    """A ramp is 57.3 times as large as the response; no change of the unit makes a decay of it."""
+    model = PythonModel(lambda rate: np.exp(-rate * TIMES), {"rate": (0.1, 5.0)}, [Channel("angle", "rad")], TIMES)
+    ramp = 57.3 * TIMES / 4 + 1e-3 * np.random.default_rng(3).standard_normal(len(TIMES))
+    fit = identify(model, Measurements.of(TIMES, {"angle": ramp}))
+    assert suspects(fit) == {}
+    decay = identify(model, Measurements.of(TIMES, {"angle": np.rad2deg(np.exp(-TIMES))}))
+    assert suspects(decay)["angle"].values["factor"] == pytest.approx(180 / np.pi)
 
 
 def pendulum(channel, unit_of_data, **own):

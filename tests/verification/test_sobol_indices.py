@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy import stats
 from scipy.stats import qmc
 
 import dalembert as da
@@ -69,8 +70,26 @@ def test_a_function_with_kinks(record_evidence):
 
 
 def test_a_tolerance_that_kinks_do_not_allow_is_refused():
-    with pytest.raises(da.SolveError, match=r"uncertain by 0\.\d+, more than the tolerance of 0\.001\. Improve"):
+    refused = r"uncertain by 0\.\d+, more than the tolerance of 0\.001\. Improve .* Monte Carlo: scipy\.stats\.sobol_indices\."
+    with pytest.raises(da.SolveError, match=refused):
         da.global_sensitivity(G_MODEL, None, Tensor((6, 6, 6)), tolerance=1e-3)
+
+
+def test_the_advised_monte_carlo_estimates_the_indices_of_a_function_with_kinks(record_evidence):
+    found = stats.sobol_indices(
+        func=lambda points: G_MODEL.evaluate(points.T).values[:, :, 0].T, n=1024, dists=[stats.uniform(0.0, 1.0)] * 3,
+        rng=np.random.default_rng(1),
+    )  # fmt: skip
+    parts = 1 / (3 * (1 + G) ** 2)
+    whole = np.prod(1 + parts) - 1
+    for quantity, reference, ours in (
+        ("first-order indices", parts / whole, np.ravel(found.first_order)),
+        ("total indices", parts / (1 + parts) * (1 + whole) / whole, np.ravel(found.total_order)),
+    ):
+        record_evidence(
+            f"Sobol's g-function (kinks) by Monte Carlo, {quantity}", reference, ours, tolerance=2e-2, topic=TOPIC,
+            kind="closed form", source=SOBOL_G, noisy=True,
+        )  # fmt: skip
 
 
 def test_inputs_with_normal_and_log_normal_distributions(record_evidence):

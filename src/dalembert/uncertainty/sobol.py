@@ -208,7 +208,8 @@ def _demand(uncertainty: np.ndarray, names: tuple[str, ...], tolerance: float, m
         raise SolveError(
             f"{NAME}: the error of the surrogate leaves the indices of channel {names[worst]!r} uncertain by "
             f"{uncertainty[worst]:.2g}, more than the tolerance of {tolerance:g}. Improve the surrogate "
-            f"({more}), increase checks, narrow the intervals, or raise the tolerance."
+            f"({more}), increase checks, narrow the intervals, or raise the tolerance. For a response with "
+            "kinks or jumps, estimate the indices by Monte Carlo: scipy.stats.sobol_indices."
         )
 
 

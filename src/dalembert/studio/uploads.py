@@ -33,7 +33,15 @@ def upload(label: str, kinds: str, uploaded: Callable[[events.UploadEventArgumen
     def fail() -> None:
         complain(OSError(0, "the upload failed", "The file"))
 
-    field = ui.upload(label=label, auto_upload=True, on_upload=uploaded, on_rejected=refuse, max_file_size=MOST_BYTES)
+    takers = [uploaded]
+
+    async def take(arguments: events.UploadEventArguments) -> None:
+        for taker in takers:
+            await taker(arguments)
+
+    # FastAPI remembers the function of each route, and with it the field: the page behind it must not stay, too.
+    ui.context.client.on_delete(takers.clear)
+    field = ui.upload(label=label, auto_upload=True, on_upload=take, on_rejected=refuse, max_file_size=MOST_BYTES)
     field.on("failed", fail, args=[])
     field.props(f'accept="{kinds}" flat bordered color=transparent text-color=primary').classes("w-full max-w-md")
     field.add_slot("header", _HEADER % label)

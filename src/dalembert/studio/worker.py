@@ -11,7 +11,7 @@ from functools import partial
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from queue import SimpleQueue
-from threading import Thread
+from threading import Lock, Thread
 from typing import Any, Concatenate, Literal, ParamSpec, TypeVar, cast
 
 from dalembert.errors import DalembertError, told
@@ -21,7 +21,6 @@ from dalembert.studio.processes import context
 P = ParamSpec("P")
 T = TypeVar("T")
 ANSWER, WRONG, MEMORY = "answer", "wrong", "memory"
-CLOSED = "The study was closed."
 FREE = 0.5
 """Share of the machine's memory that a process may fill."""
 Cause = Literal["failed", "ended", "time", "memory"]
@@ -103,6 +102,8 @@ class Worker:
         self._ended = ""
         self._cause: Cause = "ended"
         self._computed: object | None = None
+        self._stopped = False
+        self._lock = Lock()  # of the process, which several threads end
         Thread(target=self._take_turns, daemon=True).start()  # the studio ends without waiting for it
 
     def start(self) -> None:
@@ -124,13 +125,15 @@ class Worker:
         Returns
         -------
         any
-            None if the request was dropped.
+            None if the request was dropped, as all are once :meth:`stop` was called.
 
         Raises
         ------
         WorkerError
             If the function failed, took too long, or ended its process.
         """
+        if self._stopped:
+            return None
         mine = self._newest[subject] = object()
         answer: Future[T | None] = Future()
         request = (partial(function, **named) if named else function), arguments
@@ -143,7 +146,7 @@ class Worker:
             try:
                 result = self._exchange(request) if self._newest.get(subject) is mine else None
             except Exception as error:
-                failure = error
+                failure = None if self._stopped else error
             self._computed = None  # before the answer, so that an answered request holds up no other one
             if failure is None:
                 answer.set_result(result)
@@ -166,26 +169,41 @@ class Worker:
         self._end("The computation was stopped. Change a value to start it again.")
 
     def stop(self) -> None:
-        """End the process for good."""
+        """End the process for good, and drop the requests that have no answer."""
+        self._stopped = True
         self._newest.clear()
         self._turns.put(None)
-        self._end(CLOSED)
+        self._end("")
 
     def _take_turns(self) -> None:
         while turn := self._turns.get():
             turn()
-        self._end(CLOSED)  # one that started meanwhile
+        self._end("")  # one that started meanwhile
+        self._release()
 
     def _end(self, reason: str, cause: Cause = "ended") -> None:
-        process = self._process
-        if process is not None and process.is_alive():
-            self._ended, self._cause = reason, cause
-            process.kill()
-            self._connection = None  # the next request starts another process
+        with self._lock:
+            if self._process is not None and self._process.is_alive():
+                self._ended, self._cause = reason, cause
+                self._process.kill()
+                self._connection = None  # the next request starts another process
+
+    def _release(self) -> None:
+        """Close the pipes of a process that has ended: whoever keeps this object must not keep them."""
+        with self._lock:
+            process, connection = self._process, self._connection
+            self._process = self._connection = None
+        if connection is not None:
+            connection.close()
+        if process is not None:
+            process.join(10.0)
+            if not process.is_alive():
+                process.close()
 
     def _running(self) -> Connection:
         """Return the connection to the process, which is started if there is none."""
         if self._connection is None or self._process is None or not self._process.is_alive():
+            self._release()
             begin = context()
             self._connection, theirs = begin.Pipe()
             self._ended, self._cause = "", "ended"

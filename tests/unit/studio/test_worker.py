@@ -6,10 +6,12 @@ import signal
 import sys
 import time
 from collections.abc import Awaitable, Callable, Iterator
+from pathlib import Path
 from typing import TypeVar
 
 import pytest
 
+from dalembert.studio.processes import prepare
 from dalembert.studio.worker import Limits, Worker, WorkerError
 from worker_functions import (
     built,
@@ -42,6 +44,25 @@ def run(work: Callable[[], Awaitable[T]]) -> T:
         return await work()
 
     return asyncio.run(main())
+
+
+def wait_until(condition: Callable[[], bool]) -> None:
+    until = time.monotonic() + 10
+    while not condition():
+        assert time.monotonic() < until
+        time.sleep(0.05)
+
+
+def descriptors() -> int:
+    return len(list(Path("/proc/self/fd").iterdir()))
+
+
+def exists(number: int) -> bool:
+    try:
+        os.kill(number, 0)
+    except ProcessLookupError:
+        return False
+    return True
 
 
 def sentence(worker: Worker, function: Callable) -> str:
@@ -149,15 +170,32 @@ def test_a_closed_study_has_no_process():
     number = run(lambda: worker.ask("process", process))
     assert number is not None
     worker.stop()
-    until = time.monotonic() + 10
-    while time.monotonic() < until:
-        try:
-            os.kill(number, 0)
-        except ProcessLookupError:
-            return
-        if worker._process is not None:
-            worker._process.join(0.1)
-    raise AssertionError(f"process {number} is still there")
+    wait_until(lambda: not exists(number))
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="descriptors are counted in /proc")
+def test_a_closed_study_has_no_pipes():
+    prepare()  # the process that others are forked from has pipes, too
+    before = descriptors()
+    worker = Worker()
+    for _ in range(2):  # a process that is replaced has none either
+        assert run(lambda: worker.ask("double", double, 1.0)) == 2.0
+        worker.interrupt()
+    worker.stop()  # it is still in memory, as a page that was left may be
+    wait_until(lambda: descriptors() <= before)
+
+
+def test_a_closed_study_drops_what_it_was_asked_for():
+    worker = Worker()
+
+    async def ask_and_stop():
+        at_work = asyncio.create_task(worker.ask("slow", double, 1.0, wait=20.0))
+        waiting = asyncio.create_task(worker.ask("next", double, 2.0))
+        await asyncio.sleep(0.5)
+        worker.stop()
+        return await asyncio.wait_for(asyncio.gather(at_work, waiting, worker.ask("late", double, 3.0)), 15.0)
+
+    assert run(ask_and_stop) == [None, None, None]
 
 
 @pytest.mark.skipif(not hasattr(os, "nice"), reason="the system has no priorities of this kind")

@@ -411,6 +411,10 @@ CASES: dict[str, Case] = {
         lambda: da.identify(LINE_IN_TIME, _noisy(factor=0.2 + LONG)),
         ("The residuals of 'x' grow with", "Estimate how it grows:"),
     ),
+    "noise that shrinks": Case(
+        lambda: da.identify(LINE_IN_TIME, _noisy(factor=1.2 - LONG)),
+        ("The residuals of 'x' shrink with", "Weight the samples by their noise:"),
+    ),
     "signs that stay": Case(
         lambda: da.identify(LINE_IN_TIME, _signs_stay()),
         (
@@ -466,7 +470,7 @@ CASES: dict[str, Case] = {
     ),
     "draws of one of two minima": Case(
         lambda: da.sample(SQUARED, SQUARES, chains=2, draws=20, warmup=20),
-        ("The chains start at one minimum, and the draws may miss the others.",),
+        ("The posterior has 2 modes that no chain connects",),
     ),
     "correlated noise": Case(
         lambda: da.identify(

@@ -20,32 +20,33 @@ class Unit:
     ----------
     scale : Fraction
         Number of SI units, without its power of π.
-    turns : int
+    turns : int or Fraction
         Power of π in it.
-    exponents : tuple of int
+    exponents : tuple of int or Fraction
         Of :data:`BASE`.
     offset : Fraction
         What is added to a number of this unit before it is scaled; of temperatures alone.
     """
 
     scale: Fraction = Fraction(1)
-    turns: int = 0
-    exponents: tuple[int, ...] = (0,) * len(BASE)
+    turns: int | Fraction = 0
+    exponents: tuple[int | Fraction, ...] = (0,) * len(BASE)
     offset: Fraction = Fraction(0)
 
     @property
     def factor(self) -> float:
         """Number of SI units."""
-        return float(self.scale) if self.turns == 0 else pi**self.turns * float(self.scale)
+        return float(self.scale) if self.turns == 0 else float(pi**self.turns * float(self.scale))
 
     def __mul__(self, other: "Unit") -> "Unit":
         exponents = tuple(a + b for a, b in zip(self.exponents, other.exponents, strict=True))
         return Unit(self.scale * other.scale, self.turns + other.turns, exponents)
 
-    def __pow__(self, power: int) -> "Unit":
+    def __pow__(self, power: int | Fraction) -> "Unit":
         if power == 1:
             return self
-        return Unit(self.scale**power, self.turns * power, tuple(power * one for one in self.exponents))
+        scale = self.scale**power  # a float where the power is no whole number, as in N*m/rad^1.5
+        return Unit(Fraction(scale), self.turns * power, tuple(power * one for one in self.exponents))
 
     def times(self, scale: str | Fraction) -> "Unit":
         """Return a multiple of this unit."""
@@ -137,7 +138,7 @@ _TOKEN = re.compile(
     r"\s*(?P<sign>[*/·]|(?<=[^\W\d])-(?=[^\W\d°])|\bper\b|)\s*"
     r"(?:(?P<bracket>\()|(?P<word>g_n|g_0|g0|1(?!\d)|°?[^\W\d_]+|[°%‰]))"
 )
-_POWER = re.compile(r"(?:\s*(?:\^|\*\*)\s*)?([+-]?\d)(?!\d|\.)")
+_POWER = re.compile(r"(?:\s*(?:\^|\*\*)\s*)?([+-]?\d(?:\.\d)?)(?!\d|\.)")
 
 
 @cache
@@ -190,9 +191,12 @@ def _product(text: str, place: int) -> tuple[list[Unit], int]:
     return found, place
 
 
-def _power(text: str, place: int) -> tuple[int, int]:
+def _power(text: str, place: int) -> tuple[int | Fraction, int]:
     match = _POWER.match(text, place)
-    return (1, place) if match is None else (int(match[1]), match.end())
+    if match is None:
+        return 1, place
+    power = Fraction(match[1])
+    return int(power) if power.denominator == 1 else power, match.end()
 
 
 @cache

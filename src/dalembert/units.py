@@ -264,9 +264,9 @@ def si_unit(unit: Unit) -> str:
     for known in KNOWN:
         if readings(known)[0].exponents == unit.exponents:
             return known
-    powers = [(name, power) for name, power in zip_longest(BASE, unit.exponents) if power]
-    above = "*".join(name if power == 1 else f"{name}^{power}" for name, power in powers if power > 0)
-    below = "".join(f"/{name}" if power == -1 else f"/{name}^{-power}" for name, power in powers if power < 0)
+    powers = [(name, float(power)) for name, power in zip_longest(BASE, unit.exponents) if power]
+    above = "*".join(name if power == 1 else f"{name}^{power:g}" for name, power in powers if power > 0)
+    below = "".join(f"/{name}" if power == -1 else f"/{name}^{-power:g}" for name, power in powers if power < 0)
     return (above or "1") + below
 
 

@@ -256,7 +256,7 @@ def identify(
     unconfirmed: tuple[Finding, ...] = ()
     if squares and shooting is None:
         unconfirmed = tuple(unconfirmed_findings(*searched[:2], ends, floor, white=look_white(problem, response)))
-    if looked is not None:
+    if looked is not None and (squares or best.stationary):  # residuals elsewhere show the search, not the record
         followed = with_mistakes(followed, FittedRecord(problem, looked, known), _seen(journal))
     others = rivals(*searched, deviations, known=known if settled is None else given)
     whole = response if problem is posed else posed.responses(vector[None])[0]

@@ -66,6 +66,7 @@ TABLES = {
     "delayed-acceptance": ["sample"],
     "StateTable": ["identify"],
     "SweepTable": ["sweep"],
+    "CampbellTable": ["campbell"],
     "BoundsTable": ["sweep"],
     "PropagateTable": ["propagate"],
     "IdentifyInertiasTable": ["identify_inertias"],

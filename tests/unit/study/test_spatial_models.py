@@ -18,7 +18,7 @@ from json_schemas import fits
 
 STUDY = """
 [parameters]
-J = { lower = 0.05, upper = 0.1, unit = "kg*m^2" }
+J = { lower = 0.05, upper = 0.1 }
 [constants]
 R = "150 mm"
 [model]

@@ -73,6 +73,9 @@ class UserLaw(LawElement):
         if values.ndim != 1 or not np.all(np.isfinite(values)):
             raise InputError(f"{where}: values is {shown(self.values)}; expected finite numbers")
         object.__setattr__(self, "values", tuple(self.values))
+        if self.function is None:
+            takes = ", ".join(ARGUMENTS)
+            raise InputError(f"{where}: function is missing; give a Python function({takes})")
         _law_of(self.function)
         if self.events is not None:
             object.__setattr__(self, "events", _law_of(self.events))
@@ -80,9 +83,6 @@ class UserLaw(LawElement):
     @property
     def law(self) -> Law:  # type: ignore[override] - of the element, not of its class
         """The compiled function."""
-        if self.function is None:
-            takes = ", ".join(ARGUMENTS)
-            raise InputError(f"UserLaw {self.name!r}: function is missing; give a Python function({takes})")
         return _law_of(self.function)
 
     @property

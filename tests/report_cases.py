@@ -412,7 +412,7 @@ CASES: dict[str, Case] = {
         ("The residuals of 'x' grow with", "Estimate how it grows:"),
     ),
     "noise that shrinks": Case(
-        lambda: da.identify(LINE_IN_TIME, _noisy(factor=1.2 - LONG)),
+        lambda: da.identify(LINE_IN_TIME, _noisy(factor=5.0 - LONG)),
         ("The residuals of 'x' shrink with", "Weight the samples by their noise:"),
     ),
     "signs that stay": Case(

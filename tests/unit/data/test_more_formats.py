@@ -126,7 +126,7 @@ def test_a_file_gives_the_numbers_that_were_written(case):
     np.testing.assert_allclose(data.coordinate.values, TIMES, rtol=0, atol=1e-12)
     np.testing.assert_allclose(data.values, np.deg2rad(np.stack([RATE, ANGLE], axis=1)), rtol=1e-14)
     assert data.source_units == {"bar.rate": "deg/s", "bar.angle": "deg"} | (
-        {"time": "s"} if "time" in data.units else {}
+        {"time": "s"} if "time" in data.source_units else {}
     )
 
 

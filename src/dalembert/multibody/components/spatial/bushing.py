@@ -188,8 +188,8 @@ class Bushing(Load):
     u holds the displacement of b relative to a along the axes of a, and the rotation vector p of b relative to a: the
     axis of the rotation times its angle. Both start from zero. The bushing stores u . K u / 2 and loses u' . D u'. So
     K u + D u' consists of the force on a, and of the torque t that does work on p. The torque on a is
-    t + p x t / 2 + c p x (p x t) with c = (1 - a/2 cot(a/2)) / a^2 and the angle a. For a rotation about one axis it is t. K and
-    D are symmetric.
+    t + p x t / 2 + c p x (p x t) with c = (1 - a/2 cot(a/2)) / a^2 and the angle a. For a rotation about one axis it is
+    t. K and D are symmetric.
 
     The law holds for rotations of less than half a turn, where p is unique. Beyond half a turn p jumps to the rotation
     with the opposite axis, and the torque changes its sign. A finding names a motion that does this.

@@ -173,7 +173,7 @@ def _record(study: Study, table: DataTable, where: str) -> tuple[np.ndarray, np.
 
     data, cutoff = table.read(), study.table.cutoff
     times, pairs = data.coordinate.values, channels_of(prior_of(study))
-    for channel, unit in data.units.items():
+    for channel, unit in data.source_units.items():
         kind = UNITS.get(channel.rpartition(".")[2], "")
         if kind and (sentence := wrong_kind(unit, kind)):
             raise DataError(f"{where}, columns, {channel!r}: {sentence}; choose another column, or correct its unit")

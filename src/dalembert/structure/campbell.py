@@ -6,7 +6,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 from scipy.optimize import linear_sum_assignment
 
 from dalembert.contents import Contents
@@ -119,6 +118,8 @@ class Campbell(Result):
         """
         if self.frame != FIXED or len(self.speeds) < 2:
             return ()
+        from scipy.interpolate import CubicSpline  # mechanisms that do not rotate start without it
+
         found = []
         order = np.argsort(self.speeds)
         for mode in range(self.roots.shape[1]):

@@ -3,12 +3,15 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from dalembert.inverse.correlation.series import Series
 from dalembert.inverse.mistakes.record import TIME, FittedRecord
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 RESOLUTION = 12
 """Times in a period of the response at which it is interpolated."""
@@ -33,7 +36,7 @@ class Clock:
     name: str
     series: tuple[Series, ...]
     period: float
-    last: list[tuple[np.ndarray, list[CubicSpline]]] = field(default_factory=list)
+    last: list[tuple[np.ndarray, "list[CubicSpline]"]] = field(default_factory=list)
     """The last response and its splines: many numbers are tried with one response."""
 
     @cached_property
@@ -48,6 +51,8 @@ class Clock:
     def read(self, response: np.ndarray, times: Sequence[np.ndarray]) -> np.ndarray:
         """Return a response (samples × channels, ...) whose series are read at other times; NaN outside the record."""
         if not self.last or self.last[0][0] is not response:
+            from scipy.interpolate import CubicSpline  # fits without mistakes start without it
+
             splines = [CubicSpline(own.along, response[own.rows], extrapolate=False) for own in self.series]
             self.last[:] = [(response, splines)]
         shown = response.copy()

@@ -6,7 +6,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from dalembert.contents import Contents
 from dalembert.findings import Finding
@@ -207,6 +206,8 @@ def followed(modes: Sequence[SpeedModes], count: int | None) -> tuple[np.ndarray
     Modes of neighbouring speeds are paired by their shapes and their roots: 1 - MAC plus the relative distance of the
     roots. At the highest speed they are in the order of their frequencies.
     """
+    from scipy.optimize import linear_sum_assignment  # mechanisms that do not rotate start without it
+
     order = np.argsort([-own.speed for own in modes], kind="stable")
     first = modes[order[0]]
     columns = list(range(len(first.roots)))[:count]

@@ -1,15 +1,18 @@
 """Further formats: files that other libraries write give the numbers that were written."""
 
 import json
+import struct
 from datetime import datetime, timedelta
+from importlib import import_module
 from zipfile import ZipFile
 
 import h5py
 import numpy as np
 import pytest
-from scipy.io import savemat
+from scipy.io import loadmat, savemat
 
 from dalembert.data import opening, read
+from dalembert.data.formats import mat
 from dalembert.data.known_formats import known_formats
 from dalembert.data.preview import preview
 from dalembert.errors import DataError
@@ -180,9 +183,96 @@ def test_dates_and_durations_in_a_workbook_are_seconds(tmp_path):
     assert read(tmp_path / "run.xlsx", "when").coordinate.values.tolist() == [0.0, 0.5, 1.0, 1.5]
 
 
-def test_other_messages_than_json_are_named(tmp_path):
-    _mcap(tmp_path / "run.mcap", "cdr")
-    with pytest.raises(DataError, match="no message is JSON; the file has: cdr"):
+def test_messages_that_nothing_decodes_are_named(tmp_path):
+    _mcap(tmp_path / "run.mcap", "cbor")
+    with pytest.raises(DataError, match="no message can be decoded; the file has: cbor with jsonschema; expected JSON"):
+        read(tmp_path / "run.mcap")
+
+
+def _ros_messages(path, encoding, schema_encoding, schema, pack):
+    """Messages with a stamp, which is 0.125 s late, an angle and a rate, written byte by byte."""
+    from mcap.writer import Writer
+
+    with path.open("wb") as stream:
+        writer = Writer(stream)
+        writer.start()
+        name, data = schema
+        number = writer.register_schema(name=name, encoding=schema_encoding, data=data)
+        channel = writer.register_channel(topic="/joint", message_encoding=encoding, schema_id=number)
+        for t, a, r in zip(TIMES.tolist(), ANGLE.tolist(), RATE.tolist(), strict=True):
+            stamp = 10**18 + round(1e9 * t)
+            message = pack(*divmod(stamp, 10**9), a, r)
+            late = stamp + 125_000_000
+            writer.add_message(channel_id=channel, log_time=late, publish_time=late, data=message)
+        writer.finish()
+
+
+def _definitions(integer):
+    stamp = f"\n{'=' * 80}\nMSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n" if integer else ""
+    kind = "builtin_interfaces/Time" if integer else "time"
+    return f"{kind} stamp\nfloat64 angle\nfloat64[2] rates\nstring name\n{stamp}".encode()
+
+
+def _protobuf():
+    """A message with a stamp, an angle and rates, and the bytes of one."""
+    descriptor = pytest.importorskip("google.protobuf.descriptor_pb2")
+    file = descriptor.FileDescriptorProto(name="joint.proto", package="rig", syntax="proto3")
+    stamp, joint = file.message_type.add(name="Stamp"), file.message_type.add(name="Joint")
+    for name, number in (("seconds", 1), ("nanos", 2)):
+        stamp.field.add(name=name, number=number, type=3, label=1)
+    joint.field.add(name="stamp", number=1, type=11, label=1, type_name=".rig.Stamp")
+    joint.field.add(name="angle", number=2, type=1, label=1)
+    joint.field.add(name="rates", number=3, type=1, label=3)
+    joint.field.add(name="child", number=4, type=11, label=1, type_name=".rig.Joint")
+
+    def varint(number):
+        return bytes([number]) if number < 128 else bytes([number & 127 | 128]) + varint(number >> 7)
+
+    def pack(seconds, nanos, angle, rate):
+        inner = b"\x08" + varint(seconds) + b"\x10" + varint(nanos)
+        first = b"\x0a" + bytes([len(inner)]) + inner
+        return first + b"\x11" + struct.pack("<d", angle) + b"\x1a\x10" + struct.pack("<2d", rate, -rate)
+
+    return ("rig.Joint", descriptor.FileDescriptorSet(file=[file]).SerializeToString()), pack
+
+
+@pytest.mark.parametrize("kind", ["ros1", "ros2", "protobuf"])
+def test_binary_messages_of_robots_are_decoded(kind, tmp_path):
+    pytest.importorskip(f"mcap_{kind}")
+    if kind == "ros1":
+        # Numbers without padding, little-endian; a string is its length and its characters.
+        schema, pack = (
+            ("rig/Joint", _definitions(False)),
+            lambda s, n, a, r: struct.pack("<II3dI1s", s, n, a, r, -r, 1, b"x"),
+        )
+        encodings = "ros1", "ros1msg"
+    elif kind == "ros2":
+        # CDR: a header of four bytes, numbers aligned to their sizes behind it; strings end with a zero.
+        schema = ("rig/msg/Joint", _definitions(True))
+        encodings = "cdr", "ros2msg"
+
+        def pack(s, n, a, r):
+            return b"\0\1\0\0" + struct.pack("<iI3dI2s", s, n, a, r, -r, 2, b"x\0")
+    else:
+        schema, pack = _protobuf()
+        encodings = "protobuf", "protobuf"
+    path = tmp_path / "run.mcap"
+    _ros_messages(path, *encodings, schema, pack)
+    data = read(path, "stamp", {"bar.angle": "angle", "bar.rate": "/joint:rates[0]", "other.rate": "rates[1]"})
+    np.testing.assert_allclose(data.coordinate.values, TIMES, rtol=0, atol=1e-12)
+    np.testing.assert_array_equal(data.values, np.stack([ANGLE, RATE, -RATE], axis=1))
+    assert [column.key for column in preview(path).columns][:2] == ["log_time", "stamp"]
+
+
+def test_the_package_that_decodes_messages_is_named(tmp_path, monkeypatch):
+    def absent(wanted):
+        if wanted == "mcap_ros2.decoder":
+            raise ImportError(wanted)
+        return import_module(wanted)
+
+    _ros_messages(tmp_path / "run.mcap", "cdr", "ros2msg", ("rig/msg/Joint", _definitions(True)), lambda *numbers: b"")
+    monkeypatch.setattr(opening, "import_module", absent)
+    with pytest.raises(DataError, match=r"mcap-ros2-support is needed to .*; run: pip install 'dalembert\[mcap\]'"):
         read(tmp_path / "run.mcap")
 
 
@@ -213,6 +303,83 @@ def test_cells_and_arrays_of_structs_of_matlab_are_read(tmp_path):
         file.create_group("s").create_dataset("v", data=np.array([[refs["b"].ref]], dtype=h5py.ref_dtype))
     data = read(tmp_path / "new.mat", "t", {"a.x": "q{2}", "a.y": "s(1).v", "a.z": "q{1}"})
     np.testing.assert_array_equal(data.values, np.stack([RATE, RATE, ANGLE], axis=1))
+
+
+def _matlab_objects(path, version):
+    """A table, a timetable, and a dataset of Simulink with an even timeseries, as MATLAB saves their properties."""
+    matio, pandas = pytest.importorskip("matio"), pytest.importorskip("pandas")
+    from matio.utils.matclass import MatlabOpaque
+
+    table = pandas.DataFrame({"t": TIMES, "angle": ANGLE, "name": list("abcdefgh")})
+    even = {
+        "Units": np.array(["milliseconds"]),
+        "Start_": np.array([[0.0]]),
+        "Increment_": np.array([[125.0]]),
+        "Length": np.array([[8.0]]),
+        "Time_": np.zeros((0, 0)),
+    }
+    series = {"Data_": ANGLE[:, None], "TimeInfo": MatlabOpaque(even, "tsdata.timemetadata")}
+    signal = MatlabOpaque({"Values": MatlabOpaque(series, "timeseries")}, "Simulink.SimulationData.Signal")
+    elements = np.empty((1, 1), dtype=object)
+    elements[0, 0] = signal
+    storage = MatlabOpaque({"Elements": elements}, "Simulink.SimulationData.Storage.RamDatasetStorage")
+    stamps = pandas.Index(np.round(1e3 * TIMES).astype("timedelta64[ms]"), name="Time")
+    variables = {
+        "x": RATE,
+        "run": table,
+        "log": pandas.DataFrame({"angle": ANGLE}, index=stamps),
+        "logsout": MatlabOpaque({"Storage_": storage}, "Simulink.SimulationData.Dataset"),
+    }
+    matio.save_to_mat(str(path), variables, version=version)
+
+
+@pytest.mark.filterwarnings("ignore:duration_to_mat")  # of the display format, which is not needed
+@pytest.mark.parametrize("version", ["v7", "v7.3"])
+def test_objects_of_matlab_are_read_by_the_names_of_matlab(version, tmp_path, monkeypatch):
+    path = tmp_path / "run.mat"
+    _matlab_objects(path, version)
+    if version == "v7":
+        data = read(path, "logsout{1}.Values.Time", {"bar.angle": "logsout{1}.Values.Data", "bar.rate": "x"})
+        np.testing.assert_allclose(data.coordinate.values, TIMES, rtol=1e-14)
+        np.testing.assert_array_equal(data.values, np.stack([ANGLE, RATE], axis=1))
+
+    def in_this_process(path, what, module, function):  # where the library is imported already
+        return getattr(import_module(module), function)(str(path))
+
+    monkeypatch.setattr(mat, "guarded", in_this_process)
+    monkeypatch.setattr(mat, "version_5", lambda path: loadmat(path, simplify_cells=True))
+    columns = {column.key: column for column in preview(path).columns}
+    for time, name in (("run.t", "run.angle"), ("log.Time", "log.angle"), ("logsout{1}.Values.Time",) * 2):
+        np.testing.assert_allclose(columns[time].values, TIMES * (1e3 if columns[time].unit == "milliseconds" else 1))
+        np.testing.assert_array_equal(columns[name.replace("Time", "Data")].values, ANGLE)
+    assert columns["logsout{1}.Values.Time"].unit == "milliseconds"
+    assert "run" not in columns
+    monkeypatch.setattr(mat, "find_spec", lambda name: None)
+    data = read(path, sampling=8.0, columns={"bar.rate": "x"})
+    assert data.origin.endswith("run.mat: without its objects of MATLAB")
+    with pytest.raises(
+        DataError, match=r"no column 'run.t' outside of objects; .*pip install 'dalembert\[matlab\]'; or"
+    ):
+        read(path, "run.t", {"bar.angle": "run.angle"})
+
+
+@pytest.mark.parametrize("comma", [False, True])
+def test_times_without_a_column_in_a_labview_file_are_those_of_its_header(comma, tmp_path):
+    head = "LabVIEW Measurement\nSeparator\tTab\nX_Columns\tNo\n***End_of_Header***\n\n"
+    segment = (
+        "Channels\t2\nSamples\t4\t4\nY_Unit_Label\tdeg\tdeg/s\nX_Dimension\tTime\tTime\nX0\t{0}\t{0}\n"
+        "Delta_X\t0.125\t0.125\n***End_of_Header***\nX_Value\tangle\trate\tComment\n"
+    )
+    rows = [f"\t{a!r}\t{r!r}\t\n" for a, r in zip(ANGLE.tolist(), RATE.tolist(), strict=True)]
+    text = head + "".join([segment.format("1.0E+0"), *rows[:4], segment.format("1.5E+0"), *rows[4:]])
+    path = tmp_path / "run.lvm"
+    path.write_text(text.replace(".", ",") if comma else text)
+    data = read(path, "X_Value", {"bar.angle": "angle", "bar.rate": "rate"})
+    np.testing.assert_allclose(data.coordinate.values, 1.0 + TIMES, rtol=1e-14)
+    np.testing.assert_allclose(data.values, np.deg2rad(np.stack([ANGLE, RATE], axis=1)), rtol=1e-14)
+    path.write_text(text.replace("Delta_X\t0.125\t0.125", "Delta_X\t0.125\t0.25"))
+    with pytest.raises(DataError, match=r"its header has Delta_X 0.125, 0.25 and X0 1.0E\+0; expected one of each"):
+        read(path, "X_Value", {"bar.angle": "angle"})
 
 
 def test_an_archive_with_several_files_is_refused(tmp_path):

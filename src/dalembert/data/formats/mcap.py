@@ -1,8 +1,7 @@
 """Columns of the messages in an MCAP file, as robots record them."""
 
-import json
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +9,7 @@ import numpy as np
 
 from dalembert.data.columns import Columns, chosen, of_numbers
 from dalembert.data.format import Format, Request
+from dalembert.data.messages import Decoders, encoding_of, fields
 from dalembert.data.opening import library, reading
 from dalembert.errors import DataError
 
@@ -18,7 +18,10 @@ LOGGED = "log_time"
 
 
 class Mcap(Format):
-    """MCAP with JSON messages of one topic, or of ``topic:field`` with several; times by field or ``log_time``."""
+    """MCAP with messages of one topic, or of ``topic:field`` with several; times by field or ``log_time``.
+
+    Messages are JSON, of ROS 1 or ROS 2, or Protobuf. A time stamp in a message is a column of times.
+    """
 
     name = "mcap"
     suffixes = (".mcap",)
@@ -55,40 +58,36 @@ class Mcap(Format):
 
 
 def _topics(path: Path) -> dict[str, dict[str, np.ndarray]]:
-    """Columns of each topic with JSON messages."""
+    """Columns of each topic whose messages are JSON, or are decoded by the packages of their encodings."""
     messages: dict[str, list[Mapping[str, Any]]] = {}
     others: Counter[str] = Counter()
     with reading(path, "MCAP"):
         reader = library("mcap.reader", path, "MCAP files", "mcap")
+        decoders = Decoders(path)
         with path.open("rb") as stream:
             for schema, channel, message in reader.make_reader(stream).iter_messages():
-                if channel.message_encoding != "json":
-                    others[channel.message_encoding or (schema.encoding if schema else "")] += 1
+                decoded = decoders.decoded(schema, channel, message)
+                if decoded is None:
+                    others[encoding_of(schema, channel)] += 1
                     continue
-                fields = dict(_fields("", json.loads(message.data)))
-                messages.setdefault(channel.topic, []).append({LOGGED: message.log_time, **fields})
+                row = {LOGGED: message.log_time, **dict(fields("", decoded))}
+                messages.setdefault(channel.topic, []).append(row)
     if not messages:
         raise DataError(
-            f"{path}: no message is JSON; the file has: {', '.join(others) or 'no messages'}; convert them to JSON"
+            f"{path}: no message can be decoded; the file has: {', '.join(others) or 'no messages'}; expected JSON, "
+            "messages of ROS 1 or ROS 2 with their definitions, or Protobuf; convert them to JSON"
         )
     return {topic: _columns(rows) for topic, rows in messages.items()}
 
 
-def _fields(front: str, value: Any) -> Iterator[tuple[str, float]]:
-    """Numbers in a message, by their path."""
-    if isinstance(value, Mapping):
-        for name, entry in value.items():
-            yield from _fields(f"{front}.{name}" if front else name, entry)
-    elif isinstance(value, list):
-        for number, entry in enumerate(value):
-            yield from _fields(f"{front}[{number}]", entry)
-    elif isinstance(value, int | float) and not isinstance(value, bool):
-        yield front, float(value)
-
-
 def _columns(rows: list[Mapping[str, Any]]) -> dict[str, np.ndarray]:
-    """Columns of messages; NaN where a message does not have a field."""
+    """Columns of messages; NaN where a message does not have a field. Stamps in ns are seconds since the first."""
     names = dict.fromkeys(name for row in rows for name in row)
-    table = {name: np.array([row.get(name, np.nan) for row in rows], dtype=float) for name in names if name != LOGGED}
-    first = rows[0][LOGGED]
-    return {LOGGED: np.array([(row[LOGGED] - first) * 1e-9 for row in rows]), **table}
+    return {name: _column([row.get(name, np.nan) for row in rows]) for name in names}
+
+
+def _column(entries: list[float | int]) -> np.ndarray:
+    first = next((entry for entry in entries if isinstance(entry, int)), None)
+    if first is None:
+        return np.array(entries, dtype=float)
+    return np.array([(entry - first) * 1e-9 if isinstance(entry, int) else np.nan for entry in entries])

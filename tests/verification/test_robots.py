@@ -120,12 +120,11 @@ IMPORTED = {
     "robot": "name",
     "robot/link": "name",
     "robot/link/inertial": "",
-    "robot/link/visual": "",
-    "robot/link/visual/origin": "xyz rpy",
-    "robot/link/visual/geometry": "",
     **{f"robot/link/inertial/{own.partition(' ')[0]}": own for own in INERTIAL},
-    **{f"robot/link/visual/geometry/{own.partition(' ')[0]}": own for own in SHAPES},
 }
+for _kind in ("visual", "collision"):
+    IMPORTED |= {f"robot/link/{_kind}": "", f"robot/link/{_kind}/origin": "xyz rpy", f"robot/link/{_kind}/geometry": ""}
+    IMPORTED |= {f"robot/link/{_kind}/geometry/{own.partition(' ')[0]}": own for own in SHAPES}
 for _kind in ("fixed", "revolute", "continuous", "prismatic"):
     IMPORTED |= {f"robot/{_kind}": "name type", f"robot/{_kind}/parent": "link", f"robot/{_kind}/child": "link"}
     IMPORTED[f"robot/{_kind}/origin"] = "xyz rpy"
@@ -146,7 +145,7 @@ def counted(node, path="") -> np.ndarray:
     seen = set()
     for child in node.childNodes:
         if child.nodeType == node.ELEMENT_NODE:
-            again = child.tagName in seen and child.tagName not in ("link", "joint", "visual")
+            again = child.tagName in seen and child.tagName not in ("link", "joint", "visual", "collision")
             found += counted(child, "repeated" if again else path)
             seen.add(child.tagName)
     return found
@@ -157,6 +156,59 @@ def listed(tree: Tree) -> np.ndarray:
     whole = [LISTED.search(note) for note in tree.unsupported]
     attributes = sum(note.partition(": ")[2].startswith("attribute ") for note in tree.unsupported)
     return np.sum([[0, attributes], *([int(own[1]), int(own[2])] for own in whole if own)], axis=0)
+
+
+def collision_shapes(tree: Tree) -> list[tuple]:
+    """Link, kind, sizes and file of each collision shape."""
+    parts = [(tree.root, tree.collisions), *((link.name, link.collisions) for link in tree.links)]
+    return [(name, own.kind, own.sizes, own.file) for name, shapes in parts for own in shapes]
+
+
+def seen_by_pinocchio(pin, path: Path, meshes) -> tuple[list[tuple], np.ndarray]:
+    """Link with sizes of each collision shape, and their places (shapes, 4, 4), by links."""
+    model = pin.buildModelFromUrdf(str(path))
+    folders = [str(folder) for folder in robots()[0].parents if "share" in folder.parts]
+    geometry = pin.buildGeomFromUrdf(model, str(path), pin.GeometryType.COLLISION, None, folders, meshes)
+    shapes, places = [], []
+    for one in sorted(geometry.geometryObjects, key=lambda one: model.frames[one.parentFrame].name):
+        solid = one.geometry
+        if one.meshPath and Path(one.meshPath).is_file():
+            sizes = (Path(one.meshPath).name, *one.meshScale)
+        elif hasattr(solid, "halfSide"):
+            sizes = tuple(2 * solid.halfSide)
+        else:
+            sizes = (solid.radius, *([2 * solid.halfLength] if hasattr(solid, "halfLength") else []))
+        shapes.append((model.frames[one.parentFrame].name, *sizes))
+        places.append(one.placement.homogeneous)
+    return shapes, np.array(places).reshape(-1, 4, 4)
+
+
+@pytest.mark.slow
+def test_collision_shapes_against_pinocchio(record_evidence, tmp_path):
+    """Pinocchio sees the same collision shapes in written files as in those of others."""
+    pin, written = pytest.importorskip("pinocchio"), tmp_path / "again.urdf"
+    meshes = pytest.importorskip("coal").CachedMeshLoader()
+    read, gaps, counts, differences = 0, [], np.zeros(2, dtype=int), 0
+    for path in robots():
+        try:
+            theirs, places = seen_by_pinocchio(pin, path, meshes)
+            write_urdf(read_urdf(path, impossible="replace"), written)
+        except (ValueError, ModelError):  # a mesh that is not there, a joint that follows a missing one
+            continue
+        ours, again = seen_by_pinocchio(pin, written, meshes)
+        read += 1
+        counts += len(theirs), len(ours)
+        differences += sum(a != b for a, b in zip(theirs, ours, strict=True))
+        gaps.append(np.abs(places - again).max() if len(ours) else 0.0)
+    assert read >= 67
+    evidence = {"topic": TOPIC, "kind": "other code", "source": "Pinocchio 4.1"}
+    name = f"{read} robots of example-robot-data, collision shapes"
+    record_evidence(f"{name} of written files", counts[0], counts[1], tolerance=0.0, **evidence)
+    record_evidence(f"{name} with other sizes in written files", 0.0, differences, tolerance=0.0, **evidence)
+    record_evidence(
+        f"{name}, places in written files (largest difference)",
+        0.0, float(max(gaps)), tolerance=1e-14, noisy=True, **evidence,
+    )  # fmt: skip
 
 
 @pytest.mark.slow
@@ -188,6 +240,7 @@ def test_robots_of_others(record_evidence, tmp_path):
         assert (again.numbers, again.inertia) == (tree.numbers, tree.inertia), path
         assert [link.name for link in again.links] == [link.name for link in tree.links], path
         assert [joint.axis for joint in again.moving] == [joint.axis for joint in tree.moving], path
+        assert collision_shapes(again) == collision_shapes(tree), path
     assert (strict, read) >= (51, 67)
     assert all("about (" in sentence or "the mass is 0 kg" in sentence for sentence in refusals)  # axis and amount
     source = "example-robot-data 6.0, counted by another XML parser"

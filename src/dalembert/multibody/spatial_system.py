@@ -1,6 +1,6 @@
 """A mechanism in space."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from dalembert.findings import Finding
 from dalembert.multibody.components.fields import Number
@@ -54,12 +54,13 @@ class SpatialSystem(Mechanism):
         self.ground = Ground()
         self.ground_shapes: tuple[Shape, ...] = ()
         """What the ground looks like, in the fixed axes: the base of a robot."""
-        self.import_findings: tuple[Finding, ...] = ()
-        """What the import of a robot file left out."""
+        self.import_findings: Callable[[Sequence[Load]], tuple[Finding, ...]] | None = None
+        """Return what the import of a robot left out, beside the loads that were added."""
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        return (*self.import_findings, *super().findings)
+        imported = self.import_findings(self.loads) if self.import_findings else ()
+        return (*imported, *super().findings)
 
     @property
     def ground_surface(self) -> Surface | None:

@@ -4,6 +4,8 @@ from collections.abc import Iterator
 
 from dalembert.findings import Finding
 from dalembert.study.study import Study
+from dalembert.study.tasks import TASKS
+from dalembert.study.tasks.wrong import needs_robot
 from dalembert.study.unused import few, unused_parameters
 
 
@@ -11,7 +13,7 @@ def model_findings(study: Study) -> tuple[Finding, ...]:
     """Return the findings about the mechanism of a study: what the import of a robot left out, elements that lock."""
     unused = _unused(study)
     robot = study.file.model.robot_table
-    if robot is not None:
+    if robot is not None and needs_robot in TASKS[study.task].needs:  # the task makes no mechanism of the robot
         return (*unused, *robot.tree.findings)
     return (*unused, *(study.system().findings if study.has_system else ()))
 

@@ -15,6 +15,7 @@ from dalembert.multibody.trees import inverse_dynamics, read_urdf
 from dalembert.report import figures, report
 from dalembert.studio.editor.reading import read
 from dalembert.study import load, plan, report_run, run_study
+from dalembert.study.model_findings import model_findings
 from dalembert.study.tasks.identify_inertias import _records as records
 from dalembert.study.template import begin
 from pages import read_page
@@ -150,6 +151,27 @@ def test_what_an_import_left_out_is_listed(tmp_path):
     assert sentence in outcome.summary
     assert sentence in read_page(folder.report).text
     assert read(tmp_path / "arm.toml", OF_FIXED).findings == tuple(findings)
+
+
+def test_limits_without_effect_are_listed_by_tasks_that_simulate(tmp_path):
+    limited = FIXED.replace('type="continuous"', 'type="revolute"').replace(
+        '<axis xyz="0 1 0"/>', '<axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="9" velocity="2"/>'
+    )
+    (tmp_path / "arm.urdf").write_text(limited)
+
+    def listed(text: str) -> list[tuple]:
+        (tmp_path / "arm.toml").write_text(text)
+        found = model_findings(load(tmp_path / "arm.toml"))
+        return [(own.code, own.severity, own.values["parts"]) for own in found]
+
+    assert listed(OF_FIXED) == [("not-imported", "note", 3)]
+    stop = '[[model.load]]\nkind = "AngleLimit"\nname = "stop"\njoint = "upper joint"\nstiffness = 10.0\nupper_limit = 1.0\n'
+    assert listed(OF_FIXED + stop) == [("not-imported", "note", 2)]
+    (tmp_path / "arm.toml").write_text(OF_FIXED)
+    checked = CliRunner().invoke(app, ["check", str(tmp_path / "arm.toml")])
+    assert "the limits of the positions of 'upper' have no effect" in checked.output
+    table = "[exciting_trajectory]\nperiod = 2.0\nacceleration = 9.0\n"
+    assert listed(OF_FIXED.partition("[solver]")[0] + table) == []
 
 
 REFUSED = (

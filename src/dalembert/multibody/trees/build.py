@@ -2,8 +2,10 @@
 
 __all__ = ["built", "groups", "names"]
 
+import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -25,6 +27,7 @@ from dalembert.multibody.components.spatial.revolute_joint import RevoluteJoint
 from dalembert.multibody.components.spatial.rigid_body import RigidBody
 from dalembert.multibody.components.spatial.shapes import Shape
 from dalembert.multibody.spatial_system import SpatialSystem
+from dalembert.multibody.trees.idle_limits import import_findings
 from dalembert.multibody.trees.kinematics import Motion, coordinate, joint_pose, motions, values
 from dalembert.multibody.trees.tree import JOINT_NUMBERS, PRISMATIC, REVOLUTE, Tree, TreeJoint, pose_matrix
 
@@ -148,13 +151,13 @@ def built(
     q, q_rates = values(tree, positions, "positions"), values(tree, rates, "rates")
     motion, of = motions(tree, q, q_rates, base), groups(tree)
     root = motion[tree.root]
+    _, joint_names = names(tree)
     system = SpatialSystem(gravity, start=start)
-    system.import_findings = tree.findings
+    system.import_findings = partial(import_findings, tree, joint_names)
     system.ground_shapes = tuple(_moved(of[tree.root].shapes, (root.position, root.axes)))
     moving = [link for link in tree.links if link.joint.moves]
     described = {link.joint.name: link.joint for link in moving}
     joints: dict[str, Joint] = {}
-    _, joint_names = names(tree)
     bodies = {
         link.name: system.add(_body(of[link.name], motion[link.name], link.joint.name in torques)) for link in moving
     }
@@ -191,13 +194,20 @@ def _follower(joint: TreeJoint, joints: Mapping[str, Joint], at: Mapping[str, Nu
     leader, factor, offset = joint.mimic
     if leader not in joints:
         raise ModelError(
-            f"joint {joint.name!r} follows {leader!r}, which is fixed. Fix it too: "
-            f"tree.with_fixed_joints({{{joint.name!r}: {offset}}})"
+            f"joint {joint.name!r} follows {leader!r}, which is fixed. Fix it too: {_fixing(joint.name, offset)}"
         )
     near = [float(np.real(at[name])) for name in (leader, joint.name)]
     follower = joints[joint.name]
     return CouplingJoint(
         f"{follower.name} mimic", joints[leader], follower, factor, offset, near_a=near[0], near_b=near[1]
+    )
+
+
+def _fixing(joint: str, position: float) -> str:
+    """How a joint is fixed, in Python and in a study file."""
+    return (
+        f"tree.with_fixed_joints({{{joint!r}: {position}}}), or fixed = {{ {json.dumps(joint)} = {position} }} in "
+        "[model.robot]"
     )
 
 
@@ -229,7 +239,7 @@ def _body(group: Group, motion: Motion, driven: bool) -> RigidBody:
     if not group.inertias:
         raise ModelError(
             f"link {group.name!r} moves by joint {group.joint.name!r}, but has no mass, and no link with mass is fixed "
-            f"to it. Give it an inertia, or fix the joint: tree.with_fixed_joints({{{group.joint.name!r}: 0.0}})"
+            f"to it. Give it an inertia, or fix the joint: {_fixing(group.joint.name, 0.0)}"
         )
     return RigidBody(
         group.name,

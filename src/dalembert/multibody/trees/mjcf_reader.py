@@ -12,6 +12,7 @@ import numpy as np
 from dalembert.errors import InputError, counted, require_known
 from dalembert.multibody.components.spatial.inertia import Inertia
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose
+from dalembert.multibody.components.spatial.shapes import capsule
 from dalembert.multibody.trees.omissions import Omission
 from dalembert.multibody.trees.possible_inertia import REFUSE, TREATMENTS, possible
 from dalembert.multibody.trees.tree import FIXED, PRISMATIC, REVOLUTE, Link, Shape, Tree, TreeJoint
@@ -36,10 +37,11 @@ def read_mjcf(path: str | os.PathLike[str], impossible: str = REFUSE) -> Tree:
     """Return the robot of an MJCF file as MuJoCo compiles it, with defaults, included files and inertias of shapes.
 
     Bodies with inertias are imported, hinges and slides with their axis, limits, damping, friction loss and armature,
-    and boxes, cylinders and spheres. Positions are relative to the reference of a joint. The frame of a link is
-    parallel to that of its body, with the origin at its joint. A body with several joints gets a link without mass for
-    each but the last. All else is listed in :attr:`Tree.omissions`, such as free and ball joints, which are fixed,
-    springs of joints, contacts, actuators and sensors.
+    and boxes, cylinders, spheres and capsules (a cylinder and two spheres). Shapes that can collide are also collision
+    shapes of their link, which :func:`write_urdf` writes. Positions are relative to the reference of a joint. The frame
+    of a link is parallel to that of its body, with the origin at its joint. A body with several joints gets a link
+    without mass for each but the last. All else is listed in :attr:`Tree.omissions`, such as free and ball joints,
+    which are fixed, springs of joints, contacts, actuators and sensors.
 
     Needs the extra ``mujoco``: ``pip install 'dalembert[mujoco]'``.
 
@@ -116,6 +118,7 @@ class _Reader:
     def tree(self) -> Tree:
         model = self.model
         links = [link for i in range(1, model.nbody) for link in self._links(i)]
+        ground, collisions = self._shapes(0)
         for count, what in (_MOVING | _OTHERS).items():
             if number := int(getattr(model, count, 0)):
                 self._note(f"{counted(number, what)} not imported", moves=count in _MOVING)
@@ -129,7 +132,8 @@ class _Reader:
         for name in ("density", "viscosity"):
             if getattr(model.opt, name):
                 self._note(f"the {name} of the fluid, {getattr(model.opt, name):g}, is not imported", moves=True)
-        return Tree(self.path.stem, self.names[0], tuple(links), self._shapes(0), tuple(self.notes))
+        notes = tuple(self.notes)
+        return Tree(self.path.stem, self.names[0], tuple(links), ground, notes, collisions=collisions)
 
     def _note(self, text: str, *, moves: bool = False) -> None:
         self.notes.append(Omission(text, moves))
@@ -155,7 +159,7 @@ class _Reader:
         placed = model.body_pos[body] - at
         if not joints:
             fixed = TreeJoint(f"{name} fixed", FIXED, Pose(_row(placed), axes))
-            return [Link(name, above, fixed, self._inertia(body), self._shapes(body))]
+            return [Link(name, above, fixed, self._inertia(body), *self._shapes(body))]
         made, before = [], np.zeros(3)
         for k in joints:
             anchor = np.array(model.jnt_pos[k])
@@ -166,7 +170,7 @@ class _Reader:
             made.append(Link(own, above, self._joint(k, pose)))
             above, before = own, anchor
         self.origins[body] = before
-        made[-1] = Link(made[-1].name, made[-1].parent, made[-1].joint, self._inertia(body), self._shapes(body))
+        made[-1] = Link(made[-1].name, made[-1].parent, made[-1].joint, self._inertia(body), *self._shapes(body))
         return made
 
     def _joint_name(self, k: int) -> str:
@@ -198,30 +202,36 @@ class _Reader:
         centre = _row(model.body_ipos[body] - self.origins[body])
         return possible(float(model.body_mass[body]), tensor, centre, place, self.impossible, self.notes)
 
-    def _shapes(self, body: int) -> tuple[Shape, ...]:
-        model, found = self.model, []
+    def _shapes(self, body: int) -> tuple[tuple[Shape, ...], tuple[Shape, ...]]:
+        """The shapes of a body, and those of them that can collide."""
+        model, found, collisions = self.model, [], []
         for k in range(int(model.body_geomadr[body]), int(model.body_geomadr[body] + model.body_geomnum[body])):
-            solids = _solids(int(model.geom_type[k]), *map(float, model.geom_size[k]))
-            if not solids:
-                self._note(f"shape {model.geom(k).name or k!r} of body {self.names[body]!r} is not drawn")
             turn = Orientation.by_quaternion(*map(float, model.geom_quat[k]))
-            centre, axis = model.geom_pos[k] - self.origins[body], turn.matrix[:, 2]
-            found += [Shape(kind, sizes, Pose(_row(centre + height * axis), turn)) for kind, sizes, height in solids]
-        return tuple(found)
+            pose = Pose(_row(model.geom_pos[k] - self.origins[body]), turn)
+            solids = _solids(int(model.geom_type[k]), model.geom_size[k].tolist(), pose)
+            collides = model.geom_contype[k] or model.geom_conaffinity[k]
+            if not solids:
+                effect = "is neither drawn nor a collision shape" if collides else "is not drawn"
+                self._note(f"shape {model.geom(k).name or k!r} of body {self.names[body]!r} {effect}")
+            found += solids
+            if collides:
+                collisions += solids
+        return tuple(found), tuple(collisions)
 
 
-def _solids(kind: int, x: float, y: float, z: float) -> list[tuple[str, tuple[float, ...], float]]:
-    """Kind and sizes of the solids of a shape (mjtGeom), each with its height along the axis of the shape."""
+def _solids(kind: int, sizes: tuple[float, float, float], pose: Pose) -> tuple[Shape, ...]:
+    """The solids of a shape (mjtGeom)."""
+    x, y, z = sizes
     match kind:
         case 2:  # sphere
-            return [("sphere", (x,), 0.0)]
+            return (Shape.sphere(x, pose),)
         case 3:  # capsule
-            return [("cylinder", (x, 2 * y), 0.0), ("sphere", (x,), -y), ("sphere", (x,), y)]
+            return capsule(x, 2 * y, pose)
         case 5:  # cylinder
-            return [("cylinder", (x, 2 * y), 0.0)]
+            return (Shape.cylinder(x, 2 * y, pose),)
         case 6:  # box
-            return [("box", (2 * x, 2 * y, 2 * z), 0.0)]
-    return []
+            return (Shape.box((2 * x, 2 * y, 2 * z), pose),)
+    return ()
 
 
 def _row(vector: Any) -> tuple[float, float, float]:

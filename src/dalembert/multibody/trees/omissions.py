@@ -34,7 +34,7 @@ def omission_findings(name: str, omissions: Sequence[Omission]) -> tuple[Finding
         texts = [omission.text for omission in omissions if omission.moves == moves]
         if not texts:
             continue
-        effect = "the motion depends" if moves else "no motion without contact depends"
+        effect = "the motion depends" if moves else "no motion without contact and within limits depends"
         listed = texts if moves or len(texts) <= MOST else [*texts[:MOST], f"and {len(texts) - MOST} more"]
         message = f"Robot {name!r}: the import left out parts of the file on which {effect}: {'; '.join(listed)}."
         values = {"robot": name, "parts": len(texts), "moves": moves}

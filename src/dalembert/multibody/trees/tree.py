@@ -92,6 +92,9 @@ class Link(Checked):
     inertia : Inertia or None
         In the frame of the link; None for a link without mass.
     shapes : tuple of Shape
+        What the link looks like.
+    collisions : tuple of Shape
+        Shapes by which programs with contacts find collisions; they do not change the motion here.
     """
 
     name: str
@@ -99,6 +102,7 @@ class Link(Checked):
     joint: TreeJoint
     inertia: Inertia | None = None
     shapes: tuple[Shape, ...] = ()
+    collisions: tuple[Shape, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -118,6 +122,8 @@ class Tree(Checked):
         What the import of a file left out, since it has no counterpart here.
     inertia : Inertia or None
         Of the base; it does not move, so the inertia changes no motion.
+    collisions : tuple of Shape
+        Of the base.
 
     Raises
     ------
@@ -131,6 +137,7 @@ class Tree(Checked):
     shapes: tuple[Shape, ...] = ()
     omissions: tuple[Omission, ...] = field(default=(), compare=False)
     inertia: Inertia | None = None
+    collisions: tuple[Shape, ...] = ()
     changed: frozenset[str] = field(default=frozenset(), compare=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -169,7 +176,10 @@ class Tree(Checked):
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """Findings about what the import of a file left out; those of :meth:`system` have them too."""
+        """Findings about what the import of a file left out.
+
+        Those of :meth:`system` also have the limits that have no effect there.
+        """
         return omission_findings(self.name, self.omissions)
 
     @property
@@ -272,7 +282,7 @@ class Tree(Checked):
         :class:`~dalembert.multibody.spatial.Friction`, armature inertias
         :class:`~dalembert.multibody.spatial.Armature`. A joint that follows another one is coupled to it by a
         :class:`~dalembert.multibody.spatial.CouplingJoint`, ``"<joint> mimic"``. Limits of rates and torques have no
-        effect, and those of positions only if ``limits`` are given.
+        effect, and those of positions only if ``limits`` are given; the findings of the system list such limits.
 
         Parameters
         ----------

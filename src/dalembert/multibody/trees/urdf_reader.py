@@ -13,6 +13,7 @@ from dalembert.errors import InputError, ModelError, listed, repeated, require_k
 from dalembert.multibody.components.spatial.inertia import Inertia
 from dalembert.multibody.components.spatial.mesh_files import unread
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose
+from dalembert.multibody.components.spatial.shapes import capsule
 from dalembert.multibody.trees.omissions import Omission
 from dalembert.multibody.trees.possible_inertia import REFUSE, TREATMENTS, possible
 from dalembert.multibody.trees.tree import FIXED, PRISMATIC, REVOLUTE, Link, Shape, Tree, TreeJoint
@@ -27,18 +28,20 @@ _SIZES: dict[str, Callable[[Element], tuple[float, ...]]] = {
     "box": lambda own: own.numbers("size", 3),
     "cylinder": lambda own: (own.number("radius"), own.number("length")),
     "sphere": lambda own: (own.number("radius"),),
+    "capsule": lambda own: (own.number("radius"), own.number("length")),
     "mesh": lambda own: own.numbers("scale", 3, (1.0, 1.0, 1.0)),
 }
+COLLISION = "collision"
 
 
 def read_urdf(path: str | os.PathLike[str], impossible: str = REFUSE) -> Tree:
     """Return the robot of a URDF file.
 
-    Links with inertias and visual shapes are imported, and joints with their kind, pose, axis, limits, damping,
-    friction and mimic. Meshes are drawn where their files are there (STL, OBJ, DAE and PLY, with the extra ``meshes``).
-    All other elements and attributes are listed in :attr:`Tree.omissions`, such as collision shapes, materials,
-    transmissions and sensors. The attribute ``armature`` of ``<dynamics>`` is an addition to URDF; :func:`write_urdf`
-    writes it.
+    Links with inertias and shapes are imported, and joints with their kind, pose, axis, limits, damping, friction and
+    mimic. Meshes are drawn where their files are there (STL, OBJ, DAE and PLY, with the extra ``meshes``). Collision
+    shapes have no effect on the motion; :func:`write_urdf` writes them. A capsule is a cylinder and two spheres. All
+    other elements and attributes are listed in :attr:`Tree.omissions`, such as materials, transmissions and sensors.
+    The attribute ``armature`` of ``<dynamics>`` is an addition to URDF; :func:`write_urdf` writes it.
 
     Floating and planar joints are fixed at their zero position, and listed. A joint without ``<limit>`` has no limits.
 
@@ -86,13 +89,20 @@ def read_urdf(path: str | os.PathLike[str], impossible: str = REFUSE) -> Tree:
     _refuse_missing_leaders(joints)
     root, ordered = _ordered(path, list(links), joints)
 
-    def parts(name: str) -> tuple[Inertia | None, tuple[Shape, ...]]:
-        return _inertia(links[name], impossible, notes), _shapes(links[name], path, notes)
+    def parts(name: str) -> tuple[Inertia | None, tuple[Shape, ...], tuple[Shape, ...]]:
+        own = links[name]
+        return (
+            _inertia(own, impossible, notes),
+            _shapes(own, "visual", path, notes),
+            _shapes(own, COLLISION, path, notes),
+        )
 
-    inertia, shapes = parts(root)
+    inertia, shapes, collisions = parts(root)
     made = [_link(own, notes, *parts(_end(own, "child"))) for own in ordered]
+    if collisions or any(link.collisions for link in made):
+        notes.append(Omission("contacts of collision shapes are not imported"))
     name = robot.word("name") or path.stem
-    return Tree(name, root, tuple(made), shapes, (*notes, *robot.unread()), inertia)
+    return Tree(name, root, tuple(made), shapes, (*notes, *robot.unread()), inertia, collisions)
 
 
 def _refuse_repeated(path: Path, robot: Element, tag: str) -> None:
@@ -174,32 +184,43 @@ def _inertia(link: Element, impossible: str, notes: list[Omission]) -> Inertia |
     return possible(mass, tensor, pose.position, own.place, impossible, notes)
 
 
-def _shapes(link: Element, path: Path, notes: list[Omission]) -> tuple[Shape, ...]:
+def _shapes(link: Element, tag: str, path: Path, notes: list[Omission]) -> tuple[Shape, ...]:
+    """The visual or the collision shapes of a link."""
     found = []
-    for visual in link.all("visual"):
-        geometry = visual.child("geometry")
+    for part in link.all(tag):
+        geometry = part.child("geometry")
         kinds = [own for own in (geometry.children if geometry else []) if own.tag in _SIZES]
         if not kinds:
-            notes.append(Omission(f"line {visual.line}: {visual.words} has no box, cylinder, sphere or mesh"))
+            notes.append(Omission(f"line {part.line}: {part.words} has no box, cylinder, sphere, capsule or mesh"))
             continue
         own = kinds[0]
         own.known = True
-        file = own.required_word("filename") if own.tag == "mesh" else ""
-        mesh = _mesh(file, path) if file else None
-        if file:
-            problem = "is not there, so it is not drawn" if mesh is None else unread(mesh)
-            if problem:
-                notes.append(Omission(f"line {own.line}: the mesh {file!r} of {own.owner} {problem}"))
-                mesh = None
-        sizes, pose = _SIZES[own.tag](own), _pose(visual)
-        if own.tag != "mesh" and min(sizes) <= 0.0:
-            notes.append(Omission(f"line {own.line}: the {own.tag} of {own.owner} has a size of zero; it is not drawn"))
-            continue
-        found.append(Shape(own.tag, sizes, pose, file, str(mesh or "")))
+        sizes, pose = _SIZES[own.tag](own), _pose(part)
+        if own.tag == "mesh":
+            found.append(_mesh(own, sizes, pose, tag, path, notes))
+        elif min(sizes) <= 0.0:
+            effect = "it is left out" if tag == COLLISION else "it is not drawn"
+            notes.append(Omission(f"line {own.line}: the {own.tag} of {own.owner} has a size of zero; {effect}"))
+        elif own.tag == "capsule":
+            found += capsule(*sizes, pose)
+        else:
+            found.append(Shape(own.tag, sizes, pose))
     return tuple(found)
 
 
-def _mesh(file: str, path: Path) -> Path | None:
+def _mesh(own: Element, factors: tuple[float, ...], pose: Pose, tag: str, path: Path, notes: list[Omission]) -> Shape:
+    """A mesh; it is listed if it is not drawn, which only visual ones are."""
+    file = own.required_word("filename")
+    found = _file(file, path) if file else None
+    if file and tag != COLLISION:
+        problem = "is not there, so it is not drawn" if found is None else unread(found)
+        if problem:
+            notes.append(Omission(f"line {own.line}: the mesh {file!r} of {own.owner} {problem}"))
+            found = None
+    return Shape("mesh", factors, pose, file, str(found or ""))
+
+
+def _file(file: str, path: Path) -> Path | None:
     """The file of a mesh, if it is there; packages are looked for in the folders around the file."""
     scheme, separator, name = file.partition("://")
     folders = path.absolute().parents if scheme == "package" and separator else [path.absolute().parent]
@@ -207,8 +228,14 @@ def _mesh(file: str, path: Path) -> Path | None:
     return next((place for place in places if place.is_file()), None)
 
 
-def _link(own: Element, notes: list[Omission], inertia: Inertia | None, shapes: tuple[Shape, ...]) -> Link:
-    return Link(_end(own, "child"), _end(own, "parent"), _joint(own, notes), inertia, shapes)
+def _link(
+    own: Element,
+    notes: list[Omission],
+    inertia: Inertia | None,
+    shapes: tuple[Shape, ...],
+    collisions: tuple[Shape, ...],
+) -> Link:
+    return Link(_end(own, "child"), _end(own, "parent"), _joint(own, notes), inertia, shapes, collisions)
 
 
 def _joint(own: Element, notes: list[Omission]) -> TreeJoint:

@@ -21,7 +21,7 @@ _ATTRIBUTES = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("r
 def write_urdf(tree: Tree, path: str | os.PathLike[str]) -> None:
     """Write a robot to a URDF file, with all digits of its numbers; :func:`read_urdf` reads the same tree.
 
-    What was not imported is not written, such as collision shapes. A limit that the tree has not is written as the
+    What was not imported is not written. A limit that the tree has not is written as the
     largest number, since other programs require limits. An armature inertia is written as the attribute ``armature`` of
     ``<dynamics>``, which is an addition to URDF; other programs ignore it.
 
@@ -44,9 +44,9 @@ def write_urdf(tree: Tree, path: str | os.PathLike[str]) -> None:
     2.5
     """
     robot = Element("robot", name=tree.name)
-    _link(robot, tree.root, tree.inertia, tree.shapes)
+    _link(robot, tree.root, tree.inertia, tree.shapes, tree.collisions)
     for link in tree.links:
-        _link(robot, link.name, link.inertia, link.shapes)
+        _link(robot, link.name, link.inertia, link.shapes, link.collisions)
     for link in tree.links:
         _joint(robot, link.joint, link.parent, link.name)
     indent(robot)
@@ -77,7 +77,9 @@ def _origin(owner: Element, pose: Pose) -> None:
         SubElement(owner, "origin", xyz=_text(*pose.position), rpy=_text(*angles))
 
 
-def _link(robot: Element, name: str, inertia: Inertia | None, shapes: tuple[Shape, ...]) -> None:
+def _link(
+    robot: Element, name: str, inertia: Inertia | None, shapes: tuple[Shape, ...], collisions: tuple[Shape, ...]
+) -> None:
     link = SubElement(robot, "link", name=name)
     if inertia is not None:
         own = SubElement(link, "inertial")
@@ -87,15 +89,20 @@ def _link(robot: Element, name: str, inertia: Inertia | None, shapes: tuple[Shap
         values = (*inertia.moments, *inertia.products)
         SubElement(own, "inertia", {name: _text(value) for name, value in zip(names, values, strict=True)})
     for shape in shapes:
-        visual = SubElement(link, "visual")
-        _origin(visual, shape.pose)
-        geometry = SubElement(SubElement(visual, "geometry"), shape.kind)
-        if shape.kind == "mesh":
-            geometry.set("filename", shape.file)
-        attributes = _ATTRIBUTES[shape.kind]
-        parts = [shape.sizes] if len(attributes) == 1 else [(size,) for size in shape.sizes]
-        for attribute, values in zip(attributes, parts, strict=True):
-            geometry.set(attribute, _text(*values))
+        _shape(SubElement(link, "visual"), shape)
+    for shape in collisions:
+        _shape(SubElement(link, "collision"), shape)
+
+
+def _shape(owner: Element, shape: Shape) -> None:
+    _origin(owner, shape.pose)
+    geometry = SubElement(SubElement(owner, "geometry"), shape.kind)
+    if shape.kind == "mesh":
+        geometry.set("filename", shape.file)
+    attributes = _ATTRIBUTES[shape.kind]
+    parts = [shape.sizes] if len(attributes) == 1 else [(size,) for size in shape.sizes]
+    for attribute, values in zip(attributes, parts, strict=True):
+        geometry.set(attribute, _text(*values))
 
 
 def _joint(robot: Element, joint: TreeJoint, parent: str, child: str) -> None:

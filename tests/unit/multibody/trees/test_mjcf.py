@@ -7,7 +7,7 @@ import pytest
 
 from dalembert.errors import InputError, ModelError
 from dalembert.multibody import GeneralizedAlpha, simulate
-from dalembert.multibody.trees import read_mjcf
+from dalembert.multibody.trees import read_mjcf, write_urdf
 from support import says
 
 ARM = """<mujoco model="arm">
@@ -91,7 +91,34 @@ def test_a_capsule_is_drawn_as_a_cylinder_between_spheres(tmp_path):
     places = np.array([shape.pose.position for shape in link.shapes])
     np.testing.assert_allclose(places[0], [0.1, 0.0, -0.2], atol=1e-12)
     np.testing.assert_allclose(np.sort(places[1:, 2]), [-0.4, 0.0], atol=1e-12)
-    assert "shape 1 of body 'arm' is not drawn" in tree.unsupported
+    assert "shape 1 of body 'arm' is neither drawn nor a collision shape" in tree.unsupported
+
+
+def test_shapes_that_collide_are_written_as_collision_shapes(tmp_path):
+    """MuJoCo reads the same shapes from the written file; a capsule is the union of three."""
+    mujoco = pytest.importorskip("mujoco")
+    path, written = tmp_path / "arm.xml", tmp_path / "arm.urdf"
+    shown = 'contype="0" conaffinity="0"'
+    shapes = (
+        '<geom type="box" size="0.1 0.2 0.3" pos="0 0 0.1" quat="0.9 0.1 0 0.3"/>'
+        f'<geom type="sphere" size="0.4" {shown}/><geom type="cylinder" size="0.02 0.3" contype="0"/>'
+        '<geom type="capsule" fromto="0.1 0 0 0.1 0 -0.4" size="0.02" mass="1"/>'
+    )
+    arm = f'<body name="arm"><joint pos="0 0 0.5" axis="0 1 0"/>{shapes}</body>'
+    path.write_text(f'<mujoco><worldbody><geom type="box" size="1 1 0.1"/>{arm}</worldbody></mujoco>')
+    tree = read_mjcf(path)
+    assert (len(tree.shapes), len(tree.collisions)) == (1, 1)
+    (link,) = tree.links
+    assert [shape.kind for shape in link.shapes] == ["box", "sphere", "cylinder", "cylinder", "sphere", "sphere"]
+    assert link.collisions == (link.shapes[0], *link.shapes[2:])
+    write_urdf(tree, written)
+    again = mujoco.MjModel.from_xml_path(str(written))  # collision shapes alone
+    kinds = mujoco.mjtGeom
+    expected = [kinds.mjGEOM_BOX] * 2 + [kinds.mjGEOM_CYLINDER] * 2 + [kinds.mjGEOM_SPHERE] * 2
+    assert again.geom_type.tolist() == [int(kind) for kind in expected]
+    assert again.geom_size[1].tolist() == [0.1, 0.2, 0.3]
+    assert again.geom_size[3:, 0].tolist() == [0.02] * 3
+    np.testing.assert_allclose(again.geom_pos[1], [0.0, 0.0, 0.1 - 0.5], atol=1e-15)
 
 
 LEFT_OUT = """<mujoco><option><flag gravity="disable"/></option>

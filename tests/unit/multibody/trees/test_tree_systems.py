@@ -17,6 +17,7 @@ from dalembert.multibody import (
     simulate,
 )
 from dalembert.multibody.components.spatial.inertia import Inertia
+from dalembert.multibody.components.spatial.joint_limit import AngleLimit
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose
 from dalembert.multibody.trees import Link, Tree, TreeJoint, read_urdf
 from robot_files import ARM, POSITIONS, RATES
@@ -236,10 +237,49 @@ def test_stops_at_the_limits_of_joints(arm):
         arm.system(limits={"slide": 3.0})
 
 
+def test_limits_without_effect_are_listed():
+    """Those of positions unless the system has stops for them, and always those of rates and torques."""
+    inertia = Inertia.sphere(1.0, 0.1)
+    links = [
+        Link(name, above, TreeJoint(joint, kind, lower=-0.1, **more), inertia)
+        for name, above, joint, kind, more in (
+            ("a", "base", "a", "revolute", {}),
+            ("b", "a", "turn", "revolute", {"velocity": 2.0, "upper": 1.0}),
+            ("c", "b", "slide", "prismatic", {"effort": 5.0}),
+        )
+    ]
+    tree = Tree("robot", "base", (*links, Link("d", "c", TreeJoint("free"), inertia)))
+
+    def listed(system):
+        (finding,) = system.findings
+        assert (finding.code, finding.severity) == ("not-imported", "note")
+        assert finding.values == {"robot": "robot", "parts": finding.message.count("the limits of"), "moves": False}
+        return [part.rstrip(".") for part in finding.message.partition("depends: ")[2].split("; ")]
+
+    rates, torques = (
+        "the limits of the rates of 'turn' have no effect",
+        "the limits of the torques or forces of 'slide' have no effect",
+    )
+    positions = "the limits of the positions of {} have no effect"
+    assert listed(tree.system()) == [positions.format("'a', 'turn' and 'slide'"), rates, torques]
+    assert listed(tree.system(limits={"turn": (1.0, 0.0)})) == [positions.format("'a' and 'slide'"), rates, torques]
+    assert listed(tree.system(limits=(1.0, 0.0))) == [rates, torques]
+    system = tree.system()
+    system.add(AngleLimit("stop", system.joints[0], 10.0, -0.1, None))
+    assert listed(system) == [positions.format("'turn' and 'slide'"), rates, torques]
+    many = Tree("r", "base", tuple(Link(f"l{k}", "base", TreeJoint(f"j{k}", upper=1.0), inertia) for k in range(9)))
+    assert "of 'j0', 'j1', 'j2', 'j3', 'j4', 'j5' and 3 more joints have" in many.system().findings[0].message
+    fixed = tree.with_fixed_joints({"a": 0.0, "turn": 0.0, "slide": 0.0})
+    assert fixed.system().findings == ()
+
+
 def test_joints_that_follow_fixed_ones(arm):
     follows = following(arm, bend=("turn", 2.0, 0.1))
     astray = following(arm, bend=("flange", 2.0, 0.1))
-    sentence = "joint 'bend' follows 'flange', which is fixed. Fix it too: tree.with_fixed_joints({'bend': 0.1})"
+    sentence = (
+        "joint 'bend' follows 'flange', which is fixed. Fix it too: tree.with_fixed_joints({'bend': 0.1}), or "
+        'fixed = { "bend" = 0.1 } in [model.robot]'
+    )
     with pytest.raises(ModelError, match=says(sentence)):
         astray.system()
     fixed = follows.with_fixed_joints({"bend": -0.8})
@@ -257,7 +297,7 @@ def test_links_without_mass_that_move_are_refused():
     cross = Tree("cross", "base", (Link("fork", "base", TreeJoint("a")), Link("arm", "fork", TreeJoint("b"), inertia)))
     sentence = (
         "link 'fork' moves by joint 'a', but has no mass, and no link with mass is fixed to it. Give it an inertia, or "
-        "fix the joint: tree.with_fixed_joints({'a': 0.0})"
+        "fix the joint: tree.with_fixed_joints({'a': 0.0}), or fixed = { \"a\" = 0.0 } in [model.robot]"
     )
     with pytest.raises(ModelError, match=says(sentence)):
         cross.system()

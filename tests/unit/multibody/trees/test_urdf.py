@@ -35,7 +35,8 @@ def numbers_of(tree: Tree) -> np.ndarray:
     """All numbers of a tree in one array."""
     found = []
     for link in tree.links:
-        joint, poses = link.joint, [link.joint.pose, *(shape.pose for shape in link.shapes)]
+        joint, shapes = link.joint, (*link.shapes, *link.collisions)
+        poses = [link.joint.pose, *(shape.pose for shape in shapes)]
         for pose in poses:
             found += [*pose.position, *pose.orientation.matrix.ravel()]
         found += [*joint.axis, joint.lower, joint.upper, joint.velocity, joint.effort]
@@ -43,7 +44,7 @@ def numbers_of(tree: Tree) -> np.ndarray:
             joint.damping,
             joint.friction,
             joint.armature,
-            *(size for shape in link.shapes for size in shape.sizes),
+            *(size for shape in shapes for size in shape.sizes),
         ]
         if link.inertia is not None:
             found += [link.inertia.mass, *link.inertia.centre, *link.inertia.tensor.ravel()]
@@ -52,7 +53,7 @@ def numbers_of(tree: Tree) -> np.ndarray:
 
 def words_of(tree: Tree) -> list:
     """All texts of a tree."""
-    return [tree.name, tree.root, len(tree.shapes)] + [
+    return [tree.name, tree.root, len(tree.shapes), len(tree.collisions)] + [
         (
             link.name,
             link.parent,
@@ -61,6 +62,7 @@ def words_of(tree: Tree) -> list:
             link.joint.mimic,
             link.inertia is None,
             *((shape.kind, shape.file) for shape in link.shapes),
+            *((shape.kind, shape.file) for shape in link.collisions),
         )
         for link in tree.links
     ]
@@ -89,10 +91,10 @@ def test_numbers_of_a_file(file):
 def test_what_is_not_imported_is_listed(file):
     assert read_urdf(file()).unsupported == (
         "line 30: the mesh 'package://arm/meshes/tool.stl' of link 'tool' is not there, so it is not drawn",
+        "contacts of collision shapes are not imported",
         "line 4: material 'grey' is not imported (2 elements, 2 attributes)",
         "line 7: attribute 'name' of <visual> of link 'base' is not imported",
         "line 7: <material> of link 'base' is not imported (1 element, 1 attribute)",
-        "line 16: <collision> of link 'column' is not imported (3 elements, 1 attribute)",
         "line 44: <safety_controller> of joint 'slide' is not imported (1 element, 1 attribute)",
         "line 53: <axis> of joint 'flange' is not imported (1 element, 1 attribute)",
         "line 56: transmission 'drive' is not imported (3 elements, 2 attributes)",
@@ -137,7 +139,7 @@ def test_written_files_are_read_as_the_same_tree(file, tmp_path):
     again = read_urdf(tmp_path / "again.urdf")
     assert words_of(again) == words_of(once)
     assert np.allclose(numbers_of(again), numbers_of(once), rtol=0, atol=4e-16)
-    assert [note for note in again.unsupported if "mesh" not in note] == []
+    assert [note for note in again.unsupported if "mesh" not in note] == [CONTACTS]
     assert (again.numbers, again.inertia) == (once.numbers, once.inertia)  # to the last bit
 
 
@@ -194,10 +196,54 @@ def test_the_omissions_on_which_the_motion_depends_are_marked(file):
     assert len(moving) <= 3  # ARM has <dynamics> too, which is then the third one
 
 
+CONTACTS = "contacts of collision shapes are not imported"
+SOLIDS = {
+    "box": ('box size="0.1 0.2 0.3"', [("box", (0.1, 0.2, 0.3), 0.5)]),
+    "cylinder": ('cylinder radius="0.1" length="0.4"', [("cylinder", (0.1, 0.4), 0.5)]),
+    "sphere": ('sphere radius="0.1"', [("sphere", (0.1,), 0.5)]),
+    "mesh": ('mesh filename="package://none/a.stl" scale="1 1 2"', [("mesh", (1.0, 1.0, 2.0), 0.5)]),
+    "capsule": (
+        'capsule radius="0.1" length="0.4"',
+        [("cylinder", (0.1, 0.4), 0.5), ("sphere", (0.1,), 0.3), ("sphere", (0.1,), 0.7)],
+    ),
+}
+BODY = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+CHAIN = """<robot name="r"><link name="base">{shape}</link><link name="arm">{body}{shape}</link><link name="tool">{shape}{shape}</link>
+<joint name="pin" type="continuous"><parent link="base"/><child link="arm"/></joint>
+<joint name="bolt" type="continuous"><parent link="arm"/><child link="tool"/></joint></robot>"""
+
+
+@pytest.mark.parametrize("name", SOLIDS)
+def test_collision_shapes_are_kept_and_written(file, tmp_path, name):
+    """Through fixing of joints and new numbers; they are neither drawn nor do they change the motion."""
+    text, solids = SOLIDS[name]
+    collision = f'<collision><origin xyz="0 0 0.5" rpy="0 0 0.3"/><geometry><{text}/></geometry></collision>'
+    tree = read_urdf(file(CHAIN.format(shape=collision, body=BODY)))
+    assert tree.unsupported == (CONTACTS,)
+    changed = tree.with_fixed_joints({"bolt": 0.3}).with_numbers({"arm.mass": 2.0})
+    write_urdf(changed, tmp_path / "again.urdf")
+    for robot in (tree, changed, read_urdf(tmp_path / "again.urdf")):
+        assert not any((robot.shapes, *(link.shapes for link in robot.links)))
+        parts = {robot.root: robot.collisions} | {link.name: link.collisions for link in robot.links}
+        for link, repeats in (("base", 1), ("arm", 1), ("tool", 2)):
+            own = [(shape.kind, shape.sizes, shape.pose.position[2]) for shape in parts[link]]
+            assert [one[:2] for one in own] == [one[:2] for one in solids] * repeats
+            np.testing.assert_allclose([one[2] for one in own], [one[2] for one in solids] * repeats, rtol=1e-15)
+            turns = [shape.pose.orientation.matrix[1, 0] for shape in parts[link]]
+            np.testing.assert_allclose(turns, np.sin(0.3), rtol=1e-15)
+    assert all(body.surface is None for body in changed.system().bodies)
+
+
+def test_collision_shapes_of_size_zero_are_left_out(file):
+    collision = '<collision><geometry><box size="1 0 1"/></geometry></collision>'
+    tree = read_urdf(file(CHAIN.format(shape="", body=BODY + collision)))
+    assert tree.unsupported == ("line 1: the box of link 'arm' has a size of zero; it is left out",)
+    assert tree.link("arm").collisions == ()
+
+
 @pytest.mark.parametrize("shape", ['box size="0.1 0 0.2"', 'sphere radius="0"', 'cylinder radius="0" length="0.2"'])
 def test_shapes_of_size_zero_are_left_out(file, shape):
-    body = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
-    link = f'<link name="arm">{body}<visual><geometry><{shape}/></geometry></visual></link>'
+    link = f'<link name="arm">{BODY}<visual><geometry><{shape}/></geometry></visual></link>'
     joint = '<joint name="pin" type="continuous"><parent link="base"/><child link="arm"/></joint>'
     tree = read_urdf(file(f'<robot name="r"><link name="base"/>{link}{joint}</robot>'))
     kind = shape.partition(" ")[0]

@@ -128,6 +128,13 @@ class Shape(Checked):
         return Surface(corners @ axes.T + np.real(self.pose.position), triangles)
 
 
+def capsule(radius: Number, length: Number, pose: Pose = AT_ORIGIN) -> tuple[Shape, ...]:
+    """Return the solids of a capsule along its axis z: a cylinder of this length between two spheres, m."""
+    centre, axis = np.array(pose.position), pose.orientation.matrix[:, 2]
+    ends = [tuple((centre + height * axis).tolist()) for height in (-0.5 * length, 0.5 * length)]
+    return Shape.cylinder(radius, length, pose), *(Shape.sphere(radius, Pose(end, pose.orientation)) for end in ends)
+
+
 def surface_of(shapes: Sequence[Shape]) -> Surface | None:
     """One surface of several shapes; None where there is nothing to draw."""
     parts = [shape.surface for shape in shapes]

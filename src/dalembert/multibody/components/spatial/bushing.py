@@ -236,9 +236,8 @@ class Bushing(Load):
         require_direction(owner, "a spring, or a rigid body", self.a, self.b)
         axes = lowering.pair(self.a, self.b, self.name).axes
         pair = lowering.pair(self.a, self.b, self.name, (np.eye(3), axes[1].T @ axes[0]))
-        laws = [
-            _matrix(owner, what, getattr(self, what))[i][j] for what in ("stiffness", "damping") for i, j in _ENTRIES
-        ]
+        matrices = [_matrix(owner, what, getattr(self, what)) for what in ("stiffness", "damping")]
+        laws = [matrix[i][j] for matrix in matrices for i, j in _ENTRIES]
         numbers = [*pair.data, *(pair.axes[0].T @ pair.separation).tolist(), *laws]
         lowering.add(BUSHING, pair.slots, numbers, pair.integers, self.name)
 

@@ -70,6 +70,26 @@ def test_columns_are_corrected_by_menus_and_problems_by_buttons(visit, root, tmp
     page.get_by_label("Use of column x").wait_for()
 
 
+def test_a_file_without_times_and_with_words_is_put_right(visit, root):
+    study = begin("identify", root / "studies" / "drag")
+    cells = [f"{20 + 10 * np.cos(row / 9):.3f}" for row in range(200)]
+    cells[30] = "dropout"
+    (study.parent / "own.csv").write_text("\n".join(["angle", *cells]))
+    page = visit("/study/drag/drag")
+    page.get_by_role("tab", name="Data").click()
+    page.get_by_label("Use of column x").wait_for()
+    choose(page, "Data file", "own.csv")
+    choose(page, "Use of column angle", "rod.end.angle (rad)")
+    page.get_by_label("Sampling rate (Hz)").fill("50")
+    page.get_by_role("button", name="Take it as a missing value").click()
+    wait_until(page, f"!{TEXT}.includes('dropout')")
+    page.get_by_role("button", name="Write into the study").click()
+    page.get_by_role("button", name="Save").click()
+    wait_until(page, f"{TEXT}.includes('Saved.')")
+    data = tomllib.loads(study.read_text())["data"]
+    assert (data["sampling"], data["missing"]) == (50, ["dropout"])
+
+
 def test_a_file_of_50_mb_does_not_block_the_studio(visit, root, tmp_path):
     study = begin("identify", root / "studies" / "large")
     rows = 1_250_000

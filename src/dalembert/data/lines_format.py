@@ -11,7 +11,7 @@ import numpy as np
 from dalembert.data.clock_times import clock_seconds, is_clock
 from dalembert.data.columns import Columns, Trial, of_trial, trial_label
 from dalembert.data.format import Format, Request
-from dalembert.data.text_layout import AUTO, GAPS, Layout, Line, Row, is_number, is_plain, layout, value
+from dalembert.data.text_layout import AUTO, GAPS, Layout, Line, Row, gaps_of, is_number, is_plain, layout, value
 from dalembert.data.text_numbers import HEAD, lines_of_numbers, quick_table
 from dalembert.errors import DataError, unknown
 
@@ -98,7 +98,7 @@ def columns_of(
     labels = [found.header[k] for k in wanted] if names is None else [str(one) for one in names]
     places: list[int] = list(dict.fromkeys([*([] if first is None else [first]), *wanted]))
     if numbers is None:
-        gaps = frozenset([*GAPS, *(word.lower() for word in absent)]) if missing == "leave-out" else frozenset()
+        gaps = gaps_of(absent) if missing == "leave-out" else frozenset()
         table = _numbers(path, found, places, gaps, first)
     else:
         table = {k: np.ascontiguousarray(numbers[:, k]) for k in places}

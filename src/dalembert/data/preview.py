@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from dalembert.data.clock_times import clock_seconds, is_clock
 from dalembert.data.known_formats import format_of, known_formats
 from dalembert.data.lines_format import LinesFormat
-from dalembert.data.text_layout import AUTO, GAPS, Layout, Line, Row, is_number, layout, split, value
+from dalembert.data.text_layout import AUTO, Layout, Line, Row, gaps_of, is_number, layout, split, value
 from dalembert.data.text_numbers import BLOCK, HEAD, lines_of_numbers, quick_numbers
 from dalembert.errors import DataError
 
@@ -81,7 +81,7 @@ class Preview:
         return next((column for column in self.columns if column.key == key), None)
 
 
-def preview(path: Path, separator: str = AUTO, decimal: str = AUTO) -> Preview:
+def preview(path: Path, separator: str = AUTO, decimal: str = AUTO, absent: Sequence[str] = ()) -> Preview:
     """Return what a file is taken to hold.
 
     Parameters
@@ -89,6 +89,8 @@ def preview(path: Path, separator: str = AUTO, decimal: str = AUTO) -> Preview:
     path : Path
     separator, decimal : str
         Marks of a text file; ``"auto"`` to find them from its lines.
+    absent : sequence of str
+        Further words for a cell without a value in a text file.
 
     Raises
     ------
@@ -110,7 +112,7 @@ def preview(path: Path, separator: str = AUTO, decimal: str = AUTO) -> Preview:
     name = format_of(path)
     form = known_formats()[name]()
     if isinstance(form, LinesFormat):
-        return _text(path, name, form.lines(path), separator, decimal)
+        return _text(path, name, form.lines(path), separator, decimal, gaps_of(absent))
     columns = [PreviewColumn(key, unit, *_real(array)) for key, (array, unit) in form.held(path).items()]
     longest = Counter(len(column.values) for column in columns).most_common(1)
     columns = [column for column in columns if len(column.values) == longest[0][0]]
@@ -120,12 +122,31 @@ def preview(path: Path, separator: str = AUTO, decimal: str = AUTO) -> Preview:
     return Preview(path, name, tuple(columns), tuple(first))
 
 
-def _text(path: Path, name: str, lines: Sequence[Line], separator: str, decimal: str) -> Preview:
+def without(preview: Preview, numbers: Sequence[float], time: str | int | None) -> Preview:
+    """Return the same without the numbers that stand for missing values in the columns that are not the times.
+
+    >>> column = PreviewColumn("x", "", np.array([1.0, -9999.0]))
+    >>> without(Preview(Path("a.csv"), "csv", (column,), ()), [-9999.0], None).columns[0].missing
+    1
+    """
+    if not numbers:
+        return preview
+    columns = (column if column.key == time else _without(column, numbers) for column in preview.columns)
+    return replace(preview, columns=tuple(columns))
+
+
+def _without(column: PreviewColumn, numbers: Sequence[float]) -> PreviewColumn:
+    absent = np.isin(column.values, numbers)
+    values = np.where(absent, np.nan, column.values)
+    return replace(column, values=values, missing=column.missing + int(np.sum(absent)))
+
+
+def _text(path: Path, name: str, lines: Sequence[Line], separator: str, decimal: str, gaps: frozenset[str]) -> Preview:
     found = layout(lines[:HEAD], 1, separator, decimal)
     if not found.rows:
         raise DataError(f"{path}: the file has no line of numbers; expected column names and then lines of numbers")
     rest, width = lines_of_numbers(lines, found), len(found.header)
-    blocks = [_block(rest[place : place + BLOCK], found, width) for place in range(0, len(rest), BLOCK)]
+    blocks = [_block(rest[place : place + BLOCK], found, width, gaps) for place in range(0, len(rest), BLOCK)]
     keys = [
         name if found.named is not None and name and found.header.count(name) == 1 else place
         for place, name in enumerate(found.header, 1)
@@ -159,7 +180,7 @@ class _Block:
     uneven: tuple[int, int] | None = None
 
 
-def _block(lines: Sequence[Line], found: Layout, width: int) -> _Block:
+def _block(lines: Sequence[Line], found: Layout, width: int, gaps: frozenset[str]) -> _Block:
     """Numbers of lines: by the fast reader where all cells are numbers, else cell by cell."""
     table = quick_numbers(lines, found)
     if table is not None:
@@ -168,14 +189,14 @@ def _block(lines: Sequence[Line], found: Layout, width: int) -> _Block:
     whole = [(line, cells + [""] * (width - len(cells))) for line, cells in rows]
     uneven = next(((line, len(cells)) for line, cells in rows if len(cells) != width and any(cells[width:])), None)
     uneven = uneven or next(((line, len(cells)) for line, cells in rows if len(cells) < width), None)
-    return _Block([_numbers(whole, place, found.decimal) for place in range(width)], uneven)
+    return _Block([_numbers(whole, place, found.decimal, gaps) for place in range(width)], uneven)
 
 
-def _numbers(rows: Sequence[Row], place: int, decimal: str) -> _Numbers:
+def _numbers(rows: Sequence[Row], place: int, decimal: str, gaps: frozenset[str]) -> _Numbers:
     values, missing, wrong = np.full(len(rows), np.nan), 0, None
     for sample, (line, cells) in enumerate(rows):
         cell = cells[place]
-        if cell.lower() in GAPS:
+        if cell.lower() in gaps:
             missing += 1
         elif is_number(cell, decimal) and np.isfinite(number := value(cell, decimal)):
             values[sample] = number

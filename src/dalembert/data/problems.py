@@ -196,9 +196,12 @@ def _unreadable(column: PreviewColumn, *, times: bool = False, left_out: bool = 
         yield Finding(
             "no-number",
             "error",
-            {"column": column.key, "line": line, "cell": cell},
+            {"column": column.key, "line": line, "cell": cell, "times": times},
             f"The column {str(column.key)!r} has {cell!r} in line {line}, which is no finite number.",
-            "Correct or empty the cell in the file, or choose another separator or decimal mark.",
+            "Correct or empty the cell in the file, or choose another separator or decimal mark."
+            if times
+            else "Correct or empty the cell in the file, take it as a missing value, or choose another separator or "
+            "decimal mark.",
         )
     if column.missing and not left_out:
         yield Finding(

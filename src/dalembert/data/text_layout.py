@@ -19,7 +19,6 @@ GAPS = (
     *("-nan(ind)", "1.#qnan", "-1.#ind", "#value!", "#div/0!", "#num!", "no data"),
 )
 """What a cell without a value holds, in any case of letters."""
-
 DESCRIBING = (
     "abs absolute actual calculated command demand desired filtered front left lower max mean measured raw rear ref "
     "reference rel relative right rms set setpoint simulated smoothed std target top upper"
@@ -120,6 +119,11 @@ def layout(lines: Sequence[Line], time: str | int | None, separator: str = AUTO,
     found = [_bracketed(name) for name in header] if units is None else [_unit(cell) for cell in units[1]]
     found = (found + [""] * len(header))[: len(header)]
     return Layout(cut, mark, header, tuple(found), data, names and names[0], units and units[0])
+
+
+def gaps_of(absent: Iterable[str]) -> frozenset[str]:
+    """Return what cells without a value hold, with further words, in lower case."""
+    return frozenset([*GAPS, *(word.lower() for word in absent)])
 
 
 def is_number(cell: str, decimal: str = ".") -> bool:

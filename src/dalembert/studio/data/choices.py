@@ -11,10 +11,10 @@ from tomlkit.toml_document import TOMLDocument
 from dalembert.data.guesses import Unit, time_column, unit_of
 from dalembert.data.preview import Preview
 from dalembert.data.problems import Use
-from dalembert.data.text_layout import AUTO
+from dalembert.data.text_layout import AUTO, is_number
 from dalembert.errors import InputError
 from dalembert.findings import Finding
-from dalembert.units import is_si
+from dalembert.units import is_si, si
 
 Key = str | int
 OF_FILE = (
@@ -72,6 +72,22 @@ class Choices:
     decimate: int | None = None
     between: tuple[float, float] | None = None
     sampling: Any = None
+
+    @property
+    def absent(self) -> list[str]:
+        """Words and numbers that stand for missing values, besides the common ones."""
+        return [] if isinstance(self.missing, str) else list(map(str, self.missing))
+
+    @property
+    def rate(self) -> float | None:
+        """Samples a second (Hz) without a column of times; None if there is none, or if it is no positive rate."""
+        if self.sampling is None or self.time is not None:
+            return None
+        try:
+            rate = si(self.sampling, "Hz")
+        except InputError:
+            return None
+        return rate if rate > 0 else None
 
     @property
     def used(self) -> tuple[Key | None, ...]:
@@ -165,7 +181,7 @@ def table_of(choices: Choices, found: Preview) -> dict[str, Any]:
         If no column is used as the times, or none for a channel.
     """
     if choices.time is None and choices.sampling is None:
-        raise InputError("No column has the times. Choose the column of the times.")
+        raise InputError("No column has the times. Choose the column of the times, or give the sampling rate.")
     if not choices.channels:
         raise InputError("No column is used for a channel. Choose the channel that a column measures.")
     table: dict[str, Any] = {"file": choices.file}
@@ -275,6 +291,10 @@ FIXES = {
         lambda choices, values: replace(choices, wraps=(*choices.wraps, values["channel"])),
     ),
     "suspect-degrees": Fix("Use deg", lambda choices, values: choices.with_unit(values["column"], values["unit"])),
+    "no-number": Fix(
+        "Take it as a missing value",
+        lambda choices, values: replace(choices, missing=[*choices.absent, str(values["cell"])]),
+    ),
     "many-samples": Fix("Decimate", lambda choices, values: replace(choices, decimate=int(values["factor"]))),
 }
 """By the codes of findings, where a choice puts right what is wrong."""
@@ -283,6 +303,7 @@ FIXES = {
 def fix_of(finding: Finding) -> Fix | None:
     """The button beside a problem; None where nothing here can put it right."""
     handled = finding.code == "late-times" and finding.severity == "note"
-    times = finding.code == "missing-values" and finding.values["times"]
+    times = finding.code in ("missing-values", "no-number") and finding.values["times"]
+    infinite = finding.code == "no-number" and is_number(str(finding.values["cell"]))
     uneven = finding.code == "many-samples" and not finding.values["even"]
-    return None if handled or times or uneven else FIXES.get(finding.code)
+    return None if handled or times or infinite or uneven else FIXES.get(finding.code)

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from dalembert.data.guesses import Unit
-from dalembert.data.preview import Preview, PreviewColumn, preview
+from dalembert.data.preview import Preview, PreviewColumn, preview, without
 from dalembert.data.problems import outliers, problems
-from dalembert.data.text_layout import AUTO
+from dalembert.data.text_layout import AUTO, is_number
 from dalembert.errors import DalembertError, InputError
 from dalembert.findings import Finding
 from dalembert.report.thin import thinned
@@ -34,7 +34,8 @@ class Curve:
     unit : Unit
         Chosen, or guessed.
     along, values : array, shape (points,)
-        Time in s from the beginning of the motion, or number of the row without a column of times; the column as it is
+        Time in s from the beginning of the motion, or number of the row where neither a column nor a sampling rate
+        gives the times; the column as it is
         in the file. Thinned so that peaks stay.
     far : array, shape (2, points)
         The same of outliers.
@@ -114,16 +115,17 @@ def examine(kept: Kept, study: Path, text: str, file: str, choices: Choices | No
         If the file cannot be read.
     """
     channels = kept.newest("channels", text, lambda: _channels(kept, study, text))
-    marks = (AUTO, AUTO) if choices is None else (choices.separator, choices.decimal)
+    marks = (AUTO, AUTO, ()) if choices is None else (choices.separator, choices.decimal, tuple(choices.absent))
     path = study.parent / file
     stamp = (path.stat().st_mtime_ns, path.stat().st_size) if path.is_file() else None
     found = kept.newest("data file", (path, *marks, stamp), lambda: preview(path, *marks))
     choices = guessed(found, channels, before) if choices is None else choices
     if choices.time == "t" and found.column("t") is None and found.column(1) is not None:
         choices = replace(choices, time=1)  # the first column of a file without names
+    found = without(found, [float(word) for word in choices.absent if is_number(word)], choices.time)
     use = choices.use(found, channels)
     times = None if choices.time is None else found.column(choices.time)
-    along = np.arange(1.0, found.samples + 1) if times is None else times.values * use.factor(choices.time)
+    along = _along(choices, found.samples) if times is None else times.values * use.factor(choices.time)
     begins = float(along[0]) if len(along) else 0.0
     start = use.start if isinstance(use.start, (int, float)) else begins if use.start == "first" else 0.0
     table, lacks = _table(choices, found)
@@ -141,6 +143,12 @@ def examine(kept: Kept, study: Path, text: str, file: str, choices: Choices | No
         table,
         lacks,
     )
+
+
+def _along(choices: Choices, samples: int) -> np.ndarray:
+    """Times of samples at the sampling rate; their numbers where there is none."""
+    rate = choices.rate
+    return np.arange(1.0, samples + 1) if rate is None else np.arange(samples) / rate
 
 
 def compare(kept: Kept, study: Path, text: str) -> tuple[Finding, ...]:

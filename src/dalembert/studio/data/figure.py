@@ -43,6 +43,7 @@ def columns_figure(examined: Examined) -> go.Figure:
         place = {"xref": "x domain", "yref": "y domain", "x": 0.0, "y": 1.0, "xanchor": "left", "yanchor": "bottom"}
         figure.add_annotation(text=title, showarrow=False, row=row, col=1, **place)
     themed(figure, "", height=HEIGHT * max(1, len(curves)) + AXES, showlegend=False, hovermode="x")
-    along = "row" if examined.choices.time is None else labelled("time", "s")
+    numbered = examined.choices.time is None and examined.choices.rate is None
+    along = "row" if numbered else labelled("time", "s")
     figure.update_xaxes(title={"text": along, "font_size": 13}, row=max(1, len(curves)), col=1)
     return on_any_page(figure)

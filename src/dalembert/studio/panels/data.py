@@ -72,10 +72,11 @@ class DataPanel:
         with ui.row().classes("w-full items-center gap-3"):
             self._begin = ui.select({}, label="The motion begins", on_change=self._begins).classes("min-w-56")
             self._at = ui.number("Time in the file (s)", on_change=self._begins).classes("w-36")
+            self._rate = ui.number("Sampling rate (Hz)", min=0, on_change=self._sampled).classes("w-44")
             self._separator = ui.select(SEPARATORS, label="Separator", on_change=self._marks).classes("min-w-44")
             self._decimal = ui.select(DECIMALS, label="Decimal mark", on_change=self._marks).classes("min-w-44")
             self._missing = ui.checkbox("Leave missing values out", on_change=self._leave_out)
-            for menu in (self._begin, self._at, self._separator, self._decimal):
+            for menu in (self._begin, self._at, self._rate, self._separator, self._decimal):
                 menu.props("outlined dense options-dense")
         self._layout = ui.label("").classes("text-sm opacity-80")
 
@@ -132,6 +133,9 @@ class DataPanel:
         number = choices.start if isinstance(choices.start, (int, float)) else None
         self._at.set_value(number)
         self._at.set_visibility(kind == AT)
+        if choices.rate != self._rate.value:
+            self._rate.set_value(choices.rate)
+        self._rate.set_visibility(choices.time is None)
         for menu, value, is_text in (
             (self._separator, choices.separator, shown.separator),
             (self._decimal, choices.decimal, shown.decimal),
@@ -189,11 +193,15 @@ class DataPanel:
         start = {FIRST: "first", ZERO: None, AT: self._at.value or 0.0}[self._begin.value]
         self._change(start=start)
 
+    def _sampled(self) -> None:
+        self._change(sampling=self._rate.value or None)
+
     def _marks(self) -> None:
         self._change(separator=self._separator.value, decimal=self._decimal.value)
 
     def _leave_out(self) -> None:
-        self._change(missing="leave-out" if self._missing.value else "refuse")
+        words = self.guide.choices.absent if self.guide.choices is not None else []
+        self._change(missing=(words or "leave-out") if self._missing.value else "refuse")
 
     def _pick(self) -> None:
         if not self._quiet and self._file.value and self._file.value != self.guide.file:

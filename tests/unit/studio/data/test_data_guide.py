@@ -2,6 +2,7 @@
 
 import asyncio
 import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -75,6 +76,47 @@ def test_a_file_is_mapped_written_and_its_offset_estimated(guide):
     guide.draft.check()
     assert guide.draft.mistakes == ()
     assert [finding.code for finding in looked(guide).findings] == ["late-times"]
+
+
+def test_words_and_numbers_for_missing_values_are_no_wrong_cells(guide):
+    rows = [f"{k / 50},{k % 7}" for k in range(200)]
+    rows[20], rows[30] = "0.4,dropout", "0.6,-9999"
+    (guide.draft.path.parent / "own.csv").write_text("\n".join(["t,angle", *rows]))
+    guide.follow()
+    guide.choose_file("own.csv")
+    looked(guide)
+    guide.choices = replace(guide.choices.mapped(ANGLE, "angle"), missing=["DROPOUT", -9999])
+    looked(guide)
+    assert {finding.code for finding in guide.findings}.isdisjoint({"no-number", "missing-values", "outliers"})
+    curve = next(curve for curve in guide.examined.curves if curve.key == "angle")
+    assert (curve.missing, np.nanmin(curve.values)) == (2, 0.0)
+    guide.choices = replace(guide.choices, missing=[-9999])
+    looked(guide)
+    wrong = next(finding for finding in guide.findings if finding.code == "no-number")
+    assert (wrong.values["line"], guide.remedy(wrong)) == (22, "Take it as a missing value")
+    guide.apply(wrong)
+    looked(guide)
+    assert guide.choices.missing == ["-9999", "dropout"]
+    assert "no-number" not in [finding.code for finding in guide.findings]
+
+
+def test_a_file_without_times_has_a_sampling_rate(guide):
+    rows = [f"{40 * np.cos(4.3 * k / 50):.3f}" for k in range(200)]
+    (guide.draft.path.parent / "own.csv").write_text("\n".join(["angle_deg", *rows]))
+    guide.follow()
+    guide.choose_file("own.csv")
+    looked(guide)
+    guide.choices = guide.choices.mapped(ANGLE, "angle_deg")
+    looked(guide)
+    with pytest.raises(InputError, match="or give the sampling rate"):
+        guide.write()
+    guide.choices = replace(guide.choices, sampling=50.0)
+    looked(guide)
+    assert guide.examined.curves[0].along[-1] == pytest.approx(199 / 50)
+    guide.write()
+    data = tomllib.loads(guide.draft.text)["data"]
+    assert (data["sampling"], "time" in data) == (50.0, False)
+    guide.draft.check()
 
 
 def test_outliers_are_fitted_by_a_robust_loss(guide):

@@ -23,6 +23,7 @@ from dalembert.inverse.experiments.experiments import begun, placed
 from dalembert.inverse.experiments.explained import explained_findings
 from dalembert.inverse.experiments.joined import joined
 from dalembert.inverse.experiments.smoothed import noise_findings, smooth_noise
+from dalembert.inverse.experiments.suspect_times import experiment_time_findings
 from dalembert.inverse.experiments.suspect_units import unit_findings
 from dalembert.inverse.experiments.validation import HeldOut, split, whole_jacobian
 from dalembert.inverse.fit.fit import Fit
@@ -192,7 +193,8 @@ def identify(
         require_known("horizon", str(horizon), HORIZONS)
     require_known("spread", str(spread), SPREADS)
     require_known("derivative", str(derivative), GRADIENTS)
-    model, data, weights, parts = joined("identify", begun(placed(model, executor), start), data, weights)
+    recorded = begun(placed(model, executor), start), data
+    model, data, weights, parts = joined("identify", *recorded, weights)
     counted, weights = (None, weights) if noise is None else (counted_values(weights, data), None)
     given = data.deviations is not None and weights is None
     check_noise(noise, loss=loss, shooting=shooting)
@@ -212,6 +214,7 @@ def identify(
     floor = noise_floor(problem, smooth)
 
     first = _origin(problem, model.parameters.start) if origin is None else origin
+    suspected = tuple(experiment_time_findings(*recorded, model, problem.search.vectors(first)))
     if shooting is not None:  # before anything is simulated
         check_segments(problem, shooting)
         check_restart(problem, shooting, problem.search.vectors(first))
@@ -311,6 +314,7 @@ def identify(
             *undetermined,
             *too_few_findings(problem, known=known),
             *rival_findings(searched[0], searched[1], others, searched[2]),
+            *suspected,
             *unit_findings(problem, vector, response),
             *roughness_findings(problem, best, None if exact else at, deviations),
             *(() if settled is None else estimated_noise_findings(settled)),

@@ -31,6 +31,7 @@ from dalembert.multibody.system import Mechanism
 from dalembert.parameters import Parameter, Parameters
 
 _MOST_STEPS = 1e9  # hours, even of the smallest mechanisms
+_QUICK_STEPS = 1e5  # of a motion at other times, which only shows how fast it is
 
 
 @dataclass(frozen=True)
@@ -123,6 +124,18 @@ class TimeResponse(BuiltModel):
     def first(self, samples: int) -> "TimeResponse":
         """The same model, cut to its first ``samples`` samples; its simulations end earlier."""
         return self._sampled(self.times[:samples])
+
+    def at(self, times: ArrayLike) -> "TimeResponse":
+        """The same model at other samples; a motion of very many fixed steps gets a thousand instead.
+
+        Parameters
+        ----------
+        times : array, shape (samples,)
+            s; the motion ends at the last one.
+        """
+        step, end = self.solver.fixed_step, float(np.max(times))
+        solver = self.solver if step is None or end < _QUICK_STEPS * step else integrator(None, end)
+        return self._sampled(times, solver=solver)
 
     def later(self, begin: float, times: ArrayLike) -> "TimeResponse":
         """The same model, whose motion starts at a later time of its signals.

@@ -2,19 +2,30 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Annotated, Any
 
-from pydantic import Field, ValidationError
+from pydantic import AfterValidator, Field, ValidationError, ValidationInfo
 
 from dalembert.errors import DataError, repeated, unknown
 from dalembert.forward import Sensor
 from dalembert.forward.sensors import QUANTITIES, START
+from dalembert.study.context import Context
 from dalembert.study.data_table import DataTable
 from dalembert.study.inputs import InputTable
-from dalembert.study.numbers import Number
+from dalembert.study.numbers import Number, wrong_units
 from dalembert.study.parameters import OwnParameterTable, ParameterTable
 from dalembert.study.sensor_table import SensorTable, reads
 from dalembert.study.table import Name, problem
+from dalembert.units import si_unit
+
+
+def _of_their_kinds(constants: dict[str, float], info: ValidationInfo) -> dict[str, float]:
+    """Constants, refused if one is in a unit of another kind than the constant that it replaces."""
+    known = info.context.names if isinstance(info.context, Context) else {}
+    units = {name: si_unit(kind) for name, kind in known.items() if kind is not None}
+    if wrong := list(wrong_units(constants, units, "")):
+        raise problem(*(sentence.removeprefix(", ") for sentence in wrong))
+    return constants
 
 
 class ExperimentTable(DataTable):
@@ -28,7 +39,9 @@ class ExperimentTable(DataTable):
         description="parameters that are not shared with the other experiments: names, also of sensors, such as "
         "'bar.angle offset', or a table with the bounds and first guesses that differ here",
     )
-    constants: dict[str, Number] = Field({}, description="constants that have another value in this experiment")
+    constants: Annotated[dict[str, Number], AfterValidator(_of_their_kinds)] = Field(
+        {}, description="constants that have another value in this experiment"
+    )
     arguments: dict[str, Any] = Field({}, description="arguments of the model's function in this experiment")
     inputs: dict[str, InputTable] = Field({}, description="keys of [inputs.NAME] that differ in this experiment")
 

@@ -2,18 +2,21 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from dalembert.data.stretches import gaps
 from dalembert.errors import DataError, unknown
+from dalembert.study.context import Context
 from dalembert.study.data_table import MISSING, Column, DataFile, DataTable, FileTable, Missing, Start, StartTable
 from dalembert.study.expressions import Expression
-from dalembert.study.numbers import Times, fixed, number
+from dalembert.study.numbers import Quantity, Times, fixed, number
+from dalembert.study.quantity_kinds import Kinds, kind_of_number
 from dalembert.study.table import Read, StudyTable, problem, told_apart
-from dalembert.units import wrong_kind
+from dalembert.unit_table import Unit, readings
+from dalembert.units import difference, expected, si_unit, wrong_kind
 
 if TYPE_CHECKING:
     from dalembert.multibody import Table
@@ -42,8 +45,8 @@ class InputTable(FileTable):
         None,
         description="time of its file at which the motion begins: a number, or 'first' for that of the first sample",
     )
-    scale: Annotated[Any, Read(number(None))] = Field(1.0, description="factor, such as a torque constant")
-    offset: Annotated[Any, Read(number(None))] = Field(0.0, description="added to the scaled input, in SI units")
+    scale: Quantity = Field(1.0, description="factor, such as a torque constant")
+    offset: Quantity = Field(0.0, description="added to the scaled input, in SI units")
     delay: Annotated[Any, Read(number("s"))] = Field(0.0, description="positive where the input acts late")
     integrals: Literal[0, 1, 2] = Field(0, description="2 makes the motion of a base of its acceleration")
     lowpass: Annotated[float, Read(fixed("Hz"))] | None = Field(
@@ -54,6 +57,17 @@ class InputTable(FileTable):
     )
     missing: Missing = MISSING
     wraps: bool = Field(False, description="whether it is an angle known up to whole turns")
+    _kinds: Kinds = PrivateAttr({})
+
+    @model_validator(mode="after")
+    def _keep_kinds(self, info: ValidationInfo) -> Self:
+        if isinstance(info.context, Context):
+            self._kinds = info.context.names
+        return self
+
+    def unit_of(self, key: str) -> Unit | None:
+        """What a number of the table measures; None if that is not known."""
+        return kind_of_number(getattr(self, key), self._kinds)
 
     def _wrong(self) -> list[str]:
         described = sorted(self.model_fields_set & _OF_FILES)
@@ -153,20 +167,37 @@ class MeasuredInput:
     def check_kind(self, model: Any) -> None:
         """Refuse an input in a unit of another kind than that of what it drives, unless a scale turns it into that.
 
+        A scale that has a unit must turn the unit of the column into that of what is driven; a plain number may stand
+        for any. The offset must have the unit of what is driven.
+
         Raises
         ------
         DataError
         """
-        if "scale" in self.table.model_fields_set:
-            return
-        for name, where, unit in _used(model):
-            if name == self.name and unit:
-                of_column = unit + f"/s^{self.table.integrals}" * bool(self.table.integrals)
-                if sentence := wrong_kind(self.unit, of_column):
-                    raise DataError(
-                        f"[inputs.{name}], column {str(self.table.column)!r}, for {where}: {sentence}; correct "
-                        "unit, or give the scale that turns the column into it"
-                    )
+        scaled, scale = "scale" in self.table.model_fields_set, self.table.unit_of("scale")
+        offset = self.table.unit_of("offset")
+        for name, where, driven in _used(model):
+            if name != self.name or not driven:
+                continue
+            wanted = driven + f"/s^{self.table.integrals}" * bool(self.table.integrals)
+            expected_kind = readings(wanted)[0]
+            if not scaled and (sentence := wrong_kind(self.unit, wanted)):
+                raise DataError(
+                    f"[inputs.{name}], column {str(self.table.column)!r}, for {where}: {sentence}; correct "
+                    "unit, or give the scale that turns the column into it"
+                )
+            units = readings(self.unit) if self.unit.strip("-1 ") else ()
+            products = [] if scale is None else [unit * scale for unit in units]
+            if products and all(difference(product, expected_kind) is not None for product in products):
+                raise DataError(
+                    f"[inputs.{name}], scale, for {where}: the column in {self.unit!r} times a scale in "
+                    f"{si_unit(scale) if scale else ''} is in {si_unit(products[0])}; expected {expected(wanted)}; "
+                    "correct the unit of the column, or that of the scale"
+                )
+            if offset is not None and difference(offset, expected_kind) is not None:
+                raise DataError(
+                    f"[inputs.{name}], offset, for {where}: its unit is {si_unit(offset)}; expected {expected(wanted)}"
+                )
 
     def require(self, end: float) -> None:
         """Refuse an input that does not last as long as a motion until ``end`` (s).

@@ -19,6 +19,7 @@ from dalembert.study.spaces import elsewhere, is_in_space
 from dalembert.study.study import Study
 from dalembert.study.study_file import StudyFile
 from dalembert.study.tasks import TASKS
+from dalembert.units import is_quantity
 
 
 class StudyError(InputError):
@@ -85,7 +86,28 @@ def load(
         found = _of_other_space(document, context) or mistakes(error, document, context)
         lines = [f"{shared if shared and place[:1] == ('model',) else path.name}: {text}" for place, text in found]
         raise StudyError("\n".join(dict.fromkeys(lines)), found) from None
+    _refuse_other_kinds(document, context, path)
     return Study(path, content, file, dict(context.used), name or file.study.name or path.stem)
+
+
+def _refuse_other_kinds(document: dict[str, Any], context: Context, path: Path) -> None:
+    """Refuse constants of experiments whose unit does not suit what they stand for, if the shared ones have none."""
+    shared = _table(document, "constants")
+    for entry in document.get("experiments", []):
+        constants = _table(entry, "constants")
+        plain = [name for name in constants if name in shared and context.names.get(name) is None]
+        given = {name: constants[name] for name in plain if is_quantity(str(constants[name]))}
+        if not given:
+            continue
+        varied = {**document, "constants": {**shared, **given}}
+        names = kinds_of(varied, context.names, context.series)
+        inner = replace(context, names=names, used={}, _keys={})
+        try:
+            _validated(varied, inner)
+        except ValidationError as error:
+            found = mistakes(error, varied, inner)
+            lines = [f"{path.name}: [[experiments]] {entry.get('name')!r}, constants: {text}" for _, text in found]
+            raise StudyError("\n".join(dict.fromkeys(lines)), found) from None
 
 
 def _validated(document: dict[str, Any], context: Context) -> StudyFile:

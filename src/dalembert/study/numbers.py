@@ -65,6 +65,12 @@ def number(unit: str | None) -> Any:
     return Annotated[Any, PlainValidator(read), _Described(unit)]
 
 
+def _read_quantity(value: Any, info: ValidationInfo) -> float | Expression:
+    if isinstance(value, str) and is_quantity(value):
+        return checked(WithUnit.of, value)
+    return checked(read_number, value, None, info.context.names if isinstance(info.context, Context) else None)
+
+
 @cache
 def fixed(unit: str | None) -> Any:
     """Type of a key whose number may not depend on parameters."""
@@ -186,6 +192,8 @@ def _increasing(given: Grid | list[float]) -> tuple[float, ...]:
 Number = Annotated[
     float, Read(Annotated[float, PlainValidator(lambda value: checked(WithUnit.of, value)), _Described(None)])
 ]
+Quantity = Annotated[Any, Read(Annotated[Any, PlainValidator(_read_quantity), _Described(None)])]
+"""A number that may depend on parameters, and that keeps the unit that is written with it."""
 Seconds = Annotated[float, Read(fixed("s"))]
 Samples = Annotated[tuple[float, ...], Read(samples(None))]
 Times = Annotated[tuple[float, ...], Read(samples("s"))]

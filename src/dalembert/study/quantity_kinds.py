@@ -100,6 +100,14 @@ def _kind(node: ast.expr, known: Kinds) -> Unit | None:
     return None
 
 
+def kind_of_number(value: object, known: Kinds) -> Unit | None:
+    """Return the unit of a number that was written with one, or of an expression; None where it is not known."""
+    if isinstance(value, Expression):
+        return kind_of(value, known)
+    text = getattr(value, "text", None)
+    return _of_quantity(text) if isinstance(text, str) else None
+
+
 def require_kind(expression: Expression, unit: str, known: Kinds) -> None:
     """Refuse an expression that measures something else than a unit does.
 

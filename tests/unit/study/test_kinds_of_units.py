@@ -120,6 +120,68 @@ def test_a_scale_or_integrals_change_the_kind_of_an_input(study, more):
     plan(study(torque="current (A)" if "scale" in more else "torque", more_input=more))
 
 
+@pytest.mark.parametrize(
+    ("torque", "scale", "sentence"),
+    [
+        ("current (A)", '"0.05 N*m/A"', ""),
+        ("current (mA)", '"0.02 N*m/A"', ""),
+        ("current (A)", '"L"', "the column in 'A' times a scale in m is in m*A; expected a torque"),
+        ("current (A)", '"0.05 N/A"', "is in N; expected a torque such as '500 N*mm'"),
+        ("current", '"0.05 N/A"', ""),
+        (
+            "torque (Nm)",
+            '2.0\noffset = "3 N"',
+            "[inputs.torque], offset, for [[model.load]] 'motor', torque: its unit is N",
+        ),
+        ("torque (Nm)", '2.0\noffset = "3 Nmm"', ""),
+    ],
+)
+def test_a_scale_with_a_unit_must_give_what_the_input_drives(study, torque, scale, sentence):
+    case = study(torque=torque, more_input=f"scale = {scale}")
+    if not sentence:
+        plan(case)
+        return
+    with pytest.raises(DataError) as caught:
+        plan(case)
+    assert sentence in str(caught.value)
+
+
+EXPERIMENTS = """
+[[experiments]]
+name = "a"
+file = "run.csv"
+time = "t (s)"
+columns = {{ "bar.start.angle" = "angle (deg)" }}
+constants = {{ {constant} }}
+"""
+
+
+@pytest.mark.parametrize(
+    ("shared", "constant", "sentence"),
+    [
+        ("50 cm", 'L = "40 cm"', ""),
+        ("0.5", 'L = "40 cm"', ""),
+        ("50 cm", "L = 0.4", ""),
+        ("50 cm", 'L = "0.8 kg"', "constants: L: '0.8 kg' was given; expected a length such as '400 mm'"),
+        ("0.5", 'L = "0.8 kg"', "[[experiments]] 'a', constants: [[model.body]] 'bar', length: 'L' was given"),
+    ],
+)
+def test_a_constant_of_an_experiment_has_the_kind_of_the_shared_one(study, tmp_path, shared, constant, sentence):
+    study(constant=shared)
+    text = (tmp_path / "study.toml").read_text()
+    begin, end = text.index("[data]"), text.index("[identify]")
+    text = text[:begin] + EXPERIMENTS.format(constant=constant) + text[end:]
+    (tmp_path / "study.toml").write_text(
+        text.replace(f'L = "{shared}"', f"L = {shared}" if shared == "0.5" else f'L = "{shared}"', 1)
+    )
+    if not sentence:
+        load(tmp_path / "study.toml")
+        return
+    with pytest.raises(InputError) as caught:
+        load(tmp_path / "study.toml")
+    assert sentence in str(caught.value)
+
+
 def test_a_reading_with_a_gain_may_have_any_unit(study):
     more = 'deviations = { "bar.start.angle" = "5 mV" }\n[sensors."bar.start.angle"]\ngain = [0.1, 10]\noffset = ["-1 V", "1 V"]'
     plan(study(angle="angle (V)", more=more))

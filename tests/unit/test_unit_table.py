@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from dalembert.data import read
@@ -37,6 +38,40 @@ def test_a_spelling_of_the_unit_of_times_is_read(spelling, tmp_path):
     (tmp_path / "run.csv").write_text(f"t ({spelling});x\n" + "".join(f"{k};{k}\n" for k in range(5)))
     data = read(tmp_path / "run.csv", f"t ({spelling})")
     assert data.coordinate.values[1] == pytest.approx(1 / TIMES[spelling], rel=1e-12)
+
+
+SUFFIXES = {
+    "angle_deg": DEG, "Angle.Degrees": DEG, "x mm": 1e3, "x_um": 1e6, "rate_dps": DEG, "speed_RPM": RPM, "force_kN": 1e-3,
+    "deg": DEG, "x_cm": 1, "x_m": 1, "torque_nm": 1, "x_ms": 1, "degree_of_wear": 1,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SUFFIXES)
+def test_a_unit_at_the_end_of_a_name_is_read(name, tmp_path):
+    (tmp_path / "run.csv").write_text(f"time_ms;{name}\n" + "".join(f"{k};{k + 1}\n" for k in range(5)))
+    data = read(tmp_path / "run.csv", "time_ms")
+    assert data.coordinate.values[1] == 1e-3
+    assert data.values[0, 0] == pytest.approx(1 / SUFFIXES[name], rel=1e-12)
+    assert read(tmp_path / "run.csv", "time_ms", units={name: "rad", "time_ms": "s"}).values[0, 0] == 1.0
+
+
+def test_a_unit_at_the_end_of_a_name_is_read_for_the_number_of_its_column(tmp_path):
+    (tmp_path / "run.csv").write_text("time_ms;angle_deg\n0;180\n1;90\n")
+    data = read(tmp_path / "run.csv", 1, {"x": 2})
+    assert (data.coordinate.values[1], data.values[0, 0]) == (1e-3, pytest.approx(math.pi))
+
+
+def test_a_unit_that_the_file_names_comes_before_the_end_of_a_name(tmp_path):
+    (tmp_path / "run.csv").write_text("t;angle_deg\ns;rad\n0;1\n1;2\n")
+    assert read(tmp_path / "run.csv").values[0, 0] == 1.0
+
+
+def test_dates_are_seconds_whatever_the_end_of_their_name(tmp_path):
+    (tmp_path / "run.csv").write_text("time_ms;x\n12:00:00;1\n12:00:02;2\n")
+    assert read(tmp_path / "run.csv", "time_ms").coordinate.values[1] == 2.0
+    np.savez(tmp_path / "run.npz", time_ms=np.array(["2024-03-01T12:00:00", "2024-03-01T12:00:02"]), x_mm=np.ones(2))
+    data = read(tmp_path / "run.npz", "time_ms")
+    assert (data.coordinate.values[1], data.values[0, 0]) == (2.0, 1e-3)
 
 
 # NIST Special Publication 811 (2008), appendix B.8: exact factors, and others with the digits printed there.

@@ -9,6 +9,7 @@ import numpy as np
 
 from dalembert.arguments import is_real
 from dalembert.data.clock_times import clock_seconds
+from dalembert.data.unit_suffixes import sure_suffix
 from dalembert.errors import DataError, InputError, unknown
 from dalembert.forward import Coordinate
 from dalembert.unit_table import readings
@@ -63,8 +64,11 @@ class Columns:
         return Coordinate(name, unit, along), table
 
     def named_units(self, units: Mapping[str, str] | None) -> dict[str, str]:
-        """Units of columns that are given, or else that the file names."""
-        return {name: unit.strip() for name, unit in {**self.units, **(units or {})}.items() if unit.strip()}
+        """Units of columns that are given, or else that the file names, or else at the ends of their names."""
+        suffixes = {name: sure_suffix(name) for name in self.table}
+        suffixes[self.time] = sure_suffix(self.time, "Hz" if self.frequency else "s")
+        named = {name: unit for name, unit in self.units.items() if unit.strip()}
+        return {name: unit.strip() for name, unit in (suffixes | named | dict(units or {})).items() if unit.strip()}
 
     def _factor(self, column: str, units: Mapping[str, str], expected: str | None) -> float:
         """How many SI units the unit of a column is."""
@@ -137,11 +141,11 @@ def chosen(
     names: Iterable[str] | None,
     missing: str,
     trial: Trial | None = None,
-) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """The times (samples,), and columns (samples,) by name, of all that a file holds, or of one of its trials.
+) -> tuple[np.ndarray, dict[str, np.ndarray], dict[str, str]]:
+    """The times (samples,), columns (samples,) by name, and units that are known, of a file, or of one of its trials.
 
-    Times that are dates become seconds since the first. Without ``names`` all columns of numbers as long as the times
-    are chosen. Without ``time`` samples are numbered.
+    Times that are dates become seconds since the first, whatever unit their name has. Without ``names`` all columns of
+    numbers as long as the times are chosen. Without ``time`` samples are numbered.
 
     Raises
     ------
@@ -155,7 +159,9 @@ def chosen(
     for column in (*([] if time is None else [time]), *(wanted or ())):
         if column not in columns:
             raise DataError(unknown("column", column, columns, str(path)))
-    along = _numbered(columns, wanted) if time is None else _numbers(path, time, _seconds(columns[time]))
+    seconds = None if time is None else _seconds(columns[time])
+    along = _numbered(columns, wanted) if time is None or seconds is None else _numbers(path, time, seconds)
+    units = {} if time is None or seconds is columns[time] else {time: "s"}
     time = time or "sample"
     if wanted is None:
         wanted = [name for name, column in columns.items() if name != time and _fits(column, along)]
@@ -169,7 +175,7 @@ def chosen(
     for name, column in table.items():
         check_finite(path, name, column, missing)
     check_growing(path, time, along)
-    return along, table
+    return along, table, units
 
 
 def of_numbers(columns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:

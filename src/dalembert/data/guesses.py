@@ -7,17 +7,12 @@ from typing import Literal
 import numpy as np
 
 from dalembert.data.preview import Preview, PreviewColumn
+from dalembert.data.unit_suffixes import NAMED, suffix
 from dalembert.errors import InputError
 from dalembert.units import si, symbol
 
 TIMES = {"t", "time", "times", "timestamp", "time stamp", "zeit", "temps", "tiempo", "tempo", "tid", "seconds", "sec"}
 """What columns of times are called, without a unit."""
-NAMED = {
-    "s": "s", "sec": "s", "ms": "ms", "us": "us", "µs": "us", "ns": "ns", "deg": "deg", "degree": "deg",
-    "degrees": "deg", "rad": "rad", "mm": "mm", "cm": "cm", "m": "m", "um": "um", "rpm": "rpm", "n": "N", "kn": "kN",
-    "nm": "N*m", "hz": "Hz", "khz": "kHz", "mps": "m/s", "degps": "deg/s", "dps": "deg/s", "radps": "rad/s",
-}  # fmt: skip
-"""Units by the last part of names such as ``angle_deg`` and ``time_ms``."""
 OF_STEPS = ((0.5, "s"), (500.0, "ms"), (5e5, "us"), (np.inf, "ns"))
 """Units of times that no name gives: the first whose limit is above the usual step, at sampling rates above 2 Hz."""
 
@@ -66,7 +61,7 @@ def unit_of(column: PreviewColumn, *, times: bool = False) -> Unit:
     """
     if column.unit:
         return Unit(column.unit, "file")
-    unit = _unit_in(str(column.key))
+    unit = suffix(str(column.key))
     if unit and (_measures(unit) == "s") == times:
         return Unit(unit, "name")
     if times:
@@ -82,16 +77,6 @@ def _bare(name: str) -> str:
     stem = re.sub(r"[_\s.\-]*$", "", plain)
     first, _, last = re.sub(r"[\s.\-]", "_", stem).rpartition("_")
     return first.replace("_", " ") if first and last in NAMED else stem.replace("_", " ")
-
-
-def _unit_in(name: str) -> str:
-    """Unit at the end of a name; ``""`` if there is none.
-
-    >>> _unit_in("angle_deg"), _unit_in("ms"), _unit_in("x"), _unit_in("m"), _unit_in("rod.end.x")
-    ('deg', 'ms', '', '', '')
-    """
-    first, _, last = re.sub(r"[\s.\-]", "_", name.strip().lower()).rpartition("_")
-    return NAMED.get(last, "") if first or len(last) > 1 else ""
 
 
 def _named_unit(name: str) -> str:

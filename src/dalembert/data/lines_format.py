@@ -13,6 +13,7 @@ from dalembert.data.columns import Columns, Trial, of_trial, trial_label
 from dalembert.data.format import Format, Request
 from dalembert.data.text_layout import AUTO, GAPS, Layout, Line, Row, gaps_of, is_number, is_plain, layout, value
 from dalembert.data.text_numbers import HEAD, lines_of_numbers, quick_table
+from dalembert.data.unit_suffixes import sure_suffix
 from dalembert.errors import DataError, unknown
 
 
@@ -102,13 +103,14 @@ def columns_of(
         table = _numbers(path, found, places, gaps, first)
     else:
         table = {k: np.ascontiguousarray(numbers[:, k]) for k in places}
-    units = {label: found.units[k] for label, k in zip(labels, wanted, strict=True)}
+    units = {label: found.units[k] or sure_suffix(found.header[k]) for label, k in zip(labels, wanted, strict=True)}
     columns = dict(zip(labels, (table[k] for k in wanted), strict=True))
     if first is None:
         samples = len(found.rows) if numbers is None else len(numbers)
         return Columns(path, "sample", np.arange(samples, dtype=float), columns, units, layout=str(found))
     _refuse_order(path, rows or found.rows, found.header[first], table[first])
-    units[str(time)] = "" if is_clock(found.rows[0][1][first]) else found.units[first]
+    of_times = found.units[first] or sure_suffix(found.header[first], "s")
+    units[str(time)] = "s" if is_clock(found.rows[0][1][first]) else of_times
     return Columns(path, str(time), table[first], columns, units, layout=str(found))
 
 

@@ -21,9 +21,9 @@ class Hdf5(Format):
     def columns(self, path: Path, request: Request) -> Columns:
         arrays, units = _held(path)
         table = spread(arrays, request.along)
-        along, columns = chosen(path, table, request.along, request.labels, request.missing)
+        along, columns, dated = chosen(path, table, request.along, request.labels, request.missing)
         named = {label: units[_array(label)] for label in (*columns, request.along or "") if _array(label) in units}
-        return Columns(path, request.along or "sample", along, columns, named)
+        return Columns(path, request.along or "sample", along, columns, named | dated)
 
     def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
         arrays, units = _held(path)

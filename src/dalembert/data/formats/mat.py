@@ -46,11 +46,16 @@ def mat_columns(path: Path, time: str | None, names: Iterable[str] | None, missi
     if content.unread and any(name not in table for name in (*([] if time is None else [time]), *(names or ()))):
         missed = next(name for name in (time, *(names or ())) if name is not None and name not in table)
         raise DataError(f"{path}: no column {missed!r} outside of objects{_unread(content)}")
-    along, columns = chosen(path, table, time, names, missing)
+    along, columns, dated = chosen(path, table, time, names, missing)
     units = {name: content.units.get(array_of(name), "") for name in (*columns, time or "")}
     layout = "without its objects of MATLAB" if content.unread else ""
     return Columns(
-        path, time or "sample", along, columns, {name: unit for name, unit in units.items() if unit}, layout=layout
+        path,
+        time or "sample",
+        along,
+        columns,
+        {name: unit for name, unit in units.items() if unit} | dated,
+        layout=layout,
     )
 
 

@@ -37,9 +37,9 @@ class Mdf(Format):
                     "itself (more in a study), and merge them"
                 )
         arrays = {TIME: first[0], **{name: values for name, (_, values, _) in picked.items()}}
-        along, columns = chosen(path, arrays, request.along, wanted, request.missing)
+        along, columns, dated = chosen(path, arrays, request.along, wanted, request.missing)
         units = {name: unit for name, (_, _, unit) in picked.items() if unit}
-        return Columns(path, request.along or "sample", along, columns, units)
+        return Columns(path, request.along or "sample", along, columns, units | dated)
 
     def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
         signals = _signals(path)

@@ -43,9 +43,9 @@ def netcdf_columns(path: Path, time: str | None, names: Iterable[str] | None, mi
     held = [(label, array, unit) for name in dataset.variables for label, array, unit in _parts(dataset, name, time)]
     if time is not None and time not in dataset.variables:
         raise DataError(unknown("column", time, map(str, dataset.variables), str(path)))
-    along, table = chosen(path, {label: array for label, array, _ in held}, time, names, missing)
+    along, table, dated = chosen(path, {label: array for label, array, _ in held}, time, names, missing)
     units = {label: unit for label, _, unit in held if unit and (label in table or label == time)}
-    return Columns(path, time or "sample", along, table, units)
+    return Columns(path, time or "sample", along, table, units | dated)
 
 
 def _dataset(path: Path) -> "Dataset":

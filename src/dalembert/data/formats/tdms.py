@@ -20,9 +20,9 @@ class Tdms(Format):
 
     def columns(self, path: Path, request: Request) -> Columns:
         arrays, units = _held(path)
-        along, columns = chosen(path, arrays, request.along, request.labels, request.missing)
+        along, columns, dated = chosen(path, arrays, request.along, request.labels, request.missing)
         named = {name: unit for name, unit in units.items() if name in columns or name == request.along}
-        return Columns(path, request.along or "sample", along, columns, named)
+        return Columns(path, request.along or "sample", along, columns, named | dated)
 
     def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
         arrays, units = _held(path)

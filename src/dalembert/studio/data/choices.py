@@ -12,6 +12,7 @@ from dalembert.data.guesses import Unit, time_column, unit_of
 from dalembert.data.preview import Preview
 from dalembert.data.problems import Use
 from dalembert.data.text_layout import AUTO, is_number
+from dalembert.data.unit_suffixes import suffix
 from dalembert.errors import InputError
 from dalembert.findings import Finding
 from dalembert.units import is_si, si
@@ -193,7 +194,9 @@ def table_of(choices: Choices, found: Preview) -> dict[str, Any]:
     units = {str(key): choices.unit(found, key).name for key in dict.fromkeys(choices.used) if key is not None}
     named = {str(column.key): column.unit for column in found.columns}
     units = {
-        key: unit for key, unit in units.items() if unit != named.get(key, "") and (named.get(key) or not is_si(unit))
+        key: unit
+        for key, unit in units.items()
+        if unit != named.get(key, "") and (named.get(key) or suffix(key) or not is_si(unit))
     }
     options = {
         "units": units,

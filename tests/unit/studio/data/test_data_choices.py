@@ -58,6 +58,11 @@ def test_numbers_of_columns_and_units_that_the_file_names(tmp_path):
     assert table_of(other, found)["units"] == {"2": "rad", "3": "cm"}
 
 
+def test_si_units_of_columns_whose_names_end_in_another_unit_are_written(own):
+    choices = guessed(own, CHANNELS).mapped(ANGLE, "angle_deg").with_unit("angle_deg", "rad")
+    assert table_of(choices, own)["units"] == {"time_ms": "ms", "angle_deg": "rad"}
+
+
 def test_nothing_is_written_without_times_or_channels(own):
     with pytest.raises(InputError, match="No column is used for a channel"):
         table_of(guessed(own, CHANNELS), own)

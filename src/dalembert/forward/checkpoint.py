@@ -11,7 +11,7 @@ from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from threading import Lock
 from time import monotonic, perf_counter
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -33,6 +33,14 @@ _NO_STORAGE = (
     sqlite3.SQLITE_LOCKED, sqlite3.SQLITE_NOMEM, sqlite3.SQLITE_INTERRUPT, sqlite3.SQLITE_READONLY,
 )  # fmt: skip
 """What SQLite says where the file itself is right; of anything else the file is the cause."""
+
+
+class Result(NamedTuple):
+    """Arrays as bytes: their kinds and shapes, their content, and the seconds of their computation."""
+
+    shapes: bytes
+    content: bytes
+    seconds: float
 
 
 class Checkpoint:
@@ -59,7 +67,8 @@ class Checkpoint:
     -----
     A transaction is written whole or not at all (SQLite's rollback journal, which unlike its write-ahead log works on
     shared file systems too), and what was written before stays. A computation that takes longer than half a second is
-    on the disk before the next begins; of shorter ones at most half a second is lost.
+    on the disk before the next begins; of shorter ones at most half a second is lost. Results wait in memory until a
+    transaction is due, so that those that a summary soon replaces are never written.
 
     Each result has a digest. A damaged file is kept as ``NAME.damaged-1`` and so on, and a new one takes the results
     whose digests are right.
@@ -81,7 +90,8 @@ class Checkpoint:
         self._lock = Lock()
         self._written = monotonic()
         self._counted: set[bytes] = set()
-        self._scratch: dict[bytes, None] | None = None
+        self._waiting: dict[bytes, Result | Callable[[], Result]] = {}
+        self._replaced: set[bytes] | None = None
         self.spared = 0.0
         try:
             known = path.is_file()
@@ -101,44 +111,44 @@ class Checkpoint:
     def recall(self, key: bytes) -> Arrays | None:
         """The arrays kept by a key, or None."""
         with self._lock:
-            found = self._ask(f"SELECT {_COLUMNS} FROM results WHERE key = ?", (key,))
-            if found is not None and not _is_right(found):
-                self._replace(None)
-                found = None
+            waiting = self._waiting.get(key)
+            found = self._row(key) if waiting is None else _resolved(waiting)
         if found is None:
             return None
-        self._note(key)
-        _, shapes, content, seconds, _ = found
+        if self._replaced is not None:
+            self._replaced.add(key)
         if key not in self._counted:
-            self.spared += seconds
+            self.spared += found.seconds
             self._counted.add(key)
         arrays, begin = [], 0
-        for kind, shape in json.loads(shapes):
-            arrays.append(np.ndarray(tuple(shape), kind, content, begin).copy())
+        for kind, shape in json.loads(found.shapes):
+            arrays.append(np.ndarray(tuple(shape), kind, found.content, begin).copy())
             begin += arrays[-1].nbytes
         return tuple(arrays)
 
     def keep(self, key: bytes, arrays: Sequence[np.ndarray], seconds: float = 0.0) -> None:
         """Keep arrays of numbers, and how long it took to compute them."""
-        shapes = json.dumps([(array.dtype.str, array.shape) for array in arrays]).encode()
-        content = b"".join(np.ascontiguousarray(array).tobytes() for array in arrays)
-        with self._lock:
-            self._ask(_INSERT, (key, shapes, content, seconds, _digest(key, shapes, content, seconds)))
-            self._counted.add(key)
-            self._note(key)
-            if monotonic() - self._written >= EVERY:
-                self._write()
+        self._wait(key, _result(arrays, seconds))
+        if self._replaced is not None:
+            self._replaced.add(key)
 
     @contextmanager
-    def scratch(self) -> Iterator[None]:
-        """A block at whose end the results that were recalled or kept in it are forgotten, except the last one."""
-        self._scratch = dict[bytes, None]()
-        yield
-        *forgotten, _ = self._scratch
+    def summarised(self, key: bytes, summary: Callable[[], tuple[Sequence[np.ndarray], float]]) -> Iterator[None]:
+        """A block at whose end a summary, arrays and seconds, replaces all results that were recalled or kept in it.
+
+        ``summary`` is called where it is written or recalled, at the end of the block or later.
+        """
+        self._replaced = set[bytes]()
+        try:
+            yield
+            replaced = self._replaced - {key}
+        finally:
+            self._replaced = None
         with self._lock:
-            for key in forgotten:
-                self._ask("DELETE FROM results WHERE key = ?", (key,))
-        self._scratch = None
+            for one in replaced:
+                if self._waiting.pop(one, None) is None:
+                    self._ask("DELETE FROM results WHERE key = ?", (one,))
+        self._wait(key, lambda: _result(*summary()))
 
     def once(self, key: bytes, compute: Callable[[], Sequence[np.ndarray]]) -> Sequence[np.ndarray]:
         """The arrays kept by a key; where there are none they are computed and kept."""
@@ -154,16 +164,36 @@ class Checkpoint:
         with self._lock:
             try:
                 if self._file.in_transaction:  # a full disk ends it
-                    self._ask("COMMIT")
+                    self._write()
             finally:
                 self._file.close()
 
-    def _note(self, key: bytes) -> None:
-        if self._scratch is not None:
-            self._scratch.pop(key, None)
-            self._scratch[key] = None
+    def _wait(self, key: bytes, result: "Result | Callable[[], Result]") -> None:
+        """Let a result wait for the next transaction, which is written where it is due."""
+        with self._lock:
+            self._waiting[key] = result
+            self._counted.add(key)
+            if monotonic() - self._written >= EVERY:
+                self._write()
+
+    def _row(self, key: bytes) -> "Result | None":
+        """The result of the file, or None."""
+        found = self._ask(f"SELECT {_COLUMNS} FROM results WHERE key = ?", (key,))
+        if found is None:
+            return None
+        if not _is_right(found):
+            self._replace(None)
+            return None
+        return Result(*found[1:-1])
 
     def _write(self) -> None:
+        for key, waiting in self._waiting.items():
+            result = _resolved(waiting)
+            self._ask(_INSERT, (key, *result, _digest(key, *result)))
+        self._commit()
+        self._waiting.clear()
+
+    def _commit(self) -> None:
         self._ask("COMMIT")
         if not self._file.in_transaction:  # a new file has begun one
             self._ask("BEGIN")
@@ -203,7 +233,7 @@ class Checkpoint:
             for row in _readable(aside):
                 self._file.execute(_INSERT, row)
                 readable += 1
-            self._write()
+            self._commit()
         except (sqlite3.Error, OSError) as reason:
             raise unwritable(self.path, reason) from None
         self._tell(
@@ -216,6 +246,15 @@ class Checkpoint:
         if code == sqlite3.SQLITE_READONLY:  # the file's header can say so, too
             return os.access(self.path, os.W_OK) and os.access(self.path.parent, os.W_OK)
         return code not in _NO_STORAGE
+
+
+def _result(arrays: Sequence[np.ndarray], seconds: float) -> Result:
+    shapes = json.dumps([(array.dtype.str, array.shape) for array in arrays]).encode()
+    return Result(shapes, b"".join(np.ascontiguousarray(array).tobytes() for array in arrays), seconds)
+
+
+def _resolved(waiting: Result | Callable[[], Result]) -> Result:
+    return waiting() if callable(waiting) else waiting
 
 
 def _digest(key: bytes, shapes: bytes, content: bytes, seconds: float) -> bytes:

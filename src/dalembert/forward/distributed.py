@@ -1,6 +1,6 @@
 """Batches of a model on a Dask cluster."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -127,6 +127,15 @@ def on_cluster(model: ForwardModel, client: Executor) -> ForwardModel:
 def key_of(method: str, model: ForwardModel, vector: np.ndarray) -> Key:
     """What is asked of a model, or of its first samples."""
     return method, len(model.coordinate.values), np.asarray(vector, dtype=float).tobytes()
+
+
+def models_in(model: ForwardModel) -> Iterator[ForwardModel]:
+    """Yield a model and those that it holds."""
+    yield model
+    for held in getattr(model, "__dict__", {}).values():
+        for one in held if isinstance(held, tuple) else (held,):
+            if isinstance(one, ForwardModel):
+                yield from models_in(one)
 
 
 def rebuilt(model: ForwardModel, change: Callable[[ForwardModel], ForwardModel | None]) -> ForwardModel:

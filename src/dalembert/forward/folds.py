@@ -1,13 +1,14 @@
 """What a method makes of batches of responses, kept after each batch in place of the responses."""
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from time import perf_counter
 
 import numpy as np
 
 from dalembert.forward.checkpoint import Arrays, Checkpoint
+from dalembert.forward.distributed import models_in
 from dalembert.forward.model import ForwardModel
 from dalembert.forward.recorded import Recorded
 
@@ -42,7 +43,7 @@ class Fold:
     def __init__(self, model: ForwardModel, name: str, points: np.ndarray, state: Arrays) -> None:
         self.done, self.state, self.notes = 0, state, list[list[str]]()
         self._checkpoint: Checkpoint | None = None
-        self._seconds = 0.0
+        self._seconds, self._lines = 0.0, list[bytes]()
         recorded = _recorded(model)
         if recorded is None or not len(points):
             return
@@ -51,8 +52,9 @@ class Fold:
         self._key = recorded.key(f"fold of {name}", np.concatenate(numbers))
         known = self._checkpoint.recall(self._key)
         if known is not None:
-            notes, seconds, *self.state = known
-            self.notes, self._seconds = json.loads(notes.tobytes()), float(seconds[0])
+            lines, seconds, *self.state = known
+            self._lines, self._seconds = lines.tobytes().splitlines(), float(seconds[0])
+            self.notes = [json.loads(line) for line in self._lines]
             self.state, self.done = tuple(self.state), len(self.notes)
 
     @contextmanager
@@ -62,20 +64,50 @@ class Fold:
         if self._checkpoint is None:
             yield
             return
-        with self._checkpoint.scratch():
+        with self._checkpoint.summarised(self._key, self._summary):
             yield
             self._seconds += perf_counter() - began
-            notes = np.frombuffer(json.dumps(self.notes).encode(), np.uint8)
-            self._checkpoint.keep(self._key, (notes, np.array([self._seconds]), *self.state), self._seconds)
 
     def used(self, state: Arrays, notes: Sequence[str]) -> None:
         """Take the state after a batch."""
         self.state = state
         self.notes.append(list(notes))
+        self._lines.append(json.dumps(self.notes[-1]).encode())
+
+    def _summary(self) -> tuple[Arrays, float]:
+        """What the checkpoint keeps, made where it is written: lines of notes, seconds and state."""
+        lines = np.frombuffer(b"\n".join(self._lines), np.uint8)
+        return (lines, np.array([self._seconds]), *self.state), self._seconds
 
 
-def _recorded(model: object) -> Recorded | None:
-    """The model with a checkpoint in a model, if there is one."""
-    while model is not None and not isinstance(model, Recorded):
-        model = getattr(model, "model", None)
-    return model
+def summarised(model: ForwardModel, name: str, numbers: np.ndarray, compute: Callable[[], Arrays]) -> Arrays:
+    """Return arrays that a method makes of a batch of responses; the checkpoint keeps them in place of the responses.
+
+    Parameters
+    ----------
+    model : ForwardModel
+        Without a checkpoint nothing is kept.
+    name : str
+        Of the method, with all other words that the arrays depend on.
+    numbers : ndarray
+        All numbers that they depend on.
+    compute : callable
+        Evaluates the model and makes the arrays.
+    """
+    recorded = _recorded(model)
+    if recorded is None:
+        return compute()
+    checkpoint, key = recorded.checkpoint, recorded.key(f"summary of {name}", np.ravel(numbers))
+    known = checkpoint.recall(key)
+    if known is not None:
+        return known
+    began, spared = perf_counter(), checkpoint.spared
+    with checkpoint.summarised(key, lambda: (made, seconds)):
+        made = compute()
+        seconds = perf_counter() - began + checkpoint.spared - spared
+    return made
+
+
+def _recorded(model: ForwardModel) -> Recorded | None:
+    """The first model with a checkpoint, of a model and of those that it holds."""
+    return next((one for one in models_in(model) if isinstance(one, Recorded)), None)

@@ -7,7 +7,7 @@ results are those of this process alone, bit for bit. What a worker was not aske
 """
 
 import pickle
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from contextlib import closing, suppress
 from dataclasses import dataclass
 from functools import partial
@@ -17,7 +17,7 @@ import numpy as np
 
 from dalembert.errors import DalembertError, SolveError, told
 from dalembert.forward.cluster import packed
-from dalembert.forward.distributed import Answers, Distributed, bare, key_of, rebuilt
+from dalembert.forward.distributed import Answers, Distributed, bare, key_of, models_in, rebuilt
 from dalembert.forward.ensembles import ensemble
 from dalembert.forward.model import ForwardModel
 from dalembert.forward.recorded import Recorded
@@ -89,7 +89,7 @@ def prefetched(model: ForwardModel, work: Work[Item], items: Sequence[Item]) -> 
 
 def on_several_machines(model: ForwardModel) -> bool:
     """Return whether batches of the model, or of models in it, go to a cluster."""
-    return any(_distributed(model))
+    return any(isinstance(one, Distributed) for one in models_in(model))
 
 
 @dataclass(frozen=True)
@@ -129,15 +129,6 @@ class _Unasked(Wrapped):
 
     def linearise(self, vector: np.ndarray) -> NoReturn:
         raise _Unknown
-
-
-def _distributed(model: ForwardModel) -> Iterator[bool]:
-    """Whether batches go to a cluster, of a model and of those that it holds."""
-    yield isinstance(model, Distributed)
-    for held in getattr(model, "__dict__", {}).values():
-        for one in held if isinstance(held, tuple) else (held,):
-            if isinstance(one, ForwardModel):
-                yield from _distributed(one)
 
 
 def _known(silent: ForwardModel, work: Work[Item], item: Item) -> bool:

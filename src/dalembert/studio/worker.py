@@ -23,6 +23,7 @@ T = TypeVar("T")
 ANSWER, WRONG, MEMORY = "answer", "wrong", "memory"
 FREE = 0.5
 """Share of the machine's memory that a process may fill."""
+STOPPED = "The computation was stopped. Change a value to start it again."
 Cause = Literal["failed", "ended", "time", "memory"]
 
 
@@ -101,6 +102,7 @@ class Worker:
         self._connection: Connection | None = None
         self._ended = ""
         self._cause: Cause = "ended"
+        self._asked = self._interrupted = 0  # number of the last request, and of the last one that must not go on
         self._computed: object | None = None
         self._stopped = False
         self._lock = Lock()  # of the process, which several threads end
@@ -137,6 +139,8 @@ class Worker:
         mine = self._newest[subject] = object()
         answer: Future[T | None] = Future()
         request = (partial(function, **named) if named else function), arguments
+        self._asked += 1
+        number = self._asked
 
         def turn() -> None:
             if not answer.set_running_or_notify_cancel():
@@ -144,7 +148,7 @@ class Worker:
             self._computed = mine
             result, failure = None, None
             try:
-                result = self._exchange(request) if self._newest.get(subject) is mine else None
+                result = self._exchange(request, number) if self._newest.get(subject) is mine else None
             except Exception as error:
                 failure = None if self._stopped else error
             self._computed = None  # before the answer, so that an answered request holds up no other one
@@ -165,8 +169,13 @@ class Worker:
         self._newest[subject] = object()
 
     def interrupt(self) -> None:
-        """End the process, whatever it computes. The next request starts a new one."""
-        self._end("The computation was stopped. Change a value to start it again.")
+        """End the process, whatever it computes. The next request starts a new one.
+
+        A process that starts for a request ends as soon as it is there.
+        """
+        with self._lock:
+            if not self._killed(STOPPED):
+                self._interrupted = self._asked
 
     def stop(self) -> None:
         """End the process for good, and drop the requests that have no answer."""
@@ -183,10 +192,16 @@ class Worker:
 
     def _end(self, reason: str, cause: Cause = "ended") -> None:
         with self._lock:
-            if self._process is not None and self._process.is_alive():
-                self._ended, self._cause = reason, cause
-                self._process.kill()
-                self._connection = None  # the next request starts another process
+            self._killed(reason, cause)
+
+    def _killed(self, reason: str, cause: Cause = "ended") -> bool:
+        """Kill the process, under the lock; return False if there is none."""
+        if self._process is None or not self._process.is_alive():
+            return False
+        self._ended, self._cause = reason, cause
+        self._process.kill()
+        self._connection = None  # the next request starts another process
+        return True
 
     def _release(self) -> None:
         """Close the pipes of a process that has ended: whoever keeps this object must not keep them."""
@@ -207,13 +222,17 @@ class Worker:
             begin = context()
             self._connection, theirs = begin.Pipe()
             self._ended, self._cause = "", "ended"
-            self._process = begin.Process(target=_serve, args=(theirs, self.limits.bytes, self.spares), daemon=True)
-            self._process.start()
+            process = begin.Process(target=_serve, args=(theirs, self.limits.bytes, self.spares), daemon=True)
+            process.start()
             theirs.close()
+            with self._lock:
+                self._process = process
         return self._connection
 
-    def _exchange(self, request: tuple[Callable[..., Any], tuple[Any, ...]]) -> Any:
+    def _exchange(self, request: tuple[Callable[..., Any], tuple[Any, ...]], number: int) -> Any:
         connection = self._running()
+        if number <= self._interrupted:  # while the process started
+            self._end(STOPPED)
         try:
             connection.send(request)
             if not connection.poll(self.limits.seconds):

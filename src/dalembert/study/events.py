@@ -20,6 +20,9 @@ Emit = Callable[..., None]
 LOST = "run-damaged"
 """Kind of the event that says which file of the run is damaged, and what was lost."""
 
+STORAGE = "run-storage"
+"""Kind of the event that says how much the run will write to the disk until it ends, before its first simulation."""
+
 OF_THE_RUN = "run-"
 """How the kinds of events begin that tell of the run itself; the others tell of what it does."""
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from time import monotonic
 from typing import TYPE_CHECKING, Self
 
-from dalembert.study.events import LOST, Event
+from dalembert.study.events import LOST, STORAGE, Event
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -145,7 +145,7 @@ class Watch:
             self._live.stop()
 
     def __call__(self, event: Event) -> None:
-        if event["event"] == LOST:
+        if event["event"] in (LOST, STORAGE):
             self.console.print(event["message"], markup=False, highlight=False)
         if not self._told.take(event):
             return

@@ -18,7 +18,7 @@ from dalembert.forward.cluster import worker_versions
 from dalembert.kernels.preparation import observed
 from dalembert.study.computed_with import mixed_versions, refuse_other_sources, this_process
 from dalembert.study.duration import StartFailed, duration, storage, timed, too_long
-from dalembert.study.events import LOST, Event, EventLog, plain
+from dalembert.study.events import LOST, STORAGE, Event, EventLog, plain
 from dalembert.study.folder import DAMAGED, FAILED, FINISHED, INPUT, INTERRUPTED, RUNNING, RunFolder, new_folder
 from dalembert.study.functions import users_code
 from dalembert.study.interrupts import kept_interrupts
@@ -153,8 +153,10 @@ def _executed(
                 ):
                     for workers in [] if client is None else worker_versions(client):
                         folder.add_computed_with(this_process(workers))
-                    placed = replace(study, checkpoint=checkpoint, executor=client)
-                    outcome = TASKS[study.task].run(placed, log.emit)
+                    task = TASKS[study.task]
+                    if task.keeps_responses and (size := storage(task.effort(study))):
+                        log.emit(STORAGE, message=size)
+                    outcome = task.run(replace(study, checkpoint=checkpoint, executor=client), log.emit)
                 outcome = _with_findings(outcome, folder)
                 outcome.save(folder.result)
                 outcome.report(folder.report)

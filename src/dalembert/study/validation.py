@@ -1,7 +1,7 @@
 """Whether a study can run: all that its run checks before its first simulation."""
 
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 
 import numpy as np
@@ -41,6 +41,11 @@ class Unanswered(Checkpoint):
 
     def keep(self, key: bytes, arrays: Sequence[np.ndarray], seconds: float = 0.0) -> None:
         """Keep nothing."""
+
+    @contextmanager
+    def summarised(self, key: bytes, summary: object) -> Iterator[None]:
+        """Keep no summary."""
+        yield
 
     def close(self) -> None:
         """Do nothing: there is no file."""

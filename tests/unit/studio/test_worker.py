@@ -4,14 +4,16 @@ import asyncio
 import os
 import signal
 import sys
+import threading
 import time
 from collections.abc import Awaitable, Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TypeVar
 
 import pytest
 
-from dalembert.studio.processes import prepare
+from dalembert.studio.processes import context, prepare
 from dalembert.studio.worker import Limits, Worker, WorkerError
 from worker_functions import (
     built,
@@ -146,6 +148,47 @@ def test_a_user_stops_what_takes_long(worker):
     with pytest.raises(WorkerError, match=r"^The computation was stopped\."):
         run(interrupted)
     assert run(lambda: worker.ask("model", double, 2.0)) == 4.0
+
+
+class Slow:
+    """A process that starts slowly, and says when it begins to."""
+
+    def __init__(self, process, starting: threading.Event) -> None:
+        self._process, self._starting = process, starting
+
+    def start(self) -> None:
+        self._starting.set()
+        time.sleep(0.3)
+        self._process.start()
+
+    def __getattr__(self, name: str):
+        return getattr(self._process, name)
+
+
+@pytest.mark.parametrize("before", [False, True], ids=["of the request", "before the request"])
+def test_a_user_stops_a_process_that_starts(monkeypatch, before):
+    """The stop is not lost, whether the process starts for the request or before it; later requests go on."""
+    usual, starting = context(), threading.Event()
+    slow = SimpleNamespace(Pipe=usual.Pipe, Process=lambda **options: Slow(usual.Process(**options), starting))
+    monkeypatch.setattr("dalembert.studio.worker.context", lambda: slow)
+    worker = Worker(Limits(seconds=5.0, bytes=GB))
+
+    async def interrupted():
+        if before:
+            worker.start()
+        asked = asyncio.create_task(worker.ask("model", hanging))
+        while not starting.is_set():
+            await asyncio.sleep(0.01)
+        worker.interrupt()
+        later = asyncio.create_task(worker.ask("other", double, 2.0))
+        with pytest.raises(WorkerError, match=r"^The computation was stopped\."):
+            await asked
+        return await later
+
+    try:
+        assert run(interrupted) == 4.0
+    finally:
+        worker.stop()
 
 
 def test_a_crash_ends_the_process_alone(worker):

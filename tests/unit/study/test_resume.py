@@ -5,13 +5,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 import dalembert as da
 from dalembert.errors import InputError, SolveError
 from dalembert.forward import Checkpoint, PythonModel, Recorded
-from dalembert.study import RunFolder, load, report_run, resume_run, run_study
+from dalembert.study import RunFolder, duration, load, report_run, resume_run, run_study
+from dalembert.study.events import read_events
 from dalembert.study.folder import new_folder
 from dalembert.study.listing import rows
+from dalembert.study.progress import Watch
 from dalembert.study.runner import Stopped
 from dalembert.threads import threads, with_threads
 from dalembert.versions import versions
@@ -68,6 +71,20 @@ def test_a_stopped_run_goes_on(stopped):
     kinds = [json.loads(line)["event"] for line in stopped.events.read_text().splitlines()]
     assert kinds[0] == "run-started"
     assert kinds.count("run-resumed") == 1
+
+
+def test_a_run_states_the_size_of_its_checkpoint_before_it_simulates(study, tmp_path, monkeypatch, capsys):
+    """3 samples of 128 simulations at once have 3,072 bytes."""
+    (tmp_path / "go").touch()
+    monkeypatch.setattr(duration, "SMALL", 3073)
+    folder, _ = run_study(study)
+    assert not [event for event in read_events(folder.events) if event["event"] == "run-storage"]
+    monkeypatch.setattr(duration, "SMALL", 3072)
+    with Watch(Console(width=200)) as watch:
+        folder, _ = run_study(study, listener=watch)
+    kinds = [event["event"] for event in read_events(folder.events)]
+    assert kinds.index("run-started") < kinds.index("run-storage") < kinds.index("ran")
+    assert "The checkpoint takes up to 3.1 kB until the run ends." in capsys.readouterr().out
 
 
 def test_a_finished_run_is_not_resumed(stopped):

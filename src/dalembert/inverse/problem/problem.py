@@ -1,8 +1,9 @@
 """The weighted misfit between a model and measurements."""
 
+import json
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import Any, TypeAlias, TypeVar, cast
 
 import numpy as np
@@ -13,6 +14,7 @@ from dalembert.data import Measurements
 from dalembert.errors import DalembertError, SolveError, StorageError
 from dalembert.forward import ForwardModel, Pull, prefers_adjoint, pullback
 from dalembert.forward.adjoint import ADJOINT, AUTO
+from dalembert.forward.folds import summarised
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.loss import Loss
 from dalembert.inverse.problem.matching import (
@@ -110,14 +112,38 @@ class Problem:
         return simulated(self.model, self.columns, self.journal, vectors)
 
     def fitness(self, points: np.ndarray) -> np.ndarray:
-        """Fitness (batch,) at search points (batch, parameters); NaN where a sample failed."""
-        vectors = self.search.vectors(points)
+        """Fitness (batch,) at search points (batch, parameters); NaN where a sample failed.
+
+        A checkpoint keeps it in place of the responses, with the reasons of failures and the journal's first response.
+        """
+        vectors, known = self.search.vectors(points), self.journal.first
+        alone = replace(self, journal=Journal(self.samples, first=known))
+
+        def compute() -> tuple[np.ndarray, ...]:
+            fitness, first = alone._fitness(vectors), alone.journal.first
+            reasons = np.frombuffer(json.dumps(alone.journal.failures).encode(), np.uint8)
+            return fitness, reasons, *([] if first is None or first is known else [first.response])
+
+        numbers = np.concatenate([vectors.ravel(), self.weights.ravel(), self.columns])
+        fitness, reasons, *first = summarised(self.model, self._compared_with, numbers, compute)
+        self.journal.simulations += len(vectors)
+        self.journal.failures.extend(json.loads(reasons.tobytes()))
+        for response in first:
+            self.journal.computed(vectors[0], response)
+        return fitness
+
+    def _fitness(self, vectors: np.ndarray) -> np.ndarray:
         responses = self.responses(vectors)
         prior = np.sum(prior_residual(self.model.parameters, vectors) ** 2, axis=1)
         if self.loss is not None:
             return np.sum(self.squares(responses), axis=(1, 2)) + prior
         with np.errstate(over="ignore"):
             return np.einsum("sc,bsc->b", self.weights, self.misfit(responses) ** 2) + prior
+
+    @cached_property
+    def _compared_with(self) -> str:
+        """What the fitness depends on beside numbers: model, priors, data and loss."""
+        return f"{self.model.fingerprint}\n{self.model.parameters!r}\n{self.data.fingerprint}\n{self.loss!r}"
 
     def squares(self, responses: np.ndarray) -> np.ndarray:
         """What each value adds to the fitness, both (..., samples, channels)."""

@@ -51,6 +51,7 @@ class Design(ResultTask):
     kind = "dalembert.inverse:Designs"
     rank = 7
     schema = DesignTable
+    keeps_responses = True
     needs = (needs_parameters, needs_samples, needs_solver)
 
     def wrong(self, file: Any) -> list[str]:

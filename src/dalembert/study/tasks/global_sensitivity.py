@@ -78,6 +78,7 @@ class GlobalSensitivity(_OfInputs):
     name = "global_sensitivity"
     rank = 5
     schema = GlobalSensitivityTable
+    keeps_responses = True
     kind = "dalembert.uncertainty:SensitivityIndices"
 
     def keys(self) -> dict[str, Any]:
@@ -120,6 +121,7 @@ class Screening(_OfInputs):
     name = "screening"
     rank = 5
     schema = ScreeningTable
+    keeps_responses = True
     kind = "dalembert.uncertainty:Screening"
 
     def plan(self, study: Study) -> str:

@@ -175,6 +175,7 @@ class Identify(Task):
     name = "identify"
     rank = 2
     schema = IdentifyTable
+    keeps_responses = True
     needs = (needs_parameters, needs_solver)
 
     def keys(self) -> dict[str, Any]:
@@ -210,8 +211,10 @@ class Identify(Task):
     def effort(self, study: Study) -> Effort:
         model = telling.whole(posed(study)[0])
         _, least, most = _cost(study.table, len(model.parameters))
-        batch = TOGETHER if isinstance(settings(study.table.method), Swarm) else 1
-        return evaluated(model, model.parameters.start, least, most, batch)
+        method = settings(study.table.method)
+        if isinstance(method, Swarm):
+            return evaluated(model, model.parameters.start, least, most, TOGETHER, method.particles)
+        return evaluated(model, model.parameters.start, least, most)
 
     def planned(self, study: Study) -> int | None:
         method = settings(study.table.method)

@@ -37,6 +37,7 @@ class IdentifyBands(ResultTask):
     kind = "dalembert.inverse:BandFit"
     rank = 5
     schema = IdentifyBandsTable
+    keeps_responses = True
     needs = (needs_parameters, needs_bands, needs_solver)
 
     def keys(self) -> dict[str, Any]:

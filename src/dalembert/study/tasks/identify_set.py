@@ -35,6 +35,7 @@ class IdentifySet(ResultTask):
     kind = "dalembert.inverse:ParameterSet"
     rank = 6
     schema = IdentifySetTable
+    keeps_responses = True
     needs = (needs_parameters, needs_data, needs_solver)
 
     def keys(self) -> dict[str, Any]:

@@ -41,6 +41,7 @@ class Propagate(ResultTask):
     name = "propagate"
     rank = 4
     schema = PropagateTable
+    keeps_responses = True
     needs = (needs_parameters, needs_samples, needs_solver)
 
     def keys(self) -> dict[str, Any]:

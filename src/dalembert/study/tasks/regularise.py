@@ -48,6 +48,7 @@ class Regularise(ResultTask):
     name = "regularise"
     rank = 4
     schema = RegulariseTable
+    keeps_responses = True
     kind = "dalembert.inverse:RegularisedFit"
     needs = (needs_parameters, needs_solver)
 

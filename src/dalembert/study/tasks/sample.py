@@ -64,6 +64,7 @@ class Sample(Task):
     name = "sample"
     rank = 3
     schema = SampleTable
+    keeps_responses = True
     needs = (needs_parameters, needs_solver)
 
     def keys(self) -> dict[str, Any]:

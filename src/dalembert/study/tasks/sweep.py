@@ -124,6 +124,7 @@ class SweepTask(ResultTask):
     name = "sweep"
     rank = 3
     schema = SweepTable
+    keeps_responses = True
     needs = (needs_solver,)
     kind = f"{__name__}:Sweep"
 

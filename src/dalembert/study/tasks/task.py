@@ -113,6 +113,8 @@ class Task(ABC):
         Place in lists of tasks.
     of_structures : bool
         Whether it is for structures over frequency alone.
+    keeps_responses : bool
+        Whether the checkpoint of a run keeps responses of a forward model, whose size :meth:`effort` says.
     schema : type
         Of the table.
     needs : tuple of callable
@@ -122,6 +124,7 @@ class Task(ABC):
     name: ClassVar[str]
     rank: ClassVar[int] = 100
     of_structures: ClassVar[bool] = False
+    keeps_responses: ClassVar[bool] = False
     schema: ClassVar[type[StudyTable]]
     needs: ClassVar[tuple[Callable[[Any, str], list[str]], ...]] = ()
 

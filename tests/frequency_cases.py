@@ -157,6 +157,10 @@ FREQUENCY_CASES: dict[str, Case] = {
         lambda: frequency_response(chain(), HZ * np.linspace(1.0, 2.2, 9), HarmonicBalance(harmonics=2, samples=8)),
         ("harmonics kept still reach", "keep more harmonics.", "allowed: give more samples."),
     ),
+    "a response with chosen harmonics": Case(
+        lambda: frequency_response(two_masses(), AROUND, HarmonicBalance("auto")),
+        ("harmonics were chosen: the largest of the estimated truncation errors is",),
+    ),
     "a response whose contacts stick": Case(
         lambda: frequency_response(_stuck(), AROUND, HarmonicBalance(harmonics=9, odd_only=True, samples=256)),
         ("They stick all the time there: what damps is the", "1, 3 … 9"),

@@ -1,9 +1,12 @@
 """Den Hartog's block: one mass with rigid Coulomb friction, beside its exact motion from slip to stick and back."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from dalembert.errors import listed
 from dalembert.structure import lumped
 from dalembert.vibration import (
     ElasticSlider,
@@ -31,7 +34,7 @@ def block(friction: float, law: ElasticSlider | Rigid, damper: float = 0.0) -> V
     return system
 
 
-def response(friction: float, ratio: float, law: ElasticSlider | Rigid, harmonics: int = 9) -> FrequencyCurve:
+def response(friction: float, ratio: float, law: ElasticSlider | Rigid, harmonics: int | str = 9) -> FrequencyCurve:
     return frequency_response(block(friction, law), np.array([ratio]) / (2 * np.pi), HarmonicBalance(harmonics))
 
 
@@ -42,6 +45,7 @@ def closed_form(friction: float, ratio: float) -> float:
     return float(np.sqrt(v**2 - (friction * u) ** 2)) if abs(v) > friction * abs(u) else np.nan
 
 
+@cache
 def exact(friction: float, ratio: float) -> tuple[float, int]:
     """Amplitude of the periodic motion, and its stops in the last period, by the solution of each phase."""
     period = 2 * np.pi / ratio
@@ -107,6 +111,31 @@ def test_the_velocity_kind_is_accepted_with_more_harmonics(record_evidence) -> N
     record_evidence(
         "den Hartog's block, rigid law of kind velocity, 45 harmonics: largest error of amplitudes", 0.0, max(errors),
         tolerance=5e-3, topic=TOPIC, kind="closed form", source="exact solution of each phase of slip and stick",
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("reference", "cases"),
+    [
+        ("closed form without stops", [(0.1, 0.4), (0.1, 0.6), (0.3, 0.6), (0.3, 0.8), (0.3, 1.3), (0.5, 0.8)]),
+        ("exact motion with stops", [(0.5, 0.4)]),
+    ],
+)
+def test_chosen_harmonics_reach_the_exact_amplitude(record_evidence, reference: str, cases: list) -> None:
+    errors, chosen = [], []
+    for friction, ratio in cases:
+        curve = response(friction, ratio, Rigid(kind="velocity"), "auto")
+        assert curve.success
+        amplitude, stops = exact(friction, ratio)
+        assert (stops > 0) == ("with stops" in reference)
+        amplitude = amplitude if stops else closed_form(friction, ratio)
+        errors.append(abs(curve.amplitude("m")[0] / amplitude - 1))
+        chosen.append(curve.orders[-1])
+    assert set(chosen) == {3, 15, 31, 63} if len(cases) > 1 else {63}
+    record_evidence(
+        f"den Hartog's block, {listed([str(one) for one in sorted(set(chosen))])} harmonics, chosen by the truncation "
+        f"error, {reference}: largest error of amplitudes", 0.0, max(errors), tolerance=5e-3, topic=TOPIC, kind="closed form",
+        source="den Hartog 1931" if "closed" in reference else "exact solution of each phase of slip and stick",
     )  # fmt: skip
 
 

@@ -186,7 +186,8 @@ class Study(Displayed):
         """The structure's equations at the first guesses; what nothing holds is found here."""
         from dalembert.vibration.balance.equations import equations
 
-        found = equations(self.system(), self.balance)
+        system = self.system()
+        found = equations(system, self.balance.keeping(system.highest_harmonic).first())
         found.lowered.coordinates  # noqa: B018 (contacts that cannot be told apart are told as such)
         with placed(self.file.model.holding, ModelError):
             found.condensation  # noqa: B018

@@ -10,7 +10,7 @@ import scipy
 
 import dalembert
 from dalembert.contents import Contents
-from dalembert.findings import findings_of, stored_findings
+from dalembert.findings import Finding, findings_of, stored_findings
 from dalembert.results import Result
 
 if TYPE_CHECKING:
@@ -62,6 +62,7 @@ class ConvergedResult(VibrationResult):
     """A result whose points are marked where they are not converged."""
 
     converged: np.ndarray
+    findings: tuple[Finding, ...]
 
     def __len__(self) -> int:
         return len(self.converged)
@@ -72,8 +73,8 @@ class ConvergedResult(VibrationResult):
 
     @property
     def success(self) -> bool:
-        """Whether every point is converged."""
-        return bool(self.converged.all())
+        """Whether every point is converged, and no finding is an error."""
+        return bool(self.converged.all()) and all(finding.severity != "error" for finding in self.findings)
 
     @property
     def status(self) -> str:

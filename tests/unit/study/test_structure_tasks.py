@@ -1,5 +1,6 @@
 """Structures in study files: what is built from their tables, their tasks, and every sentence about what cannot be."""
 
+import json
 import re
 
 import numpy as np
@@ -7,14 +8,17 @@ import pytest
 from scipy.io import mmwrite
 from scipy.sparse import coo_array
 
+from dalembert.data import Measurements
 from dalembert.errors import DalembertError, InputError
 from dalembert.structure import Modal, eigenmodes, lumped
 from dalembert.study import load, plan, report_run, run_study
 from dalembert.study.runner import looked
+from dalembert.study.tasks.telling import foreseen
 from dalembert.vibration import (
     Deformation,
     ElasticSlider,
     FrequencyCurve,
+    FrequencyResponse,
     FrictionContact,
     HarmonicBalance,
     HarmonicForce,
@@ -139,6 +143,30 @@ def test_a_structure_of_tables_is_the_one_of_calls(write, tmp_path):
     folder.report.unlink()
     report_run(folder)
     assert folder.report.read_text() == first
+
+
+def test_a_study_chooses_its_harmonics(write, tmp_path):
+    text = WHOLE.replace("harmonics = 5\nsamples = 256", 'harmonics = "auto"') + 'amplitude = "harmonic 2"\n'
+    study = load(write(text))
+    assert plan(study) == (
+        "follows the response from 0.12 to 0.16 Hz (5 points, 5 to 127 harmonics, chosen by the truncation error): "
+        "1 simulation"
+    )
+    folder, outcome = run_study(study, tmp_path / "run")
+    (chosen,) = outcome.findings
+    theirs = frequency_response(two_masses(), np.linspace(0.12, 0.16, 5), HarmonicBalance("auto", least_harmonics=5))
+    assert (chosen.code, chosen.values["harmonics"]) == ("harmonics-chosen", theirs.orders[-1])
+    np.testing.assert_array_equal(FrequencyCurve.load(folder.result).response, theirs.response)
+    assert chosen.message in folder.report.read_text()
+    events = map(json.loads, (folder.path / "events.jsonl").read_text().splitlines())
+    assert {event["harmonics"] for event in events if event["event"] == "followed"} == {5, theirs.orders[-1]}
+
+
+def test_a_look_ahead_says_the_harmonics_of_a_model():
+    frequencies = np.linspace(0.12, 0.16, 5)
+    model = FrequencyResponse(two_masses, {"mu": (0.2, 0.4)}, ["m2 peak"], frequencies, HarmonicBalance("auto"))
+    data = Measurements(frequencies, ("m2 peak",), model.evaluate(np.array([[0.3]])).values[0])
+    assert any("harmonics were chosen" in sentence for sentence in foreseen(model, data))
 
 
 def test_kinds_of_springs_forces_and_laws(write):

@@ -226,7 +226,14 @@ def _compare(values: Values, document: TOMLDocument, best: Best) -> Iterator[tup
 @_advises("few-harmonics", "stability-near-fold")
 def _more_harmonics(values: Values, document: TOMLDocument, best: Best) -> Iterator[tuple[str, Apply]]:
     most = 2 * int(values["harmonics"]) + 1
-    yield f"Keep {most} harmonics", _setting("harmonic_balance", harmonics=most)
+    if table_at(document, "harmonic_balance").get("harmonics") != "auto":
+        yield f"Keep {most} harmonics", _setting("harmonic_balance", harmonics=most)
+        if "error" in values:
+            yield "Choose the harmonics by the truncation error", _setting("harmonic_balance", harmonics="auto")
+    elif "error" in values:
+        yield f"Allow {most} harmonics", _setting("harmonic_balance", most_harmonics=most)
+    else:
+        yield f"Keep at least {most} harmonics", _setting("harmonic_balance", least_harmonics=most)
 
 
 @_advises("beam-locking")

@@ -49,6 +49,7 @@ class Live:
     _every: int = 1
     _passed: int = 0
     _stride: int = 1
+    _harmonics: int = 0
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -114,6 +115,9 @@ class Live:
         match event:
             case {"event": "followed", "frequency": place, "amplitude": size, "dof": dof}:
                 self.axes = "frequency (Hz)", f"{dof} (m)"
+                if event.get("harmonics", self._harmonics) != self._harmonics:  # the curve is followed again
+                    self.followed, self._passed, self._stride = [], 0, 1
+                    self._harmonics = event["harmonics"]
             case {"event": "swept", "value": place, "amplitude": size, "dof": dof, "parameter": parameter}:
                 self.axes = parameter, f"peak of {dof} (m)"
             case _:

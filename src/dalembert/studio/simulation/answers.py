@@ -234,12 +234,13 @@ def _followed(own: Part, values: Mapping[str, float], began: float) -> Simulated
     return Simulated(curves=(Curves(figure=on_page(figure)),), seconds=seconds)
 
 
-def _curve_at(own: Part, vector: np.ndarray) -> "FrequencyCurve":
-    from dalembert.study.tasks.frequency_response import curve_options
+def _curve_at(own: Part, vector: np.ndarray, harmonics: int | None = None) -> "FrequencyCurve":
+    from dalembert.study.tasks.frequency_response import balance_of, curve_options
     from dalembert.vibration import frequency_response
 
-    study = own.study
-    return frequency_response(study.system(vector), study.table.along, study.balance, **curve_options(study))
+    study, method = own.study, balance_of(own.study)
+    method = method if harmonics is None else replace(method, harmonics=harmonics)
+    return frequency_response(study.system(vector), study.table.along, method, **curve_options(study))
 
 
 def _over_frequency(own: Part, values: Mapping[str, float]) -> Influences:
@@ -262,7 +263,7 @@ def _over_frequency(own: Part, values: Mapping[str, float]) -> Influences:
         step = DIFFERENCE * span * (-1.0 if vector[place] > (item.lower + item.upper) / 2 else 1.0)
         moved = vector.copy()
         moved[place] += step
-        other = _curve_at(own, moved)
+        other = _curve_at(own, moved, first.orders[-1])
         if not np.array_equal(other.frequencies, first.frequencies):
             return Influences((), {})
         across = vector[place] * np.log(item.upper / item.lower) if item.logarithmic else span

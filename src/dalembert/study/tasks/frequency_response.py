@@ -22,7 +22,7 @@ from dalembert.study.tasks.task import Outcome, Task, silent
 from dalembert.study.tasks.wrong import needs_structure, unnamed
 
 if TYPE_CHECKING:
-    from dalembert.vibration import FollowedPoint
+    from dalembert.vibration import FollowedPoint, HarmonicBalance
 
 MOST_DRAWN = 6
 """Degrees of freedom that a figure shows by themselves; of more the report chooses."""
@@ -173,10 +173,10 @@ class FrequencyResponseTask(Task):
         ):
             raise InputError(unknown("observed degree of freedom", table.dof, names, "[frequency_response], dof"))
         with placed("[frequency_response], amplitude"):
-            Amplitude(table.amplitude, study.balance.orders)
+            Amplitude(table.amplitude, balance_of(study).first().orders)
         points = "as many points as the curve needs" if table.between else f"{len(table.frequencies)} points"
         ends = table.between or (table.frequencies[0], table.frequencies[-1])
-        way = f"follows the response from {ends[0]:g} to {ends[1]:g} Hz ({points}, {study.balance.harmonics} harmonics)"
+        way = f"follows the response from {ends[0]:g} to {ends[1]:g} Hz ({points}, {balance_of(study).words})"
         if table.sweep is None:
             return f"{way}: 1 simulation"
         values = _values(study)
@@ -189,7 +189,7 @@ class FrequencyResponseTask(Task):
         ends = np.array(table.between or (table.frequencies[0], table.frequencies[-1]))
 
         def once() -> None:
-            frequency_response(system, ends, study.balance, observe=_observed(study), check=False)
+            frequency_response(system, ends, balance_of(study), observe=_observed(study), check=False)
 
         curves = 1 if table.sweep is None else len(_values(study))
         count = None if table.between is not None else curves * len(table.frequencies)
@@ -215,7 +215,7 @@ class FrequencyResponseTask(Task):
             study.equations()
             system = study.system()
             tell = _points_told(study, emit)
-            curve = frequency_response(system, table.along, study.balance, on_point=tell, **options)
+            curve = frequency_response(system, table.along, balance_of(study), on_point=tell, **options)
             return _response(study, curve, beside(study, curve, system))
         name, values = table.sweep.parameter, _values(study)
         unit = next(item.unit for item in study.parameters if item.name == name)
@@ -234,7 +234,7 @@ class FrequencyResponseTask(Task):
             name,
             values,
             table.along,
-            study.balance,
+            balance_of(study),
             unit=unit,
             executor=study.executor,
             on_curve=on_curve,
@@ -247,6 +247,13 @@ class FrequencyResponseTask(Task):
 
         kind = FrequencyCurve if study.table.sweep is None else CurveFamily
         return _response(study, kind.load(path), beside_curve.load(path))
+
+
+def balance_of(study: Study) -> "HarmonicBalance":
+    """The method, which keeps the harmonic whose amplitude is reported if it chooses their number."""
+    from dalembert.vibration.paths.amplitudes import highest_order
+
+    return study.balance.keeping(highest_order(study.table.amplitude))
 
 
 def curve_options(study: Study) -> dict[str, Any]:
@@ -263,7 +270,7 @@ def _any_curve(study: Study) -> None:
     for value in _values(study).tolist():
         try:
             system = build(**{study.table.sweep.parameter: value})
-            frequency_response(system, study.table.along, study.balance, **curve_options(study))
+            frequency_response(system, study.table.along, balance_of(study), **curve_options(study))
             return
         except DalembertError as error:
             errors.append(error)
@@ -274,13 +281,16 @@ def _points_told(study: Study, emit: Emit) -> Callable[["FollowedPoint"], None]:
     """Writes each point of a curve as it is found, with the amplitude that the study tells."""
     from dalembert.vibration.paths.amplitudes import Amplitude
 
-    size, dof = Amplitude(study.table.amplitude, study.balance.orders), study.table.dof
+    kind, dof = study.table.amplitude, study.table.dof
 
     def tell(point: "FollowedPoint") -> None:
         names = (dof, *(name for name in point.dofs if name.rpartition(".")[0] == dof), *point.dofs)
         row = next(point.dofs.index(name) for name in names if name in point.dofs)
-        amplitude = float(size.of(point.response[row]))
-        emit("followed", frequency=point.frequency, amplitude=amplitude, dof=point.dofs[row], done=round(point.done, 4))
+        amplitude = float(Amplitude(kind, point.orders).of(point.response[row]))
+        emit(
+            "followed", frequency=point.frequency, amplitude=amplitude, dof=point.dofs[row],
+            done=round(point.done, 4), harmonics=point.orders[-1],
+        )  # fmt: skip
 
     return tell
 

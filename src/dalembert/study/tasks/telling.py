@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
 POPULATION, PROFILES, PREDICTION = "population", "profiles", "prediction"
 """Names of the files beside the result; of several experiments each has its own prediction, ``prediction-NAME``."""
+FORESEEN = ("slip-rate", "harmonics-chosen", "few-harmonics", "unchecked-harmonics")
+"""Findings on a model that are known before a run."""
 
 
 def beyond(table: Any, model: Any, data: Any, fit: "Fit", on_event: "OnEvent") -> dict[str, Any]:
@@ -61,8 +63,8 @@ def load(result: Path, experiments: Iterable[str]) -> dict[str, Any]:
 def foreseen(model: Any, data: Any) -> tuple[str, ...]:
     """Sentences on identifiability, suspected units and friction that does not suit the motion, at the first guesses.
 
-    They are from one simulation with sensitivities, one without, and another one with friction; ``model`` may be
-    experiments.
+    Where harmonics are chosen, their number is among them. They are from one simulation with sensitivities, one
+    without, and another one with friction; ``model`` may be experiments.
     """
     from dalembert.forward import findings_at
     from dalembert.inverse import identifiability
@@ -76,9 +78,9 @@ def foreseen(model: Any, data: Any) -> tuple[str, ...]:
     except DalembertError as error:
         return (f"Identifiability could not be computed in advance: {error}",)
     sentences = map(str, told.findings or (told,))
-    rubbing = (item for item in findings_at(model, model.parameters.start) if item.code == "slip-rate")
+    of_model = (item for item in findings_at(model, model.parameters.start) if item.code in FORESEEN)
     units = first_unit_findings(model, data)
-    return tuple(f"At the first guesses: {sentence}" for sentence in (*sentences, *rubbing, *units))
+    return tuple(f"At the first guesses: {sentence}" for sentence in (*sentences, *of_model, *units))
 
 
 def whole(model: Any) -> Any:

@@ -40,13 +40,13 @@ class TrackResonance(ResultTask):
         return [*super().wrong(file), *unnamed([file.track_resonance.parameter], file.parameters, where)]
 
     def plan(self, study: Study) -> str:
-        from dalembert.vibration.paths.amplitudes import Amplitude
+        from dalembert.vibration.paths.amplitudes import Amplitude, highest_order
 
         table, lowered = study.table, study.equations().lowered
         with placed("[track_resonance], dof"):
             lowered.structure.dofs.index(table.dof)
         with placed("[track_resonance], amplitude"):
-            Amplitude(table.amplitude, study.balance.orders)
+            Amplitude(table.amplitude, study.balance.keeping(highest_order(table.amplitude)).first().orders)
         values = _values(study)
         return (
             f"follows the peak of {table.dof} ({table.amplitude}) over {len(values)} values of {table.parameter}, "

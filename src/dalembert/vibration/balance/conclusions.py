@@ -1,9 +1,6 @@
-"""Conclusions on a curve: causes of points that are not converged, motions that nothing holds, the truncation error.
+"""Conclusions on a curve: causes of points that are not converged, motions that nothing holds."""
 
-The truncation error is the change of a motion with more harmonics.
-"""
-
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,18 +9,9 @@ from dalembert.errors import listed
 from dalembert.findings import Finding
 from dalembert.vibration.balance.condensation import NEARLY, norm
 from dalembert.vibration.balance.equations import Equations
-from dalembert.vibration.balance.fourier import Fourier, in_orders
 from dalembert.vibration.balance.free_motions import FLOATING, MOVING, NAMED
 from dalembert.vibration.balance.newton import VERIFIED, Solution
-from dalembert.vibration.laws.contacts import RIGID_KINDS
-from dalembert.vibration.system.lowering import ELASTIC, Lowered
 
-_, VELOCITY = RIGID_KINDS
-SLOW = 2.5
-"""Error over the change by twice the harmonics: about 2 where forces jump, so that it falls with 1/harmonics."""
-LARGE = 5e-3
-"""Error of the largest motion, as part of it, that is a finding."""
-PHASES = 1024
 LEFT = 0.1
 """Part of the residual, along a motion that no stiffness holds, from which this motion is the cause."""
 
@@ -132,82 +120,6 @@ def free_findings(problem: Equations) -> tuple[Finding, ...]:
     message = f"No spring and no contact holds the mean position along {names}; the smallest one was chosen."
     advice = "Look at changes of these displacements, or hold the structure by a spring."
     return (Finding("free-mean-position", "note", {"motion": names}, message, advice),)
-
-
-def truncation_findings(problem: Equations, solution: Solution) -> Iterator[Finding]:
-    """Yield a finding where twice the harmonics change the motion of the retained coordinates at a solution.
-
-    Rigid contacts on coordinates with mass need the most harmonics, because their forces jump where motion stops.
-    """
-    error = float(problem.once("truncation", solution, lambda: np.array([_error(problem, solution)]))[0])
-    if error <= LARGE:
-        return
-    frequency, harmonics = float(solution.omega) / (2 * np.pi), problem.method.harmonics
-    heavy, values = any(_heavy(problem, solution.omega)), {"frequency": frequency, "harmonics": harmonics}
-    if np.isnan(error):
-        message = (
-            f"Whether {harmonics} harmonics resolve the motion at {frequency:.6g} Hz is not known: with "
-            f"{2 * harmonics + 1} harmonics it was not found."
-        )
-        advice = "Try another number of harmonics, or compare the curve with integration in time."
-        yield Finding("unchecked-harmonics", "error" if heavy else "warning", values, message, advice)
-        return
-    message = (
-        f"{harmonics} harmonics do not resolve the motion at {frequency:.6g} Hz: its error is about "
-        f"{100 * error:.2g} %, by the change with {2 * harmonics + 1} harmonics."
-    )
-    advice = "Keep more harmonics. Compare the curve with integration in time."
-    if heavy:
-        advice = (
-            "Keep more harmonics. The force of a rigid contact with mass jumps, so that the error falls slowly; an "
-            "elastic law falls faster."
-        )
-    yield Finding("few-harmonics", "error" if heavy else "warning", values | {"error": error}, message, advice)
-
-
-def _error(problem: Equations, solution: Solution) -> float:
-    """Return the relative error of the peak of the coordinate that moves most; NaN if no finer motion is converged."""
-    method = problem.method.refined()
-    if method is None or not problem.nonlinear:
-        return 0.0
-    finer = Equations(_robust(problem, solution.omega), method)
-    samples = max(method.first_samples, solution.samples)
-    begin = in_orders(solution.unknowns, problem.method.orders, method.orders)
-    better = finer.solve(begin, solution.omega, samples)
-    if not better.converged:
-        better = finer.first(solution.omega)
-    if not better.converged:
-        return np.nan
-    own, other = (
-        np.ptp(Fourier(orders, PHASES).synthesis @ unknowns.T, axis=0) / 2
-        for orders, unknowns in ((problem.method.orders, solution.unknowns), (method.orders, better.unknowns))
-    )
-    most = int(np.argmax(other))
-    return SLOW * abs(own[most] - other[most]) / (other[most] or 1.0)
-
-
-def _heavy(problem: Equations, omega: float) -> tuple[bool, ...]:
-    """Whether the rigid contacts of each block carry mass.
-
-    They do if the highest harmonic meets more inertia than stiffness, with everything else held.
-    """
-    lowered, (stiffness, mass, *_) = problem.lowered, problem.condensation.outer
-    inertia = np.diag(mass) * (problem.method.harmonics * omega) ** 2
-    place = {row: number for number, row in enumerate(lowered.coordinates.rows.tolist())}
-    rows = [[place[row] for row in block.rows.ravel().tolist() if row in place] for block in lowered.blocks]
-    return tuple(
-        block.kind != ELASTIC and bool(np.any(inertia[own] > np.diag(stiffness)[own]))
-        for block, own in zip(lowered.blocks, rows, strict=True)
-    )
-
-
-def _robust(problem: Equations, omega: float) -> Lowered:
-    """The elements with rigid contacts of the velocity kind where these carry mass: it converges faster there."""
-    blocks = tuple(
-        replace(block, kind=VELOCITY) if heavy and block.memory else block
-        for block, heavy in zip(problem.lowered.blocks, _heavy(problem, omega), strict=True)
-    )
-    return replace(problem.lowered, blocks=blocks)
 
 
 def largest(best: Solution | None, solution: Solution) -> Solution | None:

@@ -26,6 +26,9 @@ from dalembert.vibration.balance.harmonic_balance import AUTOMATIC, MOST_SAMPLES
 from dalembert.vibration.balance.newton import ROUNDING, line_search
 from dalembert.vibration.balance.uncondensed import Local, Uncondensed
 
+PHASES = 1024
+"""Instants of a period among which the extreme positions are sought."""
+
 
 @dataclass(frozen=True)
 class Linear:
@@ -197,6 +200,11 @@ class ModeEquations:
     def scale(self, motion: FreeMotion) -> float:
         """Size of the oscillating part of a motion."""
         return float(np.linalg.norm(motion.harmonics[:, int(self.problem.method.orders[0] == 0) :]))
+
+    def amplitudes(self, motion: FreeMotion) -> np.ndarray:
+        """Amplitudes of the degrees of freedom in a motion, (n,): half of the way between their extreme positions."""
+        waves = Fourier(self.problem.method.orders, PHASES).synthesis
+        return np.ptp(waves @ (self.basis @ motion.harmonics).T, axis=0) / 2
 
     def at_size(self, guess: FreeMotion, size: float, samples: int) -> FreeMotion:
         """The motion at an amplitude, from a guess at any."""

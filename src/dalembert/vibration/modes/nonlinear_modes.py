@@ -14,7 +14,16 @@ from dalembert.forward import Checkpoint
 from dalembert.threads import one_thread
 from dalembert.units import unit_of
 from dalembert.vibration.balance.equations import equations
+from dalembert.vibration.balance.fourier import in_orders
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
+from dalembert.vibration.balance.truncation import (
+    SLOW,
+    Truncation,
+    carries_mass,
+    choice_findings,
+    enough_harmonics,
+    hardest,
+)
 from dalembert.vibration.modes.mode_equations import FreeMotion, Linear, ModeEquations, Plane
 from dalembert.vibration.paths.amplitudes import Amplitude, observed_column
 from dalembert.vibration.paths.continuation import EASY, MOST_AROUND, MOST_POINTS, SHORTEST, STEADY
@@ -35,6 +44,8 @@ FIRST_PART, LEAST_PART = 0.125, 2.0**-10
 """First and smallest step of the part of the nonlinearity on the way from the linear mode."""
 SAME = 0.7
 """Cosine of the angle between two motions, weighted by the mass, below which they belong to different modes."""
+WEAK = 1e-3
+"""Damping ratio below which its errors are parts of this ratio, not of the smaller one."""
 Points = Annotated[np.ndarray, Over(("point",))]
 
 
@@ -72,7 +83,8 @@ class Backbone(ConvergedResult):
     provenance : mapping
         Versions, method, settings.
     findings : tuple of Finding
-        ``"end-not-reached"`` where a path between two amplitudes did not come to the second.
+        ``"end-not-reached"`` where a path between two amplitudes did not come to the second;
+        ``"harmonics-chosen"`` or ``"few-harmonics"`` where the number of harmonics was chosen.
     """
 
     FORMAT: ClassVar[str] = "dalembert backbone 1"
@@ -159,6 +171,8 @@ def backbone(
     mode : int
         Number among the linear modes at rest, where contacts under load stick, from 1 for the lowest frequency.
     method : HarmonicBalance, optional
+        With ``harmonics="auto"`` the mode is followed with more and more harmonics, until the truncation errors of its
+        motions, frequencies and damping ratios are small. Damping ratios below 0.001 count as 0.001.
     dof : str, optional
         Degree of freedom by which the amplitude is measured; the one that moves most in the linear mode if not given.
     checkpoint : Checkpoint, optional
@@ -201,21 +215,89 @@ def backbone(
     """
     method = method or HarmonicBalance()
     sizes = positive_numbers(amplitudes, "backbone", "amplitudes", "m")
-    driven = equations(system, method, checkpoint, residuals=False)
-    static = tuple(force for force in driven.lowered.forces if isinstance(force, StaticForce))
-    free = replace(driven, lowered=replace(driven.lowered, forces=static), _balances={})
-    linear = ModeEquations(free, -1).linear(mode)
-    names = free.lowered.structure.dofs
-    row = int(np.abs(linear.shape).argmax()) if dof is None else names.index(dof)
-    own, start = ModeEquations(free, row), _scaled(linear, row, names.names[row])
-    first = _first(own, start, float(sizes[0]))
-    if isinstance(amplitudes, tuple):
-        ends = float(sizes[0]), float(sizes[1])
+    asked = _Asked(system, sizes, isinstance(amplitudes, tuple), mode, dof, checkpoint)
+    own, found = asked.motions(method.first())
+    if not method.automatic:
+        return asked.backbone(own, found)
+    while True:
+        points = hardest(np.stack([one.harmonics for one in found]), np.array([one.converged for one in found]), 0.0)
+        better, error = enough_harmonics(FreeLevel(own), [found[point] for point in points])
+        if better.highest == own.problem.method.highest:
+            break
+        own, found = asked.motions(better)
+    result = asked.backbone(own, found)
+    return replace(result, findings=(*result.findings, *choice_findings(better, error)))
+
+
+@dataclass(frozen=True)
+class FreeLevel:
+    """The equations of a nonlinear mode with a number of harmonics, and the truncation error of its motions."""
+
+    own: ModeEquations
+
+    @property
+    def method(self) -> HarmonicBalance:
+        return self.own.problem.method
+
+    def truncation(self, motion: FreeMotion) -> Truncation:
+        """Return the truncation error of a motion, of its frequency or of its damping ratio, whichever is largest."""
+        frequency, heavy = motion.omega / (2 * np.pi), carries_mass(self.own.problem, motion.omega)
+        method = self.method.refined()
+        if method is None or not self.own.problem.nonlinear:
+            return Truncation(frequency, 0.0, heavy)
+        finer, better = self.padded(motion, method)
+        if not better.converged:
+            return Truncation(frequency, np.nan, heavy)
+        shape, other = (one.own.amplitudes(place) for one, place in ((self, motion), (finer, better)))
+        most = int(np.argmax(other))
+        first, second = (one.growth / (2 * one.omega) for one in (motion, better))
+        changes = (
+            (other[most] - shape[most]) / other[most],
+            better.omega / motion.omega - 1,
+            (second - first) / max(abs(second), WEAK),
+        )
+        return Truncation(frequency, SLOW * max(map(abs, map(float, changes))), heavy)
+
+    def padded(self, motion: FreeMotion, method: HarmonicBalance) -> "tuple[FreeLevel, FreeMotion]":
+        """Return the equations with the harmonics of another method, and the motion solved with them."""
+        finer = replace(self.own, problem=replace(self.own.problem, method=method, _balances={}))
+        guess = replace(motion, harmonics=in_orders(motion.harmonics, self.method.orders, method.orders))
+        found = finer.at_size(guess, motion.size, max(method.first_samples, motion.samples))
+        return FreeLevel(finer), found if _accepted(finer, guess, found) else replace(found, converged=False)
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """What is asked for besides the method: the system, the amplitudes or the two ends of a path, and so on."""
+
+    system: VibrationSystem
+    sizes: np.ndarray
+    is_path: bool
+    mode: int
+    dof: str | None
+    checkpoint: Checkpoint | None
+
+    def motions(self, method: HarmonicBalance) -> tuple[ModeEquations, list[FreeMotion]]:
+        """The motions with a number of harmonics, and their equations."""
+        driven = equations(self.system, method, self.checkpoint, residuals=False)
+        static = tuple(force for force in driven.lowered.forces if isinstance(force, StaticForce))
+        free = replace(driven, lowered=replace(driven.lowered, forces=static), _balances={})
+        linear = ModeEquations(free, -1).linear(self.mode)
+        names = free.lowered.structure.dofs
+        row = int(np.abs(linear.shape).argmax()) if self.dof is None else names.index(self.dof)
+        own, start = ModeEquations(free, row), _scaled(linear, row, names.names[row])
+        first = _first(own, start, float(self.sizes[0]))
+        if not self.is_path:
+            return own, list(_at_sizes(own, first, self.sizes, start.rest))
+        ends = float(self.sizes[0]), float(self.sizes[1])
         known = _towards(own, first, ends[0], start.rest) if first.converged else first
         if not known.converged:
             known = _from_linear(own, start, ends[0]) or known
-        return _kept(own, mode, list(_along(own, known, *ends)), ends)
-    return _kept(own, mode, list(_at_sizes(own, first, sizes, start.rest)))
+        return own, list(_along(own, known, *ends))
+
+    def backbone(self, own: ModeEquations, found: list[FreeMotion]) -> Backbone:
+        """The result that keeps the motions."""
+        return _kept(own, self.mode, found, (float(self.sizes[0]), float(self.sizes[1])) if self.is_path else None)
 
 
 def _scaled(linear: Linear, row: int, name: str) -> Linear:

@@ -60,8 +60,7 @@ class Amplitude:
         return float(2 * np.pi * np.abs(self._waves @ coefficients).argmax() / PHASES)
 
     def _order(self) -> int:
-        word, _, number = self.kind.partition(" ")
-        return int(number) if word == "harmonic" and number.isdigit() else -1
+        return _order(self.kind)
 
     @cached_property
     def _waves(self) -> np.ndarray:
@@ -73,6 +72,21 @@ class Amplitude:
         if self.kind == "rms":
             return np.where(each == 0, 1.0, 0.5)
         return np.where(each == self._order(), 1.0, 0.0)
+
+
+def highest_order(*kinds: str) -> int:
+    """Highest harmonic that kinds of amplitude name; 1 if they name none.
+
+    >>> highest_order("peak", "harmonic 5")
+    5
+    """
+    return max(1, *map(_order, kinds))
+
+
+def _order(kind: str) -> int:
+    """The harmonic that a kind of amplitude names, or -1."""
+    word, _, number = kind.partition(" ")
+    return int(number) if word == "harmonic" and number.isdigit() else -1
 
 
 def coordinate_row(coordinates: Sequence[str], name: str) -> int:

@@ -70,8 +70,8 @@ class FrequencyCurve(ConvergedResult):
     findings : tuple of Finding
         ``"unbalanced-mean"``, ``"force-not-finite"``, ``"undamped-resonance"`` or ``"points-not-found"`` where points
         were not found; ``"end-not-reached"`` where a path between two frequencies did not come to the second;
-        ``"few-harmonics"``; ``"stability-near-fold"`` where a fold moves with more harmonics;
-        ``"free-mean-position"`` where nothing holds a mean position.
+        ``"few-harmonics"`` or ``"unchecked-harmonics"``; ``"harmonics-chosen"``; ``"stability-near-fold"`` where a fold
+        moves with more harmonics; ``"free-mean-position"`` where nothing holds a mean position.
     """
 
     FORMAT: ClassVar[str] = "dalembert frequency curve 1"
@@ -172,11 +172,6 @@ class FrequencyCurve(ConvergedResult):
         found: Any = minimize_scalar(lambda s: -size.of(spline(s)[1:]), bounds=inner, method="bounded")
         best = spline(found.x if -found.fun > amplitude[top] else place)
         return Peak(float(best[0]), float(size.of(best[1:])))
-
-    @property
-    def success(self) -> bool:
-        """Whether every point is converged, and no finding is an error."""
-        return super().success and all(finding.severity != "error" for finding in self.findings)
 
     @property
     def status(self) -> str:

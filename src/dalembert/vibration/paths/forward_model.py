@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from dalembert.arguments import names_of, samples_of
 from dalembert.errors import InputError, ModelError, SolveError, require_known, told
+from dalembert.findings import Finding
 from dalembert.forward import Channel, Coordinate, Refinement, Responses, ensemble, error_factor
 from dalembert.forward.builders import built, check_function, cores, inexact, restructured
 from dalembert.forward.complex_steps import Compared
@@ -21,10 +22,11 @@ from dalembert.vibration.balance.equations import Equations, equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Solution
 from dalembert.vibration.balance.sensitivity import STEP, sensitivities
-from dalembert.vibration.paths.amplitudes import Amplitude
+from dalembert.vibration.balance.truncation import ForcedLevel, choice_findings, hardest
+from dalembert.vibration.paths.amplitudes import Amplitude, highest_order
 from dalembert.vibration.paths.continuation import at_frequencies
 from dalembert.vibration.paths.curve import FrequencyCurve
-from dalembert.vibration.paths.frequency_response import frequency_response, response_of
+from dalembert.vibration.paths.frequency_response import frequency_response, response_of, restarted
 from dalembert.vibration.system.complex_steps import check_laws, check_numbers
 from dalembert.vibration.system.lowering import Lowered, lower
 from dalembert.vibration.system.requirements import positive_numbers
@@ -45,6 +47,8 @@ class FrequencyResponse:
     frequencies : array, shape (samples,)
         Hz; the response is followed from each to the next, so the first should lie where there is only one.
     method : HarmonicBalance, optional
+        With ``harmonics="auto"`` their number is chosen once, by the curve at the start values of the parameters, as
+        :func:`frequency_response` chooses it. The same number then holds for all values of the parameters.
     workers : int, optional
         Threads of an ensemble; as many as there are cores if not given.
     derivative : {"complex-step", "central-differences"}
@@ -93,10 +97,11 @@ class FrequencyResponse:
         if not channels:
             raise InputError("FrequencyResponse: no channels were given; name at least one, such as 'm2 peak'")
         parameters = Parameters.of(parameters)
+        method = (method or HarmonicBalance()).keeping(highest_order(*(one.partition(" ")[2] for one in channels)))
         check_function("FrequencyResponse", builder, [item.name for item in parameters.declared])
         vars(self).update(
             builder=builder, parameters=parameters, channel_names=channels, frequencies=frequencies,
-            method=method or HarmonicBalance(), workers=workers or cores(), derivative=derivative,
+            method=method, workers=workers or cores(), derivative=derivative,
         )  # fmt: skip
 
     @property
@@ -185,15 +190,41 @@ class FrequencyResponse:
 
     def refined(self) -> Refinement | None:
         """Return the same model with twice the harmonics and one more; None beyond the limits of the method."""
-        method = self.method.refined()
+        method = self.balance.refined()
         if method is None:
             return None
-        return Refinement(self._but(method=method), error_factor(None), f"with {method.harmonics} harmonics")
+        finer = self._but(method=method, balance=method)
+        return Refinement(finer, error_factor(None), f"with {method.harmonics} harmonics")
+
+    @cached_property
+    def balance(self) -> HarmonicBalance:
+        """The method with the number of harmonics, which is chosen when it is first needed."""
+        if not self.method.automatic:
+            return self.method
+        curve = frequency_response(self.system(self.parameters.start), self.frequencies, self.method)
+        return replace(self.method, harmonics=curve.orders[-1])
+
+    def findings(self, vector: np.ndarray) -> tuple[Finding, ...]:
+        """Return the finding on the truncation error at a parameter vector (parameters,), if harmonics were chosen."""
+        if not self.method.automatic:
+            return ()
+        system = self.system(vector)
+        problem = equations(system, self.balance)
+        curve = self.curve(vector)
+        points = hardest(curve.unknowns, curve.converged)
+        motions = [restarted(problem, curve, point, "FrequencyResponse") for point in points]
+        level = ForcedLevel.of(problem, motions)
+        errors = [level.truncation(motion) for motion in motions if motion.converged]
+        return choice_findings(self.balance, max(errors, key=lambda one: one.rank, default=None))
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the state with the number of harmonics, so that every process computes with the same one."""
+        return {**vars(self), "balance": self.balance}
 
     def _but(self, **changes: Any) -> "FrequencyResponse":
         """The same model with other frequencies or another method, whose derivatives need no second comparison."""
         own = copy(self)
-        vars(own).update(changes, _compared=self._compared)
+        vars(own).update({"balance": self.balance} | changes, _compared=self._compared)
         vars(own).pop("_fingerprint", None)
         return own
 
@@ -203,11 +234,11 @@ class FrequencyResponse:
 
     def curve(self, vector: np.ndarray) -> FrequencyCurve:
         """The whole result at a parameter vector (parameters,)."""
-        return frequency_response(self.system(vector), self.frequencies, self.method, check=False)
+        return frequency_response(self.system(vector), self.frequencies, self.balance, check=False)
 
     @one_thread()
     def _linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        problem = equations(self.system(vector), self.method, derivatives=True)
+        problem = equations(self.system(vector), self.balance, derivatives=True)
         places = self._places(problem.lowered)
         values = np.empty((len(self.frequencies), len(places)))
         jacobian = np.empty((*values.shape, len(vector)))
@@ -250,11 +281,11 @@ class FrequencyResponse:
     def _places(self, lowered: Lowered) -> list[tuple[int, Amplitude]]:
         """Degree of freedom and amplitude of each channel."""
         parts = [name.partition(" ") for name in self.channel_names]
-        return [(lowered.structure.dofs.index(dof), Amplitude(kind, self.method.orders)) for dof, _, kind in parts]
+        return [(lowered.structure.dofs.index(dof), Amplitude(kind, self.balance.orders)) for dof, _, kind in parts]
 
     def _sizes(self, vector: np.ndarray) -> np.ndarray:
         """Values of the channels, (samples, channels)."""
-        problem = equations(self.system(vector), self.method)
+        problem = equations(self.system(vector), self.balance)
         places = self._places(problem.lowered)
         responses = (response_of(problem, solution) for solution in self._solutions(problem))
         return np.array([[size.of(response[row]) for row, size in places] for response in responses])

@@ -1,7 +1,7 @@
 """The response of a vibrating system over frequency."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,13 +13,21 @@ from dalembert.threads import one_thread
 from dalembert.vibration.balance.conclusions import (
     free_findings,
     largest,
-    truncation_findings,
     unconverged,
     unconverged_findings,
 )
 from dalembert.vibration.balance.equations import Equations, equations
+from dalembert.vibration.balance.fourier import in_orders
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Solution
+from dalembert.vibration.balance.truncation import (
+    RELIABLE,
+    ForcedLevel,
+    choice_findings,
+    enough_harmonics,
+    hardest,
+    truncation_findings,
+)
 from dalembert.vibration.paths.continuation import PathPoint, across, at_frequencies, natural
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.path_end import end_findings
@@ -49,12 +57,15 @@ class FollowedPoint:
     dofs : tuple of str
     done : float
         Part of the way between the first and the last frequency that the curve has come, at its farthest.
+    orders : tuple of int
+        Harmonics. If their number is chosen, the curve is followed again with each larger number.
     """
 
     frequency: float
     response: np.ndarray
     dofs: tuple[str, ...]
     done: float
+    orders: tuple[int, ...]
 
 
 OnPoint = Callable[[FollowedPoint], object]
@@ -83,13 +94,17 @@ def frequency_response(
     frequencies : array, shape (points,), or pair of float
         Hz, positive. A tuple of two: points between them, as dense as the curve needs.
     method : HarmonicBalance, optional
+        With ``harmonics="auto"`` the curve is followed with more and more harmonics, until the truncation errors of its
+        largest motion and of the three with the largest last harmonics are small. Motions below a tenth of the largest
+        count with an error as part of that tenth.
     continuation : {"natural", "arc-length"}
         From a frequency to the next, or along the curve past its folds, which needs (begin, end).
     observe : sequence of str, optional
         Degrees of freedom, nodes or sets of nodes whose motion is kept; all of a small structure, and of a large one
         those with forces and contacts, if not given.
     start : (FrequencyCurve, int), optional
-        A curve of the same system and harmonics and the number of one of its points, from which to go on.
+        A curve of the same system and the number of one of its points, from which to go on. Its harmonics are among
+        those of ``method``.
     stability : bool
         Whether the stability of each point is found too, and the places where it changes: by Hill's method, or with
         friction by the linearised motion over a period (see :func:`floquet_multipliers`). On paths between two
@@ -142,47 +157,101 @@ def frequency_response(
         )
     if stability:
         require_viscous(system.structure, "stability and Floquet multipliers")
-    problem = equations(system, method, checkpoint, stability=stability)
-    known = None if start is None else restarted(problem, *start, "frequency_response")
-    if ends:
-        follow = across if continuation == ARC_LENGTH else natural
-        found = follow(problem, float(omegas[0]), float(omegas[1]), known)
-    else:
-        found = at_frequencies(problem, omegas, known)
-    rows = observed(problem.lowered, observe)
-    lowered, records, lost, across_fold, done = problem.lowered, [], [], [], 0.0
-    top: Solution | None = None
-    dofs = tuple(lowered.structure.dofs.names[row] for row in rows)
-    for one in judged(problem, found, located=ends) if stability else found:
-        records.append(_kept(problem, one, rows))
-        lost.append(unconverged(problem, one.solution))
-        across_fold += [float(one.solution.omega) / (2 * np.pi)] * one.across_fold
-        top = largest(top, one.solution) if check else None
-        if on_point is not None:
-            omega = one.solution.omega
-            come = (omega - omegas[0]) / (omegas[1] - omegas[0]) if ends else len(records) / len(omegas)
-            done = float(max(done, min(come, 1.0)))
-            on_point(FollowedPoint(records[-1]["frequencies"], records[-1]["response"], dofs, done))
-    limits = float(omegas[0]) / (2 * np.pi), float(omegas[-1]) / (2 * np.pi)
-    markers = [one.pop("marker") for one in records]
     settings = {"continuation": continuation, "frequencies": list(map(float, frequencies)) if ends else "given"}
-    kept = {name: np.array([one[name] for one in records]) for name in records[0]}
-    return FrequencyCurve(
-        dofs=dofs,
-        coordinates=lowered.row_names,
-        contacts=lowered.contacts,
-        orders=method.orders,
-        **{**kept, "stable": kept["stable"].astype(np.int8)},
-        markers=tuple((marker, number) for number, marker in enumerate(markers) if marker),
-        provenance={**versions(), "method": asdict(method), **settings},
-        findings=(
-            *unconverged_findings(len(records), filter(None, lost)),
-            *(end_findings(kept["frequencies"], kept["converged"], limits, "frequency", "Hz") if ends else ()),
-            *free_findings(problem),
-            *fold_findings(across_fold, kept["frequencies"][kept["fold"]], method.harmonics),
-            *(() if top is None else truncation_findings(problem, top)),
-        ),
-    )
+    asked = _Asked(system, omegas, ends, settings, observe, checkpoint, on_point)
+    if not method.automatic:
+        return asked.curve(asked.equations(method, stability), start, stability, check)
+    method = method.keeping(system.highest_harmonic).at_least(1 if start is None else start[0].orders[-1])
+    return _with_enough_harmonics(asked, method, start, stability)
+
+
+def _with_enough_harmonics(
+    asked: "_Asked", method: HarmonicBalance, start: tuple[FrequencyCurve, int] | None, stability: bool
+) -> FrequencyCurve:
+    """Return the curve with so many harmonics that its truncation errors are small, from few harmonics on."""
+    level, begin = method.first(), start
+    while True:
+        problem = asked.equations(level, stability)
+        curve = asked.curve(problem, begin, stability=False, check=False)
+        points = hardest(curve.unknowns, curve.converged)
+        solutions = [restarted(problem, curve, point, "frequency_response") for point in points]
+        found = [one for one in solutions if one.converged]
+        better, error = enough_harmonics(ForcedLevel.of(problem, found), found)
+        if better.highest == level.highest:
+            more = None if curve.converged.all() or level.highest >= RELIABLE else level.next()
+            if more is None:
+                break
+            better = more
+        level = better
+        begin = (curve, 0) if start is None and curve.converged[0] else start
+    if stability:
+        curve = asked.curve(problem, begin, stability=True, check=False)
+    return replace(curve, findings=(*curve.findings, *choice_findings(level, error)))
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """What is asked for besides the method: the system, angular frequencies or the two ends of a path, and so on."""
+
+    system: VibrationSystem
+    omegas: np.ndarray
+    ends: bool
+    settings: dict[str, Any]
+    observe: Sequence[str] | None
+    checkpoint: Checkpoint | None
+    on_point: OnPoint | None
+
+    def equations(self, method: HarmonicBalance, stability: bool) -> Equations:
+        """The equations of the system with a number of harmonics."""
+        return equations(self.system, method, self.checkpoint, stability=stability)
+
+    def curve(
+        self, problem: Equations, start: tuple[FrequencyCurve, int] | None, stability: bool, check: bool
+    ) -> FrequencyCurve:
+        """Follow the curve with a number of harmonics."""
+        omegas, ends, method = self.omegas, self.ends, problem.method
+        known = None if start is None else restarted(problem, *start, "frequency_response")
+        if start is not None and start[0].orders != method.orders and known is not None and not known.converged:
+            known = None
+        if ends:
+            follow = across if self.settings["continuation"] == ARC_LENGTH else natural
+            found = follow(problem, float(omegas[0]), float(omegas[1]), known)
+        else:
+            found = at_frequencies(problem, omegas, known)
+        rows = observed(problem.lowered, self.observe)
+        lowered, records, lost, across_fold, done = problem.lowered, [], [], [], 0.0
+        top: Solution | None = None
+        dofs = tuple(lowered.structure.dofs.names[row] for row in rows)
+        for one in judged(problem, found, located=ends) if stability else found:
+            records.append(_kept(problem, one, rows))
+            lost.append(unconverged(problem, one.solution))
+            across_fold += [float(one.solution.omega) / (2 * np.pi)] * one.across_fold
+            top = largest(top, one.solution) if check else None
+            if self.on_point is not None:
+                omega = one.solution.omega
+                come = (omega - omegas[0]) / (omegas[1] - omegas[0]) if ends else len(records) / len(omegas)
+                done = float(max(done, min(come, 1.0)))
+                frequency, response = records[-1]["frequencies"], records[-1]["response"]
+                self.on_point(FollowedPoint(frequency, response, dofs, done, method.orders))
+        limits = float(omegas[0]) / (2 * np.pi), float(omegas[-1]) / (2 * np.pi)
+        markers = [one.pop("marker") for one in records]
+        kept = {name: np.array([one[name] for one in records]) for name in records[0]}
+        return FrequencyCurve(
+            dofs=dofs,
+            coordinates=lowered.row_names,
+            contacts=lowered.contacts,
+            orders=method.orders,
+            **{**kept, "stable": kept["stable"].astype(np.int8)},
+            markers=tuple((marker, number) for number, marker in enumerate(markers) if marker),
+            provenance={**versions(), "method": asdict(method), **self.settings},
+            findings=(
+                *unconverged_findings(len(records), filter(None, lost)),
+                *(end_findings(kept["frequencies"], kept["converged"], limits, "frequency", "Hz") if ends else ()),
+                *free_findings(problem),
+                *fold_findings(across_fold, kept["frequencies"][kept["fold"]], method.highest),
+                *(() if top is None else truncation_findings(problem, top)),
+            ),
+        )
 
 
 def restarted(problem: Equations, curve: FrequencyCurve, point: int, where: str) -> Solution:
@@ -191,11 +260,13 @@ def restarted(problem: Equations, curve: FrequencyCurve, point: int, where: str)
         raise InputError(
             f"{where}: the point is {point}; expected a number below {len(curve)}, the points of the curve"
         )
-    unknowns, samples = curve.unknowns[point], int(curve.samples[point])
-    if unknowns.shape != problem.balance(samples).shape or curve.orders != problem.method.orders:
+    unknowns, samples, orders = curve.unknowns[point], int(curve.samples[point]), problem.method.orders
+    if set(curve.orders) < set(orders):
+        unknowns, samples = in_orders(unknowns, curve.orders, orders), max(samples, problem.method.first_samples)
+    if unknowns.shape != problem.balance(samples).shape or not set(curve.orders) <= set(orders):
         raise InputError(
             f"{where}: the start has unknowns of shape {unknowns.shape} and harmonics {curve.orders}; the "
-            f"system has {problem.balance(samples).shape} and {problem.method.orders}; "
+            f"system has {problem.balance(samples).shape} and {orders}; "
             "start from a curve of the same system"
         )
     return problem.solve(unknowns, 2 * np.pi * float(curve.frequencies[point]), samples)

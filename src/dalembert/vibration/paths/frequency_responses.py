@@ -4,7 +4,7 @@ import hashlib
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from threading import Event
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
@@ -14,6 +14,7 @@ import numpy as np
 from dalembert.arguments import takes_checked
 from dalembert.contents import Contents
 from dalembert.errors import DalembertError, InputError, SolveError, StorageError, told
+from dalembert.findings import Finding
 from dalembert.forward import Checkpoint, Executor, ensemble
 from dalembert.forward.builders import check_function
 from dalembert.results import Result
@@ -31,6 +32,10 @@ if TYPE_CHECKING:
 
 CurveOrError = tuple[FrequencyCurve | None, DalembertError | None, float]
 """A curve or why there is none, and the seconds that it took."""
+
+
+ON_HARMONICS = {"few-harmonics": "error", "unchecked-harmonics": "harmonics", "harmonics-chosen": "harmonics"}
+"""Codes of findings on chosen harmonics, and the value by which one is worse than another."""
 
 
 class Envelope(NamedTuple):
@@ -149,6 +154,23 @@ class CurveFamily(Result):
         ]
         return text + "".join(reasons[:3])
 
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """The worst of the curves' findings on harmonics that were chosen, each with the value of its curve."""
+        found = [
+            (value, finding)
+            for value, curve in zip(self.values.tolist(), self.curves, strict=True)
+            for finding in (() if curve is None else curve.findings)
+        ]
+        worst = []
+        for code, size in ON_HARMONICS.items():
+            those = [(value, finding) for value, finding in found if finding.code == code]
+            if those:
+                value, finding = max(those, key=lambda one: one[1].values[size])
+                message = f"{self.parameter} = {_quantity(value, self.unit)}: {finding.message}"
+                worst.append(replace(finding, values={**finding.values, "value": value}, message=message))
+        return tuple(worst)
+
     def summary(self) -> str:
         """A few lines: what was found, and the peaks of the observed degrees of freedom over the parameter."""
         lines = [self.status]
@@ -160,7 +182,7 @@ class CurveFamily(Result):
                 f"{peak.frequency:.6g} Hz ({part:+.1%})"
                 for value, peak, part in zip(self.values, peaks, more, strict=True)
             ]
-        return "\n".join(lines)
+        return "\n".join([*lines, *map(str, self.findings)])
 
     def contents(self) -> Contents:
         """Everything as arrays: the names and dimensions of each curve end in its number, ``_0``."""

@@ -14,6 +14,7 @@ import numpy as np
 
 from dalembert.arguments import takes_checked
 from dalembert.errors import InputError
+from dalembert.findings import Finding
 from dalembert.forward import Checkpoint
 from dalembert.forward.builders import check_function
 from dalembert.threads import one_thread
@@ -22,11 +23,13 @@ from dalembert.vibration.balance.equations import Equations, equations
 from dalembert.vibration.balance.fourier import synthesis
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Plane, Solution
-from dalembert.vibration.paths.amplitudes import Amplitude
+from dalembert.vibration.balance.truncation import ForcedLevel, Truncation, choice_findings, enough_harmonics, hardest
+from dalembert.vibration.paths.amplitudes import Amplitude, highest_order
 from dalembert.vibration.paths.continuation import Path, direction_at, zero_between
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.frequency_response import ARC_LENGTH, frequency_response, response_of, restarted
 from dalembert.vibration.storage import ConvergedResult, Over, versions
+from dalembert.vibration.system.lowering import lower
 from dalembert.vibration.system.requirements import values_of
 from dalembert.vibration.system.system import VibrationSystem
 
@@ -62,6 +65,8 @@ class ResonanceTrack(ConvergedResult):
     converged : array of bool, shape (values,)
     provenance : mapping
         Versions, method, settings.
+    findings : tuple of Finding
+        ``"harmonics-chosen"`` or ``"few-harmonics"`` where the number of harmonics was chosen.
     """
 
     FORMAT: ClassVar[str] = "dalembert resonance track 1"
@@ -76,6 +81,7 @@ class ResonanceTrack(ConvergedResult):
     solves: Values
     converged: Values
     provenance: Mapping[str, Any]
+    findings: tuple[Finding, ...] = ()
 
     def best(self) -> float:
         """The value with the smallest peak.
@@ -104,7 +110,7 @@ class ResonanceTrack(ConvergedResult):
         if not found.all():
             lost = ", ".join(f"{value:.6g}" for value in self.values[~found][:5])
             lines.append(f"not found where {self.parameter} is {lost} {self.unit}".rstrip())
-        return "\n".join(lines)
+        return "\n".join([*lines, *map(str, self.findings)])
 
 
 @takes_checked("values")
@@ -133,6 +139,8 @@ def track_resonance(
     start : pair of float, or FrequencyCurve
         Hz, around the peak at the first value, where one curve is followed to find it; or a curve at that value.
     method : HarmonicBalance, optional
+        With ``harmonics="auto"``, one number for all values, with which the truncation errors of the largest peak and
+        of the three with the largest last harmonics are small.
     dof : str
         Degree of freedom, or a node with only one.
     kind : str
@@ -172,25 +180,38 @@ def track_resonance(
     >>> track.amplitudes.round(2).tolist(), track.best()
     ([3.63, 3.68, 5.79], 2.0)
     """
-    method, numbers = method or HarmonicBalance(), values_of(values, "track_resonance", parameter)
+    numbers = values_of(values, "track_resonance", parameter)
+    method = (method or HarmonicBalance()).keeping(highest_order(kind))
     check_function("track_resonance", builder, [parameter])
+    begin = builder(**{parameter: float(numbers[0])})
+    name = (names := lower(begin).structure.dofs).names[row := names.index(dof)]
+    Amplitude(kind, method.first().orders)  # an unknown kind is refused before a curve is followed
+    if isinstance(start, FrequencyCurve):
+        curve, spent = start, 1
+        level = method.keeping(begin.highest_harmonic).at_least(curve.orders[-1]).first()
+    else:
+        options = {"observe": [name], "check": False, "checkpoint": checkpoint}
+        curve = frequency_response(begin, start, method, continuation=ARC_LENGTH, **options)
+        level, spent = replace(method, harmonics=curve.orders[-1]), 1 + len(curve)
+    findings: tuple[Finding, ...] = ()
+    while True:
+        climber = _Climber(row, Amplitude(kind, level.orders))
 
-    def problem(value: float) -> Equations:
-        return equations(builder(**{parameter: value}), method, checkpoint)
+        def problem(value: float, level: HarmonicBalance = level) -> Equations:
+            return equations(builder(**{parameter: value}), level, checkpoint)
 
-    first, size = problem(float(numbers[0])), Amplitude(kind, method.orders)
-    names = first.lowered.structure.dofs
-    name = names.names[row := names.index(dof)]
-    curve = start
-    if not isinstance(curve, FrequencyCurve):
-        system = builder(**{parameter: float(numbers[0])})
-        curve = frequency_response(
-            system, curve, method, continuation=ARC_LENGTH, observe=[name], check=False, checkpoint=checkpoint
-        )
-    begin = restarted(first, curve, _top(curve, name, size), "track_resonance")
-    peaks = list(_followed(problem, _Climber(row, size), numbers, _Peak(float(numbers[0]), first, begin)))
+        first = problem(float(numbers[0]))
+        top = restarted(first, curve, _top(curve, name, Amplitude(kind, curve.orders)), "track_resonance")
+        peaks = list(_followed(problem, climber, numbers, _Peak(float(numbers[0]), first, top)))
+        if not method.automatic:
+            break
+        better, error = _enough_harmonics(level, [one for one, _ in peaks if one is not None])
+        if better.highest == level.highest:
+            findings = choice_findings(level, error)
+            break
+        level = better
     solves = np.array([count for _, count in peaks])
-    solves[0] += 1 if isinstance(start, FrequencyCurve) else 1 + len(curve)
+    solves[0] += spent
     found = [(one.solution.omega / (2 * np.pi), one.amplitude) if one else (np.nan, np.nan) for one, _ in peaks]
     return ResonanceTrack(
         parameter=parameter,
@@ -202,8 +223,21 @@ def track_resonance(
         amplitudes=np.array([amplitude for _, amplitude in found]),
         solves=solves,
         converged=np.array([one is not None for one, _ in peaks]),
-        provenance={**versions(), "method": asdict(method)},
+        provenance={**versions(), "method": asdict(level)},
+        findings=findings,
     )
+
+
+def _enough_harmonics(level: HarmonicBalance, peaks: "list[_Peak]") -> tuple[HarmonicBalance, Truncation | None]:
+    """Return the method whose truncation errors at the hardest of the peaks are small, and the largest of them."""
+    unknowns = np.stack([one.solution.unknowns for one in peaks]) if peaks else np.zeros((0, 1, 1))
+    method, largest = level, None
+    for place in hardest(unknowns, np.ones(len(peaks), dtype=bool), 0.0):
+        better, found = enough_harmonics(ForcedLevel(peaks[place].problem, 0.0), [peaks[place].solution])
+        method = better if better.highest > method.highest else method
+        if found is not None and (largest is None or found.rank > largest.rank):
+            largest = found
+    return method, largest
 
 
 def _top(curve: FrequencyCurve, name: str, size: Amplitude) -> int:

@@ -79,7 +79,7 @@ def exponents(problem: Equations, solution: Solution, way: str = AUTOMATIC) -> E
     if not _touches(problem, solution):
         return Exponents(values)
     method = problem.method.refined()
-    if method is None or problem.lowered.structure.size * (2 * method.harmonics + 1) > LARGEST:
+    if method is None or problem.lowered.structure.size * (2 * method.highest + 1) > LARGEST:
         return Exponents(values, TRUNCATED)
     finer = problem.once(FINER, solution, lambda: _finer(Equations(problem.lowered, method), problem, solution))
     if not finer.size:

@@ -91,6 +91,11 @@ class VibrationSystem(Displayed):
         self.forces: list[HarmonicForce | StaticForce] = []
         self.elements: list[Element] = []
 
+    @property
+    def highest_harmonic(self) -> int:
+        """Highest harmonic in which a force acts; 1 without harmonic forces."""
+        return max([1, *(force.harmonic for force in self.forces if isinstance(force, HarmonicForce))])
+
     def add(self, part: Part) -> Part:
         """Add a force, a contact or a spring, and hand it back."""
         if isinstance(part, HarmonicForce | StaticForce):

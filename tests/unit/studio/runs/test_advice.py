@@ -139,9 +139,24 @@ CASES = [
     ("unknown-error", {}, "[propagate]\n", {}),
     (
         "few-harmonics",
-        {"harmonics": 3},
+        {"harmonics": 3, "error": 0.02},
         "[frequency_response]\n",
-        {"Keep 7 harmonics": ["[harmonic_balance]", "harmonics = 7"]},
+        {
+            "Keep 7 harmonics": ["[harmonic_balance]", "harmonics = 7"],
+            "Choose the harmonics by the truncation error": ["[harmonic_balance]", 'harmonics = "auto"'],
+        },
+    ),
+    (
+        "few-harmonics",
+        {"harmonics": 127, "error": 0.02},
+        '[harmonic_balance]\nharmonics = "auto"\n',
+        {"Allow 255 harmonics": ["most_harmonics = 255"]},
+    ),
+    (
+        "stability-near-fold",
+        {"harmonics": 3},
+        '[harmonic_balance]\nharmonics = "auto"\n',
+        {"Keep at least 7 harmonics": ["least_harmonics = 7"]},
     ),
     (
         "stability-near-fold",

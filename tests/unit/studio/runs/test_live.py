@@ -85,6 +85,16 @@ def test_a_long_path_keeps_a_short_curve(tmp_path):
     assert len(gaps) == 1
 
 
+def test_a_curve_that_is_followed_again_with_more_harmonics_begins_anew(tmp_path):
+    path = tmp_path / "events.jsonl"
+    point = {"event": "followed", "amplitude": 0.1, "dof": "m", "done": 0.1}
+    points = [{**point, "frequency": k, "harmonics": harmonics} for harmonics in (3, 7) for k in range(harmonics)]
+    path.write_text("".join(json.dumps(event) + "\n" for event in points))
+    live = Live(path)
+    live.advance()
+    assert [place for place, _ in live.followed] == list(range(7))
+
+
 def test_what_was_followed_is_drawn_with_its_last_point():
     figure = followed([(1.0, 0.1), (2.0, 0.4), (1.5, 0.5)], ("frequency (Hz)", "m.x (m)"))
     line, end = figure.data

@@ -3,6 +3,7 @@
 import numpy as np
 
 from dalembert.surrogate.leja import hierarchical, leja
+from dalembert.surrogate.powers_of_two import powers_of_two
 
 Term = tuple[int, ...]
 
@@ -132,7 +133,7 @@ class Growth:
                     if term[k] > 2 or (term[k] > 1 and sum(term) > term[k]):
                         size = np.maximum(size, SKIPPED * np.abs(self._surplus[_raised(term, k, -2)]))
                     sizes.append(size)
-            known = self._candidates[term] = np.prod(sizes, axis=0) ** (1 / len(sizes))
+            known = self._candidates[term] = _geometric_mean(np.array(sizes))
         return known
 
     def _nearby(self, term: Term) -> np.ndarray:
@@ -161,3 +162,13 @@ class Growth:
 
 def _raised(term: Term, direction: int, by: int) -> Term:
     return (*term[:direction], term[direction] + by, *term[direction + 1 :])
+
+
+def _geometric_mean(sizes: np.ndarray) -> np.ndarray:
+    """Geometric means of magnitudes (count, outputs), whose products may exceed the largest number."""
+    with np.errstate(over="ignore"):
+        product = np.prod(sizes, axis=0)
+    if np.all(np.isfinite(product)):
+        return product ** (1 / len(sizes))
+    powers = powers_of_two(sizes)
+    return np.ldexp(np.prod(np.ldexp(sizes, -powers), axis=0) ** (1 / len(sizes)), powers)

@@ -1,12 +1,13 @@
 """Sobol indices of a function from its Chebyshev surrogate, in closed form."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.surrogate.orthonormal import OrthonormalExpansion, Rule, orthonormal
+from dalembert.surrogate.powers_of_two import powers_of_two
 from dalembert.surrogate.surrogate import Surrogate
 
 NOTHING = 1e-12
@@ -38,7 +39,7 @@ class SobolIndices:
     Parameters
     ----------
     mean, variance : array, shape (outputs,)
-        Of a group, sums over its outputs.
+        Of a group, sums over its outputs; infinite above 1.8e308, where the indices still hold.
     first, total : array, shape (d, outputs)
         Var E[f | x_k]/Var f, and 1 − Var E[f | all but x_k]/Var f. NaN where the variance is zero.
     first_ends, total_ends : array, shape (2, d, outputs)
@@ -108,13 +109,22 @@ def sobol_indices(
     active = expansion.exponents > 0
     varying = np.asarray(active.any(axis=1))
     masks = [*(active & (active.sum(axis=1) == 1)[:, None]).T, *active.T]  # of the first-order, then the total indices
-    squares, mean = expansion.coefficients**2, expansion.coefficients[~varying].sum(axis=0)
-    squares[:, squares[varying].sum(axis=0) <= (NOTHING * mean) ** 2] = 0.0
-    summed = squares @ member
-    variance, parts = summed[varying].sum(axis=0), np.array([summed[mask].sum(axis=0) for mask in masks])
+    mean = expansion.coefficients[~varying].sum(axis=0)
     error = np.asarray(surrogate.error, dtype=float)
     if checks is not None:
         error = np.maximum(error, np.abs(checks.errors).max(axis=0))
+    # Indices do not change with the scale of a group. The squares of large outputs would overflow.
+    powers = powers_of_two(expansion.coefficients, error[None])
+    of_group = np.max(np.where(member > 0, powers[:, None], np.iinfo(int).min), axis=0, initial=np.iinfo(int).min)
+    scale = -of_group[number]
+    expansion = replace(expansion, coefficients=np.ldexp(expansion.coefficients, scale))
+    error = np.ldexp(error, scale)
+    if checks is not None:
+        checks = Checks(checks.eta, np.ldexp(checks.errors, scale))
+    squares = expansion.coefficients**2
+    squares[:, squares[varying].sum(axis=0) <= (NOTHING * np.ldexp(mean, scale)) ** 2] = 0.0
+    summed = squares @ member
+    variance, parts = summed[varying].sum(axis=0), np.array([summed[mask].sum(axis=0) for mask in masks])
     norm = np.sqrt(error**2 @ member)
     own, rest = _by_norm(parts, norm), _by_norm(np.maximum(variance - parts, 0.0), norm)
     if checks is not None:
@@ -123,7 +133,9 @@ def sobol_indices(
     ends = _ends(own, rest).reshape(2, 2, -1, len(variance))
     with np.errstate(invalid="ignore", divide="ignore"):
         first, total = (parts / variance).reshape(2, -1, len(variance))
-    return SobolIndices(mean @ member, variance, first, total, ends[:, 0], ends[:, 1])
+    with np.errstate(over="ignore"):  # infinite where it is no number of 64 bits
+        mean, variance = mean @ member, np.ldexp(variance, 2 * of_group)
+    return SobolIndices(mean, variance, first, total, ends[:, 0], ends[:, 1])
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,6 +6,7 @@ import numpy as np
 
 from dalembert.findings import Finding
 from dalembert.surrogate.gaps import Gaps, gaps
+from dalembert.surrogate.powers_of_two import powers_of_two
 from dalembert.surrogate.surrogate import Surrogate
 
 SIGNIFICANT = 0.1
@@ -53,9 +54,11 @@ def variation_lengths(surrogate: Surrogate) -> np.ndarray:
     """
     polynomial = surrogate.polynomial
     varying = polynomial.exponents.any(axis=1)
-    exponents, squares = polynomial.exponents[varying], polynomial.coefficients[varying] ** 2
+    exponents, coefficients = polynomial.exponents[varying], polynomial.coefficients[varying]
+    powers = powers_of_two(coefficients)  # the squares of large outputs would overflow
+    squares = np.ldexp(coefficients, -powers) ** 2
     total = squares.sum(axis=0)
-    matters = np.sqrt(total) > SIGNIFICANT * surrogate.scale / 2
+    matters = np.sqrt(total) > np.ldexp(SIGNIFICANT * surrogate.scale / 2, -powers)
     if not matters.any():
         return np.ones(len(polynomial.lower))
     degrees = np.sqrt((exponents**2).T @ squares[:, matters] / total[matters])

@@ -7,6 +7,7 @@ from dalembert.errors import InputError, SolveError
 from dalembert.findings import Finding
 from dalembert.forward import Executor, ForwardModel, findings_at, on_cluster, takes_executor
 from dalembert.forward.provenance import provenance
+from dalembert.surrogate.powers_of_two import powers_of_two
 from dalembert.uncertainty.events import Began, Ended, OnEvent
 from dalembert.uncertainty.inputs import Distributions, described, inputs_of
 from dalembert.uncertainty.runs import Runs
@@ -103,6 +104,8 @@ def screen(
         )
     effects = np.zeros((int(known.sum()), *runs.shape, len(inputs.box)))
     effects[..., free] = _effects(parts[known], values[known])
+    powers = powers_of_two(np.moveaxis(effects, -2, -1).reshape(-1, effects.shape[-2]))[:, None]  # of each channel
+    effects = np.ldexp(effects, -powers)  # the squares of large effects would overflow
     size = np.sqrt((effects**2).mean(axis=1))
     spread = effects.std(axis=0, ddof=1)
     whole, errors = size.mean(axis=0), size.std(axis=0, ddof=1) / np.sqrt(len(size))
@@ -113,12 +116,12 @@ def screen(
         box=inputs.box,
         distributions=inputs.texts,
         parameter_units=model.parameters.units(inputs.box.names),
-        mean=effects.mean(axis=0),
-        effects=np.abs(effects).mean(axis=0),
-        spread=spread,
-        whole_effects=whole,
-        whole_spread=np.sqrt((spread**2).mean(axis=0)),
-        errors=errors,
+        mean=np.ldexp(effects.mean(axis=0), powers),
+        effects=np.ldexp(np.abs(effects).mean(axis=0), powers),
+        spread=np.ldexp(spread, powers),
+        whole_effects=np.ldexp(whole, powers),
+        whole_spread=np.ldexp(np.sqrt((spread**2).mean(axis=0)), powers),
+        errors=np.ldexp(errors, powers),
         trajectories=len(effects),
         runs=runs.count,
         failures=tuple(runs.failures),

@@ -148,3 +148,26 @@ def test_it_is_stored_and_reported(found, tmp_path):
     for words in ("Global sensitivity", "Sobol indices", "first-order index", "gain"):
         assert words in text
     assert list(found.figures()) == ["indices-1", "shares-1", "indices-2", "shares-2"]
+
+
+def ratios(scale: float) -> list[np.ndarray]:
+    """Indices, lengths of variation and ratios of screened effects of a response with a scale."""
+    times = np.linspace(0.0, 1.0, 3)
+    model = da.PythonModel(
+        lambda a, b, c: scale * np.exp(-a * times) * (1 + 0.3 * b) + scale * b * c,
+        dict.fromkeys("abc", (0.1, 1.0)),
+        ["x"],
+        times,
+    )
+    found, screened = da.global_sensitivity(model), da.screen(model)
+    gaps = [value for finding in found.findings for name, value in finding.values.items() if "variation" in name]
+    effects = [screened.effects, screened.spread, screened.whole_effects, screened.whole_spread, screened.errors]
+    indices = [found.first, found.total, found.whole_first, found.whole_total]
+    return [*indices, np.array(gaps), *(np.asarray(one) / scale for one in effects)]
+
+
+@pytest.mark.parametrize("power", [500, 664, 1000])
+def test_indices_do_not_depend_on_the_scale_of_a_response(power):
+    """A power of two does not round, so the numbers are the same to the last bit; 2^664 is 8e199."""
+    for scaled, usual in zip(ratios(2.0**power), ratios(1.0), strict=True):
+        np.testing.assert_array_equal(scaled, usual)

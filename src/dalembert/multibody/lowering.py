@@ -104,6 +104,10 @@ class MechanismLowering(ABC):
         self._callbacks.append(force_callback(function, owner, self._failures, sizes))
         return len(self._callbacks) - 1
 
+    def coordinate(self, body: BaseBody) -> tuple[int, Number]:
+        """Number of the coordinate that a component needs, and its value as the bodies are placed."""
+        return self._first[body.name], self._coordinates[body.name][0]
+
     # -- placing --------------------------------------------------------------------------------------------------
 
     @abstractmethod

@@ -6,7 +6,6 @@ import numpy as np
 
 from dalembert.errors import ModelError
 from dalembert.multibody.components.body import BaseBody
-from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.points import Point
 from dalembert.multibody.components.spatial import markers
 from dalembert.multibody.components.spatial.body import Marker
@@ -57,10 +56,6 @@ class SpatialLowering(MechanismLowering):
             separation=stands[1][0] - stands[0][0],
             axes=(axes[0], axes[1]),
         )
-
-    def coordinate(self, body: BaseBody) -> tuple[int, Number]:
-        """Number of the coordinate of a joint, and its value as the bodies are placed."""
-        return self._first[body.name], self._coordinates[body.name][0]
 
     def _stand(self, side: Any, owner: str) -> Stand:
         """Position and axes of a side at the start."""

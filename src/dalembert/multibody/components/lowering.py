@@ -26,6 +26,11 @@ class Pair(NamedTuple):
     angles: tuple[Number, Number]
     relative: tuple[Number, Number]
 
+    @property
+    def unwrapped(self) -> list[int]:
+        """The integers of a component whose angle counts turns by itself."""
+        return [*self.integers[:2], 0]
+
 
 class Rows(Protocol):
     """Collects the rows of the kernels."""
@@ -55,6 +60,10 @@ class Rows(Protocol):
 
     def callback(self, function: Callable[..., Any], owner: str, sizes: Sizes) -> int:
         """Number of a force function of the user's."""
+        ...
+
+    def coordinate(self, body: Any) -> tuple[int, Number]:
+        """Number of the coordinate that a component needs, and its value as the bodies are placed."""
         ...
 
 

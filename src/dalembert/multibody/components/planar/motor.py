@@ -87,4 +87,6 @@ class Motor(MotorNumbers, Drive):
 
     def lower(self, lowering: Lowering) -> None:
         number = self._command(lowering)
-        self._add(lowering, f"motor {self.name!r}", [], [number], by_current=self.voltage is None)
+        pair = self._pair(lowering, f"motor {self.name!r}")
+        numbers, integers = self._law(lowering, by_current=self.voltage is None)
+        lowering.add(self.kind, pair.slots, [*pair.data, *numbers], [*pair.integers, *integers, number], self.name)

@@ -6,8 +6,7 @@ from typing import Any
 
 from dalembert.errors import ModelError
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.fields import Number
-from dalembert.multibody.components.lowering import Lowering
+from dalembert.multibody.components.lowering import Lowering, Pair
 from dalembert.multibody.components.motor_law import INTEGERS, NUMBERS, DriveNumbers, Turning, drive_properties
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.pairs import (
@@ -62,10 +61,8 @@ class Drive(DriveNumbers, Load):
     a: Side
     b: Side
 
-    def _add(
-        self, lowering: Lowering, owner: str, numbers: list[Number], integers: list[int], *, by_current: bool = False
-    ) -> None:
-        """Write the row, with the numbers and integers of the command."""
+    def _pair(self, lowering: Lowering, owner: str) -> Pair:
+        """The markers of both sides."""
         require_direction(owner, "a force, or a rigid body", self.a, self.b)
         pair = lowering.pair(self.a, self.b, self.name)
         if pair.integers[2] and self.armature_inertia != 0:
@@ -73,6 +70,4 @@ class Drive(DriveNumbers, Load):
                 f"{owner}: {self.a} or {self.b} is a node of a beam, which cannot carry an armature_inertia. Fix a "
                 "rigid body to the node, and give the motor that body"
             )
-        own, marks = self._law(lowering, by_current=by_current)
-        row = [*pair.data, *own, *numbers], [*pair.integers, *marks, *integers]
-        lowering.add(self.kind, pair.slots, *row, self.name)
+        return pair

@@ -24,10 +24,17 @@ NUMBERS = ("a_x", "a_y", "a_angle", "b_x", "b_y", "b_angle")
 INTEGERS = ("a_kind", "b_kind", "wraps")
 
 
-def pair_kind(name: str, numbers: tuple[str, ...] = (), integers: tuple[str, ...] = (), **declared: Any) -> Kind:
+def pair_kind(
+    name: str,
+    numbers: tuple[str, ...] = (),
+    integers: tuple[str, ...] = (),
+    *,
+    coordinates: int = COORDINATES,
+    **declared: Any,
+) -> Kind:
     """Kind of a component between two markers; ``numbers`` and ``integers`` are the columns that follow theirs."""
     numbers, integers = (*NUMBERS, *numbers), (*INTEGERS, *integers)
-    return Kind(name, coordinates=COORDINATES, numbers=numbers, integers=integers, **declared)
+    return Kind(name, coordinates=coordinates, numbers=numbers, integers=integers, **declared)
 
 
 @inlined

@@ -3,29 +3,71 @@
 __all__ = ["Servo"]
 
 from dataclasses import dataclass
+from typing import Any
 
 from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.lowering import Lowering
-from dalembert.multibody.components.motor_law import clipped
+from dalembert.multibody.components.motor_law import INTEGERS, NUMBERS, Turning, clipped, drive_properties
+from dalembert.multibody.components.planar.angle_coordinate import AngleCoordinate, counted_angle
 from dalembert.multibody.components.planar.motor_law import Drive, drive_kind
 from dalembert.multibody.components.planar.pairs import relative_angle, relative_spin
 from dalembert.multibody.components.signals import Course
-from dalembert.multibody.kernels.elementary import wrapped
+from dalembert.multibody.kernels.kind import Kind
+
+_COLUMNS = ("kp", "kd", "dead_band"), ("goal", "has_dead_band")
+
+
+@inlined
+def _voltage(angle, rate, p, m, inputs):
+    """Voltage of the position loop."""
+    error = inputs.signals[m.goal, 0] - angle
+    if m.has_dead_band == 1:
+        error -= clipped(error, p.dead_band)
+    return p.kp * error - p.kd * rate
 
 
 @inlined
 def _command(x, v, p, m, inputs):
-    """Voltage of the position loop."""
-    error = inputs.signals[m.goal, 0] - relative_angle(x, p, m)
-    error = wrapped(error) if m.wraps == 1 else error
-    if m.has_dead_band == 1:
-        error -= clipped(error, p.dead_band)
-    return p.kp * error - p.kd * relative_spin(x, v, m)
+    return _voltage(relative_angle(x, p, m), relative_spin(x, v, m), p, m, inputs)
 
 
-SERVO = drive_kind("servo", _command, ("kp", "kd", "dead_band"), ("goal", "has_dead_band"))
+SERVO = drive_kind("servo", _command, *_COLUMNS)
+
+
+@inlined
+def _counted_command(x, v, p, m, inputs):
+    return _voltage(x[0], v[0], p, m, inputs)
+
+
+@inlined
+def _counted_angle(x, p, m):
+    return x[0]
+
+
+@inlined
+def _counted_rate(x, v, p, m):
+    return v[0]
+
+
+@inlined
+def _counted_acceleration(x, v, a, p, m):
+    return a[0]
+
+
+@inlined
+def _exert(x, p, m, torque, r):
+    r[0] += torque
+
+
+_TURNING = Turning(_counted_angle, _counted_rate, _counted_acceleration, _exert)
+_PROPERTIES: dict[str, Any] = drive_properties(_counted_command, _TURNING) | {
+    "holds": False
+}  # the tie of the angle does
+COUNTED_SERVO = Kind(
+    "counted_servo", coordinates=1, numbers=(*NUMBERS, *_COLUMNS[0]), integers=(*INTEGERS, *_COLUMNS[1]), **_PROPERTIES
+)
 
 
 @dataclass(frozen=True)
@@ -59,7 +101,8 @@ class Servo(Drive):
 
     Notes
     -----
-    Outputs are those of `Motor`. The loop is continuous in time.
+    Outputs are those of `Motor`. The loop is continuous in time. The angle counts whole turns, also of nodes of beams;
+    at the start it is the one that the bodies state.
 
     Examples
     --------
@@ -90,9 +133,20 @@ class Servo(Drive):
                 raise InputError(f"{owner}: {name} is missing; give it")
         self._check(owner)
 
+    @property
+    def coordinates(self) -> tuple[AngleCoordinate, ...]:
+        return counted_angle(self.name, self.a, self.b)
+
     def lower(self, lowering: Lowering) -> None:
         assert self.goal is not None
         assert self.kp is not None
         band = 1.0 if self.dead_band is None else self.dead_band
-        marks = [lowering.signal(self.goal), int(self.dead_band is not None)]
-        self._add(lowering, f"servo {self.name!r}", [self.kp, self.kd, band], marks)
+        pair = self._pair(lowering, f"servo {self.name!r}")
+        numbers, integers = self._law(lowering)
+        numbers += [self.kp, self.kd, band]
+        integers += [lowering.signal(self.goal), int(self.dead_band is not None)]
+        if self.coordinates:
+            index, _ = lowering.coordinate(self.coordinates[0])
+            lowering.add(COUNTED_SERVO, [index], numbers, integers, self.name)
+        else:
+            lowering.add(SERVO, pair.slots, [*pair.data, *numbers], [*pair.integers, *integers], self.name)

@@ -11,14 +11,6 @@ from dalembert.multibody.kernels.kind import Kind
 def spring_kind(name: str, stretch: Callable[..., Any], residual: Callable[..., Any], **properties: Any) -> Kind:
     """Kind of a spring, from ``stretch(x, v, p, m)``, which returns elongation and rate, and its residual."""
     energy, observe = law_functions(stretch)
-    return pair_kind(
-        name,
-        NUMBERS,
-        residual=residual,
-        energy=energy,
-        outputs=(("elongation", "m"), ("force", "N")),
-        observe=observe,
-        dissipates="damping",
-        holds=True,
-        **properties,
-    )
+    law: dict[str, Any] = {"residual": residual, "energy": energy, "observe": observe}
+    common: dict[str, Any] = {"outputs": (("elongation", "m"), ("force", "N")), "dissipates": "damping", "holds": True}
+    return pair_kind(name, NUMBERS, **common | law | properties)

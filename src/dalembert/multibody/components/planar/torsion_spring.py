@@ -4,22 +4,26 @@ __all__ = ["TorsionSpring"]
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.lowering import Lowering
+from dalembert.multibody.components.planar.angle_coordinate import AngleCoordinate, counted_angle
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.pairs import relative_angle, relative_spin, twist_pair
 from dalembert.multibody.components.planar.spring_law import spring_kind
 from dalembert.multibody.components.points import Side, require_direction
-from dalembert.multibody.components.spring_law import tension
-from dalembert.multibody.kernels.elementary import wrapped
+from dalembert.multibody.components.spring_law import NUMBERS, law_functions, tension
+from dalembert.multibody.kernels.kind import Kind
+
+_OUTPUTS = (("elongation", "rad"), ("force", "N*m"))
 
 
 @inlined
 def _stretch(x, v, p, m):
     """Twist and its rate."""
-    angle = relative_angle(x, p, m) - p.rest
-    return wrapped(angle) if m.wraps == 1 else angle, relative_spin(x, v, m)
+    return relative_angle(x, p, m) - p.rest, relative_spin(x, v, m)
 
 
 @inlined
@@ -29,12 +33,34 @@ def _residual(x, v, a, p, m, inputs, r):
     twist_pair(x, m, tension(twisted, rate, p), r)
 
 
-TORSION_SPRING = spring_kind("torsion_spring", _stretch, _residual)
+TORSION_SPRING = spring_kind("torsion_spring", _stretch, _residual, outputs=_OUTPUTS)
+
+
+@inlined
+def _counted_stretch(x, v, p, m):
+    """Counted angle less the free one, and its rate."""
+    return x[0] - p.rest, v[0]
+
+
+@inlined
+def _counted_residual(x, v, a, p, m, inputs, r):
+    twisted, rate = _counted_stretch(x, v, p, m)
+    r[0] += tension(twisted, rate, p)
+
+
+_energy, _observe = law_functions(_counted_stretch)
+COUNTED_TORSION_SPRING = Kind(
+    "counted_torsion_spring", coordinates=1, numbers=NUMBERS, residual=_counted_residual, energy=_energy,
+    outputs=_OUTPUTS, observe=_observe, dissipates="damping",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
 class TorsionSpring(Load):
     """A torsional spring with damper between the directions of two points.
+
+    Torque = stiffness x twist + cubic x twist^3 + damping x rate of twist. The twist, the channel ``elongation``, is
+    the angle of b relative to a less the free angle. It counts whole turns, also of nodes of beams.
 
     Parameters
     ----------
@@ -45,9 +71,12 @@ class TorsionSpring(Load):
     damping : float
         N m s/rad.
     free_angle : float, optional
-        Of b against a, rad; the first one if not given.
+        Angle of b relative to a without torque, rad; the initial one if not given.
     cubic : float
         N m/rad^3.
+    near : float, optional
+        The angle at the start is the one nearest to this, rad; so a spring can start with whole turns. If not given,
+        the angle of rigid bodies is the one that they state, and the twist of nodes of beams starts within half a turn.
     """
 
     a: Side
@@ -56,12 +85,33 @@ class TorsionSpring(Load):
     damping: Number = number("N*m*s/rad", 0.0)
     free_angle: Number | None = number("rad", None)
     cubic: Number = number("N*m/rad**3", 0.0)
+    near: float | None = number("rad", None)
 
     kind = TORSION_SPRING
 
+    @property
+    def coordinates(self) -> tuple[AngleCoordinate, ...]:
+        return counted_angle(self.name, self.a, self.b)
+
     def lower(self, lowering: Lowering) -> None:
         require_direction(f"torsion spring {self.name!r}", "a spring, or a rigid body", self.a, self.b)
-        pair = lowering.pair(self.a, self.b, self.name)
-        free = pair.rest_angle if self.free_angle is None else self.free_angle
-        numbers = [*pair.data, free, self.stiffness, self.damping, self.cubic]
-        lowering.add(TORSION_SPRING, pair.slots, numbers, pair.integers, self.name)
+        pair, law = lowering.pair(self.a, self.b, self.name), [self.stiffness, self.damping, self.cubic]
+        counted = self.coordinates
+        rest = self._rest(pair.rest_angle, within=bool(counted))
+        if counted:
+            index, _ = lowering.coordinate(counted[0])
+            lowering.add(COUNTED_TORSION_SPRING, [index], [rest, *law], name=self.name)
+        else:
+            lowering.add(TORSION_SPRING, pair.slots, [*pair.data, rest, *law], pair.integers, self.name)
+
+    def _rest(self, angle: Number, *, within: bool) -> Number:
+        """Angle without torque, moved by the whole turns between the angle that bodies state and the one that is meant.
+
+        ``within``: the twist starts within half a turn.
+        """
+        if self.free_angle is None:
+            return angle
+        near = self.near if self.near is not None else float(np.real(self.free_angle)) if within else None
+        if near is None:
+            return self.free_angle
+        return self.free_angle - 2.0 * np.pi * np.round((near - np.real(angle)) / (2.0 * np.pi))

@@ -74,8 +74,9 @@ class UserForce(Load):
     at : Point
     function : callable
         ``function(t, at, against) -> (fx, fy, torque)`` in N and N m; ``at`` and ``against`` are arrays
-        (x, y, vx, vy, angle, angular velocity), in the fixed axes. Under ``numba.njit`` it runs compiled; a plain
-        Python function is called at every iteration, which is some hundred times slower.
+        (x, y, vx, vy, angle, angular velocity), in the fixed axes. The angle of a rigid body counts whole turns; that
+        of a node of a beam is within half a turn, so use its sine and cosine. Under ``numba.njit`` the function runs
+        compiled; a plain Python function is called at every iteration, which is some hundred times slower.
     against : Point, optional
     """
 

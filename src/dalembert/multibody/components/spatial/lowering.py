@@ -56,7 +56,3 @@ class SpatialLowering(Rows, Protocol):
         ``turned``: rotation matrices that turn the axes of both markers into those of the joint.
         """
         ...
-
-    def coordinate(self, body: Any) -> tuple[int, Number]:
-        """Number of the coordinate of a joint, and its value as the bodies are placed."""
-        ...

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from dalembert.inverse.correlation.autoregression import Autoregression, moments
+from dalembert.inverse.correlation.balanced import balanced
 from dalembert.inverse.correlation.correlated import CorrelatedResiduals, NoiseProcess
 from dalembert.inverse.correlation.ornstein_uhlenbeck import OrnsteinUhlenbeck, ornstein_uhlenbeck
 from dalembert.inverse.correlation.series import Series, series_of
@@ -67,13 +68,15 @@ def correlation(
     number = len(scale)
     basis = np.zeros((len(residual), number)) if slopes is None else left_vectors(slopes)
     series = list(series_of(problem))
-    found = correlated_series(series, residual, basis, WEAK)
+    equal = known or problem.loss is not None
+    tested = (residual, basis) if equal else balanced(series, residual, basis)
+    found = correlated_series(series, *tested, WEAK)
     if not found:
         return None
     fitted = fitted_processes(list(found), residual, basis, variance)
     processes = tuple(
         replace(process, detected=process.p_value < LEVEL / len(series))
-        for process in summaries(found, fitted, response, residual, basis)
+        for process in summaries(found, fitted, response, *tested)
     )
     if slopes is None:
         nothing = unknown_estimate(number)
@@ -115,12 +118,17 @@ def fitted_processes(
     return list(found.items())
 
 
-def noise_along(processes: Sequence[tuple[Series, Process]], basis: np.ndarray, variance: float) -> np.ndarray:
-    """Return BᵀΣB, (columns, columns), for a basis B (values, columns): ``variance`` where there is no process."""
+def noise_along(
+    processes: Sequence[tuple[Series, Process]], basis: np.ndarray, variance: float | np.ndarray
+) -> np.ndarray:
+    """Return BᵀΣB, (columns, columns), for a basis B (values, columns).
+
+    ``variance``, a number or (values,), is that of values without a process.
+    """
     others = np.ones(len(basis), dtype=bool)
     for own, _ in processes:
         others[own.rows] = False
-    total = variance * basis[others].T @ basis[others]
+    total = np.broadcast_to(variance, len(basis))[others] * basis[others].T @ basis[others]
     return total + sum(process.product(own, basis[own.rows]) for own, process in processes)
 
 

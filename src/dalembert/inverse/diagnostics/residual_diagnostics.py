@@ -7,6 +7,7 @@ import numpy as np
 from scipy.special import ndtr, stdtr
 
 from dalembert.findings import Finding
+from dalembert.inverse.correlation.balanced import balanced
 from dalembert.inverse.correlation.correlation import SMALL
 from dalembert.inverse.correlation.series import Series, series_of_record
 from dalembert.inverse.correlation.whiteness import LEAST, p_value
@@ -65,28 +66,33 @@ def residual_diagnostics(fit: "Fit") -> ResidualDiagnostics:
     """
     residual = np.where(fit.weights > 0, np.sqrt(fit.weights) * np.nan_to_num(fit.residuals), 0.0).ravel()
     slopes, free = _slopes(fit), off_bounds(fit.parameters, fit.values)
+    tested, everything = _tested(fit), list(series_of_record(fit.data, fit.weights, fit.parts))
     if fit.noise is not None:
-        series = list(series_of_record(fit.data, fit.weights, fit.parts))
         residual = np.nan_to_num(fit.noise.whitened).ravel()
-        slopes = None if slopes is None else fit.noise.whiten(series, slopes)
+        slopes = None if slopes is None else fit.noise.whiten(everything, slopes)
     robust = "loss" in fit.provenance
     variance = _variance(residual[fit.weights.ravel() > 0]) if robust and not _given(fit) else fit.residual_variance
     freedom = None if fit.noise_is_known or robust else float(fit.degrees_of_freedom)
     known = _unknown(fit) if slopes is None else influence(slopes, residual, free, variance, freedom)
     basis = np.zeros((len(residual), 0)) if slopes is None else left_vectors(slopes[:, free])[: len(residual)]
-    tested = _tested(fit)
+    left, used = residual, known.leverage
+    if not (fit.noise_is_known or fit.noise is not None or robust or slopes is None or len(everything) < 2):
+        left, basis = balanced(everything, residual, basis)
+        used = np.sum(basis**2, axis=1)
     correlated = {} if fit.correlated is None else {item.channel: item for item in fit.correlated.detected}
     found = []
-    for own in series_of_record(fit.data, fit.weights, fit.parts):
-        made = _standardised(fit, own, residual, known, robust=robust, correlated=own.name in correlated)
+    for own in everything:
+        made = _standardised(
+            fit, own, left[own.rows], used[own.rows], known, robust=robust, correlated=own.name in correlated
+        )
         judged = tested and len(own.rows) >= LEAST and not (fit.noise_is_known and made.deviation**2 < SMALL)
-        tests = _tests(made, residual, basis) if judged else {}
+        tests = _tests(made, left, basis) if judged else {}
         found.append(replace(made, p_values=tests))
     outliers = _outliers(fit, found, robust=robust) if tested else ()
     plain = fit.noise is None and not robust and fit.nodes is None
     findings = diagnostic_findings(fit.parameters.names, found, outliers, robust=robust, plain=plain) if tested else ()
     judged = [one for one in found if one.p_values]
-    pairs = correlated_pairs(judged, residual, basis, fit.weights.shape[1], correlated, LEVEL)
+    pairs = correlated_pairs(judged, left, basis, fit.weights.shape[1], correlated, LEVEL)
     grown = np.zeros(0)
     if pairs and slopes is not None:
         sizes = np.ones(len(residual))
@@ -138,13 +144,19 @@ def _variance(values: np.ndarray) -> float:
 
 
 def _standardised(
-    fit: "Fit", own: Series, residual: np.ndarray, known: Influence, *, robust: bool, correlated: bool
+    fit: "Fit",
+    own: Series,
+    values: np.ndarray,
+    leverage: np.ndarray,
+    known: Influence,
+    *,
+    robust: bool,
+    correlated: bool,
 ) -> SeriesResiduals:
-    """Residuals of one series, without tests.
+    """Residuals of one series, without tests, from weighted ones and their leverage, both (values,).
 
     Without a Jacobian each value has an equal share of the parameters.
     """
-    values, leverage = residual[own.rows], known.leverage[own.rows]
     share = min(1.0, len(fit.values) / max(1, np.count_nonzero(fit.weights)))
     used = np.where(np.isnan(leverage), share, leverage)
     freedom = len(values) - float(np.sum(used))
@@ -164,7 +176,7 @@ def _standardised(
         residuals=fit.residuals.ravel()[own.rows],
         standardised=standardised,
         deleted=deleted,
-        leverage=leverage,
+        leverage=known.leverage[own.rows],
         distance=known.distance[own.rows],
         changes=known.changes[own.rows],
         deviation=float(np.sqrt(variance)),

@@ -95,9 +95,10 @@ class TorquePrediction(EndedResult):
 
     @property
     def most(self) -> float:
-        """Ratio that noise alone exceeds in 0.1 % of records."""
+        """Ratio that noise alone exceeds at any joint in 0.1 % of records."""
         count = len(self.unseen_times)
-        return float(np.sqrt(chdtri(count, CERTAIN) / count)) if count else np.nan
+        level = CERTAIN / max(1, len(self.inertias.joints))
+        return float(np.sqrt(chdtri(count, level) / count)) if count else np.nan
 
     def _told(self) -> list[Finding]:
         if not len(self.unseen_times):

@@ -120,7 +120,8 @@ def _estimated(residuals: Residuals, name: str, rate: np.ndarray) -> _Estimated 
     delay = float(column @ residuals.values) / size
     left, gain = residuals.without(column, delay), delay**2 * size
     share = gain / float(np.sum(residuals.values[rate != 0] ** 2))
-    if not gain > SIGNIFICANT**2 * left.variance:  # independent residuals have the least deviation
+    least = float(left.variances @ column**2) / size  # independent residuals have the least deviation
+    if not gain > SIGNIFICANT**2 * least:
         return _Estimated(SuspectDelay(name, delay, np.nan, share), left, gain, accepted=False)
     deviation = float(np.sqrt(left.spread(column[:, None])[0, 0])) / size
     white = not any(np.any(rate[own.rows]) for own in left.correlated)

@@ -140,7 +140,7 @@ def _spread(residuals: Residuals, columns: np.ndarray) -> np.ndarray:
     for own in residuals.series:
         rows, process = columns[own.rows], fitted.get(own)
         if process is None:
-            total += residuals.variance * rows.T @ rows
+            total += residuals.variances[own.rows] * rows.T @ rows
         elif residuals.processes[own.name].systematic:
             total += residuals.noise(own) ** 2 * rows.T @ rows
         else:

@@ -7,6 +7,7 @@ from typing import Self
 
 import numpy as np
 
+from dalembert.inverse.correlation.balanced import balanced, noise_of
 from dalembert.inverse.correlation.correlated import NoiseProcess
 from dalembert.inverse.correlation.correlation import (
     Process,
@@ -83,9 +84,23 @@ class Residuals:
         return max(own, 1.0) if self.known else own
 
     @cached_property
+    def variances(self) -> np.ndarray:
+        """Variance of each weighted residual (values,): that of its series where the noise is not known."""
+        if self.known or self.problem.loss is not None or len(self.series) < 2:
+            return np.full(len(self.values), self.variance)
+        return noise_of(self.series, *self.tested) ** 2
+
+    @cached_property
+    def tested(self) -> tuple[np.ndarray, np.ndarray]:
+        """Residuals and basis that tests allow for: balanced where the noise of the series may differ."""
+        if self.known or self.problem.loss is not None:
+            return self.values, self.basis
+        return balanced(self.series, self.values, self.basis)
+
+    @cached_property
     def correlated(self) -> Mapping[Series, float]:
         """Series that are not white noise, with their probabilities to be so."""
-        return correlated_series(self.series, self.values, self.basis)
+        return correlated_series(self.series, *self.tested)
 
     @cached_property
     def fitted(self) -> list[tuple[Series, Process]]:
@@ -95,7 +110,7 @@ class Residuals:
     @cached_property
     def processes(self) -> dict[str, NoiseProcess]:
         """What is known of these processes, by the series' name."""
-        found = summaries(self.correlated, self.fitted, self.at.response, self.values, self.basis)
+        found = summaries(self.correlated, self.fitted, self.at.response, *self.tested)
         return {item.channel: item for item in found}
 
     def noise(self, own: Series) -> float:
@@ -115,7 +130,7 @@ class Residuals:
 
         Correlated series count with the process fitted to their residuals.
         """
-        return noise_along(self.fitted, columns, self.variance)
+        return noise_along(self.fitted, columns, self.variances)
 
     def without(self, column: np.ndarray, amount: float) -> "Residuals":
         """Return the residuals less ``amount`` of a column (values,) that is orthogonal to the basis."""

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 import numpy as np
+from scipy.special import ndtr, ndtri
 
 from dalembert.findings import Finding
 from dalembert.inverse.misfit.residuals import off_bounds
@@ -11,7 +12,10 @@ from dalembert.parameters import Parameters
 from dalembert.priors import SquarePrior
 
 CONFLICT = 3.0
-"""Standard deviations between data and prior from which they contradict each other: 0.3 % by chance."""
+"""Standard deviations between data and a single prior from which they contradict each other: 0.3 % by chance.
+
+Several priors share this probability.
+"""
 
 SEEN, BLIND = 1e-10, 1e-3
 """Part of the largest information that the data see, and of a parameter that may lie in directions they do not see."""
@@ -46,6 +50,8 @@ def prior_conflicts(
     covariance = rows / known[seen] @ rows.T
     blind = np.sqrt(np.sum(directions[:, ~seen] ** 2, axis=1))
     step = covariance @ gradient
+    number = sum(isinstance(item.distribution, SquarePrior) for item in parameters)
+    limit = CONFLICT if number < 2 else -float(ndtri(ndtr(-CONFLICT) / number))
     for k, item in enumerate(parameters):
         prior = item.distribution
         if not isinstance(prior, SquarePrior) or blind[k] > BLIND:
@@ -53,7 +59,7 @@ def prior_conflicts(
         rate = float(prior.residual_slope(values[k])) * unit[k]
         residual = float(prior.residual(values[k])) + rate * step[k]
         apart = abs(residual) / np.sqrt(1 + rate**2 * covariance[k, k])
-        if apart > CONFLICT:
+        if apart > limit:
             yield Finding(
                 "prior-conflict",
                 "warning",

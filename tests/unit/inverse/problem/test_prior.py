@@ -91,6 +91,20 @@ def test_a_narrow_prior_that_contradicts_the_data_is_named_by_a_fit():
     assert found.values["deviations"] == pytest.approx((10 - estimate) / np.hypot(0.01, deviation), rel=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("number", "apart", "conflict"), [(1, 3.1, True), (1, 2.9, False), (10, 3.1, False), (10, 4.0, True)]
+)
+def test_priors_share_the_probability_of_a_false_alarm(number: int, apart: float, conflict: bool) -> None:
+    """Priors and data of equal deviation: a single prior conflicts from 3 deviations on, one of ten from 3.64 on."""
+    times = np.arange(float(number))
+    priors = {f"p{k}": Parameter(f"p{k}", -9.0, 9.0, start=0.0, prior=Normal(0.0, 0.1)) for k in range(number)}
+    model = PythonModel(lambda **values: np.array(list(values.values())), priors, ["x"], times)
+    data = np.where(times == 0, apart * np.hypot(0.1, 0.1), 0.0)
+    fit = identify(model, Measurements.of(times, {"x": data}, 0.1), starts=1)
+    found = [item.values for item in fit.conclusions if item.code == "prior-conflict"]
+    assert found == ([{"parameter": "p0", "deviations": pytest.approx(apart, rel=1e-6)}] if conflict else [])
+
+
 def test_the_misfit_of_a_summary_counts_the_values_that_were_fitted():
     times = np.linspace(0.0, 1.0, 50)
     model = da.PythonModel(lambda slope: slope * times, {"slope": (0.1, 20.0)}, ["x"], times)

@@ -23,6 +23,7 @@ from free_oscillations import NOISE, TRUTH, oscillation, oscillator, recorded, r
 from free_oscillations import TIMES as OSCILLATING
 from frequency_cases import FREQUENCY_CASES
 from inertial_cases import INERTIAL_CASES
+from mistake_cases import MISTAKE_CASES
 from posterior_cases import POSTERIOR_CASES
 from regularised_cases import REGULARISED_CASES
 from report_case import Case
@@ -1096,6 +1097,7 @@ CASES: dict[str, Case] = {
     ),
     **FREQUENCY_CASES,
     **INERTIAL_CASES,
+    **MISTAKE_CASES,
     **POSTERIOR_CASES,
     **SENSITIVITY_CASES,
     **REGULARISED_CASES,

@@ -29,6 +29,7 @@ SOURCES = [
     "inverse/likelihood/findings.py",
     *(f"inverse/fit/{name}.py" for name in ("integration", "outcome", "with_noise")),
     *(f"inverse/experiments/{name}.py" for name in ("coverage", "explained", "suspect_units", "validation")),
+    *(f"inverse/mistakes/{path.name}" for path in sorted((SOURCE / "inverse" / "mistakes").glob("*.py"))),
     *(f"inverse/misfit/{name}.py" for name in ("delays", "halves", "model_misfit")),
     *(f"inverse/bands/{name}.py" for name in ("band_fit", "outcome")),
     *(f"inverse/posterior/{name}.py" for name in ("conclusions", "convergence")),

@@ -9,7 +9,7 @@ from dalembert.errors import counted, listed
 from dalembert.findings import Finding
 from dalembert.inverse.correlation.correlation import SLIGHT
 from dalembert.inverse.diagnostics.channel_pairs import ChannelPair
-from dalembert.inverse.diagnostics.noise_tests import rank_correlation, runs
+from dalembert.inverse.diagnostics.noise_tests import runs
 from dalembert.inverse.diagnostics.series_residuals import SeriesResiduals
 
 LEVEL = 0.001
@@ -165,14 +165,12 @@ def _of_period(one: SeriesResiduals) -> Finding:
 
 
 def _of_size(one: SeriesResiduals, test: str, *, plain: bool) -> Finding:
-    there = np.isfinite(one.standardised)
     over_response = test == "size over response"
-    along = np.abs(one.response) if over_response else one.series.along
-    correlation, probability = rank_correlation(np.abs(one.standardised[there]), along[there])
+    correlation, probability = one.growth(np.abs(one.response) if over_response else one.series.along)
     what = "the size of the response" if over_response else "the coordinate"
     how = "grow" if correlation > 0 else "shrink"
     values = {"channel": one.name, "over": what, "correlation": correlation, "p_value": probability}
-    message = f"The residuals of {one.name!r} {how} with {what} (rank correlation {correlation:.2f})."
+    message = f"The residuals of {one.name!r} {how} with {what} (correlation of ranks {correlation:.2f})."
     advice = "Weight the samples by their noise: the standard deviations assume that it is constant in a channel."
     if plain and over_response and correlation > 0:
         values["noise"] = PROPOSED

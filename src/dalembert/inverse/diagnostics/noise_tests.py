@@ -1,7 +1,10 @@
 """Tests of independent residuals: runs of signs, normality, and growth with another quantity."""
 
 import numpy as np
-from scipy.special import log_ndtr, ndtr, stdtr  # scipy.stats takes long to load
+from scipy.special import log_ndtr, ndtr, ndtri, stdtr  # scipy.stats takes long to load
+
+TINY = 1e-12
+"""Product of standard deviations of scores and ranks that is rounding of constant ones."""
 
 FEW = 10
 """Fewest positive and negative values of the test of runs."""
@@ -68,24 +71,31 @@ def normality(values: np.ndarray) -> float:
     return float(np.exp(1.2937 - 5.709 * size + 0.0186 * size**2)) if size < 13 else 0.0
 
 
-def rank_correlation(first: np.ndarray, second: np.ndarray) -> tuple[float, float]:
-    """Return Spearman's rank correlation of two series (values,), and the probability of one as large by chance.
+def growth(sizes: np.ndarray, quantity: np.ndarray) -> tuple[float, float]:
+    """Return the correlation of sizes with the ranks of a quantity (values,), and the probability of one as large.
 
     0 and 1 where one of them is constant.
 
-    Source: M. G. Kendall, Rank Correlation Methods (1970).
+    Notes
+    -----
+    The sizes are replaced by those that their ranks have among absolute values of normal noise: Φ⁻¹((1 + u)/2) with
+    u = rank/(n + 1). So the level does not depend on the distribution, and more is seen than with ranks of the sizes
+    (Spearman): of noise that grows from 1 to 2.5 over 200 samples 83 % in place of 67 % at a level of 0.0005.
+
+    Source: J. Hájek, Z. Šidák, Theory of Rank Tests (1967), for linear rank statistics.
 
     Examples
     --------
-    >>> correlation, probability = rank_correlation(np.arange(20.0), np.arange(20.0) ** 3)
-    >>> round(correlation, 12), probability < 1e-9
-    (1.0, True)
+    >>> correlation, probability = growth(np.arange(20.0) ** 3, np.arange(20.0))
+    >>> round(correlation, 2), probability < 1e-9
+    (0.97, True)
     """
-    ranks = [_ranks(own) - (len(own) + 1) / 2 for own in (first, second)]
-    size = np.sqrt(np.prod([own @ own for own in ranks]))
-    if size == 0:
+    scores = ndtri((1 + _ranks(sizes) / (len(sizes) + 1)) / 2)
+    first, second = scores - np.mean(scores), _ranks(quantity) - (len(quantity) + 1) / 2
+    size = np.sqrt((first @ first) * (second @ second))
+    if not size > TINY * len(first) ** 2:
         return 0.0, 1.0
-    found, freedom = float(ranks[0] @ ranks[1] / size), len(first) - 2
+    found, freedom = float(first @ second / size), len(first) - 2
     root = np.sqrt(max(1 - found**2, np.finfo(float).tiny))
     return found, float(2 * stdtr(freedom, -abs(found) * np.sqrt(freedom) / root))
 

@@ -8,13 +8,14 @@ from scipy.special import ndtr, stdtr
 
 from dalembert.findings import Finding
 from dalembert.inverse.correlation.balanced import balanced
+from dalembert.inverse.correlation.correlated import NoiseProcess
 from dalembert.inverse.correlation.correlation import SMALL
 from dalembert.inverse.correlation.series import Series, series_of_record
 from dalembert.inverse.correlation.whiteness import LEAST, p_value
 from dalembert.inverse.diagnostics.channel_pairs import correlated_pairs, factors
 from dalembert.inverse.diagnostics.findings import LEVEL, Outlier, diagnostic_findings, pair_findings
 from dalembert.inverse.diagnostics.influence import ALONE, Influence, influence
-from dalembert.inverse.diagnostics.noise_tests import normality, rank_correlation, runs
+from dalembert.inverse.diagnostics.noise_tests import normality, runs
 from dalembert.inverse.diagnostics.series_residuals import SeriesResiduals
 from dalembert.inverse.least_squares.estimate import left_vectors
 from dalembert.inverse.misfit.residuals import off_bounds
@@ -83,7 +84,7 @@ def residual_diagnostics(fit: "Fit") -> ResidualDiagnostics:
     found = []
     for own in everything:
         made = _standardised(
-            fit, own, left[own.rows], used[own.rows], known, robust=robust, correlated=own.name in correlated
+            fit, own, left[own.rows], used[own.rows], known, robust=robust, process=correlated.get(own.name)
         )
         judged = tested and len(own.rows) >= LEAST and not (fit.noise_is_known and made.deviation**2 < SMALL)
         tests = _tests(made, left, basis) if judged else {}
@@ -151,7 +152,7 @@ def _standardised(
     known: Influence,
     *,
     robust: bool,
-    correlated: bool,
+    process: NoiseProcess | None,
 ) -> SeriesResiduals:
     """Residuals of one series, without tests, from weighted ones and their leverage, both (values,).
 
@@ -180,13 +181,27 @@ def _standardised(
         distance=known.distance[own.rows],
         changes=known.changes[own.rows],
         deviation=float(np.sqrt(variance)),
-        correlated=correlated,
+        correlated=process is not None,
+        memory=0.0 if process is None else _memory(process),
         p_values={},
     )
 
 
+FAINT = 0.3
+"""Autocorrelation of neighbours up to which that of their sizes, nearly its square, does not matter to the tests."""
+
+
+def _memory(process: NoiseProcess) -> float:
+    """Autocorrelation of neighbours by which residuals are whitened; NaN where that leaves no independent ones."""
+    white = process.first_order or abs(process.first) < FAINT
+    return process.first if white and not process.systematic else np.nan
+
+
 def _tests(made: SeriesResiduals, residual: np.ndarray, basis: np.ndarray) -> dict[str, float]:
-    """Probabilities of the tests; correlated residuals are not tested for what needs independence."""
+    """Probabilities of the tests; correlated residuals are not tested for what needs independence.
+
+    Their size is tested where they are noise: noise that grows is taken for correlated more often than others.
+    """
     own, values = made.series, made.standardised
     found = {"autocorrelation": p_value(own, residual[own.rows], basis[own.rows])}
     there = np.isfinite(values)
@@ -194,15 +209,15 @@ def _tests(made: SeriesResiduals, residual: np.ndarray, basis: np.ndarray) -> di
         return found
     if own.grid is not None:
         found["period"] = made.periodic_part(float(np.sum(basis[own.rows] ** 2)))[0]
+    if np.isfinite(made.memory):
+        found["size over response"] = made.growth(np.abs(made.response))[1]
+        found["size over coordinate"] = made.growth(own.along)[1]
     if made.correlated:
         return found
     kept = values[there]
     usual = kept[np.abs(made.deleted[there]) < OUTSIDE]
     found["runs"] = runs(kept)[2]
     found["normality"] = normality(usual) if len(usual) >= LEAST else 1.0
-    size = np.abs(kept)
-    found["size over response"] = rank_correlation(size, np.abs(made.response[there]))[1]
-    found["size over coordinate"] = rank_correlation(size, own.along[there])[1]
     return found
 
 

@@ -8,6 +8,7 @@ from scipy.special import ndtri
 
 from dalembert.inverse.correlation.series import Series
 from dalembert.inverse.correlation.whiteness import lagged, on_grid, p_value_of_period
+from dalembert.inverse.diagnostics.noise_tests import growth
 
 LAGS = 40
 """Most lags of an autocorrelation."""
@@ -28,7 +29,8 @@ class SeriesResiduals:
         Computed values R, and R − data, in the unit of the channel.
     standardised : array, shape (values,)
         Residual over its standard deviation s √(1 − h), with the deviation s of the channel from its residuals and the
-        leverage h. NaN where h = 1.
+        leverage h. NaN where h = 1. If the noise of several channels is not known, the residuals are those of a fit
+        that weights each channel by its noise.
     deleted : array, shape (values,)
         The same with the deviation from all other values of the channel (externally studentised).
     leverage, distance : array, shape (values,)
@@ -38,7 +40,10 @@ class SeriesResiduals:
     deviation : float
         Standard deviation s of a weighted residual.
     correlated : bool
-        Whether the residuals are correlated, so that only their autocorrelation and a periodic part are tested.
+        Whether the residuals are correlated, so that only their autocorrelation, a periodic part and their size are
+        tested.
+    memory : float
+        Autocorrelation of neighbours of correlated noise; 0 of independent residuals, NaN of those that are no noise.
     p_values : mapping
         Probability of each test in independent noise, by ``"autocorrelation"``, ``"runs"``, ``"normality"``,
         ``"period"``, ``"size over response"`` and ``"size over coordinate"``. Tests that were not made are left out.
@@ -54,6 +59,7 @@ class SeriesResiduals:
     changes: np.ndarray
     deviation: float
     correlated: bool
+    memory: float
     p_values: Mapping[str, float]
 
     @property
@@ -121,6 +127,18 @@ class SeriesResiduals:
         frequencies, plain = self.spectrum()
         near = int(np.argmin(np.abs(frequencies - frequency)))
         return p_value_of_period(table, fitted), frequency, float(plain[near] / np.sum(plain))
+
+    def growth(self, quantity: np.ndarray) -> tuple[float, float]:
+        """Return the correlation of the sizes of residuals with a quantity (values,), and its probability in noise.
+
+        Correlated residuals are whitened as noise of first order.
+        """
+        values = self.standardised
+        if self.memory:
+            factors = np.sign(self.memory) * np.abs(self.memory) ** (np.diff(self.series.along) / self.series.step)
+            values = np.concatenate([[np.nan], (values[1:] - factors * values[:-1]) / np.sqrt(1 - factors**2)])
+        there = np.isfinite(values)
+        return growth(np.abs(values[there]), quantity[there])
 
     def normal_quantiles(self) -> tuple[np.ndarray, np.ndarray]:
         """Return quantiles of the normal distribution, and the sorted standardised residuals, both (values,).

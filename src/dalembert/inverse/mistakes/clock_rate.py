@@ -22,11 +22,12 @@ def clock_rate(record: FittedRecord) -> Iterator[Mistake]:
         step = clock.period / RESOLUTION / clock.length  # the error at the end of the record
         count = int(min(STEPS, np.ceil(LARGEST / step)))
         numbers = min(step, LARGEST / count) * np.arange(-count, count + 1)
-        yield Mistake(partial(_stretched, clock), partial(_finding, clock), numbers[numbers != 0])
+        stretched = partial(_stretched, clock)
+        yield Mistake(stretched, partial(_finding, clock), numbers[numbers != 0], shown_at=stretched)
 
 
-def _stretched(clock: Clock, response: np.ndarray, error: float) -> np.ndarray:
-    return clock.read(response, [own.along / (1 + error) for own in clock.series])
+def _stretched(clock: Clock, response: np.ndarray, error: float, rows: np.ndarray | None = None) -> np.ndarray:
+    return clock.read(response, lambda along: along / (1 + error), rows)
 
 
 def _finding(clock: Clock, verdict: Verdict) -> Finding:

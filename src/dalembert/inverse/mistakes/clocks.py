@@ -1,9 +1,9 @@
 """Times of a record that are shifted or stretched."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -38,6 +38,8 @@ class Clock:
     period: float
     last: list[tuple[np.ndarray, "list[CubicSpline]"]] = field(default_factory=list)
     """The last response and its splines: many numbers are tried with one response."""
+    placed: dict[str, Any] = field(default_factory=dict)
+    """Where the values of each series are among the last rows that were asked for."""
 
     @cached_property
     def rows(self) -> np.ndarray:
@@ -48,17 +50,34 @@ class Clock:
         """Duration of the longest record."""
         return max(own.length for own in self.series)
 
-    def read(self, response: np.ndarray, times: Sequence[np.ndarray]) -> np.ndarray:
-        """Return a response (samples × channels, ...) whose series are read at other times; NaN outside the record."""
+    def read(
+        self, response: np.ndarray, time: Callable[[np.ndarray], np.ndarray], rows: np.ndarray | None = None
+    ) -> np.ndarray:
+        """Return a response (samples × channels, ...) whose series are read at other times; NaN outside the record.
+
+        ``time`` goes from the times of the record to these. With ``rows``, only these rows are returned.
+        """
         if not self.last or self.last[0][0] is not response:
             from scipy.interpolate import CubicSpline  # fits without mistakes start without it
 
             splines = [CubicSpline(own.along, response[own.rows], extrapolate=False) for own in self.series]
             self.last[:] = [(response, splines)]
-        shown = response.copy()
-        for own, spline, at in zip(self.series, self.last[0][1], times, strict=True):
-            shown[own.rows] = spline(at)
+        shown = response.copy() if rows is None else response[rows]
+        for own, spline in zip(self.series, self.last[0][1], strict=True):
+            where, along = (own.rows, own.along) if rows is None else self._placed(own, rows)
+            shown[where] = spline(time(along))
         return shown
+
+    def _placed(self, own: Series, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Where values of a series are among rows, and their times; remembered for the last rows."""
+        if self.placed.get("rows") is not rows:
+            self.placed.clear()
+            self.placed["rows"] = rows
+        if own.name not in self.placed:
+            index = np.minimum(np.searchsorted(own.rows, rows), len(own.rows) - 1)
+            where = np.flatnonzero(own.rows[index] == rows)
+            self.placed[own.name] = where, own.along[index[where]]
+        return self.placed[own.name]
 
 
 def clocks(record: FittedRecord, *, channels: bool) -> Iterator[Clock]:

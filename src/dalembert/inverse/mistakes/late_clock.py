@@ -27,21 +27,37 @@ def late_clock(record: FittedRecord) -> Iterator[Mistake]:
         count = int(min(STEPS, LONGEST * clock.length // step))
         if count:
             numbers = step * np.arange(-count, count + 1)
-            yield Mistake(partial(_late, clock), partial(_finding, clock), numbers[numbers != 0], least=step)
+            late = partial(_late, clock)
+            yield Mistake(late, partial(_finding, clock), numbers[numbers != 0], least=step, shown_at=late)
 
 
-def _late(clock: Clock, response: np.ndarray, delay: float) -> np.ndarray:
-    return clock.read(response, [own.along - delay for own in clock.series])
+def _late(clock: Clock, response: np.ndarray, delay: float, rows: np.ndarray | None = None) -> np.ndarray:
+    return clock.read(response, lambda along: along - delay, rows)
 
 
 def _finding(clock: Clock, verdict: Verdict) -> Finding:
     late, size = verdict.number > 0, f"{abs(verdict.number):.3g}"
-    whose = f"of {clock.name!r}" if clock.name else "of the record" if len(clock.series) == 1 else "of all records"
+    several = len({own.experiment for own in clock.series}) > 1
+    whose = f"of {clock.name!r}" if clock.name else "of all records" if several else "of the record"
     return Finding(
         "suspect-clock",
         "warning",
         {"record": clock.name, "delay": verdict.number, "explained": verdict.explained},
         f"The times {whose} seem to be {size} s {'late' if late else 'early'}. {verdict.sentence}",
-        f"Check when the motion begins. If it begins at this time, write start = {verdict.number:.3g} in [data], or "
-        f"use since({verdict.number:.3g}) in Python.",
+        _of_channel(clock, verdict.number) if clock.name == clock.series[0].name else _of_record(clock, verdict.number),
     )
+
+
+def _of_record(clock: Clock, delay: float) -> str:
+    table = f"the table of experiment {clock.name!r}" if clock.name else "[data]"
+    return (
+        f"Check when the motion begins. If it begins at this time, write start = {delay:.3g} in {table}, or use "
+        f"since({delay:.3g}) in Python."
+    )
+
+
+def _of_channel(clock: Clock, delay: float) -> str:
+    if delay > 0:
+        bounds = f"[{delay / 2:.2g}, {1.5 * delay:.2g}]"
+        return f"Identify the delay of its sensor: [sensors] {clock.series[0].channel!r} = {{ delay = {bounds} }}."
+    return "Check its times, and the delays of the other channels."

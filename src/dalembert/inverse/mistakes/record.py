@@ -12,6 +12,11 @@ from dalembert.inverse.problem.problem import Linearisation, Problem
 
 TIME = "s"
 
+RANKED = 4000
+"""Most values by which mistakes are ranked: the standard deviation of a mean square of so many is 2 % of it."""
+
+GOLDEN = (5**0.5 - 1) / 2
+
 
 @dataclass(frozen=True, eq=False)
 class FittedRecord:
@@ -45,6 +50,28 @@ class FittedRecord:
     def residual(self) -> np.ndarray:
         """W^½ (R − data), shape (values,), flat from (samples, channels)."""
         return (np.sqrt(self.problem.weights) * self.problem.misfit(self.at.response)).ravel()
+
+    @cached_property
+    def ranked(self) -> np.ndarray:
+        """Values by which mistakes are ranked: all fitted ones, or of many some, at distances that do not repeat.
+
+        Multiples of the golden ratio modulo 1 spread evenly, and no period of the record is a multiple of theirs.
+        """
+        fitted = np.flatnonzero(self.problem.weights > 0)
+        if len(fitted) <= RANKED:
+            return fitted
+        stride = len(fitted) / RANKED
+        number = np.arange(RANKED)
+        return fitted[(stride * (number + (GOLDEN * number) % 1)).astype(int)]
+
+    def compared(self, shown: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """Return weighted residuals W^½ (R − data) of a response (rows,) at some of the values."""
+        data = self.problem.data
+        apart = shown - data.values.ravel()[rows]
+        if data.wraps:
+            wraps = data.wrapping[rows % data.values.shape[1]]
+            apart = np.where(wraps, apart - 2 * np.pi * np.rint(apart / (2 * np.pi)), apart)
+        return np.sqrt(self.problem.weights.ravel()[rows]) * apart
 
     def data_of(self, own: Series) -> np.ndarray:
         """Data of a series (values,), without jumps by whole turns."""
@@ -85,6 +112,8 @@ class Mistake:
     shown : callable
         From a response flat over (samples × channels, ...) and a number to what a record with this mistake shows of it;
         NaN where that is not known.
+    shown_at : callable, optional
+        From these and some rows to the same at these rows, where that is faster.
     finding : callable
         From the verdict to the finding.
     numbers : array, shape (numbers,)
@@ -103,6 +132,7 @@ class Mistake:
     blamed: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=int))
     least: float = 0.0
     visible: bool = False
+    shown_at: Callable[[np.ndarray, float, np.ndarray], np.ndarray] | None = None
 
 
 NONE = np.array([np.nan])

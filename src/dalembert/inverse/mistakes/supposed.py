@@ -79,16 +79,23 @@ def linear(record: FittedRecord, mistake: Mistake, at: Linearisation) -> Suppose
     jacobian = at.jacobian.reshape(-1, len(slopes)) * slopes
     tables = np.column_stack([at.response.ravel(), jacobian])
     best = Supposed(mistake, at, np.nan, np.inf, 0, np.zeros(0))
+    places = record.ranked
+    before, blamed = record.residual[places] ** 2, np.isin(places, mistake.blamed)
+    root = np.sqrt(record.problem.weights.ravel()[places])
+    parameters = record.problem.model.parameters
+    of_priors = prior_residual(parameters, at.vector), prior_slopes(parameters, at.vector, slopes)
     for number in mistake.numbers:
-        shown = mistake.shown(tables, float(number))
-        kept = _kept(record, shown[:, 0]) & np.all(np.isfinite(shown), axis=1)
-        residual, rows = _compared(record, shown, kept)
-        residual = np.concatenate([residual, prior_residual(record.problem.model.parameters, at.vector)])
-        rows = np.concatenate([rows, prior_slopes(record.problem.model.parameters, at.vector, slopes)])
+        if mistake.shown_at is None:
+            shown = mistake.shown(tables, float(number))[places]
+        else:
+            shown = mistake.shown_at(tables, float(number), places)
+        kept = np.all(np.isfinite(shown), axis=1)
+        residual = np.concatenate([record.compared(shown[kept, 0], places[kept]), of_priors[0]])
+        rows = np.concatenate([root[kept, None] * shown[kept, 1:], of_priors[1]])
         # Normal equations are exact enough to rank mistakes, and ten times as fast as singular values of the rows.
         step = np.linalg.lstsq(rows.T @ rows, -rows.T @ residual, rcond=1e-12)[0]
         step = np.clip(point + step, search.lower, search.upper) - point
-        found = _ratio(record, mistake, residual + rows @ step, kept)
+        found = _ratio(before[kept | blamed], residual + rows @ step, int(np.count_nonzero(kept)), len(places))
         if found < best.ratio:
             best = Supposed(mistake, at, float(number), found, record.problem.compared, np.zeros(0))
     return best
@@ -151,7 +158,10 @@ def refitted(record: FittedRecord, supposed: Supposed) -> Supposed:
     finally:
         record.problem.journal.simulations += problem.journal.simulations
     left = residual(found.x)
-    ratio = _ratio(record, mistake, left, kept)
+    before = kept.copy()
+    before[mistake.blamed] = record.problem.weights.ravel()[mistake.blamed] > 0
+    total = int(np.count_nonzero(record.problem.weights))
+    ratio = _ratio(record.residual[before] ** 2, left, int(np.count_nonzero(kept)), total)
     squares = np.full(kept.shape, np.nan)
     squares[kept] = left[: np.count_nonzero(kept)] ** 2
     squares[mistake.blamed] = 0.0
@@ -171,11 +181,12 @@ def _compared(record: FittedRecord, shown: np.ndarray, kept: np.ndarray) -> tupl
     return root * problem.misfit(response).ravel()[kept], root[:, None] * shown[kept, 1:]
 
 
-def _ratio(record: FittedRecord, mistake: Mistake, residual: np.ndarray, kept: np.ndarray) -> float:
-    """Mean square of residuals, those of priors behind them, over that of the fit."""
-    before = kept.copy()
-    before[mistake.blamed] = record.problem.weights.ravel()[mistake.blamed] > 0
-    mean = float(np.sum(record.residual[before] ** 2)) / max(1, np.count_nonzero(before))
-    if 2 * np.count_nonzero(kept) < np.count_nonzero(record.problem.weights) or not mean > 0:
+def _ratio(before: np.ndarray, residual: np.ndarray, kept: int, total: int) -> float:
+    """Mean square of residuals of ``kept`` values, those of priors behind them, over that before.
+
+    ``before`` are the squares of the fit. Infinite if less than half of the ``total`` is kept.
+    """
+    mean = float(np.sum(before)) / max(1, len(before))
+    if 2 * kept < total or not mean > 0:
         return np.inf
-    return float(np.sum(residual**2)) / max(1, np.count_nonzero(kept)) / mean
+    return float(np.sum(residual**2)) / max(1, kept) / mean

@@ -52,5 +52,5 @@ def _finding(pairs: Sequence[tuple[Series, Series]], verdict: Verdict) -> Findin
         },
         f"The data of {one.channel!r} and {other.channel!r}{where} seem to be swapped. {verdict.sentence}",
         f"Check the columns of the file. If they are swapped, swap the columns of {one.channel!r} and "
-        f"{other.channel!r} in columns.",
+        f"{other.channel!r} in columns{where}.",
     )

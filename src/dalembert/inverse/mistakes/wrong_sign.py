@@ -32,12 +32,17 @@ def _negated(rows: np.ndarray, response: np.ndarray, _: float) -> np.ndarray:
 
 
 def _finding(series: Sequence[Series], verdict: Verdict) -> Finding:
-    name = series[0].channel if len(series) > 1 else series[0].name
+    first, alone = series[0], len(series) == 1 and bool(series[0].experiment)
+    name = first.name if len(series) == 1 else first.channel
+    line = (
+        f"write [sensors] {first.channel!r} = {{ gain = [-1, -1] }} in the study file, or negate the values in Python."
+    )
+    if alone:  # [sensors] is for all experiments
+        line = f"negate the values of {first.channel!r} in the data of experiment {first.experiment!r}."
     return Finding(
         "suspect-sign",
         "warning",
-        {"channel": name, "explained": verdict.explained},
+        {"channel": name, "experiment": first.experiment if alone else "", "explained": verdict.explained},
         f"The data of {name!r} seem to have the wrong sign. {verdict.sentence}",
-        f"Check the direction of the sensor. If it is reversed, write [sensors] {series[0].channel!r} = "
-        "{ gain = [-1, -1] } in the study file, or negate the values in Python.",
+        f"Check the direction of the sensor. If it is reversed, {line}",
     )

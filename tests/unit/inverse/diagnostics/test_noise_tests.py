@@ -2,20 +2,32 @@
 
 import numpy as np
 import pytest
-from scipy.stats import spearmanr
+from scipy.stats import halfnorm, pearsonr, rankdata, spearmanr
 
-from dalembert.inverse.diagnostics.noise_tests import normality, rank_correlation, runs
+from dalembert.inverse.diagnostics.noise_tests import growth, normality, runs
 
 
-def test_rank_correlation_is_that_of_scipy_with_equal_values():
+def test_growth_is_the_correlation_of_half_normal_scores_with_ranks():
     rng = np.random.default_rng(3)
-    first, second = rng.integers(0, 6, 40).astype(float), rng.standard_normal(40)
-    expected = spearmanr(first, second)
-    np.testing.assert_allclose(rank_correlation(first, second), (expected.statistic, expected.pvalue), rtol=1e-12)
+    sizes, quantity = np.abs(rng.standard_normal(40)), rng.integers(0, 6, 40).astype(float)
+    expected = pearsonr(halfnorm.ppf(rankdata(sizes) / 41), rankdata(quantity))
+    np.testing.assert_allclose(growth(sizes, quantity), (expected.statistic, expected.pvalue), rtol=1e-10)
 
 
-def test_a_constant_has_no_rank_correlation():
-    assert rank_correlation(np.ones(20), np.arange(20.0)) == (0.0, 1.0)
+@pytest.mark.parametrize(("sizes", "quantity"), [(np.ones(20), np.arange(20.0)), (np.arange(20.0), np.ones(20))])
+def test_a_constant_does_not_grow(sizes, quantity):
+    assert growth(sizes, quantity) == (0.0, 1.0)
+
+
+def test_more_of_growing_noise_is_seen_than_by_ranks_at_the_same_level():
+    """Noise that grows from 1 to 2.5 over 200 samples, and even noise, at 0.0005."""
+    along = np.linspace(0.0, 1.0, 200)
+    noise = np.abs(np.random.default_rng(5).standard_normal((400, 200)))
+    grown = noise * (1 + 1.5 * along)
+    seen = [sum(growth(one, along)[1] < 0.0005 for one in rows) for rows in (noise, grown)]
+    by_ranks = sum(spearmanr(one, along).pvalue < 0.0005 for one in grown)
+    assert seen[0] <= 2
+    assert seen[1] > 1.15 * by_ranks > 200
 
 
 def test_runs_of_few_signs_are_not_judged():

@@ -7,6 +7,7 @@ import pytest
 from inline_snapshot import snapshot
 
 import dalembert as da
+from correlated_noise import autoregressive
 from dalembert.data import Measurements
 from dalembert.forward import PythonModel
 from dalembert.inverse import Experiment, Fit, identify
@@ -219,11 +220,24 @@ def test_a_fit_without_a_jacobian_has_tests_but_no_leverages():
     assert found.series[0].p_values["normality"] > 0.01
 
 
+def test_correlated_residuals_that_grow_have_a_finding():
+    """Noise that shrinks with a decay leaves few values that count: tests take it for correlated more often."""
+    model = PythonModel(
+        lambda height, rate: height * np.exp(-rate * TIMES), {"height": (0.2, 8.0), "rate": (0.05, 4.0)}, ["x"], TIMES
+    )
+    exact = 2 * np.exp(-0.8 * TIMES)
+    shrinking = exact * (1 + 0.1 * autoregressive(4, len(TIMES), 0.5))
+    found = identify(model, Measurements.of(TIMES, {"x": shrinking}), starts=1).diagnostics()
+    assert found.series[0].correlated
+    (finding,) = (item for item in found.findings if item.code == "unequal-variance")
+    assert finding.values["noise"] == "mixed"
+
+
 def test_correlated_residuals_are_not_tested_for_what_needs_independence():
     slow = np.convolve(noise(0, 221), np.ones(21) / 5, mode="valid")
     found = fitted(slow).diagnostics()
     assert found.series[0].correlated
-    assert list(found.series[0].p_values) == ["autocorrelation", "period"]
+    assert list(found.series[0].p_values) == ["autocorrelation", "period", "size over response", "size over coordinate"]
 
 
 def test_a_file_gives_back_the_diagnostics(tmp_path):

@@ -45,11 +45,38 @@ def test_each_mistake_is_named(kind: str) -> None:
     assert {found.code for found in fit.findings} & set(CODES.values()) == {CODES[kind]}
 
 
+def test_the_experiment_with_a_wrong_sign_is_named() -> None:
+    """The key `[sensors]` of study files is for all experiments."""
+    finding = named(fitted("function, two experiments", "sign", 0.9, 1), "suspect-sign")
+    assert finding.values["channel"] == "run0.y"
+    assert finding.values["experiment"] == "run0"
+    assert "negate the values of 'y' in the data of experiment 'run0'" in finding.advice
+    assert "[sensors]" not in finding.advice
+
+
+def test_the_experiment_with_a_late_clock_is_named() -> None:
+    finding = named(fitted("function, two experiments", "late", 0.9, 1), "suspect-clock")
+    assert finding.values["record"] == "run0"
+    assert finding.values["delay"] == pytest.approx(LATE, abs=0.02)
+    assert "in the table of experiment 'run0'" in finding.advice
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["sign", "late"])
-def test_the_experiment_with_the_mistake_is_named(kind: str) -> None:
+def test_the_experiment_of_a_mechanism_with_the_mistake_is_named(kind: str) -> None:
     finding = named(fitted("pendulum, two experiments", kind, 0.9, 1), CODES[kind])
     assert finding.values.get("record", "run0") == "run0"
     assert finding.values.get("channel", "run0.bar.end.y") == "run0.bar.end.y"
+
+
+@pytest.mark.parametrize("kind", ["sign", "late", "rate", "clipped", "repeated"])
+def test_some_values_of_a_long_record_rank_its_mistakes(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The ranking by 60 of 202 values leads to the same finding."""
+    whole = named(fitted("function", kind, 0.9, 1), CODES[kind])
+    monkeypatch.setattr("dalembert.inverse.mistakes.record.RANKED", 60)
+    by_some = named(fitted("function", kind, 0.9, 1), CODES[kind])
+    for key, value in whole.values.items():
+        assert by_some.values[key] == (value if isinstance(value, str) else pytest.approx(value, rel=1e-3))
 
 
 @pytest.mark.parametrize("name", ["function", "function, estimated noise"])

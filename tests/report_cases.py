@@ -23,6 +23,7 @@ from free_oscillations import NOISE, TRUTH, oscillation, oscillator, recorded, r
 from free_oscillations import TIMES as OSCILLATING
 from frequency_cases import FREQUENCY_CASES
 from inertial_cases import INERTIAL_CASES
+from inseparable import stepped_product
 from mistake_cases import MISTAKE_CASES
 from posterior_cases import POSTERIOR_CASES
 from regularised_cases import REGULARISED_CASES
@@ -747,6 +748,13 @@ CASES: dict[str, Case] = {
             _exact(SUM, [0.5, 1.0], noise=0.1, deviations=0.1),
         ),
         ("together changes the response by less than its noise. Fix one of them",),
+    ),
+    "converged in part, a combination within the error of the integrator": Case(
+        lambda: da.identify(*stepped_product(), starts=1, start=(0.8, 3.0), horizon=None),
+        (
+            "Converged, except along 1 direction that the data do not identify (change 'rate' by",
+            "together changes the response by less than the error of the integrator. Fix one of them",
+        ),
     ),
     "a pair": Case(
         lambda: da.identify(

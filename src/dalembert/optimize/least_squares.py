@@ -5,8 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.arguments import limited
-from dalembert.optimize.minimum import Minimum, Progress, reachable
-from dalembert.optimize.stopping import WINDOW, Stopped, Stopping
+from dalembert.optimize.minimum import Minimum, reachable
+from dalembert.optimize.path import Creeps, Path
+from dalembert.optimize.settle import settle
+from dalembert.optimize.stopping import SMOOTH, WINDOW, Stopped, Stopping
 from dalembert.optimize.sum_of_squares import SquaresMinimiser, SumOfSquares
 from dalembert.optimize.valley import follow_valley
 
@@ -16,16 +18,6 @@ LEAST_GAIN = 1e-14
 COARSE = 1e-3
 """Fraction of the sum of squares. With this ``gain`` a descent is one of many, of which the best continues: progress is
 judged sooner. With a larger one it only leads to another descent, and one step that gains less ends it."""
-
-ROUNDING = 1e-14
-"""Columns of the jacobian below this part of the largest are rounding."""
-
-LARGEST = 1e150
-"""A sample with larger residuals has failed: their squares overflow."""
-
-SMOOTH = 1e-8
-"""Fraction of the sum of squares. Where the linear model foresees a larger fall although the parameters move no more,
-the residuals are rough."""
 
 TRIALS = 100
 """Residuals at most, for each parameter and one more. Descents without progress stop long before."""
@@ -58,6 +50,9 @@ class LeastSquares(SquaresMinimiser):
     0.01 %, the minimum is reached up to the roughness. Otherwise, with a ``gain`` below 1e-3, steps with geodesic
     acceleration follow the valley, judged by the same rule. If they come no further, the descent has not converged.
 
+    Where a descent creeps along directions that the residuals do not identify between the bounds, it ends by Gauss and
+    Newton's steps in the other directions.
+
     Examples
     --------
     >>> import numpy as np
@@ -74,8 +69,11 @@ class LeastSquares(SquaresMinimiser):
     def descend(self, problem: SumOfSquares, start: np.ndarray) -> Minimum:
         window = max(WINDOW, (10 if self.gain < COARSE else 4) * len(start))
         most = TRIALS * (1 + len(start)) if self.trials is None else self.trials
-        path = _Path(problem, start, Stopping(self.gain, window), most)
-        found = self._trust_region(path)
+        path = Path(problem, start, Stopping(self.gain, window), most, type(self).__name__)
+        try:
+            found = self._trust_region(path)
+        except Creeps as at:
+            found = settle(path, at, Stopping(self.gain, window), self.tolerance)
         if found.success or self.gain >= COARSE or not np.isfinite(found.fitness):
             return found
         path.stopping = Stopping(self.gain, window)
@@ -84,7 +82,7 @@ class LeastSquares(SquaresMinimiser):
         except Stopped as stopped:
             return path.minimum(stopped)
 
-    def _trust_region(self, path: "_Path") -> Minimum:
+    def _trust_region(self, path: Path) -> Minimum:
         from scipy.optimize import least_squares  # what does not minimise starts without it
 
         problem, start = path.problem, path.origin
@@ -112,83 +110,3 @@ class LeastSquares(SquaresMinimiser):
         if result.status == 2:
             return path.minimum(Stopped("converged: the sum of squares falls no more"))
         return path.minimum(path.stopping.at_rest(max(SMOOTH, self.gain)))
-
-
-@dataclass(eq=False)
-class _Path:
-    """Residual and jacobian as SciPy calls them, in u = 1 + (x − origin)/unit; counts, and keeps the best point."""
-
-    problem: SumOfSquares
-    origin: np.ndarray
-    stopping: Stopping
-    most: int
-    best: float = np.inf
-    evaluations: int = 0
-    iterations: int = 0
-
-    def __post_init__(self) -> None:
-        self.x, self.one = self.origin, np.ones_like(self.origin)
-        self.last = (np.full_like(self.origin, np.nan), self.origin)
-        self.seen = np.zeros(len(self.origin), dtype=bool)
-
-    def place(self, u: np.ndarray) -> np.ndarray:
-        return np.clip(self.origin + (u - 1) * self.problem.unit, self.problem.low, self.problem.high)
-
-    def residual(self, u: np.ndarray) -> np.ndarray:
-        if np.array_equal(self.last[0], u):  # SciPy asks again for the first point
-            return self.last[1]
-        value = self.residual_at(self.place(u))
-        self.last = (u.copy(), value)
-        self.stopping.tried(self.best)
-        return value
-
-    def residual_at(self, x: np.ndarray) -> np.ndarray:
-        if self.evaluations >= self.most:
-            raise self.spent()
-        value = self.problem.residual(x)
-        self.evaluations += 1
-        if not np.all(np.abs(value) < LARGEST):
-            value = np.full_like(value, np.nan)
-        squares = float(value @ value)
-        if squares < self.best:
-            self.best, self.x = squares, x
-        if squares == 0:
-            self.tell()
-            raise Stopped("converged: the fit is perfect", stationary=True)
-        return value
-
-    def jacobian(self, u: np.ndarray) -> np.ndarray:
-        x, problem = self.place(u), self.problem
-        slopes = self.slopes_at(x)
-        self.stopping.at(self.last[1], slopes, (problem.low - x) / problem.unit, (problem.high - x) / problem.unit)
-        return np.where(_significant(slopes), slopes, 0.0)  # in such units a parameter would move far for nothing
-
-    def slopes_at(self, x: np.ndarray) -> np.ndarray:
-        self.tell()
-        slopes = self.problem.jacobian(x) * self.problem.unit
-        if not slopes.any():
-            raise Stopped("converged: the residual does not change with the parameters", stationary=True)
-        # On a plateau a column falls below the rounding of others that it stood above before: no minimum is there.
-        self.seen |= _significant(slopes)
-        slopes[:, ~self.seen] = 0.0
-        return slopes
-
-    def tell(self) -> None:
-        self.problem.on_iteration(Progress(self.iterations, self.evaluations, self.best, self.x))
-        self.iterations += 1
-
-    def spent(self) -> Stopped:
-        allow = "not converged; allow more with LeastSquares(trials=...)"
-        return Stopped(f"stopped after {self.most} trial points, {allow}", success=False)
-
-    def minimum(self, end: Stopped) -> Minimum:
-        iterations = max(0, self.iterations - 1)
-        return Minimum(
-            self.x, self.best, end.success, str(end), iterations, self.evaluations, end.stationary, end.rough
-        )
-
-
-def _significant(slopes: np.ndarray) -> np.ndarray:
-    """Return the mask (parameters,) of the columns of slopes (values, parameters) that are not rounding."""
-    size = np.linalg.norm(slopes, axis=0)
-    return size >= ROUNDING * size.max()

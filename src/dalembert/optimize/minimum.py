@@ -91,6 +91,8 @@ class Minimum:
         Whether it stopped because x moves no more; going on with finer settings would change nothing.
     rough : bool
         Whether it stopped because the fitness is rough: it does not fall where its derivatives foresee a fall.
+    left_out : array, shape (directions, parameters), optional
+        Directions along which x was left because the residuals do not identify them.
     """
 
     x: np.ndarray
@@ -101,6 +103,7 @@ class Minimum:
     evaluations: int
     stationary: bool = False
     rough: bool = False
+    left_out: np.ndarray | None = None
 
 
 def fitness_of(objective: Objective, points: np.ndarray) -> np.ndarray:

@@ -6,9 +6,12 @@ import numpy as np
 
 from dalembert.arguments import limited
 from dalembert.errors import InputError, require_known
+from dalembert.optimize.identifiable_part import creeps, identifiable_part
 from dalembert.optimize.linear_model import LinearModel
 from dalembert.optimize.minimum import Minimum, Progress, RegularisedStep, reachable
-from dalembert.optimize.stopping import Stopped
+from dalembert.optimize.path import Creeps, Path
+from dalembert.optimize.settle import settle
+from dalembert.optimize.stopping import WINDOW, Stopped, Stopping
 from dalembert.optimize.sum_of_squares import SquaresMinimiser, SumOfSquares
 from dalembert.optimize.tikhonov import Regularised
 
@@ -52,6 +55,8 @@ class ResponseSensitivity(SquaresMinimiser):
       with a ratio of agreement above 0.75 raises the limit to three times its length; a step that had to be shortened
       sets the limit to its length;
     - a step that meets a bound is the minimum of the same linear model between the bounds;
+    - where a descent creeps along directions that the residuals do not identify between the bounds, it ends by Gauss
+      and Newton's steps in the other directions;
     - where the L-curve has no corner, every direction is told by the data, and the step is Gauss and Newton's. As the
       residual falls towards zero the corner moves towards μ = 0 with it, so that convergence is quadratic.
 
@@ -107,6 +112,8 @@ class _Descent:
     trials: int = 1
     iterations: int = 0
     radius: float = field(init=False)
+    before: float = np.inf
+    foreseen: float = np.inf
 
     def __post_init__(self) -> None:
         self.radius = float(np.sqrt(len(self.x)))
@@ -118,7 +125,10 @@ class _Descent:
         try:
             while True:
                 self.tell(last)
-                last = self.advance(self.linear())
+                model = self.linear()
+                if self.creeps(model):
+                    return self.settled(model)
+                last = self.advance(model)
         except Stopped as end:
             fitness = float(self.r @ self.r)
             return Minimum(self.x, fitness, end.success, str(end), self.iterations, self.trials, end.stationary)
@@ -140,6 +150,21 @@ class _Descent:
         if not slopes[:, model.free].any():
             raise Stopped("converged: bounds hold all parameters that the residual changes with", stationary=True)
         return model
+
+    def creeps(self, model: LinearModel) -> bool:
+        """Return True if the last step crept along directions that are not identifiable."""
+        now = float(self.r @ self.r)
+        crept, fall = creeps(self.before, now, self.foreseen), self.before - now
+        self.before, self.foreseen = now, model.foreseen(model.step(0.0)) / now
+        return crept and identifiable_part(self.problem, self.x, self.r, model.slopes, fall).final
+
+    def settled(self, model: LinearModel) -> Minimum:
+        """Return the end of the descent in the identifiable directions."""
+        stopping, name = Stopping(self.method.gain, WINDOW), type(self.method).__name__
+        path = Path(
+            self.problem, self.x, stopping, self.method.trials, name, self.before, self.trials, 1 + self.iterations
+        )
+        return settle(path, Creeps(self.x, self.r, model.slopes), stopping, self.method.tolerance)
 
     def advance(self, model: LinearModel) -> RegularisedStep:
         """Take one step; its account."""

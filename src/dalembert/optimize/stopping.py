@@ -19,6 +19,10 @@ roughness of the residuals."""
 FAR = 1e-3
 """Length of a foreseen step, in units of the parameters, that roughness hardly feigns."""
 
+SMOOTH = 1e-8
+"""Fraction of the sum of squares. Where the linear model foresees a larger fall although the parameters move no more,
+the residuals are rough."""
+
 
 class Stopped(Exception):
     """The descent stops; the message says why."""

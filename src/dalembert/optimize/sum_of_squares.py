@@ -3,6 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,17 +12,39 @@ from dalembert.arguments import Checked
 from dalembert.intervals import corners
 from dalembert.optimize.minimum import Minimum, OnIteration
 
+Residual: TypeAlias = Callable[[np.ndarray], np.ndarray]
+"""Residuals (values,) at a point (parameters,)."""
+
+
+class Disturbance(Protocol):
+    """What keeps residuals from zero at a point (parameters,) whose slopes are known."""
+
+    def white(self, point: np.ndarray) -> bool:
+        """Return True if many residuals look like white noise."""
+        ...
+
+    def error(self, point: np.ndarray) -> np.ndarray | None:
+        """Return the error of the residuals (values,) that is no noise, such as an integrator's; None if not known."""
+        ...
+
 
 @dataclass(frozen=True, eq=False)
 class SumOfSquares:
     """A sum of squares over a box, by the arguments of :meth:`SquaresMinimiser.minimise`."""
 
-    residual: Callable[[np.ndarray], np.ndarray]
+    residual: Residual
     jacobian: Callable[[np.ndarray], np.ndarray]
     low: np.ndarray
     high: np.ndarray
     unit: np.ndarray
     on_iteration: OnIteration
+    ahead: Residual
+    disturbance: Disturbance | None
+
+    @property
+    def widths(self) -> np.ndarray:
+        """Distances between the bounds (parameters,), in units of the scale."""
+        return (self.high - self.low) / self.unit
 
 
 @dataclass(frozen=True)
@@ -38,6 +61,8 @@ class SquaresMinimiser(Checked, ABC):
         *,
         scale: ArrayLike = 1.0,
         on_iteration: OnIteration | None = None,
+        ahead: Residual | None = None,
+        disturbance: Disturbance | None = None,
     ) -> Minimum:
         """Least sum of squares near ``start``.
 
@@ -51,12 +76,18 @@ class SquaresMinimiser(Checked, ABC):
         on_iteration : callable, optional
             Called with a :class:`Progress` at the start and after each accepted step, with its
             :class:`RegularisedStep` if the method takes such steps.
+        ahead : callable, optional
+            Returns the same as ``residual``, where no jacobian will be asked for.
+        disturbance : Disturbance, optional
+            Noise and errors of the residuals. With it, a descent leaves out directions that are not identifiable
+            between the bounds where it creeps along them.
         """
         low, high = corners(lower, upper)
         x = np.clip(np.asarray(start, dtype=float), low, high)
         unit = np.broadcast_to(np.asarray(scale, dtype=float), x.shape)
         tell = on_iteration or (lambda progress: None)
-        return self.descend(SumOfSquares(residual, jacobian, low, high, unit, tell), x)
+        problem = SumOfSquares(residual, jacobian, low, high, unit, tell, ahead or residual, disturbance)
+        return self.descend(problem, x)
 
     @abstractmethod
     def descend(self, problem: SumOfSquares, start: np.ndarray) -> Minimum:

@@ -1,12 +1,12 @@
 """Descents along long curved valleys: Levenberg and Marquardt's steps with geodesic acceleration."""
 
-from typing import NoReturn, Protocol
+from typing import NoReturn
 
 import numpy as np
 
 from dalembert.optimize.linear_model import LinearModel
+from dalembert.optimize.path import Path
 from dalembert.optimize.stopping import Stopping
-from dalembert.optimize.sum_of_squares import SumOfSquares
 
 AHEAD = 0.1
 """Part of a step at which residuals are computed to see how the valley bends."""
@@ -21,17 +21,7 @@ DAMPING, LEAST = 1e-3, 1e-16
 """Squared damping at first and at least, relative to the squared largest singular value."""
 
 
-class Trials(Protocol):
-    """Residuals (values,) and slopes (values, parameters) at a point, computed one by one and counted."""
-
-    problem: SumOfSquares
-    best: float
-
-    def residual_at(self, x: np.ndarray) -> np.ndarray: ...
-    def slopes_at(self, x: np.ndarray) -> np.ndarray: ...
-
-
-def follow_valley(path: Trials, start: np.ndarray, stopping: Stopping, shortest: float) -> NoReturn:
+def follow_valley(path: Path, start: np.ndarray, stopping: Stopping, shortest: float) -> NoReturn:
     """Descend from ``start`` (parameters,) along a valley; the exception says why the descent ended.
 
     Notes
@@ -67,7 +57,7 @@ def follow_valley(path: Trials, start: np.ndarray, stopping: Stopping, shortest:
             if np.linalg.norm(v / scale) < shortest:
                 raise stopping.at_rest(0.0)
             stopping.tried(path.best)
-            ahead = path.residual_at(np.clip(x + AHEAD * unit * v / scale, low, high))
+            ahead = path.residual_at(np.clip(x + AHEAD * unit * v / scale, low, high), ahead=True)
             if np.all(np.isfinite(ahead)):
                 bend = 2 / AHEAD * ((ahead - r) / AHEAD - slopes @ v)
                 half = _damped(q.T @ bend / 2, factor, mu, down - v, up - v)

@@ -273,7 +273,7 @@ def test_the_summary_is_a_table_with_status():
 def test_parameters_that_cannot_be_told_apart_are_named():
     model = PythonModel(lambda a, b: (a + b) * TIMES, {"a": (0.0, 3.0), "b": (0.0, 3.0)}, ["x"], TIMES)
     fit = identify(model, Measurements.of(TIMES, {"x": 2 * TIMES}))
-    assert only(fit, "unidentifiable-combination").values == {"parameters": "a, b", "unseen": True}
+    assert only(fit, "unidentifiable-combination").values == {"parameters": "a, b", "unseen": True, "below": "rounding"}
     assert np.isinf(fit.deviations).all()
 
 

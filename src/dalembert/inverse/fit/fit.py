@@ -161,7 +161,8 @@ class Fit(EndedResult):
             if self.correlated is None
             else replace(known, deviations=self.correlated.deviations, correlation=self.correlated.correlation)
         )
-        found = tuple(identifiability_findings(self.parameters, self.values, known, plain))
+        bias = None if self.integration is None else self.integration.bias
+        found = tuple(identifiability_findings(self.parameters, self.values, known, plain, bias))
         return Identifiability(self.singular_values, self.directions, found, self.deviations, self.correlation)
 
     def diagnostics(self) -> ResidualDiagnostics:

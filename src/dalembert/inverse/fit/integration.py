@@ -6,11 +6,10 @@ from typing import Annotated
 
 import numpy as np
 
-from dalembert.data.record import TURN
-from dalembert.errors import ClusterError, StorageError, told
 from dalembert.findings import Finding
 from dalembert.forward import refined
 from dalembert.inverse.least_squares.estimate import UNSEEN
+from dalembert.inverse.problem.integration_error import as_residuals, integration_error
 from dalembert.inverse.problem.prior import prior_residual
 from dalembert.inverse.problem.problem import Linearisation, Problem
 from dalembert.inverse.shooting.nodes import Nodes
@@ -72,27 +71,15 @@ def integration_bias(problem: Problem, at: Linearisation | None, nodes: Nodes | 
         return _unknown(at, f"the response is that of {nodes.segments} segments, which one simulation does not follow")
     if nodes is not None and nodes.growth > CHAOTIC:
         return _unknown(at, f"a small change of the initial state grows {nodes.growth:.2g} times")
-    problem.journal.simulations += 1
-    try:
-        responses = finer.model.evaluate(at.vector[None])
-    except (StorageError, ClusterError):
-        raise
-    except Exception as error:  # a model that works at its own steps may fail at finer ones
-        return _unknown(at, f"the simulation {finer.how} failed: {told(error)}")
-    if not responses.ok[0]:
-        return _unknown(at, f"the simulation {finer.how} failed: {responses.failures[0]}")
-    factor = np.broadcast_to(finer.factor, len(problem.model.channels))[problem.columns]
-    error = factor * (at.response - responses.values[0][:, problem.columns])
-    error[:, problem.data.wrapping] -= TURN * np.rint(error[:, problem.data.wrapping] / TURN)
-    return _estimated(problem, at, np.where(problem.data.present, error, 0.0), finer.how)
+    found = integration_error(problem, at, finer)
+    return _unknown(at, found.how) if found.error is None else _estimated(problem, at, found.error, found.how)
 
 
 def _estimated(problem: Problem, at: Linearisation, error: np.ndarray, how: str) -> IntegrationBias:
     """The bias that an error (samples, channels) of the response causes."""
     scale = problem.model.parameters.scale
     slopes = problem.slopes(at, scale)
-    weighted = np.zeros(len(slopes))
-    weighted[: error.size] = problem.weighted(error, at.response).ravel()
+    weighted = as_residuals(problem, at, error)
     left, singular, directions = np.linalg.svd(slopes, full_matrices=False)
     seen = singular > UNSEEN * (singular[0] or 1.0)
     step = directions[seen].T @ (left[:, seen].T @ weighted / singular[seen])

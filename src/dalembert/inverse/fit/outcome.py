@@ -7,6 +7,7 @@ import numpy as np
 from dalembert.errors import counted
 from dalembert.findings import Finding
 from dalembert.inverse.least_squares.descent import End
+from dalembert.inverse.problem.combinations import members, moved, separated
 from dalembert.inverse.problem.noise import NoiseFloor, signal
 from dalembert.inverse.problem.problem import Problem
 from dalembert.inverse.shooting.nodes import Nodes
@@ -44,7 +45,10 @@ def outcome(
     """
     few = lacking(problem)
     many = "Converged to one of many solutions: the data have fewer values than there are parameters."
-    yield converged(best.success, best.message, many if few else "Converged.")
+    if best.success and best.left_out is not None and not few:
+        yield _partly_converged(problem, best, best.left_out)
+    else:
+        yield converged(best.success, best.message, many if few else "Converged.")
     fitnesses = [start.fitness for start in problem.journal.starts]
     if len(fitnesses) > 1:
         there = sum(fitness <= searched * (1 + 1e-3) + floor.fitness * 1e-3 for fitness in fitnesses)
@@ -103,6 +107,24 @@ def converged(success: bool, reason: str, message: str = "Converged.") -> Findin
     if success:
         return Finding("converged", "note", {"reason": reason}, message)
     return Finding("not-converged", "error", {"reason": reason}, f"Not converged: {reason}.")
+
+
+def _partly_converged(problem: Problem, best: End, left_out: np.ndarray) -> Finding:
+    parameters = problem.model.parameters
+    names, widths = parameters.names, parameters.upper - parameters.lower
+    moves = [row * problem.search.slope(problem.search.vectors(best.point)) for row in separated(left_out)]
+    values = {
+        "directions": len(moves),
+        "parameters": ", ".join(name for k, name in enumerate(names) if any(k in members(m, widths) for m in moves)),
+        "reason": best.message,
+    }
+    changes = "; ".join(f"change {moved(names, move, widths)}" for move in moves)
+    message = (
+        f"Converged, except along {counted(len(moves), 'direction')} that the data do not identify ({changes}): the "
+        "search left the parameters there."
+    )
+    advice = "Fix one of them, or measure a quantity that separates them."
+    return Finding("partly-converged", "warning", values, message, advice)
 
 
 def failed_simulations(failures: list[str]) -> Iterator[Finding]:

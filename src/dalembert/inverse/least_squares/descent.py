@@ -6,9 +6,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dalembert.errors import SolveError
+from dalembert.forward import refined
+from dalembert.inverse.problem.integration_error import as_residuals, integration_error
+from dalembert.inverse.problem.noise import random_residuals
 from dalembert.inverse.problem.problem import Linearisation, Problem
 from dalembert.inverse.shooting.nodes import Nodes
 from dalembert.optimize import Progress, Squares
+
+MANY = 30
+"""Values from which a test of their correlation tells residuals of a false minimum from noise."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,7 +24,8 @@ class End:
     At a ``stationary`` end a finer descent would change nothing; at a ``rough`` one the response is not smooth enough
     for it. Multiple shooting adds the ``nodes`` of its segments, and a ``spread`` S (parameters, parameters)
     with the covariance S Sᵀ of the parameters at unit variance. ``begun`` is the fitness where the descent over all
-    samples began.
+    samples began. The descent
+    did not go along the directions ``left_out`` (directions, parameters), which are not identifiable.
     """
 
     point: np.ndarray
@@ -31,6 +38,7 @@ class End:
     rough: bool = False
     begun: float = np.inf
     spread: np.ndarray | None = None
+    left_out: np.ndarray | None = None
 
 
 class Memo:
@@ -43,11 +51,13 @@ class Memo:
     def __init__(self, problem: Problem, at: Linearisation | None = None) -> None:
         self.problem, self.hopeful = problem, True
         self.at = self.accepted = at
+        self.systematic: np.ndarray | None = None
+        self.simulated = np.inf  # sum of squares where the error of the integrator was simulated
 
     def residual(self, point: np.ndarray) -> np.ndarray:
         vector, hopeful = self.problem.search.vectors(point), self.hopeful
-        if self.at is not None and np.array_equal(self.at.vector, vector):
-            return self.problem.residuals(vector, self.at.response)
+        if (known := self.known(vector)) is not None:
+            return self.problem.residuals(vector, known.response)
         self.hopeful = False
         if not hopeful:
             return self.problem.residuals(vector, self.problem.responses(vector[None])[0])
@@ -60,10 +70,37 @@ class Memo:
 
     def jacobian(self, point: np.ndarray) -> np.ndarray:
         vector = self.problem.search.vectors(point)
-        if self.at is None or not np.array_equal(self.at.vector, vector):
-            self.at = self.problem.linearise(vector)
+        self.at = self.known(vector) or self.problem.linearise(vector)
         self.hopeful, self.accepted = True, self.at
         return self.problem.slopes(self.at)
+
+    def ahead(self, point: np.ndarray) -> np.ndarray:
+        """Return the residual at a point that is no candidate, without sensitivities."""
+        vector = self.problem.search.vectors(point)
+        return self.problem.residuals(vector, self.problem.responses(vector[None])[0])
+
+    def white(self, point: np.ndarray) -> bool:
+        """Return True if the residuals at a linearised point are many and look like white noise."""
+        at, problem = self.known(self.problem.search.vectors(point)), self.problem
+        if at is None or problem.compared < MANY:
+            return False
+        return random_residuals(problem.residual(at.response), problem.weights.shape, problem.data.present)
+
+    def error(self, point: np.ndarray) -> np.ndarray | None:
+        """Return the integrator's part of the residual near a linearised point; None where it is not known.
+
+        It is simulated again where the sum of squares is less than a tenth of that at the last such point.
+        """
+        at, finer = self.known(self.problem.search.vectors(point)), refined(self.problem.model)
+        if at is None or finer is None:
+            return None
+        residual = self.problem.residuals(at.vector, at.response)
+        squares = float(residual @ residual)
+        if squares < self.simulated / 10:
+            error = integration_error(self.problem, at, finer).error
+            self.systematic = None if error is None else as_residuals(self.problem, at, error)
+            self.simulated = squares
+        return self.systematic
 
     def known(self, vector: np.ndarray) -> Linearisation | None:
         """The linearisation at a vector (parameters,), if it is that of the last or of the last accepted point."""
@@ -112,10 +149,29 @@ def _local(memo: Memo, method: Squares, point: np.ndarray) -> End:
         journal.step(now.best, search.vectors(now.x), problem.samples, now.regularised)
 
     try:
-        found = method.minimise(memo.residual, memo.jacobian, search.lower, search.upper, point, on_iteration=progress)
+        found = method.minimise(
+            memo.residual,
+            memo.jacobian,
+            search.lower,
+            search.upper,
+            point,
+            on_iteration=progress,
+            ahead=memo.ahead,
+            disturbance=memo,
+        )
     except SolveError as error:
         return replace(best, message=f"the sensitivities could not be computed: {error}")
     reasons = [] if np.isfinite(found.fitness) else journal.failures[-1:]
     message = ": ".join([found.message, *reasons])
     kept = memo.known(search.vectors(found.x))
-    return End(found.x, found.fitness, found.success, message, found.stationary, kept, rough=found.rough, begun=begun)
+    return End(
+        found.x,
+        found.fitness,
+        found.success,
+        message,
+        found.stationary,
+        kept,
+        rough=found.rough,
+        begun=begun,
+        left_out=found.left_out,
+    )

@@ -15,11 +15,23 @@ from dalembert.parameters import Parameters
 INDISTINGUISHABLE = 0.99
 """Correlation from which two parameters are hardly distinguishable."""
 
+UNCHANGED, NOISE, INTEGRATOR = "rounding", "noise", "integrator"
+EFFECTS = {
+    UNCHANGED: "does not change the response",
+    NOISE: "changes the response by less than its noise",
+    INTEGRATOR: "changes the response by less than the error of the integrator",
+}
+"""Effects of moves that the data do not see, by what they are below."""
+
 SEPARATE = "Fix one of them, or measure a quantity that separates them."
 
 
 def identifiability_findings(
-    parameters: Parameters, values: np.ndarray, known: Estimate, plain: Estimate | None = None
+    parameters: Parameters,
+    values: np.ndarray,
+    known: Estimate,
+    plain: Estimate | None = None,
+    bias: np.ndarray | None = None,
 ) -> Iterator[Finding]:
     """Yield findings on parameters at a bound, not identifiable, or hardly distinguishable.
 
@@ -33,6 +45,8 @@ def identifiability_findings(
     plain : Estimate, optional
         For independent residuals; ``known`` if not given. A prior that contradicts the data leaves correlated ones,
         whose larger standard deviations would hide the conflict.
+    bias : array, shape (parameters,), optional
+        Error of the values that the integrator causes; NaN where it is not known.
     """
     width = parameters.upper - parameters.lower
     for k, item in enumerate(parameters):
@@ -50,7 +64,7 @@ def identifiability_findings(
     plain = known if plain is None else plain
     yield from conflicts_of_minimum(parameters, values, plain.deviations, plain.correlation)
     yield from prior_findings(parameters, known.deviations, known.correlation)
-    yield from unidentifiable(parameters.names, width, parameters.scale, known)
+    yield from unidentifiable(parameters.names, width, parameters.scale, known, bias)
 
 
 def foreseen(parameters: Parameters, expected: Estimate, *, noise_known: bool) -> Iterator[Finding]:
@@ -66,7 +80,9 @@ def foreseen(parameters: Parameters, expected: Estimate, *, noise_known: bool) -
     yield from unidentifiable(parameters.names, parameters.upper - parameters.lower, parameters.scale, expected)
 
 
-def unidentifiable(names: tuple[str, ...], widths: np.ndarray, scale: np.ndarray, known: Estimate) -> Iterator[Finding]:
+def unidentifiable(
+    names: tuple[str, ...], widths: np.ndarray, scale: np.ndarray, known: Estimate, bias: np.ndarray | None = None
+) -> Iterator[Finding]:
     """Yield findings on unknowns that are not or hardly identifiable, alone, in combination, or in pairs.
 
     Unknowns of a combination are named with it, and not again alone or in pairs. Without sensitivities there is one
@@ -79,13 +95,16 @@ def unidentifiable(names: tuple[str, ...], widths: np.ndarray, scale: np.ndarray
         Distances between the bounds.
     scale : array, shape (unknowns,)
     known : Estimate
+    bias : array, shape (unknowns,), optional
+        Error of the values that the integrator causes; NaN where it is not known.
     """
     if not np.all(np.isfinite(known.singular_values)):
         message = "Identifiability is not known: the model has no sensitivities at the identified values."
         yield Finding("no-sensitivities", "note", {}, message)
         return
     guesses = widths / np.sqrt(12)  # standard deviations of uniform distributions between the bounds
-    together = list(_together(widths, scale, known, known.deviations > guesses))
+    systematic = np.zeros(len(names)) if bias is None else np.nan_to_num(bias)
+    together = list(_together(widths, scale, known, systematic))
     combined = {k for move, _ in together for k in members(move, widths)}
     for k, (name, guess, deviation) in enumerate(zip(names, guesses, known.deviations, strict=True)):
         if k in combined:
@@ -107,15 +126,14 @@ def unidentifiable(names: tuple[str, ...], widths: np.ndarray, scale: np.ndarray
                 "a uniform distribution between its bounds.",
                 "Fix it, or measure more.",
             )
-    for move, unseen in together:
+    for move, below in together:
         parts = [names[k] for k in members(move, widths)]
-        effect = "does not change the response" if unseen else "changes the response by less than its noise"
         yield Finding(
             "unidentifiable-combination",
             "warning",
-            {"parameters": ", ".join(parts), "unseen": unseen},
+            {"parameters": ", ".join(parts), "unseen": below == UNCHANGED, "below": below},
             f"Only a combination of {listed(list(map(repr, parts)))} is identifiable: changing "
-            f"{moved(names, move, widths)} together {effect}.",
+            f"{moved(names, move, widths)} together {EFFECTS[below]}.",
             SEPARATE,
         )
     for i, j in zip(*np.triu_indices(len(names), 1), strict=True):
@@ -133,24 +151,28 @@ def unidentifiable(names: tuple[str, ...], widths: np.ndarray, scale: np.ndarray
 
 
 def _together(
-    widths: np.ndarray, scale: np.ndarray, known: Estimate, weak: np.ndarray
-) -> Iterable[tuple[np.ndarray, bool]]:
-    """Yield moves (unknowns,) of several unknowns that the data do not see, and whether the response stays unchanged.
+    widths: np.ndarray, scale: np.ndarray, known: Estimate, bias: np.ndarray
+) -> Iterable[tuple[np.ndarray, str]]:
+    """Yield moves (unknowns,) of several unknowns that the data do not see, and what their effect is below.
 
-    Those that change it by less than its noise count where every unknown that moves is ``weak`` (unknowns,), known no
-    better than by a uniform distribution.
+    A move that changes the response counts where neither it nor any unknown that moves is known better than by a
+    uniform distribution: by the noise, or by the noise and the ``bias`` (unknowns,) of the integrator.
     """
     singular, directions = known.singular_values, known.directions
     unseen = singular <= UNSEEN * (singular[0] or 1.0)
     for row in separated(directions[unseen]):
         if len(members(row * scale, widths)) > 1:
-            yield row * scale, True
-    noise = _noise(known, scale)
+            yield row * scale, UNCHANGED
+    noise, guesses = _noise(known, scale), widths / np.sqrt(12)
     for value, row in zip(singular[~unseen], directions[~unseen], strict=True):
         parts = members(row * scale, widths)
-        far = np.any(noise / value * np.abs(row) * scale > widths / np.sqrt(12))
-        if far and len(parts) > 1 and np.all(weak[parts]):
-            yield row * scale, False
+        if len(parts) < 2:
+            continue
+        for below, error in ((NOISE, 0.0 * bias), (INTEGRATOR, bias)):
+            far = np.any(np.hypot(noise / value, row @ (error / scale)) * np.abs(row) * scale > guesses)
+            if far and np.all(np.hypot(known.deviations, error)[parts] > guesses[parts]):
+                yield row * scale, below
+                break
 
 
 def _noise(known: Estimate, scale: np.ndarray) -> float:

@@ -163,7 +163,7 @@ def _fix(values: Values, document: TOMLDocument, best: Best) -> Iterator[tuple[s
     yield from _fixed([values["parameter"]], document, best)
 
 
-@_advises("unidentifiable-combination", "indistinguishable-parameters")
+@_advises("unidentifiable-combination", "indistinguishable-parameters", "partly-converged")
 def _fix_one(values: Values, document: TOMLDocument, best: Best) -> Iterator[tuple[str, Apply]]:
     yield from _fixed(str(values["parameters"]).split(", "), document, best)
 

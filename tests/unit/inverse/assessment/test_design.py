@@ -212,7 +212,7 @@ def test_three_that_only_move_together_are_named_in_one_sentence():
     )
     told = identifiability(model, deviations=0.1)
     (finding,) = told.findings  # none on each of them, and none on pairs
-    assert finding.values == {"parameters": "a, b, c", "unseen": True}
+    assert finding.values == {"parameters": "a, b, c", "unseen": True, "below": "rounding"}
     assert str(finding) == snapshot(
         "Only a combination of 'a', 'b' and 'c' is identifiable: changing 'a' by +0.2, 'b' by +0.2 and 'c' by -0.2 together does not change the response. Fix one of them, or measure a quantity that separates them."
     )

@@ -92,6 +92,15 @@ CASES = [
         },
     ),
     (
+        "partly-converged",
+        {"parameters": "drag, angle"},
+        PENDULUM,
+        {
+            "Fix drag at 0.2": ['drag = { lower = 0.2, upper = 0.2, unit = "N*m*s" } # of the pin'],
+            "Fix angle at -30 deg": ['angle = { lower = "-30 deg", upper = "-30 deg" }'],
+        },
+    ),
+    (
         "indistinguishable-parameters",
         {"parameters": "drag, mass"},
         "[parameters.drag]\nlower = 0 # none\nupper = 1\nstart = 0.5\n[parameters.angle]\nlower = 0\nupper = 1\n",

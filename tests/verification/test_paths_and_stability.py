@@ -10,6 +10,7 @@ from scipy.special import ellipk
 
 from dalembert.structure import Dofs, Structure, lumped
 from dalembert.vibration import (
+    BilinearStop,
     CubicSpring,
     ElasticSlider,
     FrequencyCurve,
@@ -18,6 +19,7 @@ from dalembert.vibration import (
     HarmonicForce,
     Rigid,
     StaticForce,
+    UserLaw,
     VibrationSystem,
     backbone,
     floquet_multipliers,
@@ -175,6 +177,100 @@ def test_the_time_map_is_of_second_order(record_evidence) -> None:
     record_evidence(
         "Floquet multipliers by steps in time against Hill's method: order in the step", 2.0,
         np.log2(differences[1] / differences[2]), tolerance=0.05, topic=TOPIC, kind="closed form", source="trapezoidal rule",
+    )  # fmt: skip
+
+
+MASSES, SMOOTHED, STOP = np.array([1.1174, 0.7841, 1.3468]), (0.05759, 0.2278), (5.833, 0.5082)
+CUBIC, DRIVING, STATIC = 2.338, 0.4563, -0.08195
+
+
+def smoothed(u: np.ndarray, v: np.ndarray, z: np.ndarray, numbers: np.ndarray, force: np.ndarray) -> None:
+    """Friction f tanh(v/w)."""
+    force[0] = numbers[0] * (2 / (1 + np.exp(-2 * v[0] / numbers[1])) - 1)
+
+
+def with_a_stop() -> VibrationSystem:
+    """Three masses with a cubic spring, smoothed friction and a stop: a random system, rounded."""
+    springs = [
+        ("m0", None, 0.4362, 0.0165), ("m0", "m1", 1.3075, 0.0537), ("m1", None, 0.4368, 0.0172),
+        ("m1", "m2", 1.8426, 0.0231), ("m2", None, 0.4540, 0.0159),
+    ]  # fmt: skip
+    system = VibrationSystem(lumped(dict(zip(("m0", "m1", "m2"), MASSES.tolist(), strict=True)), springs))
+    system.add(HarmonicForce("m0", DRIVING))
+    system.add(StaticForce("m1", STATIC))
+    system.add(CubicSpring("cubic", "m1", stiffness=CUBIC))
+    system.add(UserLaw("friction", "m2", function=smoothed, values=list(SMOOTHED)))
+    system.add(BilinearStop("stop", "m2", "m1", stiffness=STOP[0], gap=STOP[1]))
+    return system
+
+
+def with_a_stop_in_time(system: VibrationSystem, omega: float) -> tuple[Slope, Slope]:
+    """Rates of the states of the same system, and their slopes."""
+    stiffness, damping = system.structure.stiffness, system.structure.damping
+    across, (stiff, gap), (limit, width) = np.array([0.0, -1.0, 1.0]), STOP, SMOOTHED
+
+    def rate(t: float, state: np.ndarray) -> np.ndarray:
+        x, v = state[:3], state[3:]
+        force = np.array([DRIVING * np.cos(omega * t), STATIC - CUBIC * x[1] ** 3, -limit * np.tanh(v[2] / width)])
+        relative = across @ x
+        pushed = stiff * (relative - np.clip(relative, -gap, gap))
+        return np.append(v, (force - stiffness @ x - damping @ v - pushed * across) / MASSES)
+
+    def slope(t: float, state: np.ndarray) -> np.ndarray:
+        x, v = state[:3], state[3:]
+        pushed = stiff * float(abs(across @ x) > gap) * np.outer(across, across)
+        by_place = stiffness + np.diag([0.0, 3 * CUBIC * x[1] ** 2, 0.0]) + pushed
+        by_speed = damping + np.diag([0.0, 0.0, limit / width / np.cosh(v[2] / width) ** 2])
+        below = np.hstack([-by_place, -by_speed]) / MASSES[:, None]
+        return np.vstack([np.hstack([np.zeros((3, 3)), np.eye(3)]), below])
+
+    return rate, slope
+
+
+def factors_in_time(system: VibrationSystem, omega: float, guess: np.ndarray) -> np.ndarray:
+    """Multipliers of the periodic motion that Newton's method finds from a guess, the largest first."""
+    rate, slope = with_a_stop_in_time(system, omega)
+
+    def both(t: float, state: np.ndarray) -> np.ndarray:
+        return np.append(rate(t, state[:6]), slope(t, state[:6]) @ state[6:].reshape(6, 6))
+
+    for _ in range(10):
+        begun = np.append(guess, np.eye(6).ravel())
+        end = solve_ivp(both, (0.0, TURN / omega), begun, method="DOP853", rtol=1e-9, atol=1e-10).y[:, -1]
+        moved, change = end[:6] - guess, end[6:].reshape(6, 6)
+        if np.linalg.norm(moved) < 1e-8:
+            return np.array(sorted(np.linalg.eigvals(change), key=abs, reverse=True))
+        guess = guess - np.linalg.solve(change - np.eye(6), moved)
+    raise AssertionError("no periodic motion")
+
+
+@pytest.mark.slow
+def test_points_between_the_folds_of_two_numbers_of_harmonics_have_no_label(record_evidence) -> None:
+    """Behind the fold with nine harmonics, the multipliers with more harmonics are those of a motion before the fold."""
+    system, method = with_a_stop(), HarmonicBalance(9)
+    ends = 0.84 / TURN, 1.13 / TURN
+    path = frequency_response(system, ends, method, continuation="arc-length", check=False)
+    fold = next(point for point in np.flatnonzero(path.fold) if abs(TURN * path.frequencies[point] - 1.1148) < 1e-3)
+    labels, largest = [], []
+    for point in (fold - 2, fold + 1, fold + 2, fold + 3):
+        frequency, start = path.frequencies[[point]], (path, int(point))
+        curve = frequency_response(system, frequency, method, stability=True, check=False, start=start)
+        labels.append(int(curve.stable[0]))
+        codes = [finding.code for finding in curve.findings]
+        assert codes == ["stability-near-fold"] * (labels[-1] < 0)
+        largest.append(float(abs(factors_in_time(system, TURN * float(frequency[0]), begin(path, point))[0])))
+        if labels[-1] < 0:  # by the multipliers with more harmonics, the motion would be stable
+            assert np.all(np.abs(floquet_multipliers(system, path, int(point))) < 1)
+    assert labels == [1, -1, -1, 0]
+    wrong = sum(label >= 0 and bool(label) != (size < 1) for label, size in zip(labels, largest, strict=True))
+    record_evidence(
+        "three masses with a stop, 9 harmonics, about a fold: wrong labels of 4 points, of which 2 behind the fold have none", 0, wrong,
+        tolerance=0, topic=TOPIC, kind="other method", source=TIME,
+    )  # fmt: skip
+    record_evidence(
+        "the same: points behind the fold without label whose largest multiplier in time exceeds 1", 2,
+        sum(label < 0 and size > 1 for label, size in zip(labels, largest, strict=True)),
+        tolerance=0, topic=TOPIC, kind="other method", source=TIME,
     )  # fmt: skip
 
 

@@ -54,6 +54,13 @@ class Equations:
         loads = series.phasors(np.real(self.lowered.loads(series)))
         return Condensation(self.lowered.structure, self.lowered.coordinates, self.method.orders, loads)
 
+    @cached_property
+    def with_even(self) -> "Equations":
+        """The equations with even harmonics too; they themselves if these are kept."""
+        return (
+            replace(self, method=replace(self.method, odd_only=False), _balances={}) if self.method.odd_only else self
+        )
+
     @property
     def nonlinear(self) -> bool:
         """Whether there are contacts or springs."""

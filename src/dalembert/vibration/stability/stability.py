@@ -92,14 +92,24 @@ def _across_fold(problem: Equations, solution: Solution, values: np.ndarray) -> 
     r"""Whether exponents with more harmonics than the balance lie on the other side of a fold.
 
     With all harmonics, the determinant of the balance has the sign of :math:`\det(1 - \Phi)`, where Φ is the map of
-    disturbances over a period: each real multiplier above 1 changes it. Odd harmonics alone do not see disturbances
-    that break the symmetry, which have multipliers too.
+    disturbances over a period: each real multiplier above 1 changes it.
     """
-    if problem.method.odd_only:
-        return False
     turns = np.abs(np.imag(values) - np.round(np.imag(values)))
     growing = int(np.sum((np.real(values) > NEUTRAL) & (turns < REAL)))
-    return bool(solution.tangent.sign * (-1) ** growing < 0)
+    return bool(_sign(problem, solution) * (-1) ** growing < 0)
+
+
+def _sign(problem: Equations, solution: Solution) -> float:
+    """Return the sign of the determinant of the balance, with even harmonics too.
+
+    Odd harmonics alone do not contain disturbances that break the symmetry, which have multipliers too.
+    """
+    every = problem.with_even
+    if every is problem:
+        return solution.tangent.sign
+    unknowns = in_orders(solution.unknowns, problem.method.orders, every.method.orders)
+    point = every.condensation.at(solution.omega)
+    return every.balance(solution.samples).linearised(point, unknowns)[1].sign
 
 
 def _held(problem: Equations, values: np.ndarray) -> np.ndarray:

@@ -98,7 +98,8 @@ def test_a_slider_is_stable_and_points_that_are_not_found_are_not_judged() -> No
     np.testing.assert_array_equal(curve.stable, np.where(curve.converged, 1, -1))
 
 
-def test_no_point_behind_a_fold_is_stable_by_perturbations_of_a_motion_before_its_fold() -> None:
+@pytest.mark.parametrize("odd_only", [False, True])
+def test_no_point_behind_a_fold_is_stable_by_perturbations_of_a_motion_before_its_fold(odd_only: bool) -> None:
     """Between two folds of one degree of freedom a real multiplier is above 1.
 
     The fold with one harmonic is before that of the perturbations, which all harmonics of the stop enter.
@@ -111,7 +112,7 @@ def test_no_point_behind_a_fold_is_stable_by_perturbations_of_a_motion_before_it
 
     def follow(harmonics: int) -> FrequencyCurve:
         return frequency_response(
-            system, ends, HarmonicBalance(harmonics), continuation="arc-length", stability=True, check=False
+            system, ends, HarmonicBalance(harmonics, odd_only), continuation="arc-length", stability=True, check=False
         )
 
     curve = follow(1)

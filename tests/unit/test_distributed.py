@@ -25,6 +25,7 @@ from study_texts import SLIDER
 from support import says
 
 TIMES = np.linspace(0, 1, 11)
+OTHER_SCIPY = "__import__('dalembert.versions').versions.versions().update(scipy='1.0')"
 
 
 def slowly(rate):
@@ -74,12 +75,38 @@ def test_a_worker_with_another_dalembert_is_refused(tmp_path, decay):
 
 def test_other_packages_of_workers_are_noted(client, tmp_path):
     written(tmp_path, "[propagate]\nmethod = { kind = 'monte-carlo', runs = 8 }\n")
-    client.run(eval, "__import__('dalembert.versions').versions.versions().update(scipy='1.0')")
+    client.run(eval, OTHER_SCIPY)
     folder, outcome = run_study(load(tmp_path / "slow.toml"), tmp_path / "run", executor=client)
     client.run(versions.cache_clear)
     (finding,) = [finding for finding in outcome.findings if finding.code == "mixed-versions"]
     assert finding.values == {"package": "scipy", "versions": f"{versions()['scipy']}, 1.0"}
     assert len(folder.computed_with()) == 2
+
+
+def test_packages_of_workers_that_come_later_are_noted(client, tmp_path):
+    """The versions are others from the first batch on, as those of a worker that replaces a lost one may be."""
+    written(tmp_path, "[propagate]\nmethod = { kind = 'monte-carlo', runs = 400 }\n")
+    replaced = []
+
+    def listen(event):
+        if event["event"] == "ran" and not replaced:
+            replaced.append(client.run(eval, OTHER_SCIPY))
+
+    folder, outcome = run_study(load(tmp_path / "slow.toml"), tmp_path / "run", listener=listen, executor=client)
+    client.run(versions.cache_clear)
+    (finding,) = [finding for finding in outcome.findings if finding.code == "mixed-versions"]
+    assert finding.values == {"package": "scipy", "versions": f"{versions()['scipy']}, 1.0"}
+    assert len(folder.computed_with()) == 2
+
+
+def test_other_packages_of_workers_are_a_warning_of_methods(client, decay):
+    client.run(eval, OTHER_SCIPY)
+    with pytest.warns(
+        RuntimeWarning, match=r"^a worker of the cluster has scipy 1\.0, not .* as here: the last digits"
+    ):
+        da.propagate(decay, {"rate": (0.5, 1.0)}, MonteCarlo(runs=8), executor=client)
+    client.run(versions.cache_clear)
+    da.propagate(decay, {"rate": (0.5, 1.0)}, MonteCarlo(runs=8), executor=client)  # an earlier warning is not repeated
 
 
 def test_a_worker_that_is_killed_costs_a_retry(client, started, decay):

@@ -6,7 +6,8 @@ A connection belongs to the call that makes it, and ends with it.
 import pickle
 import sys
 import sysconfig
-from collections.abc import Callable, Iterator
+import warnings
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from functools import wraps
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
 RETRIES = 5
 """Times that work is begun again where its worker is lost."""
+OTHERS = "dalembert-versions"
+"""Topic of the scheduler's log by which workers say that they have other versions of packages than their sender."""
 WAIT = 10.0
 """Seconds until a cluster that does not answer is given up."""
 
@@ -62,14 +65,28 @@ def connected(executor: Executor) -> Iterator["Client | None"]:
 
 
 def takes_executor(method: M) -> M:
-    """A method that is given a client for its ``executor``, connected as long as it runs."""
+    """A method that is given a client for its ``executor``, connected as long as it runs.
+
+    A worker with another dalembert is refused; one with other packages is a warning.
+    """
 
     @wraps(method)
     def with_client(*args: Any, executor: Executor = None, **settings: Any) -> Any:
-        with connected(executor) as client:
+        with connected(executor) as client, noted(client, _warn_of):
             return method(*args, executor=client, **settings)
 
     return cast(M, with_client)
+
+
+def _warn_of(worker: Mapping[str, str]) -> None:
+    own = versions()
+    others = [f"{name} {found}, not {own[name]}" for name, found in worker.items() if found != own[name]]
+    warnings.warn(
+        f"a worker of the cluster has {' and '.join(others)} as here: the last digits of the result may differ. "
+        "Install one version on all machines",
+        RuntimeWarning,
+        stacklevel=3,
+    )
 
 
 def packed(thing: Any) -> bytes:
@@ -113,14 +130,19 @@ class Sender:
 
     @contextmanager
     def alike(self) -> Iterator[None]:
-        """A block on a worker that computes as the sender does.
+        """A block on a worker that computes as the sender does; the scheduler's log says if it has other packages.
 
         Raises
         ------
         ClusterError
             If the worker has another dalembert.
         """
-        _refuse_other(versions(), self.versions)
+        own = versions()
+        _refuse_other(own, self.versions)
+        if own != self.versions:
+            from distributed import get_worker
+
+            get_worker().log_event(OTHERS, own)
         with with_threads(self.threads):
             yield
 
@@ -153,6 +175,33 @@ def worker_versions(client: "Client") -> list[dict[str, str]]:
         if answer not in found:
             found.append(answer)
     return found
+
+
+@contextmanager
+def noted(client: "Client | None", note: Callable[[Mapping[str, str]], None]) -> Iterator[None]:
+    """A block at whose end the versions of each worker that computed with other packages are noted.
+
+    Also of workers that came later, in place of a lost one, or that are lost themselves.
+    """
+    if client is None:
+        yield
+        return
+    before = len(_logged(client))
+    try:
+        yield
+    finally:
+        found: list[Mapping[str, str]] = []
+        with suppress(Exception):  # the cluster may be gone; what ended the block says so
+            for own in _logged(client)[before:]:
+                if own not in found:
+                    found.append(own)
+        for own in found:
+            note(own)
+
+
+def _logged(client: "Client") -> list[Mapping[str, str]]:
+    events: Any = client.get_events(OTHERS)  # with the address of the worker beside the versions
+    return [{name: own[name] for name in versions()} for _, own in events]
 
 
 @contextmanager

@@ -14,7 +14,7 @@ from dalembert.errors import DalembertError, InputError, SolveError, StorageErro
 from dalembert.files import write_text
 from dalembert.findings import stored_findings
 from dalembert.forward import Checkpoint, Executor, connected
-from dalembert.forward.cluster import worker_versions
+from dalembert.forward.cluster import noted, worker_versions
 from dalembert.kernels.preparation import observed
 from dalembert.study.computed_with import mixed_versions, refuse_other_sources, this_process
 from dalembert.study.duration import StartFailed, duration, storage, timed, too_long
@@ -147,6 +147,7 @@ def _executed(
                 with (
                     kept_interrupts(),
                     connected(study.executor) as client,
+                    noted(client, lambda workers: folder.add_computed_with(this_process(workers))),
                     Checkpoint(folder.checkpoint, lambda sentence: log.emit(LOST, message=sentence)) as checkpoint,
                     users_code(),
                     one_thread(),

@@ -42,7 +42,7 @@ def test_a_spelling_of_the_unit_of_times_is_read(spelling, tmp_path):
 
 SUFFIXES = {
     "angle_deg": DEG, "Angle.Degrees": DEG, "x mm": 1e3, "x_um": 1e6, "rate_dps": DEG, "speed_RPM": RPM, "force_kN": 1e-3,
-    "deg": DEG, "x_cm": 1, "x_m": 1, "torque_nm": 1, "x_ms": 1, "degree_of_wear": 1,
+    "deg": DEG, "gyro_deg_s": DEG, "gyro rad s": 1, "a_mm_s2": 1e3, "x_cm": 1, "x_m": 1, "v_m_s": 1, "torque_nm": 1, "x_ms": 1, "degree_of_wear": 1,
 }  # fmt: skip
 
 

@@ -94,9 +94,9 @@ class Format(ABC):
         ------
         DataError
         """
-        found = self.columns(path, Request("t", None, "leave-out"))
-        columns = {found.time: found.along, **found.table}
-        return {name: (array, found.units.get(name, "")) for name, array in columns.items()}
+        content = self.columns(path, Request("t", None, "leave-out"))
+        columns = {content.time: content.along, **content.table}
+        return {name: (array, content.units.get(name, "")) for name, array in columns.items()}
 
     def trial_labels(self, path: Path, column: str | int, separator: str, decimal: str) -> list[str]:
         """Return the label of the trial of each sample; only formats with several trials in a file need it.

@@ -83,35 +83,35 @@ def columns_of(
     _refuse_marks(path, separator, decimal)
     if not lines:
         raise DataError(f"{path}: the file holds nothing; expected a line of column names and then lines of numbers")
-    found, rows, numbers = _laid_out(lines, time, separator, decimal, quick=trial is None)
+    text, rows, numbers = _laid_out(lines, time, separator, decimal, quick=trial is None)
     if (separator, decimal) != (AUTO, AUTO):
-        _refuse_wrong_marks(path, lines[:HEAD], time, found)
-    _refuse_rows(path, found)
-    place = _places(path, found)
+        _refuse_wrong_marks(path, lines[:HEAD], time, text)
+    _refuse_rows(path, text)
+    place = _places(path, text)
     if trial is not None:
-        found = _of_trial(path, found, place(trial.column), trial)
-    if time == "t" and found.named is None:
+        text = _of_trial(path, text, place(trial.column), trial)
+    if time == "t" and text.named is None:
         time = 1
     first = None if time is None else place(time)
     numbering = None if trial is None else place(trial.column)
-    others = [k for k in range(len(found.header)) if k not in (first, numbering)]
-    wanted = [place(found.header[k]) for k in others] if names is None else [place(one) for one in names]
-    labels = [found.header[k] for k in wanted] if names is None else [str(one) for one in names]
+    others = [k for k in range(len(text.header)) if k not in (first, numbering)]
+    wanted = [place(text.header[k]) for k in others] if names is None else [place(one) for one in names]
+    labels = [text.header[k] for k in wanted] if names is None else [str(one) for one in names]
     places: list[int] = list(dict.fromkeys([*([] if first is None else [first]), *wanted]))
     if numbers is None:
         gaps = gaps_of(absent) if missing == "leave-out" else frozenset()
-        table = _numbers(path, found, places, gaps, first)
+        table = _numbers(path, text, places, gaps, first)
     else:
         table = {k: np.ascontiguousarray(numbers[:, k]) for k in places}
-    units = {label: found.units[k] or sure_suffix(found.header[k]) for label, k in zip(labels, wanted, strict=True)}
+    units = {label: text.units[k] or sure_suffix(text.header[k]) for label, k in zip(labels, wanted, strict=True)}
     columns = dict(zip(labels, (table[k] for k in wanted), strict=True))
     if first is None:
-        samples = len(found.rows) if numbers is None else len(numbers)
-        return Columns(path, "sample", np.arange(samples, dtype=float), columns, units, layout=str(found))
-    _refuse_order(path, rows or found.rows, found.header[first], table[first])
-    of_times = found.units[first] or sure_suffix(found.header[first], "s")
-    units[str(time)] = "s" if is_clock(found.rows[0][1][first]) else of_times
-    return Columns(path, str(time), table[first], columns, units, layout=str(found))
+        samples = len(text.rows) if numbers is None else len(numbers)
+        return Columns(path, "sample", np.arange(samples, dtype=float), columns, units, layout=str(text))
+    _refuse_order(path, rows or text.rows, text.header[first], table[first])
+    of_times = text.units[first] or sure_suffix(text.header[first], "s")
+    units[str(time)] = "s" if is_clock(text.rows[0][1][first]) else of_times
+    return Columns(path, str(time), table[first], columns, units, layout=str(text))
 
 
 def _laid_out(
@@ -119,11 +119,11 @@ def _laid_out(
 ) -> tuple[Layout, list[Line], np.ndarray | None]:
     """The layout of lines and, of many lines of nothing but numbers, all lines and their numbers."""
     if quick and len(lines) > HEAD:
-        found = layout(lines[:HEAD], time, separator, decimal)
-        rows = lines_of_numbers(lines, found) if found.rows else []
-        numbers = quick_table(rows, found)
+        text = layout(lines[:HEAD], time, separator, decimal)
+        rows = lines_of_numbers(lines, text) if text.rows else []
+        numbers = quick_table(rows, text)
         if numbers is not None:
-            return found, rows, numbers
+            return text, rows, numbers
     return layout(lines, time, separator, decimal), [], None
 
 
@@ -137,9 +137,9 @@ def labels_of(
     DataError
     """
     _refuse_marks(path, separator, decimal)
-    found = layout(lines, column, separator, decimal)
-    _refuse_rows(path, found)
-    return _labels(path, found, _places(path, found)(column))
+    text = layout(lines, column, separator, decimal)
+    _refuse_rows(path, text)
+    return _labels(path, text, _places(path, text)(column))
 
 
 def _refuse_marks(path: Path, separator: str, decimal: str) -> None:
@@ -154,32 +154,32 @@ def _refuse_marks(path: Path, separator: str, decimal: str) -> None:
         )
 
 
-def _refuse_wrong_marks(path: Path, lines: Sequence[Line], time: str | int | None, found: Layout) -> None:
+def _refuse_wrong_marks(path: Path, lines: Sequence[Line], time: str | int | None, text: Layout) -> None:
     """Refuse a separator or decimal mark with which the times are not there, and without which they are."""
     if time is None:
         return
     other = layout(lines, time)
-    if time not in found.header and time in other.header:
+    if time not in text.header and time in other.header:
         raise DataError(
             f"{path}: there is no column {time!r} with the separator or decimal mark that was given; the file seems to "
             f"have {other}; leave separator and decimal out"
         )
 
 
-def _refuse_rows(path: Path, found: Layout) -> None:
+def _refuse_rows(path: Path, text: Layout) -> None:
     """Refuse a file without lines of numbers, and lines of another length."""
-    if not found.rows:
+    if not text.rows:
         raise DataError(f"{path}: the file holds no line of numbers; expected column names and then lines of numbers")
-    width = len(found.header)
-    source = "as most lines have" if found.named is None else "as the header has"
-    for line_number, cells in found.rows:
+    width = len(text.header)
+    source = "as most lines have" if text.named is None else "as the header has"
+    for line_number, cells in text.rows:
         if len(cells) != width:
             raise DataError(f"{path}, line {line_number}: {len(cells)} cells; expected {width}, {source}")
 
 
-def _places(path: Path, found: Layout) -> Callable[[str | int], int]:
+def _places(path: Path, text: Layout) -> Callable[[str | int], int]:
     """The function from the name or number of a column to its place."""
-    header = found.header
+    header = text.header
 
     def place(column: str | int) -> int:
         if isinstance(column, int):
@@ -187,7 +187,7 @@ def _places(path: Path, found: Layout) -> Callable[[str | int], int]:
                 raise DataError(f"{path}: there is no column {column}; expected a number from 1 to {len(header)}")
             return column - 1
         if column not in header:
-            more = "" if found.named else "; the file has no header, and its columns are numbers from 1"
+            more = "" if text.named else "; the file has no header, and its columns are numbers from 1"
             raise DataError(unknown("column", column, header, str(path)) + more)
         if header.count(column) > 1:
             raise DataError(
@@ -199,61 +199,61 @@ def _places(path: Path, found: Layout) -> Callable[[str | int], int]:
     return place
 
 
-def _of_trial(path: Path, found: Layout, place: int, trial: Trial) -> Layout:
+def _of_trial(path: Path, text: Layout, place: int, trial: Trial) -> Layout:
     """The lines of one trial."""
-    mask = of_trial(path, _labels(path, found, place), trial)
-    return replace(found, rows=[row for row, there in zip(found.rows, mask, strict=True) if there])
+    mask = of_trial(path, _labels(path, text, place), trial)
+    return replace(text, rows=[row for row, there in zip(text.rows, mask, strict=True) if there])
 
 
-def _labels(path: Path, found: Layout, place: int) -> list[str]:
+def _labels(path: Path, text: Layout, place: int) -> list[str]:
     """Label of the trial of each line."""
-    for line, cells in found.rows:
+    for line, cells in text.rows:
         if cells[place].lower() in GAPS:
-            where = f"{path}, line {line}, column {found.header[place]!r}"
+            where = f"{path}, line {line}, column {text.header[place]!r}"
             raise DataError(f"{where}: no trial; expected its number or name in each line")
-    return [trial_label(cells[place]) for _, cells in found.rows]
+    return [trial_label(cells[place]) for _, cells in text.rows]
 
 
 def _numbers(
-    path: Path, found: Layout, places: Iterable[int], gaps: frozenset[str], time: int | None
+    path: Path, text: Layout, places: Iterable[int], gaps: frozenset[str], time: int | None
 ) -> dict[int, np.ndarray]:
     """Columns (samples,) by their places; times of day are seconds since the first."""
     table = {}
     for k in places:
-        cells = [row[k] for _, row in found.rows]
+        cells = [row[k] for _, row in text.rows]
         if k == time and is_clock(cells[0]) and (clock := clock_seconds(cells)) is not None:
             table[k] = clock
             continue
         try:
-            plain = [cell.replace(",", ".") for cell in cells] if found.decimal == "," else cells
+            plain = [cell.replace(",", ".") for cell in cells] if text.decimal == "," else cells
             column = np.array(plain, dtype=float)
             quick = bool(np.all(np.isfinite(column))) and all(map(is_plain, cells))
-            quick = quick and not (found.decimal == "," and any("." in one for one in cells))
+            quick = quick and not (text.decimal == "," and any("." in one for one in cells))
         except ValueError:
             quick = False
-        table[k] = column if quick else _slowly(path, found, k, frozenset() if k == time else gaps)
+        table[k] = column if quick else _slowly(path, text, k, frozenset() if k == time else gaps)
     return table
 
 
-def _slowly(path: Path, found: Layout, column: int, gaps: frozenset[str]) -> np.ndarray:
+def _slowly(path: Path, text: Layout, column: int, gaps: frozenset[str]) -> np.ndarray:
     """A column in which some cell is no finite number; NaN where a cell is one of the gaps."""
     return np.array(
         [
-            math.nan if cells[column].lower() in gaps else _number(path, (line, cells), column, found)
-            for line, cells in found.rows
+            math.nan if cells[column].lower() in gaps else _number(path, (line, cells), column, text)
+            for line, cells in text.rows
         ]
     )
 
 
-def _number(path: Path, row: Row, column: int, found: Layout) -> float:
+def _number(path: Path, row: Row, column: int, text: Layout) -> float:
     line, cell = row[0], row[1][column]
-    where = f"{path}, line {line}, column {found.header[column]!r}"
+    where = f"{path}, line {line}, column {text.header[column]!r}"
     if not cell:
         raise DataError(f"{where}: the cell is empty; expected a number; fill it or remove the line")
     try:
-        number = value(cell, found.decimal)
+        number = value(cell, text.decimal)
     except ValueError:
-        comma = found.decimal == "." and is_number(cell, ",")
+        comma = text.decimal == "." and is_number(cell, ",")
         hint = '; for numbers with decimal commas give decimal = ","' if comma else ""
         raise DataError(f"{where}: {cell!r} is not a number{hint}") from None
     if not math.isfinite(number):

@@ -120,30 +120,30 @@ def read(
     missing = missing if isinstance(missing, str) else "leave-out"
     along_column = (frequency or time) if sampling is None else None
     request = Request(along_column, names, missing, tuple(units or ()), separator, decimal, one, absent)
-    found = _without(columns_in(path, request, format), absent)
+    content = _without(columns_in(path, request, format), absent)
     if sampling is not None:
-        found = replace(found, along=found.along / rate_of(path, sampling))
-    along, table = replace(found, frequency=found.frequency or frequency is not None).converted(units)
+        content = replace(content, along=content.along / rate_of(path, sampling))
+    along, table = replace(content, frequency=content.frequency or frequency is not None).converted(units)
     chosen = {name: name for name in table} if columns is None else {name: str(of) for name, of in columns.items()}
     with errors_with_file(path):
         channels = {name: table[column] for name, column in chosen.items()}
         data = Measurements.of(along, channels, deviations, missing=missing, wraps=wraps)
         data = data if start is None else data.since(start)
-    origin = f"{path}: {found.layout}" if found.layout else str(path)
-    named = found.named_units(units)
-    columns_of = {along.name: found.time, **chosen}
+    origin = f"{path}: {content.layout}" if content.layout else str(path)
+    named = content.named_units(units)
+    columns_of = {along.name: content.time, **chosen}
     return replace(
         data, origin=origin, source_units={name: named[of] for name, of in columns_of.items() if of in named}
     )
 
 
-def _without(found: Columns, absent: Iterable[str]) -> Columns:
+def _without(content: Columns, absent: Iterable[str]) -> Columns:
     """The columns without the numbers that stand for values that were not measured."""
     numbers = [float(word) for word in absent if is_number(word)]
     if not numbers:
-        return found
-    table = {name: np.where(np.isin(values, numbers), np.nan, values) for name, values in found.table.items()}
-    return replace(found, table=table)
+        return content
+    table = {name: np.where(np.isin(values, numbers), np.nan, values) for name, values in content.table.items()}
+    return replace(content, table=table)
 
 
 def read_trials(path: str | Path, split: str | int, *arguments: Any, **options: Any) -> dict[str, Measurements]:

@@ -116,9 +116,9 @@ def layout(lines: Sequence[Line], time: str | int | None, separator: str = AUTO,
     header, data = _without_empty_end(header, data, named=names is not None)
     width = len(data[0][1]) if data else len(header)
     header += tuple(str(number) for number in range(len(header) + 1, width + 1))
-    found = [_bracketed(name) for name in header] if units is None else [_unit(cell) for cell in units[1]]
-    found = (found + [""] * len(header))[: len(header)]
-    return Layout(cut, mark, header, tuple(found), data, names and names[0], units and units[0])
+    symbols = [_bracketed(name) for name in header] if units is None else [_unit(cell) for cell in units[1]]
+    symbols = (symbols + [""] * len(header))[: len(header)]
+    return Layout(cut, mark, header, tuple(symbols), data, names and names[0], units and units[0])
 
 
 def gaps_of(absent: Iterable[str]) -> frozenset[str]:

@@ -9,10 +9,20 @@ NAMED = {
 }  # fmt: skip
 """Units by the last part of a name in lower case."""
 
+QUOTIENTS = {
+    "deg_s": "deg/s", "deg_per_s": "deg/s", "deg_s2": "deg/s^2", "rad_s": "rad/s", "rad_per_s": "rad/s",
+    "rad_s2": "rad/s^2", "mm_s": "mm/s", "mm_per_s": "mm/s", "mm_s2": "mm/s^2", "m_s": "m/s", "m_per_s": "m/s",
+    "m_s2": "m/s^2",
+}  # fmt: skip
+"""Units by the last parts of a name."""
+
 SURE = {
     "rad": ("deg",),
     "m": ("mm", "um"),
     "rad/s": ("rpm", "deg/s"),
+    "rad/s^2": ("deg/s^2",),
+    "m/s": ("mm/s",),
+    "m/s^2": ("mm/s^2",),
     "N": ("kN",),
     "s": ("ms", "us", "ns"),
     "Hz": ("kHz",),
@@ -23,10 +33,14 @@ SURE = {
 def suffix(name: str) -> str:
     """Return the unit at the end of a name; ``""`` if there is none.
 
-    >>> suffix("angle_deg"), suffix("ms"), suffix("x"), suffix("m"), suffix("rod.end.x")
-    ('deg', 'ms', '', '', '')
+    >>> suffix("angle_deg"), suffix("ms"), suffix("x"), suffix("m"), suffix("rod.end.x"), suffix("gyro_deg_s")
+    ('deg', 'ms', '', '', '', 'deg/s')
     """
-    first, _, last = re.sub(r"[\s.\-]", "_", name.strip().lower()).rpartition("_")
+    plain = re.sub(r"[\s.\-]", "_", name.strip().lower())
+    for quotient, unit in QUOTIENTS.items():
+        if plain.endswith(f"_{quotient}"):
+            return unit
+    first, _, last = plain.rpartition("_")
     return NAMED.get(last, "") if first or len(last) > 1 else ""
 
 

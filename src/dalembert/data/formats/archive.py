@@ -27,8 +27,8 @@ class Archive(Format):
 
         with TemporaryDirectory() as folder:
             form, inner = _unpacked(path, Path(folder))
-            found = form.columns(inner, request)
-        return replace(found, path=path, layout=f"{inner.name}: {found.layout}".rstrip(": "))
+            content = form.columns(inner, request)
+        return replace(content, path=path, layout=f"{inner.name}: {content.layout}".rstrip(": "))
 
     def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
         with TemporaryDirectory() as folder:

@@ -39,7 +39,7 @@ def _held(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
     """Arrays by their paths, and the units that their attributes name."""
     import h5py
 
-    found: dict[str, np.ndarray] = {}
+    arrays: dict[str, np.ndarray] = {}
     units: dict[str, str] = {}
 
     def look(name: str, item: Any) -> None:
@@ -51,16 +51,16 @@ def _held(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
         )
         for label, part in fields.items():
             if part.dtype.kind in "fiubc" and part.ndim:
-                found[label] = np.squeeze(part) if part.ndim > 1 and part.size > 1 else part
+                arrays[label] = np.squeeze(part) if part.ndim > 1 and part.size > 1 else part
                 if unit := _unit(item.attrs):
                     units[label] = unit
 
     with reading(path, "HDF5"), h5py.File(path, "r") as file:
         file.visititems(look)
-    return found, units
+    return arrays, units
 
 
 def _unit(attributes: Mapping[str, Any]) -> str:
     """The unit that attributes name."""
-    given = next((attributes[key] for key in ("units", "unit", "Unit", "Units") if key in attributes), "")
-    return given.decode(errors="replace") if isinstance(given, bytes) else given if isinstance(given, str) else ""
+    unit = next((attributes[key] for key in ("units", "unit", "Unit", "Units") if key in attributes), "")
+    return unit.decode(errors="replace") if isinstance(unit, bytes) else unit if isinstance(unit, str) else ""

@@ -73,10 +73,10 @@ def signals_in(path: str) -> dict[str, Signal]:
     with MDF(path) as file:
         signals = list(file.iter_channels(skip_master=True))
     names = [signal.name for signal in signals]
-    found: dict[str, Signal] = {}
+    channels: dict[str, Signal] = {}
     for signal in signals:
         label = signal.name if names.count(signal.name) == 1 else f"{signal.group_index}/{signal.name}"
         values = np.asarray(signal.samples)
         if values.dtype.kind in "fiu" and values.ndim == 1 and len(values):
-            found[label] = np.asarray(signal.timestamps, dtype=float), values, str(signal.unit or "")
-    return found
+            channels[label] = np.asarray(signal.timestamps, dtype=float), values, str(signal.unit or "")
+    return channels

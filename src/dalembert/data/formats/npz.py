@@ -28,8 +28,8 @@ def _held(path: Path) -> dict[str, np.ndarray]:
     with reading(path, "NPZ"), path.open("rb") as stream:
         loaded = np.load(stream, allow_pickle=False)
         arrays = {"array": loaded} if isinstance(loaded, np.ndarray) else {name: loaded[name] for name in loaded.files}
-    found: dict[str, np.ndarray] = {}
+    columns: dict[str, np.ndarray] = {}
     for name, array in arrays.items():
         fields = array.dtype.names
-        found |= {f"{name}.{field}": array[field] for field in fields} if fields else {name: np.squeeze(array)}
-    return {name: array for name, array in found.items() if array.ndim}
+        columns |= {f"{name}.{field}": array[field] for field in fields} if fields else {name: np.squeeze(array)}
+    return {name: array for name, array in columns.items() if array.ndim}

@@ -36,11 +36,11 @@ def _held(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
         file = nptdms.TdmsFile.read(path)
         channels = [channel for group in file.groups() for channel in group.channels() if len(channel)]
         names = [channel.name for channel in channels]
-        found: dict[str, np.ndarray] = {}
+        arrays: dict[str, np.ndarray] = {}
         units: dict[str, str] = {}
         for channel in channels:
             label = channel.name if names.count(channel.name) == 1 else f"{channel.group_name}/{channel.name}"
-            found[label] = np.asarray(channel[:])
+            arrays[label] = np.asarray(channel[:])
             if unit := str(channel.properties.get("unit_string", channel.properties.get("NI_UnitDescription", ""))):
                 units[label] = unit
         waves = {
@@ -48,7 +48,7 @@ def _held(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
             for channel in channels
             if channel.properties.get("wf_increment")
         }
-        if len(waves) == 1 and TIME not in found:
+        if len(waves) == 1 and TIME not in arrays:
             ((begin, step, count),) = waves
-            found[TIME] = begin + step * np.arange(count)
-    return found, units
+            arrays[TIME] = begin + step * np.arange(count)
+    return arrays, units

@@ -47,8 +47,8 @@ def uff_columns(path: Path, names: Iterable[str] | None, missing: str, units: It
         functions = [file.read_sets(place) for place, kind in enumerate(kinds) if kind == 58]
         systems = [file.read_sets(place) for place, kind in enumerate(kinds) if kind == 164]
     if not functions:
-        found = ", ".join(sorted({str(kind) for kind in kinds})) or "none"
-        raise DataError(f"{path}: no function at a node, dataset 58; the file holds datasets: {found}")
+        numbers = ", ".join(sorted({str(kind) for kind in kinds})) or "none"
+        raise DataError(f"{path}: no function at a node, dataset 58; the file holds datasets: {numbers}")
     labels = _labels(functions)
     lines = Counter(function["id1"] for function in functions)
     also = {f["id1"]: label for label, f in zip(labels, functions, strict=True) if f["id1"] and lines[f["id1"]] == 1}
@@ -101,9 +101,9 @@ def _along(function: dict[str, Any]) -> int:
 
 def _check(path: Path, name: str, function: dict[str, Any]) -> None:
     """Refuse a function that is cut short, or lies along something else than time or frequency."""
-    given, promised = len(function["data"]), function["num_pts"]
-    if given != promised:
-        raise DataError(f"{path}, column {name!r}: {given} values; the file promises {promised}; is it cut short?")
+    count, promised = len(function["data"]), function["num_pts"]
+    if count != promised:
+        raise DataError(f"{path}, column {name!r}: {count} values; the file promises {promised}; is it cut short?")
     kind = function["abscissa_spec_data_type"]
     if kind not in (0, 1, TIME, FREQUENCY):
         raise DataError(

@@ -13,12 +13,12 @@ from dalembert.inverse.mistakes.record import NONE, FittedRecord, Mistake, Verdi
 
 def clipped(record: FittedRecord) -> Iterator[Mistake]:
     """Yield the mistake for all series with several values at their largest or smallest value."""
-    found = {own: there for own in record.series if np.any(there := plateaus(record.data_of(own)))}
-    if found:
-        rows = np.concatenate([own.rows[there] for own, there in found.items()])
-        counts = [int(np.count_nonzero(there)) for there in found.values()]
-        levels = [float(np.max(np.abs(record.data_of(own)[there]))) for own, there in found.items()]
-        finding = partial(_finding, list(found), counts, levels)
+    ends = {own: there for own in record.series if np.any(there := plateaus(record.data_of(own)))}
+    if ends:
+        rows = np.concatenate([own.rows[there] for own, there in ends.items()])
+        counts = [int(np.count_nonzero(there)) for there in ends.values()]
+        levels = [float(np.max(np.abs(record.data_of(own)[there]))) for own, there in ends.items()]
+        finding = partial(_finding, list(ends), counts, levels)
         yield Mistake(partial(without, rows), finding, NONE, blamed=rows, visible=True)
 
 

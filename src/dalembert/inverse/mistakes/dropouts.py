@@ -14,11 +14,11 @@ from dalembert.inverse.mistakes.record import NONE, FittedRecord, Mistake, Verdi
 def dropouts(record: FittedRecord) -> Iterator[Mistake]:
     """Yield the mistake for all series with zeros."""
     lost = {own: record.data_of(own) == 0 for own in record.series}
-    found = {own: zero for own, zero in lost.items() if FEWEST <= np.count_nonzero(zero) < len(zero)}
-    if found:
-        rows = np.concatenate([own.rows[zero] for own, zero in found.items()])
-        counts = [int(np.count_nonzero(zero)) for zero in found.values()]
-        yield Mistake(partial(without, rows), partial(_finding, list(found), counts), NONE, blamed=rows, visible=True)
+    zeros = {own: zero for own, zero in lost.items() if FEWEST <= np.count_nonzero(zero) < len(zero)}
+    if zeros:
+        rows = np.concatenate([own.rows[zero] for own, zero in zeros.items()])
+        counts = [int(np.count_nonzero(zero)) for zero in zeros.values()]
+        yield Mistake(partial(without, rows), partial(_finding, list(zeros), counts), NONE, blamed=rows, visible=True)
 
 
 def _finding(series: Sequence[Series], counts: Sequence[int], verdict: Verdict) -> Finding:

@@ -25,7 +25,7 @@ def plateaus(data: np.ndarray) -> np.ndarray:
     Several values share the end, and others approach it: an end that all others keep away from is that of lost samples.
     A single run of them is clipped only if no other values repeat.
     """
-    first, found = runs(data), np.zeros(len(data), dtype=bool)
+    first, clipped = runs(data), np.zeros(len(data), dtype=bool)
     repeats = first != np.arange(len(data))
     for end in (data.min(), data.max()):
         there = data == end
@@ -33,5 +33,5 @@ def plateaus(data: np.ndarray) -> np.ndarray:
         if np.count_nonzero(there) < FEWEST or not len(others) or np.min(others) >= NEAR * np.ptp(data):
             continue
         if len(set(first[there])) > 1 or not np.any(repeats & ~there & (data != 0)):
-            found |= there
-    return found
+            clipped |= there
+    return clipped

@@ -14,11 +14,11 @@ from dalembert.inverse.mistakes.record import NONE, FittedRecord, Mistake, Verdi
 def repeated_samples(record: FittedRecord) -> Iterator[Mistake]:
     """Yield the mistake for all series with repeated values."""
     repeats = {own: _repeats(record.data_of(own)) for own in record.series}
-    found = {own: first for own, first in repeats.items() if _count(first) >= FEWEST}
-    if found:
-        rows = np.concatenate([own.rows for own in found])
-        sources = np.concatenate([own.rows[first] for own, first in found.items()])
-        finding = partial(_finding, list(found), list(map(_count, found.values())))
+    firsts = {own: first for own, first in repeats.items() if _count(first) >= FEWEST}
+    if firsts:
+        rows = np.concatenate([own.rows for own in firsts])
+        sources = np.concatenate([own.rows[first] for own, first in firsts.items()])
+        finding = partial(_finding, list(firsts), list(map(_count, firsts.values())))
         yield Mistake(partial(_kept, rows, sources), finding, NONE, visible=True)
 
 

@@ -160,7 +160,7 @@ class DataPanel:
     def _problem(self, finding: Finding) -> None:
         icon, colour = LOOKS[finding.severity]
         with ui.row().classes("w-full items-start gap-2 flex-nowrap"):
-            ui.icon(icon, color=colour, size="sm").props(f'role=img aria-label="{finding.severity}"')
+            ui.icon(icon, color=colour, size="sm").props(f'role=img aria-hidden=false aria-label="{finding.severity}"')
             code_text(str(finding)).classes("text-sm grow break-words min-w-0")
             if label := self.guide.remedy(finding):
                 fix = ui.button(label, on_click=partial(self._fix, finding)).props("no-caps outline dense size=sm")

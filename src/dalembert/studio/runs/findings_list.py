@@ -41,7 +41,7 @@ def finding_row(severity: str, message: str, advice: str) -> ui.column:
     """Show a finding in a row, and return the place below its text."""
     icon, colour = ICONS.get(severity, ICONS["note"])
     with ui.row().classes("w-full items-start gap-3 no-wrap border rounded p-3").props("role=listitem"):
-        ui.icon(icon, color=colour, size="sm").props(f'role=img aria-label="{severity}"')
+        ui.icon(icon, color=colour, size="sm").props(f'role=img aria-hidden=false aria-label="{severity}"')
         with ui.column().classes("gap-1 grow min-w-0") as column:
             code_text(message).classes("break-words")
             code_text(advice).classes("text-sm opacity-80 break-words")

@@ -225,6 +225,11 @@ def rate_of(path: Path, sampling: float) -> float:
     return float(sampling)
 
 
+def times_as_channel(path: Path, column: str) -> DataError:
+    """Error for a channel whose column is that of the times or frequencies."""
+    return DataError(f"{path}, column {column!r} has what the samples lie along; expected another column for a channel")
+
+
 def foreign(unit: str) -> bool:
     """Whether a unit that a file names is none, or needs no conversion, the other way round."""
     return unit not in ("", "1", "NONE") and not is_si(unit)

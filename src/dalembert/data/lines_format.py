@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from dalembert.data.clock_times import clock_seconds, is_clock
-from dalembert.data.columns import Columns, Trial, of_trial, trial_label
+from dalembert.data.columns import Columns, Trial, of_trial, times_as_channel, trial_label
 from dalembert.data.format import Format, Request
 from dalembert.data.text_layout import AUTO, GAPS, Layout, Line, Row, gaps_of, is_number, is_plain, layout, value
 from dalembert.data.text_numbers import HEAD, lines_of_numbers, quick_table
@@ -97,6 +97,7 @@ def columns_of(
     others = [k for k in range(len(text.header)) if k not in (first, numbering)]
     wanted = [place(text.header[k]) for k in others] if names is None else [place(one) for one in names]
     labels = [text.header[k] for k in wanted] if names is None else [str(one) for one in names]
+    _refuse_twice(path, labels, wanted, first)
     places: list[int] = list(dict.fromkeys([*([] if first is None else [first]), *wanted]))
     if numbers is None:
         gaps = gaps_of(absent) if missing == "leave-out" else frozenset()
@@ -197,6 +198,16 @@ def _places(path: Path, text: Layout) -> Callable[[str | int], int]:
         return header.index(column)
 
     return place
+
+
+def _refuse_twice(path: Path, labels: Sequence[str], wanted: Sequence[int], time: int | None) -> None:
+    """Refuse a column that is named twice, such as by its name and by its number."""
+    for label, place in zip(labels, wanted, strict=True):
+        same = [other for other, there in zip(labels, wanted, strict=True) if there == place and other != label]
+        if same:
+            raise DataError(f"{path}: {label!r} and {same[0]!r} are one column; expected one channel for a column")
+        if place == time:
+            raise times_as_channel(path, label)
 
 
 def _of_trial(path: Path, text: Layout, place: int, trial: Trial) -> Layout:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.data.columns import Columns, Trial, rate_of, trial_label
+from dalembert.data.columns import Columns, Trial, rate_of, times_as_channel, trial_label
 from dalembert.data.format import Request
 from dalembert.data.known_formats import columns_in, trial_labels
 from dalembert.data.measurements import Measurements
@@ -119,6 +119,8 @@ def read(
     absent = () if isinstance(missing, str) else tuple(map(str, missing))
     missing = missing if isinstance(missing, str) else "leave-out"
     along_column = (frequency or time) if sampling is None else None
+    if along_column is not None and str(along_column) in map(str, names or ()):
+        raise times_as_channel(path, str(along_column))
     request = Request(along_column, names, missing, tuple(units or ()), separator, decimal, one, absent)
     content = _without(columns_in(path, request, format), absent)
     if sampling is not None:

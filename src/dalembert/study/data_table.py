@@ -95,6 +95,11 @@ class FileTable(StudyTable):
         "auto", description="what stands before the decimals of a text file's numbers; found from its lines if 'auto'"
     )
 
+    def _wrong(self) -> list[str]:
+        if self.sampling is not None and {"time", "frequency"} & self.model_fields_set:
+            return ["sampling is given, and a column of times or frequencies, too; leave one of them out"]
+        return []
+
     @property
     def how(self) -> dict[str, Any]:
         """Arguments that say how the file is read."""
@@ -223,7 +228,7 @@ class DataTable(ChannelFile):
     )
 
     def _wrong(self) -> list[str]:
-        wrong = [
+        wrong = super()._wrong() + [
             unknown("channel", name, file.columns, "wraps")
             for file in (self, *self.more)
             for name in file.wraps

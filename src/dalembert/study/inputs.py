@@ -79,7 +79,7 @@ class InputTable(FileTable):
             raise problem("start: bounds were given; expected a number of seconds of the file, or 'first'")
         if self.frequency is not None:
             raise problem("frequency: an input lies along time; name its column by time")
-        return []
+        return super()._wrong()
 
     def over(self, shared: "InputTable | None") -> "InputTable":
         """This table with the keys that it leaves out from the shared one."""

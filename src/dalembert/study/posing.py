@@ -14,6 +14,8 @@ from dalembert.study.data_table import DataTable
 from dalembert.study.numbers import wrong_units
 from dalembert.study.sensor_table import SensorTable
 from dalembert.study.study import Study
+from dalembert.unit_table import readings
+from dalembert.units import difference
 
 if TYPE_CHECKING:
     from dalembert.data import Measurements
@@ -95,7 +97,7 @@ def channel_units_of(model: "ForwardModel | Sequence[Experiment]") -> dict[str, 
 
 
 def _check_units(table: DataTable, model: ForwardModel, where: str, sensors: Mapping[str, SensorTable]) -> None:
-    """Refuse deviations and offsets whose unit is not that of their channel.
+    """Refuse deviations and offsets whose unit is not that of their channel, and derivatives of another kind.
 
     Raises
     ------
@@ -108,6 +110,15 @@ def _check_units(table: DataTable, model: ForwardModel, where: str, sensors: Map
     offsets = {name: sensor.offset for name, sensor in sensors.items() if sensor.offset is not None}
     for sentence in wrong_units(offsets, units, "[sensors], offset of"):
         raise InputError(sentence)
+    for name, derivative in table.derivatives.items():
+        given, wanted = (units.get(channel) for channel in (derivative.of, name))
+        if not given or not wanted or not readings(given) or not readings(wanted):
+            continue
+        if difference(readings(given)[0] * readings("s")[0] ** -derivative.order, readings(wanted)[0]) is not None:
+            raise InputError(
+                f"{where}, derivatives, {name}: a derivative of {derivative.of!r} in {given} of order "
+                f"{derivative.order} was given for a channel in {wanted}; expected one of the channel's kind"
+            )
 
 
 def _model(study: Study, data: "Measurements", table: DataTable, later: Sequence[str] = ()) -> ForwardModel:

@@ -244,3 +244,18 @@ def test_a_column_is_read_for_one_channel(tmp_path):
     (tmp_path / "run.csv").write_text(text(",", "t,i,a"))
     with pytest.raises(DataError, match="column 'a' is given for 2 channels; expected one channel for a column"):
         read(tmp_path / "run.csv", columns={"bar.x": "a", "bar.y": "a"})
+
+
+@pytest.mark.parametrize(
+    ("columns", "sentence"),
+    [
+        ({"a": "x", "b": 2}, "'x' and '2' are one column; expected one channel for a column"),
+        ({"a": "t"}, "column 't' has what the samples lie along; expected another column for a channel"),
+        ({"a": 1}, "column '1' has what the samples lie along"),
+    ],
+)
+def test_one_column_is_not_two(columns, sentence, tmp_path):
+    (tmp_path / "run.csv").write_text("t,x\n0,1\n1,2\n")
+    with pytest.raises(DataError) as caught:
+        read(tmp_path / "run.csv", columns=columns)
+    assert sentence in str(caught.value)

@@ -115,6 +115,34 @@ def test_another_kind_is_a_sentence(study, changed, sentence):
     assert sentence in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("changed", "sentence"),
+    [
+        (
+            {"channel": "bar.end.x", "angle": "x", "more": 'wraps = ["bar.end.x"]'},
+            "wraps names the channel 'bar.end.x', which is in m and no angle; leave it out",
+        ),
+        (
+            {"more": 'derivatives = { "bar.end.x" = "bar.start.angle" }'},
+            "[data], derivatives, bar.end.x: a derivative of 'bar.start.angle' in rad of order 1 was given for a channel "
+            "in m; expected one of the channel's kind",
+        ),
+        (
+            {"more": 'derivatives = { "bar.start.rate" = { of = "bar.start.angle", order = 2 } }'},
+            "of order 2 was given",
+        ),
+        ({"more": 'derivatives = { "bar.start.rate" = "bar.start.angle" }\nwraps = ["bar.start.angle"]'}, ""),
+    ],
+)
+def test_turns_and_derivatives_have_the_kind_of_their_channel(study, changed, sentence):
+    if not sentence:
+        posed(study(**changed))
+        return
+    with pytest.raises((DataError, InputError)) as caught:
+        plan(study(**changed))
+    assert sentence in str(caught.value)
+
+
 @pytest.mark.parametrize("more", ["scale = 0.5", 'integrals = 1\nunit = "N*m*s^-1"', 'integrals = 2\nunit = "N*m/s^2"'])
 def test_a_scale_or_integrals_change_the_kind_of_an_input(study, more):
     plan(study(torque="current (A)" if "scale" in more else "torque", more_input=more))

@@ -45,7 +45,9 @@ def columns_of(model: ForwardModel, data: Measurements | Bands) -> np.ndarray:
 
 
 def _check_kinds(model: ForwardModel, data: Measurements | Bands) -> None:
-    """Refuse channels that were measured in a unit of another kind; a sensor of unknown gain may have any unit.
+    """Refuse channels that were measured in a unit of another kind, and turns of what is no angle.
+
+    A sensor of unknown gain may have any unit.
 
     Raises
     ------
@@ -58,6 +60,9 @@ def _check_kinds(model: ForwardModel, data: Measurements | Bands) -> None:
             raise DataError(
                 f"the data of channel {channel!r}: {sentence}; choose another column, or correct its unit in units"
             )
+    for channel in getattr(data, "wraps", ()):
+        if (expected := units.get(channel)) and wrong_kind("rad", expected):
+            raise DataError(f"wraps names the channel {channel!r}, which is in {expected} and no angle; leave it out")
 
 
 def check_samples(model: ForwardModel, data: Measurements | Bands) -> None:

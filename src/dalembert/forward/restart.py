@@ -23,7 +23,7 @@ class StateChart:
     places : array of int, shape (numbers,)
         Their places among all numbers that can be chosen.
     near : array, shape (state,)
-        The whole state near which the others are completed.
+        The whole state near which the others are completed, then the whole turns there of the channels ``turning``.
     values : array, shape (numbers,)
         The numbers at the known state.
     scales : array, shape (numbers,)
@@ -37,6 +37,8 @@ class StateChart:
         The numbers (..., numbers) of whole states (..., state), real or complex.
     whole : bool
         Whether all numbers of the state are named, so that a motion can be read but not begun.
+    turning : tuple of str
+        Channels that are angles which the state gives up to whole turns.
     """
 
     names: tuple[str, ...]
@@ -49,6 +51,13 @@ class StateChart:
     reach: np.ndarray
     read: Callable[[np.ndarray], np.ndarray]
     whole: bool = False
+    turning: tuple[str, ...] = ()
+
+    def turned(self, turns: np.ndarray) -> "StateChart":
+        """Return the chart with more whole turns (turning,) of its angles."""
+        near = self.near.copy()
+        near[len(near) - len(turns) :] += turns
+        return replace(self, near=near)
 
 
 @runtime_checkable

@@ -79,6 +79,12 @@ class Observer:
         """Angles among the channels that are known up to whole turns."""
         return tuple(dict.fromkeys(row.angle for row in self.rows if row.angle))
 
+    @property
+    def turning(self) -> list[int]:
+        """The first channel of each of these angles."""
+        angles = [row.angle for row in self.rows]
+        return [angles.index(angle) for angle in self.counted]
+
     def read(
         self, lowered: Lowered, model: Model, states: Sequence[np.ndarray], times: np.ndarray,
         turns: Mapping[CountedAngle, np.ndarray] = _NO_TURNS,

@@ -29,8 +29,17 @@ _CLOSED = 1e-12  # step of Newton's method, in parts of the extent, after which 
 _REACH = 1e6  # bounds of a state in typical sizes: methods give their own
 
 
-def chart(lowered: Lowered, state: np.ndarray, whole: bool = False, like: StateChart | None = None) -> StateChart:
-    """Return independent coordinates and rates of a mechanism near a state (2n,); all of them if ``whole``.
+def chart(
+    lowered: Lowered,
+    state: np.ndarray,
+    whole: bool = False,
+    like: StateChart | None = None,
+    turning: tuple[str, ...] = (),
+) -> StateChart:
+    """Return independent coordinates and rates of a mechanism near a state; all of them if ``whole``.
+
+    The state (2n + turning,) ends with the whole turns of the channels ``turning``; they are zero where it has 2n
+    numbers.
 
     The constraints leave the motions N = null(J) free, in scaled local coordinates. Independent are the coordinates
     whose rows of N a pivoted QR decomposition chooses; or those of a chart ``like`` it, where their rows are not much
@@ -38,11 +47,16 @@ def chart(lowered: Lowered, state: np.ndarray, whole: bool = False, like: StateC
     """
     structure, scale = lowered.structure, scales(lowered)
     n, size = structure.n, structure.size
+    state = np.concatenate([state, np.zeros(2 * n + len(turning) - len(state))])
     if whole:
         names, units = coordinate_names(lowered), [_unit(kind) for kind in structure.kinds]
-        every, sizes = np.arange(2 * n), np.tile(scale[:n], 2)
-        labels = (*names, *(f"{name} rate" for name in names)), (*units, *(f"{unit}/s" for unit in units))
-        return StateChart(*labels, every, state, state, sizes, np.zeros(2 * n), np.full(2 * n, np.inf), _all, whole)
+        every, sizes = np.arange(len(state)), np.concatenate([np.tile(scale[:n], 2), np.ones(len(turning))])
+        labels = (
+            (*names, *(f"{name} rate" for name in names), *(f"{name} turns" for name in turning)),
+            (*units, *(f"{unit}/s" for unit in units), *("" for _ in turning)),
+        )
+        far = np.zeros(len(state)), np.full(len(state), np.inf)
+        return StateChart(*labels, every, state, state, sizes, *far, _all, whole, turning)
     local = LocalCoordinates.of(lowered)
     state = np.concatenate([local.restored(state[:n]), state[n:]])
     count = len(local.names)
@@ -63,14 +77,14 @@ def chart(lowered: Lowered, state: np.ndarray, whole: bool = False, like: StateC
     units = [_unit(local.kinds[place]) for place in places]
     chosen = np.concatenate([places, count + places])
     offsets, reach = np.zeros(2 * count), np.full(2 * count, np.inf)
-    turning = local.rotations.ravel()
-    offsets[turning] = local.positions(local.restored(np.real(lowered.x[:n])), state[:n])[turning]
-    reach[turning] = np.pi
+    rotated = local.rotations.ravel()
+    offsets[rotated] = local.positions(local.restored(np.real(lowered.x[:n])), state[:n])[rotated]
+    reach[rotated] = np.pi
     read = partial(_numbers, local, state[:n], chosen)
     return StateChart(
         (*(local.names[place] for place in places), *(local.rate_names[place] for place in places)),
         (*units, *(f"{unit}/s" for unit in units)),
-        chosen, state, read(state), np.tile(own[places], 2), offsets[chosen], reach[chosen], read,
+        chosen, state, read(state), np.tile(own[places], 2), offsets[chosen], reach[chosen], read, turning=turning,
     )  # fmt: skip
 
 
@@ -79,8 +93,8 @@ def _all(states: np.ndarray) -> np.ndarray:
 
 
 def _numbers(local: LocalCoordinates, near: np.ndarray, places: np.ndarray, states: np.ndarray) -> np.ndarray:
-    """Local coordinates relative to coordinates ``near`` (n,), and rates, of whole states (..., 2n)."""
-    x, v = states[..., : len(near)], states[..., len(near) :]
+    """Local coordinates relative to coordinates ``near`` (n,), and rates, of whole states (..., 2n + turning)."""
+    x, v = states[..., : len(near)], states[..., len(near) : 2 * len(near)]
     return np.concatenate([local.positions(near, x), local.rates(x, v)], axis=-1)[..., places]
 
 
@@ -154,7 +168,7 @@ class Completion:
         complex_state = lowered.is_complex or bool(lowered.callbacks) or np.iscomplexobj(numbers)
         own, near = self.coordinates, self.chart.near[:n]
         local = self.local.astype(complex if complex_state else float)
-        rates = own.rates(near, self.chart.near[n:]).astype(local.dtype)
+        rates = own.rates(near, self.chart.near[n : 2 * n]).astype(local.dtype)
         local[self.chart.places[:half]] = numbers[:half]
         rates[self.chart.places[:half]] = numbers[half:]
         tail, still = np.zeros(size + 1 - n), np.zeros(size + 1, dtype=local.dtype)
@@ -272,8 +286,23 @@ class MotionSegment(MotionModel):
 
     def _read(self, lowered: Lowered, model: Model, states: Any, turns: np.ndarray | None = None) -> np.ndarray:
         """Channels of the model and numbers of the state, (samples, channels)."""
+        n = lowered.structure.n
+        if turns is not None and self.chart is not None and turns.size:
+            turns = turns + self._begun(lowered, self.chart.near)
         values = super()._read(lowered, model, states, turns)
         if self.ends is None:
             return values
-        numbers = self.ends.read(np.concatenate([part[:, : lowered.structure.n] for part in states[:2]], axis=1))
+        numbers = self.ends.read(np.concatenate([part[:, :n] for part in states[:2]], axis=1))
+        if self.ends.whole:
+            count = len(self.ends.turning)
+            counted = np.zeros((len(values), count)) if turns is None or not count else turns
+            numbers = np.concatenate([numbers, counted], axis=1)
         return np.concatenate([values, numbers], axis=1)
+
+    def _begun(self, lowered: Lowered, near: np.ndarray) -> np.ndarray:
+        """Whole turns (turning,) of the angles at the start, with which they are near those of the chart."""
+        n, observer = lowered.structure.n, self.model.observer
+        x, v = (np.tile(np.real(part), (2, 1)) for part in (lowered.x, lowered.v))
+        x[0, :n], v[0, :n] = near[:n], near[n : 2 * n]
+        angles = observer.read(lowered, lowered.real, (x, v, np.zeros_like(x)), np.zeros(2))[:, observer.turning]
+        return near[2 * n :] + np.round((angles[0] - angles[1]) / (2.0 * np.pi))

@@ -183,8 +183,9 @@ class TimeResponse(BuiltModel):
         Parameters
         ----------
         vector : array, shape (parameters,)
-        state : array, shape (2n,), optional
-            Coordinates and rates of the mechanism; those of the start at ``vector`` if not given.
+        state : array, shape (2n + turning,), optional
+            Coordinates and rates of the mechanism, and whole turns of the channels that are angles which these give up
+            to whole turns, as a segment reads them; those of the start at ``vector`` if not given.
         whole : bool
             Whether all coordinates and rates are named, dependent ones too.
         like : StateChart, optional
@@ -202,11 +203,12 @@ class TimeResponse(BuiltModel):
         >>> model.state_chart(np.array([0.3])).names
         ('bar.angle', 'bar.angle rate')
         """
+        turning = tuple(self.channel_names[column] for column in self.observer.turning)
         if state is not None:
-            return chart(self.lowered_at(vector, self.begin, closed=False), np.asarray(state), whole, like)
+            return chart(self.lowered_at(vector, self.begin, closed=False), np.asarray(state), whole, like, turning)
         lowered = self._lower(self.parameters.real_vector(vector))
         n = lowered.structure.n
-        return chart(lowered, np.concatenate([lowered.x[:n], lowered.v[:n]]), whole, like)
+        return chart(lowered, np.concatenate([lowered.x[:n], lowered.v[:n]]), whole, like, turning)
 
     def restarted(
         self, begin: float, times: ArrayLike, chart: StateChart | None, ends: StateChart | None

@@ -176,6 +176,7 @@ class _Estimates:
         for place in places[1:]:
             sample, chart, state = found[-1]
             chart = self._next(own, chart, state, track.times[sample], track.times[place])
+            chart = self._counted(own, chart, int(place))
             found.append((int(place), chart, self.estimated(own, chart, int(place))))
         return _bounded(found)
 
@@ -222,6 +223,18 @@ class _Estimates:
             return self.model.state_chart(own, near, like=self.start)
         except DalembertError:
             return replace(chart)
+
+    def _counted(self, own: np.ndarray, chart: StateChart, sample: int) -> StateChart:
+        """The chart with the whole turns that were measured: the segment before may have lost some."""
+        track = self.track
+        places = {track.model.channels[column].name: place for place, column in enumerate(track.picked)}
+        if not any(name in places for name in chart.turning):
+            return chart
+        model = restarted(track.model, float(track.times[sample]), [0.0, self._instant], chart, None)
+        values = model.evaluate(np.concatenate([own, chart.values])[None]).values[0, 0][track.picked]
+        apart = np.rint((self.seen.values[sample] - values) / TURN)
+        apart = np.where(track.data.wrapping | ~np.isfinite(apart), 0.0, apart)
+        return chart.turned(np.array([apart[places[name]] if name in places else 0.0 for name in chart.turning]))
 
     def _turns(self, own: np.ndarray, start: StateChart) -> np.ndarray:
         """Whole turns by which measured angles that wrap differ from the model's at the beginning, (channels,)."""

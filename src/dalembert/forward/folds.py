@@ -44,7 +44,7 @@ class Fold:
         self.done, self.state, self.notes = 0, state, list[list[str]]()
         self._checkpoint: Checkpoint | None = None
         self._seconds, self._lines = 0.0, list[bytes]()
-        recorded = _recorded(model)
+        recorded = recorded_in(model)
         if recorded is None or not len(points):
             return
         self._checkpoint = recorded.checkpoint
@@ -94,7 +94,7 @@ def summarised(model: ForwardModel, name: str, numbers: np.ndarray, compute: Cal
     compute : callable
         Evaluates the model and makes the arrays.
     """
-    recorded = _recorded(model)
+    recorded = recorded_in(model)
     if recorded is None:
         return compute()
     checkpoint, key = recorded.checkpoint, recorded.key(f"summary of {name}", np.ravel(numbers))
@@ -108,6 +108,6 @@ def summarised(model: ForwardModel, name: str, numbers: np.ndarray, compute: Cal
     return made
 
 
-def _recorded(model: ForwardModel) -> Recorded | None:
+def recorded_in(model: ForwardModel) -> Recorded | None:
     """The first model with a checkpoint, of a model and of those that it holds."""
     return next((one for one in models_in(model) if isinstance(one, Recorded)), None)

@@ -4,6 +4,7 @@ import json
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from hashlib import sha256
 from typing import Any, TypeAlias, TypeVar, cast
 
 import numpy as np
@@ -14,7 +15,7 @@ from dalembert.data import Measurements
 from dalembert.errors import DalembertError, SolveError, StorageError
 from dalembert.forward import ForwardModel, Pull, prefers_adjoint, pullback
 from dalembert.forward.adjoint import ADJOINT, AUTO
-from dalembert.forward.folds import summarised
+from dalembert.forward.folds import recorded_in, summarised
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.loss import Loss
 from dalembert.inverse.problem.matching import (
@@ -114,26 +115,28 @@ class Problem:
     def fitness(self, points: np.ndarray) -> np.ndarray:
         """Fitness (batch,) at search points (batch, parameters); NaN where a sample failed.
 
-        A checkpoint keeps it in place of the responses, with the reasons of failures and the journal's first response.
+        A checkpoint keeps that of several points in place of the responses, with the reasons of failures and the
+        journal's first response.
         """
         vectors, known = self.search.vectors(points), self.journal.first
-        alone = replace(self, journal=Journal(self.samples, first=known))
+        if len(vectors) < 2 or not self._is_recorded:
+            return self._fitness(vectors, self.journal)
+        journal = Journal(self.samples, first=known)
 
         def compute() -> tuple[np.ndarray, ...]:
-            fitness, first = alone._fitness(vectors), alone.journal.first
-            reasons = np.frombuffer(json.dumps(alone.journal.failures).encode(), np.uint8)
+            fitness, first = self._fitness(vectors, journal), journal.first
+            reasons = np.frombuffer(json.dumps(journal.failures).encode(), np.uint8)
             return fitness, reasons, *([] if first is None or first is known else [first.response])
 
-        numbers = np.concatenate([vectors.ravel(), self.weights.ravel(), self.columns])
-        fitness, reasons, *first = summarised(self.model, self._compared_with, numbers, compute)
+        fitness, reasons, *first = summarised(self.model, self._compared_with, vectors, compute)
         self.journal.simulations += len(vectors)
         self.journal.failures.extend(json.loads(reasons.tobytes()))
         for response in first:
             self.journal.computed(vectors[0], response)
         return fitness
 
-    def _fitness(self, vectors: np.ndarray) -> np.ndarray:
-        responses = self.responses(vectors)
+    def _fitness(self, vectors: np.ndarray, journal: Journal) -> np.ndarray:
+        responses = simulated(self.model, self.columns, journal, vectors)
         prior = np.sum(prior_residual(self.model.parameters, vectors) ** 2, axis=1)
         if self.loss is not None:
             return np.sum(self.squares(responses), axis=(1, 2)) + prior
@@ -141,9 +144,15 @@ class Problem:
             return np.einsum("sc,bsc->b", self.weights, self.misfit(responses) ** 2) + prior
 
     @cached_property
+    def _is_recorded(self) -> bool:
+        return recorded_in(self.model) is not None
+
+    @cached_property
     def _compared_with(self) -> str:
-        """What the fitness depends on beside numbers: model, priors, data and loss."""
-        return f"{self.model.fingerprint}\n{self.model.parameters!r}\n{self.data.fingerprint}\n{self.loss!r}"
+        """What the fitness depends on beside the vectors: model, priors, data, weights and loss."""
+        numbers = sha256(self.weights.tobytes() + self.columns.tobytes()).hexdigest()
+        words = self.model.fingerprint, repr(self.model.parameters), self.data.fingerprint, repr(self.loss)
+        return "\n".join(("fitness", *words, numbers))
 
     def squares(self, responses: np.ndarray) -> np.ndarray:
         """What each value adds to the fitness, both (..., samples, channels)."""

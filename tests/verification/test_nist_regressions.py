@@ -52,9 +52,16 @@ def test_a_fit_from_too_far_a_start_is_no_success(regressions):
     assert lost == [{"parameter": "b2"}, {"parameter": "b3"}]
 
 
-def test_half_of_the_fits_have_six_digits(regressions):
+def test_half_of_the_fits_have_six_digits(regressions, record_evidence):
+    assert set(regressions) == set(MODELS)
     found = [fitted(problem, k) for name, problem in regressions.items() for k in starts_of(name)]
     assert len(found) == 33
+    reached = sum(digits(values) > 4 for values, _ in found)
+    assert reached == 33
+    record_evidence(
+        "fits from each of 34 starts: share with four digits", 1.0, reached / 34, tolerance=None, topic=TOPIC,
+        kind="published", source=f"{SOURCE}; from start 1 of MGH10 the fit is reported as not converged",
+    )  # fmt: skip
     assert np.median([digits(values) for values, _ in found]) > 6
     assert np.median([digits(deviations) for _, deviations in found]) > 6
 

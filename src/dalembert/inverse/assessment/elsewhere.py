@@ -45,7 +45,7 @@ def _around(
     """Interval around where the misfit is least near a search point, apart from those found; None if there is none."""
     memo, search = Memo(problem), problem.search
     try:
-        end = walk.method.minimise(memo.residual, memo.jacobian, search.lower, search.upper, point)
+        end = walk.method.minimise(memo.residual, memo.jacobian, search.lower, search.upper, point, ahead=memo.ahead)
         excess, there = (end.fitness - walk.best) / walk.variance, search.vectors(end.x)
         if any(lower <= there[k] <= upper for lower, upper in found):
             return None

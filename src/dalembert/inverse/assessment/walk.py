@@ -143,6 +143,7 @@ def least(problem: Problem, k: int, guess: np.ndarray, walk: Walk) -> tuple[floa
                 search.lower[others],
                 search.upper[others],
                 guess[others],
+                ahead=lambda rest: memo.ahead(whole(rest)),
             )
         except SolveError as error:
             return str(error)

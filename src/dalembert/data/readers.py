@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from dalembert.data.measurements import Measurements
 from dalembert.data.opening import errors_with_file
 from dalembert.data.record import FIRST
 from dalembert.data.text_layout import AUTO, is_number
-from dalembert.errors import DataError, repeated
+from dalembert.errors import DataError, repeated, shown
 
 
 def read(
@@ -111,6 +112,7 @@ def read(
     >>> data.values.round(4).tolist()
     [[0.7854], [1.5708]]
     """
+    _refuse_wrong_kinds(path, time, columns, units, missing, separator, trial)
     path = Path(path)
     names = None if columns is None else tuple(columns.values())
     for column, count in repeated(map(str, names or ())).items():
@@ -137,6 +139,31 @@ def read(
     return replace(
         data, origin=origin, source_units={name: named[of] for name, of in columns_of.items() if of in named}
     )
+
+
+def _refuse_wrong_kinds(
+    path: Any, time: Any, columns: Any, units: Any, missing: Any, separator: Any, trial: Any
+) -> None:
+    """Refuse arguments of another type than :func:`read` takes.
+
+    Raises
+    ------
+    DataError
+    """
+    is_names = isinstance(missing, str) or (isinstance(missing, Sequence) and not isinstance(missing, bytes))
+    of_text = isinstance(units, Mapping) and all(isinstance(unit, str) for unit in units.values())
+    is_pair = isinstance(trial, Sequence) and not isinstance(trial, str) and len(trial) == 2
+    for name, value, right, wanted in (
+        ("path", path, isinstance(path, str | PathLike), "the path of a file"),
+        ("time", time, isinstance(time, str | int), "the name of a column, or its number from 1"),
+        ("columns", columns, columns is None or isinstance(columns, Mapping), "a mapping such as {'AB.end.x': 'x'}"),
+        ("units", units, units is None or of_text, "a mapping from columns to units, such as {'x': 'mm'}"),
+        ("missing", missing, is_names, "'refuse', 'leave-out', or a list of words and numbers such as ['N/A', -9999]"),
+        ("separator", separator, isinstance(separator, str), "'auto', or one character, such as ';'"),
+        ("trial", trial, trial is None or is_pair, "a column and the trial in it, such as ('run', 3)"),
+    ):
+        if not right:
+            raise DataError(f"read: {name} is {shown(value)}; expected {wanted}")
 
 
 def _without(content: Columns, absent: Iterable[str]) -> Columns:

@@ -10,6 +10,7 @@ from scipy.io import savemat
 from xarray import Dataset
 
 from dalembert.data import read, read_bands
+from dalembert.errors import DataError
 from dalembert.inverse import Fit, identify
 from data_files import ANGLE, TIMES, WAY, WRITERS, function, universal
 from small_models import DECAY, measured
@@ -170,3 +171,17 @@ def test_a_result_of_ours_is_data_again(tmp_path):
     fit.save(tmp_path / "fit.nc")
     data = read(tmp_path / "fit.nc", "coordinate", {"x": "response[x]"})
     np.testing.assert_array_equal(data.values, Fit.load(tmp_path / "fit.nc").response)
+
+
+@pytest.mark.parametrize(
+    ("argument", "value"),
+    [
+        ("path", 5), ("time", None), ("columns", ["x"]), ("units", ["mm"]), ("units", {"x": None}), ("missing", None),
+        ("missing", -9999), ("separator", 1), ("trial", 1), ("trial", "ab"),
+    ],
+)  # fmt: skip
+def test_arguments_of_another_type_are_refused(argument, value, tmp_path):
+    (tmp_path / "run.csv").write_text("t,x\n0,1\n1,2\n")
+    arguments = {"path": tmp_path / "run.csv"} | {argument: value}
+    with pytest.raises(DataError, match=f"read: {argument} is .*; expected "):
+        read(**arguments)

@@ -17,6 +17,7 @@ from dalembert.multibody import (
     TimeResponse,
     simulate,
 )
+from dalembert.multibody.lowering import lower
 from support import says
 
 
@@ -45,6 +46,15 @@ def test_a_rigid_mechanism_gets_the_high_order() -> None:
 def test_a_flexible_one_gets_generalized_alpha() -> None:
     trajectory = simulate(flexible(), 0.1, solver=Automatic(tolerance=1e-4))
     assert trajectory.solver == GeneralizedAlpha(step=1e-4, adaptive=True, tolerance=1e-4)
+
+
+@pytest.mark.parametrize(("slip_rate", "radius"), [(1e-3, 0.8), (1e-7, 0.0)])
+def test_stiff_friction_of_a_flexible_one_is_damped_in_one_step(slip_rate: float, radius: float) -> None:
+    system = System(gravity=(0.0, -9.81))
+    bar = system.add(AncfCable("bar", 1.0, 2, 2e8, height=0.04, width=0.04, density=5540.0))
+    system.add(RevoluteJoint("pin", system.ground, bar.start, coulomb=10.0, slip_rate=slip_rate))
+    expected = GeneralizedAlpha(step=1e-3, adaptive=True, spectral_radius=radius)
+    assert Automatic().suiting(lower(system), 1.0) == expected
 
 
 def test_redundant_constraints_get_a_method_that_takes_them() -> None:

@@ -4,6 +4,8 @@ The block sticks until the spring pulls with the largest friction, slips, and st
 the creep of the smoothed law, so the reference integrates the law itself in plain NumPy.
 """
 
+from functools import cache
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -34,6 +36,7 @@ def dragged(slip: float) -> da.System:
     return system
 
 
+@cache
 def reference(slip: float) -> np.ndarray:
     """Position of the block, m."""
 
@@ -62,20 +65,37 @@ def test_the_block_slips_at_the_right_time_in_few_steps(slip: float, record_evid
     )
 
 
+ADAPTIVE = {
+    da.GeneralizedAlpha(step=1e-3, adaptive=True): 3e-5,
+    da.GeneralizedAlpha(step=1e-3, adaptive=True, tolerance=1e-8): 3e-5,
+    da.RadauIIA(tolerance=1e-8): 1e-6,
+    da.RadauIIA(tolerance=1e-9): 1e-6,
+    da.RadauIIA(tolerance=1e-10, stages=3): 1e-6,
+    da.RadauIIA(tolerance=1e-8, stages=7): 1e-6,
+}
+"""Solvers with adaptive steps, and how far from the reference they may be, m. A step that ends without balance of the
+forces sticks too long: the block is then up to 1.8e-3 m off."""
+FIXED = {
+    da.GeneralizedAlpha(step=1e-3): 1e-4,
+    da.RadauIIA(step=1e-3): 1e-5,
+    da.EnergyMomentum(step=1e-3): 1e-4,
+    da.Variational(step=1e-3): 1e-4,
+}
+
+
 @pytest.mark.parametrize("slip", [1e-6, 1e-7])
-@pytest.mark.parametrize(
-    "solver",
-    [da.GeneralizedAlpha(step=1e-3, adaptive=True), da.GeneralizedAlpha(step=1e-3)],
-    ids=["adaptive", "fixed"],
-)
-def test_a_stick_phase_that_oscillates_is_named(slip: float, solver: da.GeneralizedAlpha) -> None:
-    (found,) = (item for item in da.simulate(dragged(slip), END, solver).findings if item.code == "stick-chatter")
-    assert (found.severity, found.values["joint"], found.values["slip_velocity"]) == ("warning", "floor", slip)
-    assert found.values["reversals"] >= 20
-
-
-@pytest.mark.parametrize(
-    "solver", [da.GeneralizedAlpha(step=1e-3, adaptive=True), da.GeneralizedAlpha(step=1e-3)], ids=str
-)
-def test_a_stick_phase_that_is_resolved_is_not_named(solver: da.GeneralizedAlpha) -> None:
-    assert "stick-chatter" not in [item.code for item in da.simulate(dragged(1e-5), END, solver).findings]
+@pytest.mark.parametrize(("solver", "tolerance"), [*ADAPTIVE.items(), *FIXED.items()], ids=str)
+def test_every_solver_slips_at_the_right_time(slip: float, solver, tolerance: float, record_evidence) -> None:
+    motion = da.simulate(dragged(slip), END, solver, times=TIMES)
+    assert "stick-chatter" not in [finding.code for finding in motion.findings]
+    assert motion.run.counts[0] < 3000
+    record_evidence(
+        f"block dragged over a floor by {solver}, slip rate {slip:g} m/s: position",
+        reference(slip),
+        motion.channels(["block.centre.x"])[:, 0],
+        tolerance=tolerance,
+        topic=TOPIC,
+        kind="other code",
+        source=SOURCE,
+        unit="m",
+    )

@@ -72,6 +72,14 @@ def test_a_joint_at_rest_or_without_friction_has_no_finding():
     assert simulate(pendulum(0.0, 1e-3, friction=False), 1.0).findings == ()
 
 
+def test_a_joint_that_chatters_where_friction_holds_it_is_named():
+    rates = np.concatenate([np.full(30, 20.0), 0.01 * (-1.0) ** np.arange(31)])
+    (chatter,) = slip_findings("pin", PIN, TIMES, rates, None)
+    assert (chatter.code, chatter.severity) == ("stick-chatter", "warning")
+    assert chatter.values == {"joint": "pin", "slip_rate": 1e-3, "reversals": 30}
+    assert list(slip_findings("pin", PIN, TIMES, np.abs(rates), None)) == []
+
+
 def test_solvers_that_choose_their_steps_are_judged_by_creep_only():
     rates = np.where(np.arange(61) % 2, 5.0, -5.0)
     assert list(slip_findings("pin", PIN, TIMES, rates, None)) == []

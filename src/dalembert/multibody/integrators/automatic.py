@@ -19,7 +19,7 @@ from dalembert.multibody.scales import slip_scale
 from dalembert.multibody.singular_positions import SingularPositionError
 
 _FIRST = 1e-3  # of the motion: the first step of an adaptive one
-_STIFF = 5e-6  # 1/s: slip rate in parts of the extent, below which a spectral radius of 0.8 chatters in stick phases
+_STIFF = 1e-4  # 1/s: slip rate in parts of the extent; GeneralizedAlpha holds a beam at 1e-3, and at 1e-5 not always
 _MOST_STEPS = 20_000  # of an explicit method past a singular position
 
 
@@ -30,7 +30,7 @@ class Automatic(Integrator):
     Where all bodies are rigid nothing oscillates faster than the motion, and a high order takes long steps:
     :class:`RadauIIA`; with redundant constraints :class:`OdeSolver`, which finds multipliers for them. Beams and cables
     bring frequencies that nobody wants to follow: :class:`GeneralizedAlpha` damps them, and its step, adaptive here,
-    costs little; where dry friction has a very small slip rate, it damps them in one step. Where a singular position (a
+    costs little; for dry friction with a small slip rate, :class:`RadauIIA`. Where a singular position (a
     flat four-bar) stops :class:`RadauIIA`, :class:`OdeSolver` runs the motion again, if it can pass. The page "Which
     integrator" has the measurements behind this rule.
 
@@ -54,13 +54,15 @@ class Automatic(Integrator):
 
     def suiting(self, lowered: Lowered, end: float) -> Integrator:
         """The integrator for a mechanism's motion until ``end`` (s)."""
-        if not all(body.rigid for body in lowered.bodies.values()):
-            given = GeneralizedAlpha(step=_FIRST * end, adaptive=True, tolerance=self.tolerance)
-            return replace(given, spectral_radius=0.0) if slip_scale(lowered) < _STIFF else given
+        flexible = not all(body.rigid for body in lowered.bodies.values())
+        if flexible and slip_scale(lowered) >= _STIFF:
+            return GeneralizedAlpha(step=_FIRST * end, adaptive=True, tolerance=self.tolerance)
         known = redundancy(lowered)
-        if known.rank < known.count:
-            return self._redundant()
-        return RadauIIA(tolerance=self.tolerance)
+        if known.rank == known.count:
+            return RadauIIA(tolerance=self.tolerance)
+        if flexible:
+            return GeneralizedAlpha(step=_FIRST * end, spectral_radius=0.0, adaptive=True, tolerance=self.tolerance)
+        return self._redundant()
 
     def instead(self, reason: SolveError | None) -> Integrator | None:
         """The method for redundant constraints where a singular position stopped the run."""

@@ -45,7 +45,7 @@ from dalembert.multibody.kernels.motion import (
 from dalembert.multibody.structure import Structure
 
 STARTS = ("consistent", "zero")
-_HALVINGS = 8  # of a fixed step that Newton does not converge on
+_HALVINGS = 16  # of a fixed step that Newton does not converge on
 _UNITS = 1 << _HALVINGS
 
 

@@ -33,7 +33,7 @@ from dalembert.multibody.kernels.motion import Histories, MotionState, MotionSta
 
 _AGED = 0.05  # contraction at which the next step begins with new matrices
 _ENDS = 2  # of steps, between which outputs are interpolated
-_HALVINGS = 8  # of a step that Newton's iteration does not converge on
+_HALVINGS = 16  # of a step that Newton's iteration does not converge on
 
 
 class Settings(NamedTuple):

@@ -16,6 +16,7 @@ import numpy as np
 
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Complexes2, Reals, Reals2
+from dalembert.multibody.integrators.imbalance import BALANCED, largest_entry
 from dalembert.multibody.integrators.matrices import Matrices, add_product
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.settling import weigh_along
@@ -30,7 +31,7 @@ ROWS = 8
 _CLOSED = 1e-15  # violation against the largest scale that is rounding
 _NOISE = 1e-13  # part of a step's way below which the ratio of two corrections says nothing
 # Relative corrections that stop to shrink are rounding below the first size, and below the second one if a nearly
-# singular position magnifies it.
+# singular position magnifies it, and if the forces are in balance.
 _ROUNDING, _MAGNIFIED = 1e-12, 1e-9
 _MOST_ITERATIONS = 20
 
@@ -180,7 +181,7 @@ def converge(
     n, size, scale, mass = problem.n, s.shape[1] - 1, problem.scale, matrices.mass
     f, gap, rate, second, first, other = b[0], b[1], b[2], b[3], b[4], b[5]
     before, norm, contraction, worst = 0.0, 1.0, 1.0, 0
-    closed = 0.0
+    closed, force, remaining = 0.0, 0.0, 0.0
     for k in range(n):
         closed = max(closed, _CLOSED * scale[k])
     for iteration in range(1, _MOST_ITERATIONS + 1):
@@ -191,6 +192,9 @@ def converge(
         for k in range(n, size):  # rounding would come back as velocities, 1/h times as large
             if abs(gap[k]) <= closed:
                 gap[k] = 0.0
+        remaining = largest_entry(f, 0, n)
+        if iteration == 1:  # of the prediction, and of the constraints
+            force = max(remaining, largest_entry(s[A], n, size))
         add_product(n, matrices, mass, first, 1.0, gap)
         _correct(n, size, matrices, h, f, gap, rate, first, other, s)
         norm, way, worst = _sizes(n, h, scale, f, gap, s)
@@ -202,10 +206,10 @@ def converge(
         left = norm * contraction / (1.0 - contraction) if contraction < 1.0 else norm
         if min(norm, left) <= tolerance * way:
             return True, iteration, contraction, worst
-        if iteration > 2 and norm <= _ROUNDING and norm > 0.5 * before:
+        if iteration > 2 and norm <= _ROUNDING and norm > 0.5 * before and remaining <= BALANCED * force:
             return True, iteration, contraction, worst
         before = norm
-    return norm <= _MAGNIFIED, iteration, contraction, worst
+    return norm <= _MAGNIFIED and remaining <= BALANCED * force, iteration, contraction, worst
 
 
 @inner

@@ -16,6 +16,7 @@ import numpy as np
 
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.kernels.words import Address, Reals
+from dalembert.multibody.integrators.imbalance import BALANCED, largest_entry
 from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, Problem
 from dalembert.multibody.kernels.assembly import displace, reduced_residual, reduced_tangent, restore, set_signals
 from dalembert.multibody.kernels.linear import Factors, factorise, solve, storage
@@ -25,7 +26,7 @@ _MOST_ITERATIONS = 12
 _SLOW = 0.3  # contraction at which an iteration is not worth going on with the kept factorisation
 _AGED = 0.02  # contraction at which the next step begins with a new one
 # Relative corrections that stop to shrink are rounding below the first size, and below the second one if a nearly
-# singular position magnifies it.
+# singular position magnifies it, and if the forces are in balance.
 _ROUNDING, _MAGNIFIED = 1e-12, 1e-9
 _NOISE = 1e-13  # below this size the ratio of two corrections says nothing of the factorisation
 
@@ -116,9 +117,11 @@ def converge(problem, model, complex_model, c, t, within, tolerance, old, new, n
         if not _renew(problem, complex_model, c, t, within, new, newton):
             return SINGULAR, 0
         memory[1] = _AGED
-    before, norm, worst = 0.0, 1.0, 0
+    before, norm, left, worst, force = 0.0, 1.0, 1.0, 0, 0.0
     for iteration in range(1, _MOST_ITERATIONS + 1):
         reduced_residual(model, own.increments, new.x, new.v, new.a, newton.work, 1.0 / c.dq, newton.r)
+        if iteration == 1:  # of the prediction, and of the constraints
+            force = max(largest_entry(newton.r, 0, own.increments), largest_entry(new.x, n, len(old.x) - 1))
         solve(own.layout, newton.factors, newton.r, newton.delta)
         displace(model, c.dq, new.x, newton.delta, newton.work, newton.change)
         log.counts[1] += 1
@@ -126,10 +129,12 @@ def converge(problem, model, complex_model, c, t, within, tolerance, old, new, n
         if not norm < 1e100 or norm <= tolerance:
             break
         rate = memory[1] if iteration == 1 else norm / before
-        if rate < 1.0 and norm * rate / (1.0 - rate) <= tolerance:
+        left = norm * rate / (1.0 - rate) if rate < 1.0 else norm
+        if left <= tolerance:
             break
         if iteration > 2 and rate > 0.5 and norm <= _ROUNDING:
-            break
+            if largest_entry(newton.r, 0, own.increments) <= BALANCED * force:
+                break
         if iteration > 1 and norm > _NOISE:
             memory[1] = rate
         if iteration > 1 and rate > _SLOW:
@@ -140,7 +145,8 @@ def converge(problem, model, complex_model, c, t, within, tolerance, old, new, n
                 return SINGULAR, worst
             fresh = True
         before = norm
-    if norm <= _MAGNIFIED:
+    done = norm <= tolerance or left <= tolerance
+    if done or (norm <= _MAGNIFIED and largest_entry(newton.r, 0, own.increments) <= BALANCED * force):
         return DONE, iteration
     memory[0] = 0.0
     return NEWTON_FAILED, worst

@@ -31,7 +31,7 @@ from dalembert.multibody.kernels.motion import Histories, MotionState, MotionSta
 
 _AGED = 0.003  # contraction at which the next step begins with new matrices, and outputs have their own
 _SHORTEST = 0.2  # of a step: the one after it (Hairer and Wanner 1996, IV.8); what is foreseen may vanish in the time
-_HALVINGS = 8  # of a fixed step that Newton's iteration does not converge on
+_HALVINGS = 16  # of a fixed step that Newton's iteration does not converge on
 
 
 @inner

@@ -8,6 +8,7 @@ and Wanner 1996, IV.8), and the velocities then follow by a projection at each s
 """
 
 from dalembert.kernels.kernel import inlined, inner
+from dalembert.multibody.integrators.imbalance import BALANCED, largest_entry
 from dalembert.multibody.integrators.matrices import (
     add_inertia,
     add_product,
@@ -25,7 +26,7 @@ from dalembert.multibody.kernels.linear import solve
 _CLOSED = 1e-15  # violation against the largest scale that is rounding
 _NOISE = 1e-13  # part of a step's way below which the ratio of two corrections says nothing
 # Relative corrections that stop to shrink are rounding below the first size, and below the second one if a nearly
-# singular position magnifies it.
+# singular position magnifies it, and if the forces are in balance.
 _ROUNDING, _MAGNIFIED = 1e-12, 1e-9
 MOST_ITERATIONS = 14
 _VISIBLE = 0.03  # part of the tolerance from which corrections hardly change the estimated error
@@ -154,13 +155,15 @@ def converge(n, scale, method, matrices, model, damped, works, h, start, s, b, t
     """
     size, count = len(start.x) - 1, len(method.c)
     before, norm, rate, worst = 0.0, 1.0, 1.0, 0
-    closed, seen, converged, error, rate_error = 0.0, False, False, 0.0, 0.0
+    closed, seen, converged, error, rate_error, force = 0.0, False, False, 0.0, 0.0, 0.0
     for k in range(n):
         closed = max(closed, _CLOSED * scale[k])
     given, motion, x, v, a, u, m = b.given, b.motion, s.x, s.v, s.a, s.u, s.m
     for iteration in range(1, MOST_ITERATIONS + 1):
         for i in range(count):
             residual(model, n, x[i], v[i], a[i], works[i], 1.0, motion[i])
+            if iteration == 1:  # of the prediction, and of the constraints
+                force = max(force, largest_entry(motion[i], 0, n), largest_entry(x[i], n, size))
             for k in range(n, size):  # what is left of it is rounding, and would disturb the rates at each iteration
                 if iteration > 2 and abs(motion[i, k]) <= closed:
                     motion[i, k] = 0.0
@@ -179,13 +182,13 @@ def converge(n, scale, method, matrices, model, damped, works, h, start, s, b, t
         if iteration > 1 and norm > _NOISE * way:
             rate = norm / before
         lost = not norm < 1e100 or (iteration > 2 and rate > 2.0 and norm > 1e-9)
-        done = not lost and (
-            norm <= tolerance * way
-            or (rate < 1.0 and norm * rate / (1.0 - rate) <= tolerance * way)
-            or (iteration > 2 and norm <= _ROUNDING and norm > 0.5 * before)
-        )
-        ended = lost or done or iteration == MOST_ITERATIONS
-        converged = done or (ended and norm <= _MAGNIFIED)
+        done = not lost and (norm <= tolerance * way or (rate < 1.0 and norm * rate / (1.0 - rate) <= tolerance * way))
+        stalled = iteration > 2 and norm <= _ROUNDING and norm > 0.5 * before
+        if not done and (stalled or (iteration == MOST_ITERATIONS and norm <= _MAGNIFIED)):
+            done = True
+            for i in range(count):
+                done = done and largest_entry(motion[i], 0, n) <= BALANCED * force
+        ended, converged = lost or done or iteration == MOST_ITERATIONS, done
         visible = not lost and not done and not seen and norm <= _VISIBLE * limit * min(1.0, h * speed)
         if visible or (converged and limit > 0.0):
             seen = True

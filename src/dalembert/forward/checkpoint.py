@@ -112,17 +112,17 @@ class Checkpoint:
         """The arrays kept by a key, or None."""
         with self._lock:
             waiting = self._waiting.get(key)
-            found = self._row(key) if waiting is None else _resolved(waiting)
-        if found is None:
+            result = self._row(key) if waiting is None else _resolved(waiting)
+        if result is None:
             return None
         if self._replaced is not None:
             self._replaced.add(key)
         if key not in self._counted:
-            self.spared += found.seconds
+            self.spared += result.seconds
             self._counted.add(key)
         arrays, begin = [], 0
-        for kind, shape in json.loads(found.shapes):
-            arrays.append(np.ndarray(tuple(shape), kind, found.content, begin).copy())
+        for kind, shape in json.loads(result.shapes):
+            arrays.append(np.ndarray(tuple(shape), kind, result.content, begin).copy())
             begin += arrays[-1].nbytes
         return tuple(arrays)
 
@@ -145,9 +145,9 @@ class Checkpoint:
         finally:
             self._replaced = None
         with self._lock:
-            for one in replaced:
-                if self._waiting.pop(one, None) is None:
-                    self._ask("DELETE FROM results WHERE key = ?", (one,))
+            for former in replaced:
+                if self._waiting.pop(former, None) is None:
+                    self._ask("DELETE FROM results WHERE key = ?", (former,))
         self._wait(key, lambda: _result(*summary()))
 
     def once(self, key: bytes, compute: Callable[[], Sequence[np.ndarray]]) -> Sequence[np.ndarray]:
@@ -178,13 +178,13 @@ class Checkpoint:
 
     def _row(self, key: bytes) -> "Result | None":
         """The result of the file, or None."""
-        found = self._ask(f"SELECT {_COLUMNS} FROM results WHERE key = ?", (key,))
-        if found is None:
+        row = self._ask(f"SELECT {_COLUMNS} FROM results WHERE key = ?", (key,))
+        if row is None:
             return None
-        if not _is_right(found):
+        if not _is_right(row):
             self._replace(None)
             return None
-        return Result(*found[1:-1])
+        return Result(*row[1:-1])
 
     def _write(self) -> None:
         for key, waiting in self._waiting.items():

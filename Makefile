@@ -4,7 +4,7 @@ SHELL := /bin/sh
 .DEFAULT_GOAL := help
 .SUFFIXES:
 .DELETE_ON_ERROR:
-.PHONY: help demo names schema checks kernels checked test wording verify validation docs bench wheel clean
+.PHONY: help demo names schema checks kernels checked test wording verify validation docs bench wheel pure-wheel clean
 
 DEMO_STUDY := studies/flexible-pendulum/identify.toml
 DEMO_RUN := runs/demo
@@ -19,6 +19,11 @@ PYTHON ?= $(firstword $(foreach candidate,$(CANDIDATES),\
 	$(shell $(candidate) -c "$(USABLE)" >/dev/null 2>&1 && echo $(candidate))))
 
 BIN := .venv/bin
+EXE :=
+ifeq ($(OS),Windows_NT)
+BIN := .venv/Scripts
+EXE := .exe
+endif
 # Python compiles what is imported; compiling all that is installed takes as long as unpacking it.
 PIP := $(BIN)/python -m pip
 QUIETLY := --quiet --disable-pip-version-check --constraint constraints.txt
@@ -40,6 +45,7 @@ help:
 	@echo "make docs        the documentation, as HTML in docs/_build"
 	@echo "make bench       speed, beside a peer"
 	@echo "make wheel       a wheel for this platform with all kernels compiled, in dist"
+	@echo "make pure-wheel  a wheel without kernels for any platform, and the archive of the sources, in dist"
 	@echo "make clean       remove the environment and everything built"
 
 demo: .venv/core.stamp
@@ -47,7 +53,7 @@ demo: .venv/core.stamp
 	@echo "The report: $(CURDIR)/$(DEMO_RUN)/report.html"
 
 # Only the standard library, so that it runs where the sources do not import.
-names: .venv/bin/python
+names: $(BIN)/python$(EXE)
 	$(BIN)/python tools/public_names.py
 
 schema: .venv/core.stamp
@@ -91,6 +97,11 @@ wheel: .venv/core.stamp
 	DALEMBERT_KERNELS=1 $(PIP) wheel $(QUIETLY) --no-build-isolation --no-deps --wheel-dir dist .
 	@ls dist/*.whl
 
+pure-wheel: .venv/core.stamp
+	$(PIP) wheel $(QUIETLY) --no-build-isolation --no-deps --wheel-dir dist .
+	$(BIN)/python -m hatchling build --target sdist --directory dist
+	@ls dist/*-any.whl dist/*.tar.gz
+
 bench: .venv-bench/stamp
 	.venv-bench/bin/python -m benchmarks
 
@@ -98,7 +109,7 @@ clean:
 	rm -rf .venv .venv-bench build dist docs/_build .pytest_cache .ruff_cache .import_linter_cache .hypothesis
 	find src tests studies benchmarks docs -name __pycache__ -type d -prune -exec rm -rf {} + 2>/dev/null || true
 
-.venv/bin/python:
+$(BIN)/python$(EXE):
 	@test -n "$(PYTHON)" || { echo "No usable Python was found (looked for $(CANDIDATES))." \
 		"dalembert needs Python 3.11 or newer with the venv module: install one" \
 		"(on Debian and Ubuntu: python3 and python3-venv), or name one with 'make PYTHON=/path/to/python3.11'."; exit 1; } >&2
@@ -107,13 +118,13 @@ clean:
 	$(PYTHON) -m venv .venv
 
 # One stamp an environment; it is made anew when the dependencies change.
-.venv/core.stamp: .venv/bin/python pyproject.toml constraints.txt
+.venv/core.stamp: $(BIN)/python$(EXE) pyproject.toml constraints.txt
 	$(INSTALL) hatchling editables
 	$(INSTALL) --no-build-isolation --editable .
 	@touch $@
 
 # The benchmarks use a separate environment, because their peers need other versions of some packages.
-.venv-bench/stamp: .venv/bin/python pyproject.toml constraints.txt benchmarks/constraints.txt
+.venv-bench/stamp: $(BIN)/python$(EXE) pyproject.toml constraints.txt benchmarks/constraints.txt
 	$(PYTHON) -m venv .venv-bench
 	grep -v $$(sed -n 's/^\([a-z-]*\)==.*/-e ^\1==/p' benchmarks/constraints.txt) constraints.txt > .venv-bench/constraints.txt
 	cat benchmarks/constraints.txt >> .venv-bench/constraints.txt

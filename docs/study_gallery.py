@@ -15,7 +15,7 @@ from dalembert.errors import DalembertError
 from dalembert.files import write_text
 from dalembert.study import load
 from dalembert.study.picture import picture_or_message
-from dalembert.study.study import Study
+from dalembert.study.tables.study import Study
 
 STUDIES = Path(__file__).parents[1] / "studies"
 SUFFIX = ".gallery"

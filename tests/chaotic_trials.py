@@ -16,7 +16,7 @@ import numpy as np
 
 from dalembert.inverse import Fit, identify
 from dalembert.study import load
-from dalembert.study.posing import posed
+from dalembert.study.tables.posing import posed
 
 STUDY = Path(__file__).parents[1] / "studies" / "chaotic-trials"
 TABLE = Path(__file__).parent / "verification" / "references" / "chaotic_trials.csv"

@@ -16,7 +16,7 @@ from dalembert.multibody.spatial import Inertia, Orientation, RigidBody, Spatial
 from dalembert.optimize import LeastSquares, Minimiser, ParticleSwarm, ResponseSensitivity
 from dalembert.parameters import Parameter
 from dalembert.study import load, run_study
-from dalembert.study.tasks.telling import foreseen
+from dalembert.study.tasks.assessments import foreseen
 from dalembert.surrogate import Adaptive, Tensor, TotalDegree
 from dalembert.uncertainty import Chebyshev, LatinHypercube, MonteCarlo, Optimise, Scan, Taylor, Vertex
 from free_oscillations import NOISE, TRUTH, oscillation, oscillator, recorded, rubbing

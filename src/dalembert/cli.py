@@ -18,7 +18,7 @@ from dalembert import __version__
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from dalembert.study.folder import RunFolder
+    from dalembert.study.run.folder import RunFolder
     from dalembert.study.tasks.task import Outcome
 
 
@@ -111,8 +111,8 @@ def run(
 ) -> None:
     """Run the task of a study in a new run folder."""
     from dalembert.study import RunFolder, load, run_study
-    from dalembert.study.progress import Watch
-    from dalembert.study.runner import unknowns
+    from dalembert.study.run.progress import Watch
+    from dalembert.study.run.runner import unknowns
 
     _begin(cluster)
     read = RunFolder(study).kept() if RunFolder(study).is_run else load(study)
@@ -127,8 +127,8 @@ def run(
 def resume(run: Run, cluster: Cluster = None) -> None:
     """Continue a run that was killed or stopped. The result has the same bits as without the interruption."""
     from dalembert.study import resume_run
-    from dalembert.study.progress import Watch
-    from dalembert.study.runner import unknowns
+    from dalembert.study.run.progress import Watch
+    from dalembert.study.run.runner import unknowns
 
     _begin(cluster)
     folder = _folder(run)
@@ -146,12 +146,12 @@ def check(
     from dalembert.errors import ModelError
     from dalembert.study import load, plan
     from dalembert.study.channels import channel_lines
-    from dalembert.study.duration import within
-    from dalembert.study.model_findings import model_lines
-    from dalembert.study.runner import looked
+    from dalembert.study.run.duration import within
+    from dalembert.study.run.model_findings import model_lines
+    from dalembert.study.run.runner import looked
+    from dalembert.study.run.spoken import spoken
     from dalembert.study.sources import source_lines
-    from dalembert.study.spoken import spoken
-    from dalembert.study.table import placed
+    from dalembert.study.text.table import placed
 
     read = load(study)
     with placed(study.name), placed(study.name, ModelError):
@@ -176,7 +176,7 @@ def list_runs(
     runs: Annotated[Path, typer.Option(help="Folder that holds the runs.")] = Path("runs"),
 ) -> None:
     """List the runs with their states and best values."""
-    from dalembert.study.listing import rows, table
+    from dalembert.study.run.listing import rows, table
 
     found = rows(runs)
     if not found:
@@ -205,7 +205,7 @@ def compare(
     ] = None,
 ) -> None:
     """Rank identified models of the same data by their predictions, and report if the difference means nothing."""
-    from dalembert.study.compare_runs import compare_runs
+    from dalembert.study.run.compare_runs import compare_runs
 
     found = compare_runs([_folder(run) for run in runs], leave_out)
     typer.echo(found.summary())
@@ -288,7 +288,7 @@ def _ended(folder: "RunFolder", outcome: "Outcome") -> None:
 
 def _folder(run: Path) -> "RunFolder":
     from dalembert.errors import InputError, unknown
-    from dalembert.study.folder import RunFolder, find_runs
+    from dalembert.study.run.folder import RunFolder, find_runs
 
     named = RunFolder(Path("runs") / run)
     if run.exists():

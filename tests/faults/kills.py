@@ -19,7 +19,7 @@ import numpy as np
 import xarray
 
 from dalembert.study import RunFolder, load, resume_run, run_study
-from dalembert.study.events import read_events
+from dalembert.study.run.events import read_events
 
 TIMED = ("seconds",)
 """Attributes and variables that hold measured times, which no two runs share."""

@@ -7,7 +7,7 @@ import time
 import pytest
 
 from dalembert.study import RunFolder, load, run_study
-from dalembert.study.events import read_events
+from dalembert.study.run.events import read_events
 from faults.kills import content, kinds
 from faults.slow_runs import begun, wait_for, written
 from loopback_cluster import cluster

@@ -9,9 +9,9 @@ import pytest
 from dalembert.errors import InputError
 from dalembert.forward import Checkpoint
 from dalembert.study import RunFolder, load, report_run, resume_run, run_study
-from dalembert.study.events import EventLog, read_events
-from dalembert.study.listing import rows
-from dalembert.study.runner import Stopped
+from dalembert.study.run.events import EventLog, read_events
+from dalembert.study.run.listing import rows
+from dalembert.study.run.runner import Stopped
 
 MODEL = """
 import numpy as np

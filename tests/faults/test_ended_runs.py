@@ -9,7 +9,7 @@ import time
 import pytest
 
 from dalembert.study import RunFolder
-from dalembert.study.events import read_events
+from dalembert.study.run.events import read_events
 from faults.slow_runs import COMMAND, begun, wait_for, written
 
 SWEEP = """

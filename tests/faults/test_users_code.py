@@ -7,7 +7,7 @@ import pytest
 
 from dalembert.errors import DalembertError
 from dalembert.study import load, plan, run_study
-from dalembert.study.runner import looked
+from dalembert.study.run.runner import looked
 
 IDENTIFY = """
 [parameters.k]

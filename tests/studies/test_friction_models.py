@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from dalembert.study import load, run_study
-from dalembert.study.compare_runs import compare_runs
+from dalembert.study.run.compare_runs import compare_runs
 
 STUDIES = Path(__file__).parents[2] / "studies" / "friction-pendulum"
 

@@ -25,7 +25,7 @@ CODE = """
 import dalembert as da
 from dalembert.component_index import KINDS
 from dalembert.study import load
-from dalembert.study.catalogue import ROLES, kinds_of
+from dalembert.study.tables.catalogue import ROLES, kinds_of
 
 for role, name in {kinds}.items():
     assert name in KINDS[ROLES[role]] and name in dir(da) and getattr(da, name).__name__ == name
@@ -106,7 +106,7 @@ import numpy as np
 import dalembert as da
 from dalembert.data import read
 from dalembert.study import load
-from dalembert.study.catalogue import swarms
+from dalembert.study.tables.catalogue import swarms
 from dalembert.uncertainty import propagate
 
 times = np.linspace(0.0, 1.0, 3)
@@ -175,7 +175,7 @@ print(type(spring).__name__, spring.stiffness)
 TASK = '''
 """The task ``[nothing]``."""
 
-from dalembert.study.table import StudyTable
+from dalembert.study.text.table import StudyTable
 from dalembert.study.tasks.task import Task
 
 

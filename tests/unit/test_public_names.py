@@ -15,7 +15,7 @@ import dalembert
 import public_names
 from dalembert import component_index, data, forward, multibody, report, study
 from dalembert.multibody import spatial
-from dalembert.study.catalogue import ROLES, kinds_of
+from dalembert.study.tables.catalogue import ROLES, kinds_of
 
 LAZY = [dalembert, data, forward, multibody, report, spatial, study]
 

@@ -15,7 +15,7 @@ from dalembert.errors import DalembertError, told, unchanged
 from dalembert.studio.code_text import plain_text
 from dalembert.studio.colours import add_colours
 from dalembert.studio.corrections import add_corrections
-from dalembert.study.folder import RunFolder
+from dalembert.study.run.folder import RunFolder
 
 STATES = {
     "finished": "positive",

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from dalembert.errors import InputError
-from dalembert.study.folder import RUNNING, RunFolder
+from dalembert.study.run.folder import RUNNING, RunFolder
 
 
 @dataclass

@@ -14,9 +14,9 @@ import dalembert.studio.data.examined
 import dalembert.studio.model.picture
 import dalembert.studio.simulation.answers
 import dalembert.study.picture
-import dalembert.study.posing
-import dalembert.study.runner
-import dalembert.study.validation
+import dalembert.study.run.runner
+import dalembert.study.run.validation
+import dalembert.study.tables.posing
 
 gc.collect()
 gc.freeze()  # what is never looked at stays memory that the forked processes share

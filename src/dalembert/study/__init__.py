@@ -3,12 +3,12 @@
 from dalembert.lazy import lazy_names
 
 _NAMES = {
-    "folder": "RunFolder",
     "loader": "load",
-    "runner": "report_run resume_run run_study",
+    "run.folder": "RunFolder",
+    "run.runner": "report_run resume_run run_study",
+    "run.validation": "plan",
     "schema": "json_schema",
-    "study": "Study",
-    "validation": "plan",
+    "tables.study": "Study",
 }
 _HOMES = {name: f"{__name__}.{module}" for module, names in _NAMES.items() for name in names.split()}
 # Lists of runs and the studio read folders of runs, and need no models.

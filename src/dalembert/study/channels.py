@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 from itertools import groupby
 
-from dalembert.study.study import Study
+from dalembert.study.tables.study import Study
 
 
 def channel_lines(study: Study) -> Iterator[str]:

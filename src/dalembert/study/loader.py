@@ -10,15 +10,15 @@ from pydantic import ValidationError
 
 from dalembert.errors import InputError, no_text, unknown
 from dalembert.study.basics import LARGEST, MODEL_FILE
-from dalembert.study.context import Context
-from dalembert.study.parameters import series_in
-from dalembert.study.quantity_kinds import kinds_of
 from dalembert.study.schema import study_file, words_of
-from dalembert.study.sentences import mistakes
-from dalembert.study.spaces import elsewhere, is_in_space
-from dalembert.study.study import Study
-from dalembert.study.study_file import StudyFile
+from dalembert.study.tables.parameters import series_in
+from dalembert.study.tables.study import Study
+from dalembert.study.tables.study_file import StudyFile
 from dalembert.study.tasks import TASKS
+from dalembert.study.text.context import Context
+from dalembert.study.text.messages import mistakes
+from dalembert.study.text.quantity_kinds import kinds_of
+from dalembert.study.text.spaces import elsewhere, is_in_space
 from dalembert.units import is_quantity
 
 

@@ -5,8 +5,8 @@ from dalembert.report.digits import shown
 from dalembert.report.notebook import Summary
 from dalembert.report.quantities import labelled
 from dalembert.study.picture import picture_or_message
-from dalembert.study.runner import plan
-from dalembert.study.study import Study
+from dalembert.study.run.runner import plan
+from dalembert.study.tables.study import Study
 
 
 def html_of(study: Study) -> str:

@@ -8,8 +8,8 @@ from typing import Any
 from dalembert.errors import DalembertError, InputError
 from dalembert.report.pictures import message_picture, picture
 from dalembert.study.loader import load
-from dalembert.study.structure_builder import StructureBuilder
-from dalembert.study.study import Study
+from dalembert.study.tables.structure_builder import StructureBuilder
+from dalembert.study.tables.study import Study
 
 
 def picture_or_message(path: Path) -> str:

@@ -8,13 +8,13 @@ from typing import Any, ClassVar
 from pydantic import create_model
 from pydantic.json_schema import GenerateJsonSchema
 
-from dalembert.study.catalogue import Words, kind_names, solver
-from dalembert.study.components import buildable_table
-from dalembert.study.model_table import model_key
-from dalembert.study.spaces import IN_SPACE, is_in_space
-from dalembert.study.study_file import StudyFile
-from dalembert.study.table import StudyTable
+from dalembert.study.tables.catalogue import Words, kind_names, solver
+from dalembert.study.tables.dataclass_tables import buildable_table
+from dalembert.study.tables.model_table import model_key
+from dalembert.study.tables.study_file import StudyFile
 from dalembert.study.tasks import TASKS
+from dalembert.study.text.spaces import IN_SPACE, is_in_space
+from dalembert.study.text.table import StudyTable
 
 
 class _KnownFile(StudyFile):

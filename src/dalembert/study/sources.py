@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from dalembert.study.study import Study
+from dalembert.study.tables.study import Study
 
 if TYPE_CHECKING:
     from dalembert.data import Measurements

@@ -15,7 +15,7 @@ from dalembert.parameters import Parameters
 from dalembert.report.player import frames
 from dalembert.studio.simulation.parts import last_time
 from dalembert.study import load
-from dalembert.study.study import Study
+from dalembert.study.tables.study import Study
 
 if TYPE_CHECKING:
     from dalembert.data import Measurements

@@ -8,7 +8,7 @@ import pytest
 
 from dalembert.errors import InputError
 from dalembert.studio.jobs import Job, Jobs, _temporary, pause
-from dalembert.study.folder import PAUSED, RESUMABLE, RunFolder
+from dalembert.study.run.folder import PAUSED, RESUMABLE, RunFolder
 from support import says
 
 

@@ -16,8 +16,8 @@ from dalembert.studio.model.parts import absent_parts, place_of
 from dalembert.studio.model.picture import model_picture
 from dalembert.studio.model.scene import MOST_NAMES, mechanism_scene, readable, structure_scene
 from dalembert.studio.worker import Kept
-from dalembert.study.catalogue import kinds_of, structure_parts
 from dalembert.study.loader import load
+from dalembert.study.tables.catalogue import kinds_of, structure_parts
 from dalembert.vibration import HarmonicForce, VibrationSystem
 from mechanisms import PIECES, mechanism
 from spatial_scenes import SCENES, two_rods

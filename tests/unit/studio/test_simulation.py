@@ -13,7 +13,7 @@ from dalembert.studio.simulation.answers import Source, influences, simulated
 from dalembert.studio.simulation.parts import parameters_of, part
 from dalembert.studio.worker import Kept
 from dalembert.study import load
-from dalembert.study.posing import posed
+from dalembert.study.tables.posing import posed
 from dalembert.study.tasks.frequency_response import drawn_dofs
 from dalembert.study.template import begin
 

@@ -14,7 +14,7 @@ from dalembert.studio.worker import Kept, Worker
 from dalembert.study.template import begin
 from worker_functions import loaded
 
-HEAVY = {"numba", "scipy", "h5py", "dalembert.multibody", "dalembert.study.study", "dalembert.study.schema"}
+HEAVY = {"numba", "scipy", "h5py", "dalembert.multibody", "dalembert.study.tables.study", "dalembert.study.schema"}
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import pytest
 
 from dalembert.errors import InputError
 from dalembert.study import json_schema, load, plan
-from dalembert.study.builder import named_values
+from dalembert.study.tables.builder import named_values
 from dalembert.study.tasks import TASKS
 from json_schemas import fits
 from support import says

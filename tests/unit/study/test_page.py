@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from dalembert.study import json_schema, load, run_study
-from dalembert.study.catalogue import ROLES, kinds_of
+from dalembert.study.tables.catalogue import ROLES, kinds_of
 
 PAGE = (Path(__file__).parents[3] / "docs/how-to/study-files.md").read_text(encoding="utf-8")
 SPACE = "Components in space"

@@ -10,7 +10,7 @@ from dalembert.kernels.kernel import Compiled, Kernel
 from dalembert.kernels.preparation import observed
 from dalembert.structure import lumped
 from dalembert.study import load, run_study
-from dalembert.study.events import read_events
+from dalembert.study.run.events import read_events
 from dalembert.study.template import begin
 from dalembert.vibration import (
     ElasticSlider,

@@ -176,7 +176,7 @@ def _channels(kept: Kept, study: Path, text: str) -> dict[str, str]:
 
 def _suspect(study: Path, text: str) -> Iterator[Finding]:
     from dalembert.inverse.experiments.suspect_offsets import first_findings
-    from dalembert.study.sensor_table import reads
+    from dalembert.study.tables.sensor_table import reads
 
     try:
         one = study_of(Kept(), study, text)  # with other data than the text of the page

@@ -8,8 +8,8 @@ import tomlkit
 from tomlkit.items import InlineTable, Item
 
 from dalembert.errors import InputError
-from dalembert.study.expressions import Expression
-from dalembert.study.numbers import read_number
+from dalembert.study.text.expressions import Expression
+from dalembert.study.text.numbers import read_number
 from dalembert.units import is_quantity
 
 _NUMBER = re.compile(r"\s*[+-]?[\d.]+([eE][+-]?\d+)?")

@@ -9,8 +9,8 @@ from typing import Any, Literal
 
 from dalembert.studio.editor.lines import Place
 from dalembert.study import schema_file
-from dalembert.study.numbers import UNIT
-from dalembert.study.places import NAMES
+from dalembert.study.text.numbers import UNIT
+from dalembert.study.text.places import NAMES
 
 Shape = Literal["number", "whole", "switch", "choice", "text", "list", "table"]
 Node = Mapping[str, Any]

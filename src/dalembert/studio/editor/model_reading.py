@@ -57,7 +57,7 @@ def study_with_model(kept: Kept, study: Path, text: str, used: dict[str, Path] |
 def _read(kept: Kept, study: Path, text: str, used: dict[str, Path]) -> Reading:
     from dalembert.study import plan
     from dalembert.study.loader import StudyError
-    from dalembert.study.model_findings import model_findings
+    from dalembert.study.run.model_findings import model_findings
 
     try:
         found = study_with_model(kept, study, text, used)

@@ -9,7 +9,7 @@ from dalembert.errors import DalembertError
 from dalembert.parameters import Parameter, Parameters
 
 if TYPE_CHECKING:
-    from dalembert.study.study import Study
+    from dalembert.study.tables.study import Study
 
 
 @dataclass(frozen=True)

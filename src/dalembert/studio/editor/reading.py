@@ -89,7 +89,7 @@ def _read(kept: Kept, path: Path, text: str, used: dict[str, Path]) -> Reading:
     """Read a text, and note the other files that it names."""
     from dalembert.study import plan
     from dalembert.study.loader import StudyError
-    from dalembert.study.model_findings import model_findings
+    from dalembert.study.run.model_findings import model_findings
 
     try:
         study = study_of(kept, path, text, used)

@@ -86,7 +86,7 @@ def absent_parts(places: Mapping[str, Place], drawn: Collection[str]) -> list[st
 
 def shown_channels(study: "Study") -> list[str]:
     """Return the channels of the data, and those that the task names or observes."""
-    from dalembert.study.experiments import measured_channels
+    from dalembert.study.tables.experiments import measured_channels
 
     table = study.table
     named = [*(getattr(table, "channels", None) or ()), *(getattr(table, "observe", None) or ())]

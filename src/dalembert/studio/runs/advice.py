@@ -42,7 +42,7 @@ def changes_of(state: Mapping[str, Any], document: TOMLDocument) -> list[Change]
     Parameters
     ----------
     state : mapping
-        Of the run, as :meth:`~dalembert.study.folder.RunFolder.state` returns it.
+        Of the run, as :meth:`~dalembert.study.run.folder.RunFolder.state` returns it.
     document : TOMLDocument
         The study of the run. It is not changed.
     """

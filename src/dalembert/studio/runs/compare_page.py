@@ -11,7 +11,7 @@ from dalembert.errors import InputError
 from dalembert.studio.code_text import code_text
 from dalembert.studio.frame import frame
 from dalembert.studio.workspace import Workspace
-from dalembert.study.folder import RunFolder
+from dalembert.study.run.folder import RunFolder
 
 ADDRESS = "/comparison"
 """Of the page to share, and with the ending .csv of the values."""

@@ -22,8 +22,8 @@ from dalembert.report.thin import thinned
 from dalembert.studio.runs.differences import as_text, differences
 from dalembert.studio.runs.run_list import row
 from dalembert.studio.runs.run_units import PLAIN, Unit, in_unit, run_units
-from dalembert.study.compare_runs import fit_or_posterior
-from dalembert.study.folder import RunFolder
+from dalembert.study.run.compare_runs import fit_or_posterior
+from dalembert.study.run.folder import RunFolder
 
 MOST_FIGURES = 24
 """Channels that are drawn, the first ones."""

@@ -13,7 +13,7 @@ from dalembert.studio.runs.differences import differences, show_differences
 from dalembert.studio.runs.run_changes import continued, study_text
 from dalembert.studio.runs.run_list import study_name
 from dalembert.studio.workspace import Workspace
-from dalembert.study.folder import RunFolder
+from dalembert.study.run.folder import RunFolder
 
 
 def continue_page(workspace: Workspace, name: str, code: str = "", number: int = 0) -> None:

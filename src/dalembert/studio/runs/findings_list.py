@@ -11,7 +11,7 @@ from dalembert.errors import InputError
 from dalembert.studio.code_text import code_text
 from dalembert.studio.runs.advice import Change, changes
 from dalembert.studio.runs.run_changes import study_text
-from dalembert.study.folder import RunFolder
+from dalembert.study.run.folder import RunFolder
 
 ICONS = {"error": ("error", "negative"), "warning": ("warning", "warning"), "note": ("info", "primary")}
 """Icon and colour of each severity."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dalembert.studio.worker import Kept
-from dalembert.study.folder import RunFolder
+from dalembert.study.run.folder import RunFolder
 
 if TYPE_CHECKING:
     from dalembert.study import Study
@@ -50,7 +50,7 @@ def fit_so_far(kept: Kept, run: Path, values: list[float], experiment: str = "")
 
 def _fitted(run: Path) -> "tuple[Study, tuple[str, ...]]":
     """The study of a run, and the names of its unknowns; none if it fits no channels of data."""
-    from dalembert.study.posing import unknown_names
+    from dalembert.study.tables.posing import unknown_names
 
     study = RunFolder(run).kept()
     return study, tuple(unknown_names(study)) if study.task == "identify" else ()

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from dalembert.studio.studies.documents import name_in
 from dalembert.studio.workspace import Workspace
-from dalembert.study.folder import RunFolder
-from dalembert.study.listing import since
+from dalembert.study.run.folder import RunFolder
+from dalembert.study.run.listing import since
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from dalembert.studio.runs.remaining import Remaining
-from dalembert.study.events import OF_THE_RUN, Event, event_of
-from dalembert.study.progress import Told
+from dalembert.study.run.events import OF_THE_RUN, Event, event_of
+from dalembert.study.run.progress import Told
 
 SHOWN = 200
 """Events in the list of a page."""

@@ -7,9 +7,9 @@ from datetime import datetime
 from itertools import pairwise
 from pathlib import Path
 
-from dalembert.study.events import Event
-from dalembert.study.folder import RunFolder
-from dalembert.study.spoken import spoken
+from dalembert.study.run.events import Event
+from dalembert.study.run.folder import RunFolder
+from dalembert.study.run.spoken import spoken
 
 WINDOW = 200
 """Events that the speed is taken from."""

@@ -13,7 +13,7 @@ from tomlkit import TOMLDocument
 from dalembert.errors import InputError, unwritable
 from dalembert.files import free_path, write_text
 from dalembert.studio.workspace import Workspace, checked
-from dalembert.study.folder import RUNNING, RunFolder
+from dalembert.study.run.folder import RUNNING, RunFolder
 
 TRASH = ".trash"
 """Folder below that of the runs. Its name begins with a dot, so that no run can have it."""

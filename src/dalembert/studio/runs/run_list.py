@@ -11,9 +11,9 @@ from typing import Any
 from dalembert.findings import Severity
 from dalembert.studio.runs.run_note import NOTE, read_note
 from dalembert.studio.runs.run_units import run_units, values_text
-from dalembert.study.events import last_progress
-from dalembert.study.folder import RUNNING, RunFolder
-from dalembert.study.listing import counted, doubts, since
+from dalembert.study.run.events import last_progress
+from dalembert.study.run.folder import RUNNING, RunFolder
+from dalembert.study.run.listing import counted, doubts, since
 
 Row = dict[str, Any]
 Stamp = tuple[int, ...]

@@ -24,7 +24,7 @@ from dalembert.studio.runs.run_units import run_units, values_of, values_text
 from dalembert.studio.sparing import Sparing
 from dalembert.studio.worker import Kept, Worker, WorkerError
 from dalembert.studio.workspace import Workspace
-from dalembert.study.folder import FINISHED, INPUT, KILLED, RESUMABLE, RUNNING, RunFolder
+from dalembert.study.run.folder import FINISHED, INPUT, KILLED, RESUMABLE, RUNNING, RunFolder
 
 EVERY = 0.5  # s between two looks at the events
 FILES = {"report.html": "Report", "result.nc": "Result (NetCDF)", "study.toml": "Study", "events.jsonl": "Events"}
@@ -266,7 +266,7 @@ def _value_table(rows: Mapping[str, str]) -> None:
 
 def _names(kept: Kept, folder: RunFolder) -> tuple[str, ...]:
     """Names of the unknowns; none of a run that has not begun."""
-    from dalembert.study.runner import unknowns
+    from dalembert.study.run.runner import unknowns
 
     try:
         return unknowns(folder.kept()) if folder.is_run else ()

@@ -8,7 +8,7 @@ from typing import Any
 from dalembert.report.quantities import unit
 from dalembert.studio.editor.chosen_values import unit_in
 from dalembert.studio.editor.entries import table_at
-from dalembert.study.folder import RunFolder
+from dalembert.study.run.folder import RunFolder
 from dalembert.units import inertial_unit
 
 Unit = tuple[str, float]

@@ -16,7 +16,7 @@ from dalembert.studio.runs.run_grid import RunGrid
 from dalembert.studio.runs.run_list import Row, RunList
 from dalembert.studio.runs.run_note import Note, read_note, tags_of, write_note
 from dalembert.studio.workspace import Workspace
-from dalembert.study.folder import RESUMABLE
+from dalembert.study.run.folder import RESUMABLE
 
 EVERY = 2.0  # s between two looks at the folder
 PATIENCE = 1.0  # s that the page waits for its rows; later ones are shown when they are read

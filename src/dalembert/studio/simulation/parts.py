@@ -68,7 +68,7 @@ class NothingToSimulateError(InputError):
 
 def parameters_of(study: "Study") -> dict[str, tuple[Parameter, ...]]:
     """Return the parameters that can be moved, by the names of the parts: one that is empty without experiments."""
-    from dalembert.study.posing import fitted_parameters
+    from dalembert.study.tables.posing import fitted_parameters
 
     return fitted_parameters(study) if study.task in FROM_DATA else {"": tuple(study.parameters)}
 
@@ -94,7 +94,7 @@ def part(study: "Study", name: str) -> Part:
 
 
 def _measured(study: "Study", name: str) -> Part:
-    from dalembert.study.posing import posed
+    from dalembert.study.tables.posing import posed
 
     named: Callable[[str], str] = str
     model, data = posed(study)

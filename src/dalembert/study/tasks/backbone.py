@@ -5,13 +5,13 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field
 
-from dalembert.study.duration import Effort, whole
-from dalembert.study.events import Emit
-from dalembert.study.numbers import fixed, pair, samples
-from dalembert.study.study import Study
-from dalembert.study.table import Read, StudyTable, placed, problem
+from dalembert.study.run.duration import Effort, whole
+from dalembert.study.run.events import Emit
+from dalembert.study.tables.study import Study
+from dalembert.study.tasks.requirements import needs_structure
 from dalembert.study.tasks.task import Outcome, ResultTask
-from dalembert.study.tasks.wrong import needs_structure
+from dalembert.study.text.numbers import fixed, pair, samples
+from dalembert.study.text.table import Read, StudyTable, placed, problem
 
 
 class BackboneTable(StudyTable):

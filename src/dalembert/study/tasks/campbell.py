@@ -5,13 +5,13 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import Field
 
-from dalembert.study.duration import Effort, whole
-from dalembert.study.events import Emit
-from dalembert.study.study import Study
-from dalembert.study.table import StudyTable
+from dalembert.study.run.duration import Effort, whole
+from dalembert.study.run.events import Emit
+from dalembert.study.tables.study import Study
+from dalembert.study.tasks.requirements import needs_mechanism, unnamed
 from dalembert.study.tasks.sweep import Along, values_along
 from dalembert.study.tasks.task import Outcome, ResultTask
-from dalembert.study.tasks.wrong import needs_mechanism, unnamed
+from dalembert.study.text.table import StudyTable
 
 
 class CampbellTable(StudyTable):

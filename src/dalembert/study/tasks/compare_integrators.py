@@ -7,14 +7,14 @@ import numpy as np
 from pydantic import Field
 
 from dalembert.errors import repeated
-from dalembert.study.catalogue import solver
-from dalembert.study.duration import Effort, shortest_of
-from dalembert.study.events import Emit
-from dalembert.study.numbers import MOST, Seconds, pair
-from dalembert.study.study import Study
-from dalembert.study.table import StudyTable, checked, completed, placed, problem
+from dalembert.study.run.duration import Effort, shortest_of
+from dalembert.study.run.events import Emit
+from dalembert.study.tables.catalogue import solver
+from dalembert.study.tables.study import Study
+from dalembert.study.tasks.requirements import needs_mechanism
 from dalembert.study.tasks.task import Outcome, ResultTask
-from dalembert.study.tasks.wrong import needs_mechanism
+from dalembert.study.text.numbers import MOST, Seconds, pair
+from dalembert.study.text.table import StudyTable, checked, completed, placed, problem
 
 
 class SeriesTable(StudyTable):

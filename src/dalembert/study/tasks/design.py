@@ -5,14 +5,14 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import Field
 
-from dalembert.study.duration import Effort, evaluated
-from dalembert.study.events import Emit
-from dalembert.study.numbers import Frequencies, Number, NumberOfEach, Samples, Times
-from dalembert.study.study import Study
-from dalembert.study.table import Read, StudyTable, told_apart
+from dalembert.study.run.duration import Effort, evaluated
+from dalembert.study.run.events import Emit
+from dalembert.study.tables.study import Study
 from dalembert.study.tasks.noise import Noise, noise_of
+from dalembert.study.tasks.requirements import needs_parameters, needs_samples, needs_solver, response, unnamed
 from dalembert.study.tasks.task import Outcome, ResultTask
-from dalembert.study.tasks.wrong import needs_parameters, needs_samples, needs_solver, response, unnamed
+from dalembert.study.text.numbers import Frequencies, Number, NumberOfEach, Samples, Times
+from dalembert.study.text.table import Read, StudyTable, told_apart
 
 Sets = Annotated[
     str | list[list[str]],

@@ -7,15 +7,15 @@ import numpy as np
 from pydantic import Field
 
 from dalembert.errors import unknown
-from dalembert.study.duration import Effort, whole
-from dalembert.study.events import Emit
-from dalembert.study.numbers import Number, NumberOfEach, Seconds, fixed, pair
-from dalembert.study.samples_file import write_samples
-from dalembert.study.study import Study
-from dalembert.study.table import Read, StudyTable
+from dalembert.study.run.duration import Effort, whole
+from dalembert.study.run.events import Emit
+from dalembert.study.tables.study import Study
 from dalembert.study.tasks.identify_inertias import kept_names, prior_of, regressor_of
+from dalembert.study.tasks.requirements import needs_robot
+from dalembert.study.tasks.samples_file import write_samples
 from dalembert.study.tasks.task import Outcome, ResultTask
-from dalembert.study.tasks.wrong import needs_robot
+from dalembert.study.text.numbers import Number, NumberOfEach, Seconds, fixed, pair
+from dalembert.study.text.table import Read, StudyTable
 
 if TYPE_CHECKING:
     from dalembert.inverse.inertial import JointLimits

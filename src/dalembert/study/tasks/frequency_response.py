@@ -9,17 +9,17 @@ import numpy as np
 from pydantic import Field
 
 from dalembert.errors import DalembertError, InputError, unknown
-from dalembert.study.duration import Effort, whole
-from dalembert.study.events import Emit
-from dalembert.study.numbers import Frequencies, FrequencyEnds
-from dalembert.study.study import Study
-from dalembert.study.table import StudyTable, placed
-from dalembert.study.tasks import beside_curve
+from dalembert.study.run.duration import Effort, whole
+from dalembert.study.run.events import Emit
+from dalembert.study.tables.study import Study
+from dalembert.study.tasks import curve_supplements
 from dalembert.study.tasks.backbone import BackboneTable
-from dalembert.study.tasks.beside_curve import beside, beside_family, compare_in_time_table
+from dalembert.study.tasks.curve_supplements import beside, beside_family, compare_in_time_table
+from dalembert.study.tasks.requirements import needs_structure, unnamed
 from dalembert.study.tasks.sweep import Along, values_along
 from dalembert.study.tasks.task import Outcome, Task, silent
-from dalembert.study.tasks.wrong import needs_structure, unnamed
+from dalembert.study.text.numbers import Frequencies, FrequencyEnds
+from dalembert.study.text.table import StudyTable, placed
 
 if TYPE_CHECKING:
     from dalembert.vibration import FollowedPoint, HarmonicBalance
@@ -246,7 +246,7 @@ class FrequencyResponseTask(Task):
         from dalembert.vibration import CurveFamily, FrequencyCurve
 
         kind = FrequencyCurve if study.table.sweep is None else CurveFamily
-        return _response(study, kind.load(path), beside_curve.load(path))
+        return _response(study, kind.load(path), curve_supplements.load(path))
 
 
 def balance_of(study: Study) -> "HarmonicBalance":

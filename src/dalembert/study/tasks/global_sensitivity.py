@@ -4,16 +4,16 @@ from typing import Any
 
 from pydantic import Field
 
-from dalembert.study.catalogue import schemes
-from dalembert.study.components import chosen
-from dalembert.study.duration import TOGETHER, Effort, evaluated
-from dalembert.study.events import Emit, teller
-from dalembert.study.intervals import IntervalKey
-from dalembert.study.numbers import Frequencies, Times
-from dalembert.study.study import Study
-from dalembert.study.table import StudyTable
+from dalembert.study.run.duration import TOGETHER, Effort, evaluated
+from dalembert.study.run.events import Emit, teller
+from dalembert.study.tables.catalogue import schemes
+from dalembert.study.tables.dataclass_tables import chosen
+from dalembert.study.tables.study import Study
+from dalembert.study.tasks.requirements import needs_parameters, needs_samples, needs_solver, response, unnamed
 from dalembert.study.tasks.task import Outcome, ResultTask
-from dalembert.study.tasks.wrong import needs_parameters, needs_samples, needs_solver, response, unnamed
+from dalembert.study.text.intervals import IntervalKey
+from dalembert.study.text.numbers import Frequencies, Times
+from dalembert.study.text.table import StudyTable
 
 
 class _InputsTable(StudyTable):

@@ -10,20 +10,20 @@ from pydantic import AfterValidator, Field
 from dalembert.errors import InputError, counted, unknown
 from dalembert.optimize import Minimiser, Squares, Swarm
 from dalembert.optimize.minimiser import NAMES as MINIMISERS
-from dalembert.study.catalogue import methods
-from dalembert.study.components import one_of, table_of
-from dalembert.study.duration import TOGETHER, Effort, evaluated
-from dalembert.study.events import Emit, teller
-from dalembert.study.experiments import measured_channels
-from dalembert.study.numbers import Number, Seconds
-from dalembert.study.posing import posed, unknown_names
-from dalembert.study.study import Study
-from dalembert.study.table import StudyTable, checked, told_apart
-from dalembert.study.tasks import telling
+from dalembert.study.run.duration import TOGETHER, Effort, evaluated
+from dalembert.study.run.events import Emit, teller
+from dalembert.study.tables.catalogue import methods
+from dalembert.study.tables.dataclass_tables import one_of, table_of
+from dalembert.study.tables.experiments import measured_channels
+from dalembert.study.tables.posing import posed, unknown_names
+from dalembert.study.tables.study import Study
+from dalembert.study.tasks import assessments
 from dalembert.study.tasks.noise import Noise, likelihood_of, noise_of, wrong_noise
+from dalembert.study.tasks.requirements import needs_parameters, needs_solver, unmatched, unnamed
 from dalembert.study.tasks.shooting import Shooting, ShootingTable
 from dalembert.study.tasks.task import Outcome, Task
-from dalembert.study.tasks.wrong import needs_parameters, needs_solver, unmatched, unnamed
+from dalembert.study.text.numbers import Number, Seconds
+from dalembert.study.text.table import StudyTable, checked, told_apart
 
 if TYPE_CHECKING:
     from dalembert.inverse import Fit
@@ -146,11 +146,11 @@ class Identification(Outcome):
 
     @property
     def summary(self) -> str:
-        return "\n\n".join([self.result.summary(), *telling.summaries(self.told)])
+        return "\n\n".join([self.result.summary(), *assessments.summaries(self.told)])
 
     @property
     def beside(self) -> list[Any]:
-        return [self._motion(), *telling.reported(self.told)]
+        return [self._motion(), *assessments.reported(self.told)]
 
     def _motion(self) -> Any:
         """The motion at the identified values; of several experiments the first ones', by name."""
@@ -203,13 +203,13 @@ class Identify(Task):
     def plan(self, study: Study) -> str:
         model, data = posed(study)
         if study.table.noise is not None:
-            weights = telling.weights(study.table.weights, model, data)
+            weights = assessments.weights(study.table.weights, model, data)
             likelihood_of(study.table, model, data, weights, self.name, open_orders=True)
-        names = telling.whole(model).parameters.names
+        names = assessments.whole(model).parameters.names
         return f"identifies {', '.join(names)} from {_measured(model, data)} by {_cost(study.table, len(names))[0]}"
 
     def effort(self, study: Study) -> Effort:
-        model = telling.whole(posed(study)[0])
+        model = assessments.whole(posed(study)[0])
         _, least, most = _cost(study.table, len(model.parameters))
         method = settings(study.table.method)
         if isinstance(method, Swarm):
@@ -228,7 +228,7 @@ class Identify(Task):
         return 0 if study.table.shooting is None else 2
 
     def foreseen(self, study: Study) -> tuple[str, ...]:
-        return telling.foreseen(*posed(study))
+        return assessments.foreseen(*posed(study))
 
     def unknowns(self, study: Study) -> tuple[str, ...]:
         return unknown_names(study)
@@ -243,20 +243,20 @@ class Identify(Task):
             model,
             data,
             method=settings(table.method),
-            weights=telling.weights(table.weights, model, data),
+            weights=assessments.weights(table.weights, model, data),
             horizon=None if table.horizon == "whole" else table.horizon,
             shooting=None if table.shooting is None else table.shooting.settings(),
             noise=noise_of(table, model, self.name),
             on_event=teller(emit, as_record),
             **table.picked("starts", "seed", "polish", "spread", "loss", "loss_scale", "validation", "derivative"),
         )
-        return _identified(study, fit, telling.beyond(table, model, data, fit, teller(emit, as_record)))
+        return _identified(study, fit, assessments.beyond(table, model, data, fit, teller(emit, as_record)))
 
     def load(self, study: Study, path: Path) -> Outcome:
         from dalembert.inverse import Fit
 
         names = [table.name for table in study.file.experiments]
-        return _identified(study, Fit.load(path), telling.load(path, names))
+        return _identified(study, Fit.load(path), assessments.load(path, names))
 
 
 def _identified(study: Study, fit: "Fit", told: Mapping[str, Any]) -> Identification:

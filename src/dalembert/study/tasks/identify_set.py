@@ -4,15 +4,15 @@ from typing import Any
 
 from pydantic import Field
 
-from dalembert.study.catalogue import schemes
-from dalembert.study.components import chosen
-from dalembert.study.duration import TOGETHER, Effort, evaluated
-from dalembert.study.events import Emit, teller
-from dalembert.study.numbers import Number, NumberOfEach
-from dalembert.study.study import Study
-from dalembert.study.table import StudyTable
+from dalembert.study.run.duration import TOGETHER, Effort, evaluated
+from dalembert.study.run.events import Emit, teller
+from dalembert.study.tables.catalogue import schemes
+from dalembert.study.tables.dataclass_tables import chosen
+from dalembert.study.tables.study import Study
+from dalembert.study.tasks.requirements import needs_data, needs_parameters, needs_solver, unmatched, unnamed
 from dalembert.study.tasks.task import Outcome, ResultTask
-from dalembert.study.tasks.wrong import needs_data, needs_parameters, needs_solver, unmatched, unnamed
+from dalembert.study.text.numbers import Number, NumberOfEach
+from dalembert.study.text.table import StudyTable
 
 
 class IdentifySetTable(StudyTable):

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 from pydantic import Field
 
 from dalembert.errors import InputError
-from dalembert.study.duration import Effort, whole
-from dalembert.study.events import Emit
-from dalembert.study.study import Study
-from dalembert.study.table import StudyTable
+from dalembert.study.run.duration import Effort, whole
+from dalembert.study.run.events import Emit
+from dalembert.study.tables.study import Study
+from dalembert.study.tasks.requirements import needs_structure
 from dalembert.study.tasks.task import Outcome, ResultTask
-from dalembert.study.tasks.wrong import needs_structure
+from dalembert.study.text.table import StudyTable
 
 if TYPE_CHECKING:
     from dalembert.structure import ModeShapes

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import BeforeValidator, Field
 
 from dalembert.errors import InputError, unknown
-from dalembert.study.numbers import Number, Seconds, wrong_units
-from dalembert.study.posing import channel_units_of
-from dalembert.study.table import StudyTable, checked
+from dalembert.study.tables.posing import channel_units_of
+from dalembert.study.text.numbers import Number, Seconds, wrong_units
+from dalembert.study.text.table import StudyTable, checked
 
 if TYPE_CHECKING:
     from dalembert.inverse import Likelihood, NoiseModel

@@ -4,14 +4,14 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from dalembert.study.duration import Effort, evaluated
-from dalembert.study.events import Emit, teller
-from dalembert.study.posing import posed
-from dalembert.study.study import Study
-from dalembert.study.table import Read, StudyTable, told_apart
+from dalembert.study.run.duration import Effort, evaluated
+from dalembert.study.run.events import Emit, teller
+from dalembert.study.tables.posing import posed
+from dalembert.study.tables.study import Study
+from dalembert.study.tables.unused import few, unused_parameters
+from dalembert.study.tasks.requirements import needs_parameters, needs_solver, unnamed
 from dalembert.study.tasks.task import Outcome, ResultTask
-from dalembert.study.tasks.wrong import needs_parameters, needs_solver, unnamed
-from dalembert.study.unused import few, unused_parameters
+from dalembert.study.text.table import Read, StudyTable, told_apart
 
 ROUND = 40
 """Simulations of a round beside its sensitivities, about: ten gradients by the adjoint."""

@@ -8,20 +8,20 @@ from pydantic import Field
 
 from dalembert.errors import InputError, unknown
 from dalembert.kinds import named
-from dalembert.study.catalogue import part, schemes
-from dalembert.study.components import chosen, settings_of
-from dalembert.study.duration import Effort, evaluated
-from dalembert.study.events import Emit, teller
-from dalembert.study.experiments import measured_channels
-from dalembert.study.numbers import Number, read_number
-from dalembert.study.posing import posed, unknown_names
-from dalembert.study.priors import PriorTable, prior
-from dalembert.study.study import Study
-from dalembert.study.table import StudyTable
-from dalembert.study.tasks import telling
+from dalembert.study.run.duration import Effort, evaluated
+from dalembert.study.run.events import Emit, teller
+from dalembert.study.tables.catalogue import part, schemes
+from dalembert.study.tables.dataclass_tables import chosen, settings_of
+from dalembert.study.tables.experiments import measured_channels
+from dalembert.study.tables.posing import posed, unknown_names
+from dalembert.study.tables.priors import PriorTable, prior
+from dalembert.study.tables.study import Study
+from dalembert.study.tasks import assessments
 from dalembert.study.tasks.noise import Noise, likelihood_of, noise_of, wrong_noise
+from dalembert.study.tasks.requirements import needs_parameters, needs_solver, unmatched, unnamed
 from dalembert.study.tasks.task import Outcome, Task, loaded_beside
-from dalembert.study.tasks.wrong import needs_parameters, needs_solver, unmatched, unnamed
+from dalembert.study.text.numbers import Number, read_number
+from dalembert.study.text.table import StudyTable
 
 STEPS = 5
 """Gradients of a draw of the No-U-Turn sampler on a nearly round posterior, about: 3 to 7."""
@@ -55,7 +55,7 @@ class Sampled(Outcome):
 
     @property
     def summary(self) -> str:
-        return "\n\n".join([self.result.summary(), *telling.summaries(self.told)])
+        return "\n\n".join([self.result.summary(), *assessments.summaries(self.told)])
 
 
 class Sample(Task):
@@ -100,14 +100,14 @@ class Sample(Task):
         )
 
     def effort(self, study: Study) -> Effort:
-        model = telling.whole(posed(study)[0])
+        model = assessments.whole(posed(study)[0])
         return evaluated(model, model.parameters.start, *_cost(study.table, len(model.parameters)))
 
     def foresight(self, study: Study) -> int:
         return 2 + len(unknown_names(study))
 
     def foreseen(self, study: Study) -> tuple[str, ...]:
-        return telling.foreseen(*posed(study))
+        return assessments.foreseen(*posed(study))
 
     def unknowns(self, study: Study) -> tuple[str, ...]:
         return unknown_names(study)
@@ -118,13 +118,13 @@ class Sample(Task):
 
         table, tell = study.table, teller(emit, as_record)
         model, data = posed(study)
-        weights = telling.weights(table.weights, model, data)
+        weights = assessments.weights(table.weights, model, data)
         noise = noise_of(table, model, self.name)
         start: Any = {**_starts(model), **table.start} if table.start else None
         told = {}
         if table.profile:
             start = identify(model, data, weights=weights, noise=noise, seed=table.seed, start=start, on_event=tell)
-            told[telling.PROFILES] = profile(model, data, start, on_event=tell)
+            told[assessments.PROFILES] = profile(model, data, start, on_event=tell)
         posterior = sample(
             model,
             data,
@@ -142,7 +142,7 @@ class Sample(Task):
     def load(self, study: Study, path: Path) -> Outcome:
         from dalembert.inverse import Posterior, Profiles
 
-        return _outcome(study, Posterior.load(path), loaded_beside(path, {telling.PROFILES: Profiles}))
+        return _outcome(study, Posterior.load(path), loaded_beside(path, {assessments.PROFILES: Profiles}))
 
 
 def samplers() -> dict[str, type]:
@@ -154,7 +154,7 @@ def samplers() -> dict[str, type]:
 
 def _starts(model: Any) -> dict[str, float]:
     """First guesses by name."""
-    parameters = telling.whole(model).parameters
+    parameters = assessments.whole(model).parameters
     return parameters.mapping(parameters.start)
 
 
@@ -179,7 +179,7 @@ def _priors(study: Study, model: Any, data: Any) -> dict[str, Any]:
         For noise that the samples do not allow, a name that no noise parameter has, and a quantity of another unit.
     """
     table, where = study.table, "[sample.priors]"
-    weights = telling.weights(table.weights, model, data)
+    weights = assessments.weights(table.weights, model, data)
     known = likelihood_of(table, model, data, weights, "sample", open_orders=False).noise_parameters
     items, found = {item.name: item for item in known}, {}
     for name, given in table.priors.items():

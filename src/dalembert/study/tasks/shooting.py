@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import BeforeValidator, Field
 
-from dalembert.study.numbers import Number
-from dalembert.study.table import StudyTable, checked
+from dalembert.study.text.numbers import Number
+from dalembert.study.text.table import StudyTable, checked
 
 if TYPE_CHECKING:
     from dalembert.inverse import MultipleShooting, ShootingState

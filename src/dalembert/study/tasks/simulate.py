@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 from pydantic import Field
 
-from dalembert.study.duration import Effort, shortest_of
-from dalembert.study.events import Emit
-from dalembert.study.numbers import Seconds, Times
-from dalembert.study.samples_file import write_samples
-from dalembert.study.study import Study
-from dalembert.study.table import StudyTable, placed, problem
+from dalembert.study.run.duration import Effort, shortest_of
+from dalembert.study.run.events import Emit
+from dalembert.study.tables.study import Study
+from dalembert.study.tasks.requirements import needs_mechanism
+from dalembert.study.tasks.samples_file import write_samples
 from dalembert.study.tasks.task import Outcome, ResultTask, silent
-from dalembert.study.tasks.wrong import needs_mechanism
+from dalembert.study.text.numbers import Seconds, Times
+from dalembert.study.text.table import StudyTable, placed, problem
 
 OUTPUTS = "outputs.csv"
 

@@ -12,13 +12,13 @@ from dalembert.errors import InputError, StorageError, require_known, told
 from dalembert.files import replacing
 from dalembert.forward import ForwardModel, prefetched
 from dalembert.parameters import Parameters
-from dalembert.study.duration import TOGETHER, Effort, evaluated
-from dalembert.study.events import Emit
-from dalembert.study.numbers import MOST, Number, samples
-from dalembert.study.study import Study
-from dalembert.study.table import Read, StudyTable, problem, told_apart
+from dalembert.study.run.duration import TOGETHER, Effort, evaluated
+from dalembert.study.run.events import Emit
+from dalembert.study.tables.study import Study
+from dalembert.study.tasks.requirements import needs_solver, unnamed
 from dalembert.study.tasks.task import ResultTask
-from dalembert.study.tasks.wrong import needs_solver, unnamed
+from dalembert.study.text.numbers import MOST, Number, samples
+from dalembert.study.text.table import Read, StudyTable, problem, told_apart
 
 _BATCH = 64  # points between two events
 

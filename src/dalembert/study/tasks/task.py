@@ -9,10 +9,10 @@ from pkgutil import resolve_name
 from typing import Any, ClassVar
 
 from dalembert.findings import Finding
-from dalembert.study.duration import Effort
-from dalembert.study.events import Emit
-from dalembert.study.study import Study
-from dalembert.study.table import StudyTable, completed
+from dalembert.study.run.duration import Effort
+from dalembert.study.run.events import Emit
+from dalembert.study.tables.study import Study
+from dalembert.study.text.table import StudyTable, completed
 
 
 def silent(kind: str, **details: Any) -> None:

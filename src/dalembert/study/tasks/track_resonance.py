@@ -5,14 +5,14 @@ from typing import Any
 import numpy as np
 from pydantic import Field
 
-from dalembert.study.duration import Effort, whole
-from dalembert.study.events import Emit
-from dalembert.study.numbers import FrequencyEnds
-from dalembert.study.study import Study
-from dalembert.study.table import StudyTable, placed
+from dalembert.study.run.duration import Effort, whole
+from dalembert.study.run.events import Emit
+from dalembert.study.tables.study import Study
+from dalembert.study.tasks.requirements import needs_structure, unnamed
 from dalembert.study.tasks.sweep import Along, values_along
 from dalembert.study.tasks.task import Outcome, ResultTask
-from dalembert.study.tasks.wrong import needs_structure, unnamed
+from dalembert.study.text.numbers import FrequencyEnds
+from dalembert.study.text.table import StudyTable, placed
 
 
 class TrackResonanceTable(StudyTable):

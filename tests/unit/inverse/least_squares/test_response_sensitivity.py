@@ -13,7 +13,7 @@ from dalembert.optimize import ParticleSwarm, ResponseSensitivity
 from dalembert.report import figures, report
 from dalembert.report.charts.identification.regularisation import accounts
 from dalembert.study import load, run_study
-from dalembert.study.events import read_events
+from dalembert.study.run.events import read_events
 from pages import read_page
 from small_models import DECAY, LINE, TIMES, measured
 

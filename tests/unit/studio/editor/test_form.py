@@ -9,7 +9,7 @@ from dalembert.studio.editor.additions import added, additions
 from dalembert.studio.editor.fields import child, field_at
 from dalembert.studio.editor.form import form_at, with_row
 from dalembert.studio.editor.reading import Mistake, read
-from dalembert.study.catalogue import kinds_of, structure_parts
+from dalembert.study.tables.catalogue import kinds_of, structure_parts
 from dalembert.study.tasks import TASKS
 from dalembert.study.template import templates
 

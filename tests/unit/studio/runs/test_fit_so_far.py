@@ -8,7 +8,7 @@ import pytest
 from dalembert.studio.runs.fit_so_far import fit_so_far
 from dalembert.studio.worker import Kept
 from dalembert.study import RunFolder, load, run_study
-from dalembert.study.posing import unknown_names
+from dalembert.study.tables.posing import unknown_names
 from dalembert.study.template import begin
 
 EXPERIMENTS = """

@@ -8,7 +8,7 @@ import pytest
 from dalembert.errors import InputError
 from dalembert.studio.runs.run_list import RunList
 from dalembert.studio.runs.run_note import LONGEST, NOTE, Note, read_note, write_note
-from dalembert.study.folder import RunFolder
+from dalembert.study.run.folder import RunFolder
 from support import says
 
 STATE = {

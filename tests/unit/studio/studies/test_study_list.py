@@ -10,7 +10,7 @@ import pytest
 from dalembert.studio.runs.last_runs import LastRun, last_runs, study_of
 from dalembert.studio.studies.study_list import study_folders
 from dalembert.studio.workspace import Workspace
-from dalembert.study.folder import RunFolder
+from dalembert.study.run.folder import RunFolder
 from dalembert.study.template import begin
 
 STUDIES = Path(__file__).parents[4] / "studies"

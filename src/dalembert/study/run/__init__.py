@@ -1,0 +1,1 @@
+"""Runs of studies: their folders, events, progress and duration."""

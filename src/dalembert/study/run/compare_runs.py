@@ -1,0 +1,55 @@
+"""Runs of several models of the same data, ranked by how well they predict."""
+
+from collections.abc import Sequence
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+from dalembert.errors import DataError, InputError
+from dalembert.study.run.folder import RunFolder
+from dalembert.threads import one_thread
+
+if TYPE_CHECKING:
+    from dalembert.inverse import Fit, ModelComparison, Posterior
+
+
+def compare_runs(folders: Sequence[RunFolder], leave_out: str | None = None) -> "ModelComparison":
+    """Return the comparison of the fits or posteriors of runs, by the names of their folders.
+
+    Parameters
+    ----------
+    folders : sequence of RunFolder
+    leave_out : {"values", "blocks", "experiments"}, optional
+        See :func:`dalembert.inverse.compare_models`.
+
+    Raises
+    ------
+    InputError
+        For a run that has neither, two runs of one name, and models that cannot be compared.
+    """
+    from dalembert.inverse import compare_models
+
+    found: dict[str, Fit | Posterior] = {}
+    for folder in folders:
+        name = folder.path.name if folder.path.name not in found else str(folder.path)
+        found[name] = fit_or_posterior(folder)
+    with one_thread():
+        return compare_models(found, leave_out=leave_out)
+
+
+def fit_or_posterior(folder: RunFolder) -> "Fit | Posterior":
+    """Return the fit or the posterior of a run.
+
+    Raises
+    ------
+    InputError
+        For a run without a result, or of another task.
+    """
+    from dalembert.inverse import Fit, Posterior
+
+    for kind in (Fit, Posterior):
+        with suppress(DataError):
+            return kind.load(folder.result)
+    raise InputError(
+        f"run {folder.path.name!r} has no fit to samples and no posterior; compare runs of the task [identify], or of "
+        "the task [sample]"
+    )

@@ -1,0 +1,157 @@
+"""What a user sees of a run while it goes on: on a terminal a live line, elsewhere now and then a line."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from time import monotonic
+from typing import TYPE_CHECKING, Self
+
+from dalembert.study.run.events import LOST, STORAGE, Event
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.progress import Progress
+
+_EVERY = 2.0  # s between plain lines
+MOST_LISTED = 8
+"""Unknowns whose values a line lists."""
+
+
+@dataclass
+class Told:
+    """How far a run is, in words, from its events.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Names of the unknowns, for the best values.
+    last : (str, int, int or None)
+        The last text, and how much is done of how much, where that is known.
+    units : mapping of str to (str, float)
+        Units in which the unknowns are listed, and their sizes in SI units; without a unit for others.
+    """
+
+    names: tuple[str, ...] = ()
+    last: tuple[str, int, int | None] = ("", 0, None)
+    units: Mapping[str, tuple[str, float]] = field(default_factory=dict)
+    _best: float = field(default=float("inf"), init=False)
+    _values: list[float] = field(default_factory=list, init=False)
+    _samples: int | None = field(default=None, init=False)
+
+    def take(self, event: Event) -> bool:
+        """Take in an event; whether it told anything."""
+        text, done, total = self._told(event)
+        if text:
+            self.last = text, done, total
+        return bool(text)
+
+    def _told(self, event: Event) -> tuple[str, int, int | None]:
+        """Text of an event, and how much is done of how much."""
+        match event:
+            case {"event": "iteration", "best": best, "values": values, "start": start, "simulations": simulations}:
+                said = f"start {start + 1} · {simulations} simulations"
+                least = event.get("minimised")
+                if least is not None and best is not None:  # it weighs gaps ever more, so that no two compare
+                    return f"{said} · {_in_segments(least, best, event['gap'])}{self._listed(values)}", 0, None
+                if event.get("samples") != self._samples:  # a misfit over more samples is another one
+                    self._samples, self._best = event.get("samples"), float("inf")
+                if best is not None and best < self._best:
+                    self._best, self._values = best, values
+                return f"{said} · {_horizon(event)}{self._found}", 0, None
+            case {"event": "swept", "parameter": name, "value": value, "done": done, "total": total}:
+                return f"{name} = {value:.6g} · {done} of {total}", done, total
+            case {"event": "ran", "method": method, "runs": runs, "failed": failed, "most": most}:
+                return f"{method} · {runs} simulations" + (f", {failed} failed" if failed else ""), runs, most
+            case {"event": "sampled", "runs": runs}:
+                return f"surrogate · {runs} simulations", 0, None
+            case {"event": "checked", "runs": runs, "error": error}:
+                return f"check by {runs} simulations" + ("" if error is None else f" · wrong by {error:.2g}"), 0, None
+            case {"event": "paved", "inside": inside, "boundary": boundary, "waiting": waiting}:
+                return f"{inside} boxes inside, {boundary} on the boundary, {waiting} to look at", 0, None
+            case {"event": "profiled", "parameter": name, "simulations": simulations}:
+                return f"profile of {name} · {simulations} simulations", 0, None
+            case {"event": "drawn", "draws": draws, "of": of}:
+                return f"{draws} of {of} draws", draws, of
+            case {"event": "penalised", "round": number, "of": most, "weight": weight, "simulations": simulations}:
+                return f"round {number} of at most {most} · weight {weight:.3g} · {simulations} simulations", 0, None
+            case {"event": "following", "begin": begin, "end": end}:
+                return f"following the response from {begin:g} to {end:g} Hz", 0, None
+            case {"event": "followed", "frequency": frequency, "amplitude": amplitude, "dof": dof, "done": part}:
+                size = "not found" if amplitude is None else f"{dof} {amplitude:.4g} m"
+                return f"{frequency:.6g} Hz · {size} · {part:.0%} of the way", round(100 * part), 100
+            case {"event": "run-compiling", "done": done, "total": total}:
+                return f"compiling kernels, once on this machine · {done} of {total}", done, total
+            case {"event": "simulating", "end": end}:
+                return f"simulating to {end:g} s", 0, None
+        return "", 0, None
+
+    @property
+    def _found(self) -> str:
+        return " · ".join(filter(None, (f"best {self._best:.4g}", self._listed(self._values))))
+
+    def _listed(self, values: list[float]) -> str:
+        listed = (
+            (name, value, self.units.get(name, ("", 1.0))) for name, value in zip(self.names, values, strict=False)
+        )
+        texts = [f"{name} = {value / size:.6g} {unit}".rstrip() for name, value, (unit, size) in listed]
+        more = [f"and {len(texts) - MOST_LISTED} more"] if len(texts) > MOST_LISTED else []
+        return ", ".join([*texts[:MOST_LISTED], *more])
+
+
+def _in_segments(least: float, misfit: float, gap: float) -> str:
+    """What multiple shooting minimises, in words."""
+    return f"minimised {least:.4g} = misfit {misfit:.4g} + weighted gaps, largest gap {gap:.2g} · "
+
+
+def _horizon(event: Event) -> str:
+    """The samples that the best misfit is of, while they are not all: more of them make it rise."""
+    samples, of = event.get("samples"), event.get("of")
+    if samples is None or of is None or samples == of:
+        return ""
+    return f"first {samples} of {of} samples; the best misfit grows with their number · "
+
+
+@dataclass
+class Watch:
+    """Listener of a run's events that prints how far it is.
+
+    Parameters
+    ----------
+    console : Console
+    names : tuple of str
+        Names of the unknowns, for the best values.
+    """
+
+    console: "Console"
+    names: tuple[str, ...] = ()
+    _live: "Progress | None" = field(default=None, init=False)
+    _next: float = field(default=0.0, init=False)
+    _told: Told = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._told = Told(self.names)
+
+    def __enter__(self) -> Self:
+        if self.console.is_terminal:
+            from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+            columns = SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
+            self._live = Progress(*columns, console=self.console, transient=True)
+            self._live.start()
+            self._live.add_task("starting", total=None)
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        if self._live is not None:
+            self._live.stop()
+
+    def __call__(self, event: Event) -> None:
+        if event["event"] in (LOST, STORAGE):
+            self.console.print(event["message"], markup=False, highlight=False)
+        if not self._told.take(event):
+            return
+        text, done, total = self._told.last
+        if self._live is not None:
+            self._live.update(self._live.task_ids[0], description=text, completed=done, total=total)
+        elif monotonic() >= self._next:
+            self._next = monotonic() + _EVERY
+            self.console.print(text, markup=False, highlight=False)

@@ -1,0 +1,1 @@
+"""The tables of study files, and what a study makes of them: models, data and parameters."""

@@ -1,0 +1,237 @@
+"""The function from parameters to a System, or a SpatialSystem, that a study file's model is."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from dalembert.errors import InputError
+from dalembert.study.tables.dataclass_tables import KindTable, Written
+from dalembert.study.tables.inputs import InputReference, MeasuredInput, input_named
+from dalembert.study.tables.model_table import ModelTable
+from dalembert.study.tables.robot_table import RobotTable
+from dalembert.study.text.expressions import Expression
+from dalembert.study.text.functions import FunctionReference
+from dalembert.study.text.places import JointName, Place
+from dalembert.study.text.table import placed
+
+if TYPE_CHECKING:
+    from dalembert.multibody.spatial import SpatialSystem
+    from dalembert.multibody.system import Mechanism
+    from dalembert.multibody.trees import Tree
+
+Values = Mapping[str, Any]
+EMPTY: Values = {}
+
+
+@dataclass(frozen=True)
+class SystemBuilder:
+    """A model written as data, called like any builder: ``builder(theta1=0.7, theta2=0.5)``.
+
+    Numbers may be complex; they pass from a parameter to a component through arithmetic alone.
+
+    Parameters
+    ----------
+    model : ModelTable
+    constants : mapping of str to float or Expression
+    inputs : mapping of str to MeasuredInput
+    """
+
+    model: ModelTable
+    constants: Mapping[str, float | Expression]
+    inputs: Mapping[str, MeasuredInput] = field(default_factory=dict)
+
+    def __call__(self, **parameters: complex) -> "Mechanism":
+        values = named_values(self.constants, parameters)
+        gravity = self.model.gravity
+        options: dict[str, Any] = {
+            "driving": self.model.driving,
+            **({"start": self.model.start} if self.model.start else {}),
+        }
+        if gravity is not None:
+            options["gravity"] = tuple(resolved(one, values, "[model], gravity") for one in gravity)
+        signals = signals_of(self.inputs, values)
+        robot = self.model.robot_table
+        system = self._system(options) if robot is None else robot_of(robot, values, signals, options)
+        bodies: dict[str, Any] = {one.name: one for one in (*system.bodies, *system.joints)}
+        for table, component in self.model.components:
+            where = f"[[model.{table}]] {component.name!r}"
+            bodies[component.name] = system.add(built(component, values, where, bodies, system, signals))
+        if self.model.stated:
+            given = (("pose", self.model.pose), ("rates", self.model.rates))
+            own = [{joint: resolved(one, values, f"[model], {key}") for joint, one in at.items()} for key, at in given]
+            try:
+                system.pose(*own)
+            except InputError as error:
+                raise InputError(f"[model]: {error}") from None
+        return system
+
+    def _system(self, options: dict[str, Any]) -> "Mechanism":
+        """A mechanism without components, in the plane or in space."""
+        if self.model.space:
+            from dalembert.multibody.spatial import SpatialSystem
+
+            return SpatialSystem(**options)
+        from dalembert.multibody import System
+
+        return System(**options)
+
+
+def robot_of(robot: RobotTable, values: Values, signals: Values, options: Mapping[str, Any]) -> "SpatialSystem":
+    """The mechanism of a robot once the parameters are known."""
+
+    def numbers(key: str) -> dict[str, Any]:
+        known = {name: given for name, given in getattr(robot, key).items() if not isinstance(given, InputReference)}
+        return {name: resolved(given, values, f"[model.robot.{key}], {name}") for name, given in known.items()}
+
+    with placed("[model.robot]"):
+        return tree_of(robot, values).system(
+            numbers("positions"),
+            numbers("rates"),
+            slip=resolved(robot.slip, values, "[model.robot], slip"),
+            torques=numbers("torques") | {name: signals[given] for name, given in robot.inputs.items()},
+            **{key: given for key, given in options.items() if key != "driving"},
+        )
+
+
+def tree_of(robot: RobotTable, values: Values) -> "Tree":
+    """The robot of a study once the parameters are known."""
+    changed = {name: resolved(given, values, "[model.robot.numbers]") for name, given in robot.numbers.items()}
+    with placed("[model.robot.numbers]"):
+        return robot.tree.with_numbers(changed)
+
+
+@dataclass(frozen=True)
+class FunctionBuilder:
+    """A model that a Python function builds: parameters by name, and fixed arguments.
+
+    Parameters
+    ----------
+    function : callable
+    arguments : mapping of str to any
+    vibrates : bool
+        Whether it builds a vibrating structure, and not a mechanism.
+    inputs : mapping of str to MeasuredInput
+        Of arguments that name one.
+    constants : mapping of str to float or Expression
+        Which numbers of the inputs may name.
+    """
+
+    function: Callable[..., Any]
+    arguments: Mapping[str, Any]
+    vibrates: bool = False
+    inputs: Mapping[str, MeasuredInput] = field(default_factory=dict)
+    constants: Mapping[str, float | Expression] = field(default_factory=dict)
+
+    def __call__(self, **parameters: complex) -> Any:
+        arguments = dict(self.arguments)
+        if self.inputs:
+            signals = signals_of(self.inputs, named_values(self.constants, parameters))
+            arguments |= {key: signals[name] for key, value in arguments.items() if (name := input_named(value))}
+        system = self.function(**parameters, **arguments)
+        if not isinstance(system, self._expected):
+            expected = "VibrationSystem" if self.vibrates else "System"
+            more = (
+                "the study is of a structure over frequency, since it has [harmonic_balance] or a task of structures"
+                if self.vibrates
+                else "a function that returns a ForwardModel is named by forward = in [model], and one that returns a "
+                "VibrationSystem needs the table [harmonic_balance]"
+            )
+            raise InputError(
+                f"{self.function.__name__} returned a {type(system).__name__}; expected a {expected}; {more}"
+            )
+        return system
+
+    @property
+    def _expected(self) -> type:
+        if self.vibrates:
+            from dalembert.vibration import VibrationSystem
+
+            return VibrationSystem
+        from dalembert.multibody.system import Mechanism
+
+        return Mechanism
+
+
+def named_values(constants: Mapping[str, float | Expression], parameters: Values) -> dict[str, Any]:
+    """Parameters and constants as numbers, by name; constants in their order, since each may use those before it.
+
+    >>> named_values({"half": Expression.of("L/2")}, {"L": 3.0})
+    {'L': 3.0, 'half': 1.5}
+    """
+    values = dict(parameters)
+    for name, given in constants.items():
+        values[name] = resolved(given, values, f"[constants], {name}")
+    return values
+
+
+def signals_of(inputs: Mapping[str, MeasuredInput], values: Values) -> dict[str, Any]:
+    """The signals of inputs, by name, once the parameters are known."""
+    found = {}
+    for name, one in inputs.items():
+        with placed(f"[inputs.{name}]"):
+            found[name] = one.signal(values)
+    return found
+
+
+def built(
+    table: KindTable, values: Values, where: str, bodies: Values = EMPTY, system: Any = None, signals: Values = EMPTY
+) -> Any:
+    """What a table describes, once the parameters are known; places are those of a mechanism's bodies.
+
+    >>> from dalembert.structure import Modal
+    >>> from dalembert.study.tables.dataclass_tables import table_of
+    >>> table = table_of(Modal)(kind="Modal", ratio="2*zeta")
+    >>> built(table, {"zeta": 0.005}, "[model.structure], damping")
+    Modal(ratio=0.01)
+    """
+    arguments = {
+        key: signals[given.input]
+        if isinstance(given, InputReference)
+        else _resolved(given, values, bodies, system, f"{where}, {key}")
+        for key, given in table.given().items()
+    }
+    made = table.target_type(**arguments)
+    return made.value if isinstance(made, Written) else made
+
+
+def _resolved(given: Any, values: Values, bodies: Values, system: Any, where: str) -> Any:
+    """What a key's value stands for once the parameters are known."""
+    match given:
+        case Expression():
+            return resolved(given, values, where)
+        case Place():
+            return _place(given, values, bodies, system, where)
+        case JointName():
+            return bodies[given.name]
+        case KindTable():
+            try:
+                return built(given, values, where, bodies, system)
+            except InputError as error:
+                raise InputError(str(error) if str(error).startswith("[") else f"{where}: {error}") from None
+        case FunctionReference():
+            return given.load()
+        case list():
+            return tuple(_resolved(entry, values, bodies, system, where) for entry in given)
+        case dict():
+            return {key: _resolved(entry, values, bodies, system, where) for key, entry in given.items()}
+    return given
+
+
+def resolved(given: float | Expression, values: Values, where: str) -> complex:
+    """A number, that of an expression once the parameters are known."""
+    try:
+        return given(values) if isinstance(given, Expression) else given
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+
+
+def _place(given: Place, values: Values, bodies: Values, system: Any, where: str) -> Any:
+    """Point of a body or of the ground."""
+    if given.position is not None:
+        numbers = tuple(resolved(one, values, where) for one in given.position)
+        with placed(where):
+            return system.ground.point(numbers) if len(system.AXES) == 3 else system.ground.point(*numbers)
+    if not given.body:
+        return system.ground
+    with placed(where):
+        return bodies[given.body].point(given.point)

@@ -1,0 +1,118 @@
+"""The base of every table of a study file: unknown keys are refused, and the known ones kept for that error."""
+
+import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Annotated, Any, Self, TypeVar
+
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    GetCoreSchemaHandler,
+    Tag,
+    ValidationInfo,
+    create_model,
+    model_validator,
+)
+from pydantic_core import CoreSchema, PydanticCustomError
+
+from dalembert.errors import DalembertError, InputError
+from dalembert.study.text.context import Context
+
+T = TypeVar("T")
+_NAME = r"^[^\W\d][\w-]*$"
+
+
+class StudyTable(BaseModel):
+    """A table of a study file."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=True, strict=True)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _remember_keys(cls, data: Any, info: ValidationInfo) -> Any:
+        if isinstance(info.context, Context):
+            info.context.remember(data, cls.model_fields)
+        return data
+
+    def picked(self, *keys: str) -> dict[str, Any]:
+        """Return some keys with their values."""
+        return {key: getattr(self, key) for key in keys}
+
+    def _wrong(self) -> list[str]:
+        """Sentences about keys that do not fit together."""
+        return []
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if wrong := self._wrong():
+            raise problem(*wrong)
+        return self
+
+
+Table = TypeVar("Table", bound=StudyTable)
+
+
+def problem(*sentences: str) -> PydanticCustomError:
+    """Error of a validator, in our own sentences."""
+    return PydanticCustomError("dalembert", "{sentences}", {"sentences": "\n".join(sentences)})
+
+
+def checked(function: Callable[..., T], *arguments: Any) -> T:
+    """Result of a function, its :class:`InputError` turned into one that pydantic collects with the others."""
+    try:
+        return function(*arguments)
+    except InputError as error:
+        raise problem(str(error)) from None
+
+
+@contextmanager
+def placed(where: str, kind: type[DalembertError] = InputError) -> Iterator[None]:
+    """A block whose errors of a kind are about a place in the file; the place is put in front."""
+    try:
+        yield
+    except kind as error:
+        raise kind(f"{where}: {error}") from None
+
+
+def _name(value: Any) -> str:
+    if isinstance(value, str) and re.fullmatch(_NAME, value):
+        return value
+    raise problem(f"{value!r} was given; expected a name of letters, digits, _ and -, a letter first, such as 'OA'")
+
+
+@dataclass(frozen=True)
+class Read:
+    """Mark of a key that is read as another type says: ``Annotated[float, Read(fixed("m"))]``."""
+
+    type: Any
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return handler.generate_schema(self.type)
+
+
+def completed(table: type[Table], **keys: Any) -> type[Table]:
+    """Return a table with further keys, or other types of its keys: those that depend on the kinds that there are.
+
+    Parameters
+    ----------
+    table : type
+    **keys : (type, default)
+        As `pydantic.create_model` takes them.
+    """
+    return create_model(table.__name__, __base__=table, __doc__=table.__doc__, __module__=table.__module__, **keys)
+
+
+def told_apart(is_first: Callable[[Any], bool], first: Any, other: Any) -> Any:
+    """Type of a key that takes one of two things, told apart by a test of what is given."""
+    return Annotated[
+        Annotated[first, Tag("#1")] | Annotated[other, Tag("#2")],
+        Discriminator(lambda value: "#1" if is_first(value) else "#2"),
+    ]
+
+
+Name = Annotated[str, BeforeValidator(_name), Field(pattern=_NAME)]

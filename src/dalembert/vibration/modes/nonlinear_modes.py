@@ -42,8 +42,11 @@ BEHIND = 2.0
 """Ratio by which the path between two amplitudes may turn back behind the first."""
 FIRST_PART, LEAST_PART = 0.125, 2.0**-10
 """First and smallest step of the part of the nonlinearity on the way from the linear mode."""
-SAME = 0.7
-"""Cosine of the angle between two motions, weighted by the mass, below which they belong to different modes."""
+SAME = 0.9
+"""Cosine of the angle between two motions, weighted by the mass, below which they belong to different modes.
+
+With 0.7, Newton's iteration passed a fold of a chain to a mode of another frequency (cosine 0.73) on some processors.
+"""
 WEAK = 1e-3
 """Damping ratio below which its errors are parts of this ratio, not of the smaller one."""
 Points = Annotated[np.ndarray, Over(("point",))]

@@ -155,9 +155,10 @@ def _executed(
                     for workers in [] if client is None else worker_versions(client):
                         folder.add_computed_with(this_process(workers))
                     task = TASKS[study.task]
+                    study = replace(study, executor=client)
                     if task.keeps_responses and (size := storage(task.effort(study))):
                         log.emit(STORAGE, message=size)
-                    outcome = task.run(replace(study, checkpoint=checkpoint, executor=client), log.emit)
+                    outcome = task.run(replace(study, checkpoint=checkpoint), log.emit)
                 outcome = _with_findings(outcome, folder)
                 outcome.save(folder.result)
                 outcome.report(folder.report)

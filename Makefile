@@ -4,7 +4,7 @@ SHELL := /bin/sh
 .DEFAULT_GOAL := help
 .SUFFIXES:
 .DELETE_ON_ERROR:
-.PHONY: help demo names schema checks kernels checked test wording verify validation docs bench wheel pure-wheel clean
+.PHONY: help demo names schema checks kernels checked test wording verify validation docs bench wheel pure-wheel versions clean
 
 DEMO_STUDY := studies/flexible-pendulum/identify.toml
 DEMO_RUN := runs/demo
@@ -46,6 +46,7 @@ help:
 	@echo "make bench       speed, beside a peer"
 	@echo "make wheel       a wheel for this platform with all kernels compiled, in dist"
 	@echo "make pure-wheel  a wheel without kernels for any platform, and the archive of the sources, in dist"
+	@echo "make versions    the README's examples and all templates with the lowest and the newest versions of all dependencies"
 	@echo "make clean       remove the environment and everything built"
 
 demo: .venv/core.stamp
@@ -101,6 +102,9 @@ pure-wheel: .venv/core.stamp
 	$(PIP) wheel $(QUIETLY) --no-build-isolation --no-deps --wheel-dir dist .
 	$(BIN)/python -m hatchling build --target sdist --directory dist
 	@ls dist/*-any.whl dist/*.tar.gz
+
+versions: .venv/test.stamp
+	$(BIN)/python tools/versions.py lowest newest
 
 bench: .venv-bench/stamp
 	.venv-bench/bin/python -m benchmarks

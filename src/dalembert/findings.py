@@ -56,8 +56,3 @@ def stored_findings(findings: Iterable[Finding]) -> list[dict[str, Any]]:
 def findings_of(stored: Iterable[Mapping[str, Any]]) -> tuple[Finding, ...]:
     """Return the findings that :func:`stored_findings` stored."""
     return tuple(Finding(**finding) for finding in stored)
-
-
-def unclassified(message: str, *, success: bool = True) -> Finding:
-    """Return the finding of a text that a former version stored without a code."""
-    return Finding("unclassified", "note" if success else "error", {}, message)

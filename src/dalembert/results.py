@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from dalembert.contents import Contents
 from dalembert.errors import DataError
 from dalembert.files import read_dataset, write_contents
-from dalembert.findings import Finding, stored_findings, unclassified
+from dalembert.findings import Finding
 from dalembert.notebook_display import Displayed
 from dalembert.parameters import Parameter
 from dalembert.stored_fields import Source, Store, restore, store
@@ -55,12 +55,7 @@ class Result(Displayed):
         """The result that :meth:`to_xarray` turned into a dataset."""
         settings = {**dataset.attrs, **stored_settings(dataset)}
         source = Source(dataset, {str(name): variable.values for name, variable in dataset.variables.items()})
-        cls.upgrade(source.arrays, settings)
         return restore(cls, source, settings)
-
-    @classmethod
-    def upgrade(cls, arrays: dict[str, Any], settings: dict[str, Any]) -> None:
-        """Rename arrays and settings of a file of a former version to those of this one."""
 
     def save(self, path: str | Path) -> None:
         """Write everything to a NetCDF-4 file, whole or not at all; :meth:`load` gives back the same bits."""
@@ -110,13 +105,6 @@ class EndedResult(Result):
     def contents(self) -> Contents:
         found = super().contents()
         return replace(found, attributes={**found.attributes, "status": self.status})
-
-    @classmethod
-    def upgrade(cls, arrays: dict[str, Any], settings: dict[str, Any]) -> None:
-        if "outcome" not in settings and "status" in settings:
-            settings["outcome"] = stored_findings(
-                [unclassified(settings["status"], success=bool(settings.get("success", True)))]
-            )
 
 
 def fixed_of(result: Any) -> tuple[Parameter, ...]:

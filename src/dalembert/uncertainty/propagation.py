@@ -101,9 +101,3 @@ class Propagation(Bands, EndedResult):
         return "\n".join(
             [*text_table(widths), "", *text_table(box), "", *facts, "", self.status, *map(str, self.findings)]
         )
-
-    @classmethod
-    def upgrade(cls, arrays: dict[str, Any], settings: dict[str, Any]) -> None:
-        super().upgrade(arrays, settings)
-        if settings["kind"] == "enclosure":
-            settings["kind"] = "enclosure of the surrogate"

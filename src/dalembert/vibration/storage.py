@@ -45,16 +45,14 @@ class VibrationResult(Result):
 
     @classmethod
     def from_xarray(cls, dataset: "Dataset") -> Self:
-        over, names = _split(cls)
+        over, _ = _split(cls)
         arrays = {name: dataset[name].values for name in over if name in dataset}
         for name in ("converged", "fold"):  # NetCDF has no truth values
             if name in arrays:
                 arrays[name] = arrays[name].astype(bool)
-        facts = {name: dataset.attrs[name] for name in names if name in dataset.attrs}  # of former versions
-        facts |= {name: _tuples(own) for name, own in json.loads(dataset.attrs["names"]).items()}
-        found = findings_of(json.loads(dataset.attrs.get("findings", "[]")))
-        facts |= {"provenance": json.loads(dataset.attrs["provenance"]), **({"findings": found} if found else {})}
-        cls.upgrade(arrays, facts)
+        facts = {name: _tuples(value) for name, value in json.loads(dataset.attrs["names"]).items()}
+        findings = findings_of(json.loads(dataset.attrs["findings"]))
+        facts |= {"provenance": json.loads(dataset.attrs["provenance"]), **({"findings": findings} if findings else {})}
         return cls(**arrays, **facts)
 
 

@@ -283,16 +283,6 @@ class Fit(EndedResult):
         found = super().contents()
         return replace(found, variables={**found.variables, "residuals": (("sample", "channel"), self.residuals)})
 
-    @classmethod
-    def upgrade(cls, arrays: dict[str, Any], settings: dict[str, Any]) -> None:
-        super().upgrade(arrays, settings)
-        if isinstance(processes := settings.get("correlated"), list):
-            settings["correlated"] = {"processes": processes}
-        if isinstance(how := settings.get("integration"), str):
-            settings["integration"] = {"how": how}
-        if settings.get("halves_refitted") is not None:
-            settings["halves"] = {"refitted": settings["halves_refitted"]}
-
 
 def check_level(level: float, where: str) -> None:
     """Check that a level is a probability.

@@ -103,13 +103,6 @@ class ParameterSet(EndedResult):
         ]
         return "\n".join([*text_table(rows), "", *facts, "", self.status, *map(str, self.findings)])
 
-    @classmethod
-    def upgrade(cls, arrays: dict[str, Any], settings: dict[str, Any]) -> None:
-        super().upgrade(arrays, settings)
-        if "boxes" in arrays:
-            is_inside = arrays["is_inside"].astype(bool)
-            arrays |= {"inside": arrays["boxes"][is_inside], "boundary": arrays["boxes"][~is_inside]}
-
 
 def _in_any(boxes: np.ndarray, point: np.ndarray) -> bool:
     return bool(np.any(np.all((boxes[:, 0] <= point) & (point <= boxes[:, 1]), axis=1)))

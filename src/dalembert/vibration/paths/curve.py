@@ -208,9 +208,3 @@ class FrequencyCurve(ConvergedResult):
         lines = [f"{kind} at {', '.join(places)} Hz" for kind, places in kinds.items()]
         asked = int(np.sum(self.stable >= 0))
         return lines + [f"{np.sum(self.stable == 1)} of {asked} points stable"] * bool(asked)
-
-    @classmethod
-    def upgrade(cls, arrays: dict[str, Any], settings: dict[str, Any]) -> None:
-        if "stable" not in arrays:  # written before curves kept their stability
-            arrays["stable"] = np.full(len(arrays["fold"]), -1, dtype=np.int8)
-            settings["markers"] = tuple(("fold", int(point)) for point in np.flatnonzero(arrays["fold"]))

@@ -107,10 +107,6 @@ class PeriodicMotion(VibrationResult):
         lines += [f"{dof}: largest {self.amplitude(dof):.6g} {unit_of(dof)}" for dof in self.dofs[:8]]
         return "\n".join(lines)
 
-    @classmethod
-    def upgrade(cls, arrays: dict[str, Any], settings: dict[str, Any]) -> None:
-        settings["converged"] = bool(settings["converged"])  # 0 or 1 in files of former versions
-
 
 def _coefficients(samples: np.ndarray, highest: int) -> np.ndarray:
     """Real Fourier coefficients 0..highest of equally spaced samples of a period."""

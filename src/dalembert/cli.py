@@ -264,7 +264,6 @@ def schema() -> None:
 
 
 def _console(stream: TextIO, **options: Any) -> "Console":
-    """A console that prints no more when the program that reads it has ended, and ends nothing."""
     from rich.console import Console
 
     class Unread(Console):
@@ -276,7 +275,6 @@ def _console(stream: TextIO, **options: Any) -> "Console":
 
 
 def _ended(folder: "RunFolder", outcome: "Outcome") -> None:
-    """Say what a run found, and where its report is."""
     try:
         typer.echo("\n".join([outcome.summary, *map(str, outcome.of_run)]))
         typer.echo(f"report: {folder.report}")
@@ -302,7 +300,6 @@ def _folder(run: Path) -> "RunFolder":
 
 @contextmanager
 def _exit_codes() -> Iterator[None]:
-    """Errors as sentences and exit codes, never as a traceback."""
     from dalembert.errors import DalembertError, SolveError, StorageError
 
     try:
@@ -320,7 +317,6 @@ def _exit_codes() -> Iterator[None]:
 
 
 def _without_reader() -> None:
-    """Write what follows to nowhere: the program that reads the output, such as head, has ended."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     for stream in (sys.stdout, sys.stderr):
         try:
@@ -330,7 +326,6 @@ def _without_reader() -> None:
 
 
 def _leave(code: int) -> NoReturn:
-    """End the process although a thread of it still simulates, which would be waited for."""
     with suppress(BrokenPipeError):
         sys.stdout.flush()
     os._exit(code)
@@ -342,7 +337,6 @@ def _complain(message: str, code: int) -> None:
 
 
 def _begin(cluster: str | None) -> None:
-    """Treat a termination signal like Ctrl-C, so that the run's state says what happened; silence Dask's tracebacks."""
     import logging
     import signal
 

@@ -74,7 +74,6 @@ def read_bands(
 
 
 def _pairs(path: Path, names: Collection[str]) -> dict[str, tuple[str, str]]:
-    """Columns that are bounds of one channel, by its name."""
     stems = [name.removesuffix("_lower") for name in names if name.endswith("_lower")]
     pairs = {stem: (f"{stem}_lower", f"{stem}_upper") for stem in stems if f"{stem}_upper" in names}
     if not pairs:

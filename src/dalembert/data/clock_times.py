@@ -66,7 +66,6 @@ def _of_day(match: re.Match[str] | None) -> float:
 
 
 def _days(texts: Sequence[str]) -> np.ndarray | None:
-    """Numbers of days of dates; None if one is no date."""
     known = {text: tuple(map(int, re.split(r"[-/.]", text))) for text in dict.fromkeys(texts)}
     first_is_month = any(parts[1] > 12 for parts in known.values())
     try:

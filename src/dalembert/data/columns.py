@@ -71,7 +71,6 @@ class Columns:
         return {name: unit.strip() for name, unit in (suffixes | named | dict(units or {})).items() if unit.strip()}
 
     def _factor(self, column: str, units: Mapping[str, str], expected: str | None) -> float:
-        """How many SI units the unit of a column is."""
         unit = units.get(column, "")
         if unit in ("", "-", "1"):
             return 1.0
@@ -259,7 +258,6 @@ def _fits(column: np.ndarray, along: np.ndarray) -> bool:
 
 
 def _seconds(column: np.ndarray) -> np.ndarray:
-    """Dates and durations, also as text, as seconds since the first."""
     if column.dtype.kind in "UO" and column.ndim == 1:
         clock = clock_seconds(list(map(str, column)))
         return column if clock is None else clock

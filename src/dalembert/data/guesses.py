@@ -72,7 +72,6 @@ def unit_of(column: PreviewColumn, *, times: bool = False) -> Unit:
 
 
 def _bare(name: str) -> str:
-    """A name without brackets and the unit at its end, in lower case."""
     plain = re.sub(r"[\[(].*?[\])]", "", name).strip().lower()
     stem = re.sub(r"[_\s.\-]*$", "", plain)
     first, _, last = re.sub(r"[\s.\-]", "_", stem).rpartition("_")
@@ -80,7 +79,6 @@ def _bare(name: str) -> str:
 
 
 def _named_unit(name: str) -> str:
-    """What the unit measures that is a whole name, such as the column ``ms``; ``""`` if it is none."""
     return _measures(NAMED[name.lower()]) if len(name) > 1 and name.lower() in NAMED else ""
 
 

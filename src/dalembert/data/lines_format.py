@@ -168,7 +168,6 @@ def _refuse_wrong_marks(path: Path, lines: Sequence[Line], time: str | int | Non
 
 
 def _refuse_rows(path: Path, text: Layout) -> None:
-    """Refuse a file without lines of numbers, and lines of another length."""
     if not text.rows:
         raise DataError(f"{path}: the file holds no line of numbers; expected column names and then lines of numbers")
     width = len(text.header)
@@ -179,7 +178,6 @@ def _refuse_rows(path: Path, text: Layout) -> None:
 
 
 def _places(path: Path, text: Layout) -> Callable[[str | int], int]:
-    """The function from the name or number of a column to its place."""
     header = text.header
 
     def place(column: str | int) -> int:
@@ -201,7 +199,6 @@ def _places(path: Path, text: Layout) -> Callable[[str | int], int]:
 
 
 def _refuse_twice(path: Path, labels: Sequence[str], wanted: Sequence[int], time: int | None) -> None:
-    """Refuse a column that is named twice, such as by its name and by its number."""
     for label, place in zip(labels, wanted, strict=True):
         same = [other for other, there in zip(labels, wanted, strict=True) if there == place and other != label]
         if same:
@@ -211,13 +208,11 @@ def _refuse_twice(path: Path, labels: Sequence[str], wanted: Sequence[int], time
 
 
 def _of_trial(path: Path, text: Layout, place: int, trial: Trial) -> Layout:
-    """The lines of one trial."""
     mask = of_trial(path, _labels(path, text, place), trial)
     return replace(text, rows=[row for row, there in zip(text.rows, mask, strict=True) if there])
 
 
 def _labels(path: Path, text: Layout, place: int) -> list[str]:
-    """Label of the trial of each line."""
     for line, cells in text.rows:
         if cells[place].lower() in GAPS:
             where = f"{path}, line {line}, column {text.header[place]!r}"

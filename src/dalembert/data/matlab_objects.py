@@ -48,7 +48,6 @@ def _arrays(name: str, value: Any) -> Iterator[Array]:
 
 
 def _of_table(name: str, frame: Any) -> Iterator[Array]:
-    """Variables of a table, and the times of a timetable, which are its index."""
     units = frame.attrs.get("VariableUnits") or frame.attrs.get("varUnits") or []
     if frame.index.dtype.kind in "mM":
         times = frame.index.to_numpy()
@@ -91,7 +90,6 @@ def _of_timeseries(name: str, properties: dict[str, Any]) -> Iterator[Array]:
 
 
 def _properties(properties: dict[str, Any], key: str) -> dict[str, Any]:
-    """Properties of an object in a property, which is saved with or without an underscore."""
     values = (getattr(properties.get(name), "properties", None) for name in (f"{key}_", key))
     return next((value for value in values if isinstance(value, dict)), {})
 

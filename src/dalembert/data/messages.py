@@ -87,7 +87,6 @@ def fields(front: str, value: Any) -> Iterator[tuple[str, float | int]]:
 
 
 def _entries(value: Any) -> Mapping[str, Any] | None:
-    """Fields of a message by name; None if a value has none."""
     if isinstance(value, Mapping):
         return value
     if hasattr(value, "DESCRIPTOR"):  # Protobuf: numbers that have their default value are not sent

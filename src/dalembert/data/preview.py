@@ -181,7 +181,6 @@ class _Block:
 
 
 def _block(lines: Sequence[Line], found: Layout, width: int, gaps: frozenset[str]) -> _Block:
-    """Numbers of lines: by the fast reader where all cells are numbers, else cell by cell."""
     table = quick_numbers(lines, found)
     if table is not None:
         return _Block([(column, 0, None) for column in np.ascontiguousarray(table.T)])
@@ -211,7 +210,6 @@ def _joined(parts: Sequence[_Numbers]) -> _Numbers:
 
 
 def _real(array: np.ndarray) -> _Numbers:
-    """Values of a column that is no text: infinite ones are wrong, NaN is missing."""
     values = np.asarray(array, dtype=float)
     infinite = np.flatnonzero(np.isinf(values))
     wrong = (int(infinite[0]), str(values[infinite[0]])) if len(infinite) else None

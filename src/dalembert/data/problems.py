@@ -190,7 +190,6 @@ def _beginning(times: np.ndarray, use: Use) -> Iterator[Finding]:
 
 
 def _unreadable(column: PreviewColumn, *, times: bool = False, left_out: bool = False) -> Iterator[Finding]:
-    """Cells of a column that is used and has no numbers there."""
     if column.wrong is not None:
         line, cell = column.wrong
         yield Finding(
@@ -216,7 +215,6 @@ def _unreadable(column: PreviewColumn, *, times: bool = False, left_out: bool = 
 
 
 def _of_unit(column: PreviewColumn, wanted: str, use: Use) -> Iterator[Finding]:
-    """A unit of a column that is unknown, or measures something else than the SI unit that is wanted."""
     name = _unit_name(use, column.key)
     values = {"column": column.key, "unit": name}
     if name not in ("", "-", "1") and not readings(name):

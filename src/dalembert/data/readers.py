@@ -167,7 +167,6 @@ def _refuse_wrong_kinds(
 
 
 def _without(content: Columns, absent: Iterable[str]) -> Columns:
-    """The columns without the numbers that stand for values that were not measured."""
     numbers = [float(word) for word in absent if is_number(word)]
     if not numbers:
         return content

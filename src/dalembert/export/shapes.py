@@ -66,14 +66,12 @@ def _amplitudes(shape: Deformation) -> dict[int, np.ndarray]:
 
 
 def _parts(name: str, shape: np.ndarray) -> dict[str, np.ndarray]:
-    """A field, or two of a complex shape."""
     if np.iscomplexobj(shape):
         return {f"{name} real": np.real(shape).copy(), f"{name} imaginary": np.imag(shape).copy()}
     return {name: shape}
 
 
 def _cells(places: np.ndarray, faces: np.ndarray) -> list[tuple[str, np.ndarray]]:
-    """Faces, or the nodes themselves where there are none."""
     if len(faces):
         return [("triangle" if faces.shape[1] == 3 else "quad", faces)]
     return [("vertex", np.arange(len(places))[:, None])]

@@ -27,7 +27,6 @@ Matrices = dict[str, NamedMatrix]
 
 
 def _named(matrix: Any) -> NamedMatrix:
-    """A matrix without names of its rows."""
     return NamedMatrix(csc_array(matrix) if issparse(matrix) else matrix)
 
 

@@ -53,7 +53,6 @@ def read_mesh(path: str | Path) -> tuple[Any, np.ndarray, dict[str, np.ndarray]]
 
 
 def _read(path: Path) -> Any:
-    """Read a file by meshio."""
     import meshio
 
     if path.suffix.lower() not in BULK:
@@ -92,7 +91,6 @@ def _without_sets(points: np.ndarray, cells: Mapping[str, np.ndarray]) -> Any:
 
 
 def _of_corners(read: Any) -> Any:
-    """The same mesh with straight edges, and only the points that are corners."""
     import meshio
 
     sizes = {"triangle": 3, "quad": 4, "line": 2, **VOLUMES}

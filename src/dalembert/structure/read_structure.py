@@ -144,7 +144,6 @@ def _of_role(role: str, held: Mapping[str, NamedMatrix], name: str | None, alone
 
 
 def _require_all_read(file: str | Path, held: Mapping[str, NamedMatrix], found: Mapping[str, NamedMatrix]) -> None:
-    """Refuse matrices of the structure's size that have no role: one may be the damping."""
     sizes, read = {one.matrix.shape for one in found.values()}, list(found.values())
     left = [name for name, one in held.items() if one.matrix.shape in sizes and not any(one is own for own in read)]
     if left:

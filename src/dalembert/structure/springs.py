@@ -97,7 +97,6 @@ def with_springs(structure: Structure, springs: Sequence[Spring]) -> Structure:
 
 
 def _numbers(spring: Any, number: int) -> tuple[complex, complex, complex]:
-    """Stiffness, damping and loss factor of a spring."""
     where = f"spring {number + 1}"
     if not isinstance(spring, Sequence) or isinstance(spring, str) or len(spring) not in (4, 5):
         raise InputError(

@@ -106,7 +106,6 @@ class Structure(Displayed, Checked):
             self._require_positive("loss", "N/m")
 
     def _require_positive(self, name: str, unit: str) -> None:
-        """Refuse a negative diagonal entry."""
         diagonal = np.real(getattr(self, name).diagonal())
         row = int(diagonal.argmin())
         if diagonal[row] < -ASYMMETRY * np.abs(diagonal).max():
@@ -225,7 +224,6 @@ def checked_factor(what: str, factor: Any) -> Any:
 
 
 def _require_direction(matrix: Matrix, name: str) -> None:
-    """Refuse imaginary parts that are larger than a complex step."""
     if not np.iscomplexobj(matrix):
         return
     imaginary, largest = abs(matrix.imag).max(), abs(matrix.real).max()

@@ -91,7 +91,6 @@ def load(
 
 
 def _refuse_other_kinds(document: dict[str, Any], context: Context, path: Path) -> None:
-    """Refuse constants of experiments whose unit does not suit what they stand for, if the shared ones have none."""
     shared = _table(document, "constants")
     for entry in document.get("experiments", []):
         constants = _table(entry, "constants")
@@ -119,7 +118,6 @@ def _validated(document: dict[str, Any], context: Context) -> StudyFile:
 
 
 def _of_other_space(document: dict[str, Any], context: Context) -> list[tuple[tuple[str | int, ...], str]]:
-    """The mistake of a document that is in order in space instead of in the plane, or the other way round."""
     try:
         _validated(elsewhere(document), replace(context, used={}, _keys={}))
     except ValidationError:
@@ -129,7 +127,6 @@ def _of_other_space(document: dict[str, Any], context: Context) -> list[tuple[tu
 
 
 def _read(path: Path) -> tuple[bytes, dict[str, Any]]:
-    """Content of a TOML file, and its document."""
     try:
         if path.is_dir():
             inside = sorted(path.glob("*.toml"))
@@ -146,7 +143,6 @@ def _read(path: Path) -> tuple[bytes, dict[str, Any]]:
 
 
 def _document(path: Path, content: bytes) -> tuple[bytes, dict[str, Any]]:
-    """The same from the content of a file."""
     try:
         return content, tomllib.loads(content.decode("utf-8"))
     except UnicodeDecodeError as error:
@@ -156,7 +152,6 @@ def _document(path: Path, content: bytes) -> tuple[bytes, dict[str, Any]]:
 
 
 def _refuse_parts(document: Mapping[str, Any], path: Path) -> None:
-    """Refuse a file that asks for nothing: an empty one, or a model alone."""
     if document.keys() <= set(MODEL_FILE):
         given, more = "the file holds no tables", ""
         if document:
@@ -203,12 +198,10 @@ def _with_model_file(document: dict[str, Any], context: Context, path: Path, con
 
 
 def _wrong_file(path: Path, sentence: str) -> StudyError:
-    """The error of a model file, which belongs to the key that names it."""
     sentence = f"[model], file: {sentence}"
     return StudyError(f"{path.name}: {sentence}", [(("model", "file"), sentence)])
 
 
 def _table(document: Mapping[str, Any], name: str) -> dict[str, Any]:
-    """A table of a document, empty if it is not there or no table."""
     table = document.get(name)
     return table if isinstance(table, dict) else {}

@@ -44,7 +44,6 @@ def study_file(words: Words = None) -> type[StudyFile]:
 
 @cache
 def _task_table(name: str) -> type[StudyTable]:
-    """Schema of a task's table; to make one takes some time."""
     return TASKS[name].table()
 
 
@@ -57,7 +56,6 @@ def words_of(document: Mapping[str, Any]) -> frozenset[str]:
 
 
 def _texts(value: Any) -> Iterator[str]:
-    """All keys and texts in a document."""
     if isinstance(value, str):
         yield value
     elif isinstance(value, Mapping):

@@ -42,7 +42,6 @@ class Archive(Format):
 
 
 def _unpacked(path: Path, folder: Path) -> tuple[Format, Path]:
-    """The one file of data of an archive, unpacked, and its format."""
     from dalembert.data.known_formats import known_formats
 
     suffixes = {suffix: form for form in known_formats().values() for suffix in form.suffixes if form is not Archive}

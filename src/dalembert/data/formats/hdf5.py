@@ -31,12 +31,10 @@ class Hdf5(Format):
 
 
 def _array(label: str) -> str:
-    """The array of a column."""
     return label.partition("[")[0]
 
 
 def _held(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
-    """Arrays by their paths, and the units that their attributes name."""
     import h5py
 
     arrays: dict[str, np.ndarray] = {}
@@ -61,6 +59,5 @@ def _held(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
 
 
 def _unit(attributes: Mapping[str, Any]) -> str:
-    """The unit that attributes name."""
     unit = next((attributes[key] for key in ("units", "unit", "Unit", "Units") if key in attributes), "")
     return unit.decode(errors="replace") if isinstance(unit, bytes) else unit if isinstance(unit, str) else ""

@@ -96,7 +96,6 @@ def _by_name(path: Path, content: Any) -> dict[str, list[Any]]:
 
 
 def _nested(front: str, path: Path, content: dict[str, Any]) -> Iterator[tuple[str, list[Any]]]:
-    """Columns in an object, in objects in it, and in arrays of objects in it, by their path."""
     for name, entries in content.items():
         label = f"{front}{name}"
         if isinstance(entries, dict):
@@ -108,7 +107,6 @@ def _nested(front: str, path: Path, content: dict[str, Any]) -> Iterator[tuple[s
 
 
 def _flat(front: str, entry: dict[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Values of an object and of objects in it, by their path."""
     for name, value in entry.items():
         if isinstance(value, dict):
             yield from _flat(f"{front}{name}.", value)
@@ -117,7 +115,6 @@ def _flat(front: str, entry: dict[str, Any]) -> Iterator[tuple[str, Any]]:
 
 
 def _array(path: Path, name: str, entries: list[Any]) -> np.ndarray:
-    """Numbers, null as NaN; what holds no numbers at all stays as it is, and is refused if it is wanted."""
     if any(isinstance(entry, bool | str | list | dict) for entry in entries):
         for row, entry in enumerate(entries):
             if isinstance(entry, str | list | dict) and any(isinstance(one, int | float) for one in entries):

@@ -57,14 +57,12 @@ SETTINGS = (BEGIN, STEP, UNITS)
 
 
 def _units(number: int, units: list[str], width: int) -> list[tuple[int, list[str]]]:
-    """The line of units, if the words in the header are units."""
     names = [*units, *([""] * width)][: width - 1]
     known = [bool(readings(name)) for name in names if name]
     return [(number, ["", *names])] if known and all(known) else []
 
 
 def _time(path: Path, head: Mapping[str, list[str]], sample: int) -> str:
-    """The time of a sample by the header of its segment."""
     steps = {cell for cell in head.get(STEP, []) if cell}
     begins = {cell for cell in head.get(BEGIN, []) if cell} or {"0"}
     if len(steps) != 1 or len(begins) != 1 or not all(map(_is_numeric, steps | begins)):

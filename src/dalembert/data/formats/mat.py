@@ -60,7 +60,6 @@ def mat_columns(path: Path, time: str | None, names: Iterable[str] | None, missi
 
 
 def _unread(content: "_Content") -> str:
-    """What to do about objects that are not read."""
     return (
         "; it has objects of MATLAB, such as a table, a timeseries or a dataset of Simulink, which were not read: "
         f"{content.unread}; or save vectors in MATLAB: t = logsout{{1}}.Values.Time; x = logsout{{1}}.Values.Data; "
@@ -99,7 +98,6 @@ def _content(path: Path) -> _Content:
 
 
 def _has_subsystem(path: Path) -> bool:
-    """Whether a file of version 7.3 has objects, whose values are in a group for them."""
     import h5py
 
     with h5py.File(path, "r") as file:
@@ -112,7 +110,6 @@ def version_5(path: Path) -> dict[str, Any]:
 
 
 def _fields(front: str, held: Mapping[str, Any]) -> Iterator[tuple[str, np.ndarray]]:
-    """Arrays of numbers among variables, and in the structs and cells among them."""
     for name, value in held.items():
         if not name.startswith("__"):
             yield from _entries(f"{front}{name}", value)

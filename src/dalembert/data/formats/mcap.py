@@ -58,7 +58,6 @@ class Mcap(Format):
 
 
 def _topics(path: Path) -> dict[str, dict[str, np.ndarray]]:
-    """Columns of each topic whose messages are JSON, or are decoded by the packages of their encodings."""
     messages: dict[str, list[Mapping[str, Any]]] = {}
     others: Counter[str] = Counter()
     with reading(path, "MCAP"):

@@ -60,7 +60,6 @@ def _dataset(path: Path) -> "Dataset":
 
 
 def _parts(dataset: "Dataset", name: object, time: str | None) -> Iterator[tuple[str, np.ndarray, str]]:
-    """Columns that a variable gives, with their unit."""
     variable = dataset.variables[name]  # pyright: ignore[reportArgumentType]
     along = dataset.variables[time].dims[:1] if time in dataset.variables else ()
     unit = _unit(str(variable.attrs.get("units", "")))

@@ -36,5 +36,4 @@ def _held(path: Path) -> dict[str, np.ndarray]:
 
 
 def _array(column) -> np.ndarray:
-    """A column as an array: of numbers or dates, or of objects for everything else."""
     return np.asarray(column.to_numpy())

@@ -30,7 +30,6 @@ class Tdms(Format):
 
 
 def _held(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
-    """Arrays by name, and the units that properties of channels name."""
     with reading(path, "TDMS"):
         nptdms = library("nptdms", path, "TDMS files", "tdms", "npTDMS")
         file = nptdms.TdmsFile.read(path)

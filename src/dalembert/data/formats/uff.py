@@ -74,7 +74,6 @@ def uff_columns(path: Path, names: Iterable[str] | None, missing: str, units: It
 
 
 def _labels(functions: list[dict[str, Any]]) -> list[str]:
-    """A name for each function."""
     names = [f"{f['rsp_node']}:{_direction(f['rsp_dir'])}".rstrip(":") for f in functions]
     several = Counter(names)
     count: Counter[str] = Counter()
@@ -100,7 +99,6 @@ def _along(function: dict[str, Any]) -> int:
 
 
 def _check(path: Path, name: str, function: dict[str, Any]) -> None:
-    """Refuse a function that is cut short, or lies along something else than time or frequency."""
     count, promised = len(function["data"]), function["num_pts"]
     if count != promised:
         raise DataError(f"{path}, column {name!r}: {count} values; the file promises {promised}; is it cut short?")
@@ -113,7 +111,6 @@ def _check(path: Path, name: str, function: dict[str, Any]) -> None:
 
 
 def _check_unit(path: Path, name: str, function: dict[str, Any], systems: list[dict[str, Any]]) -> None:
-    """Refuse a function of which the file says that it is not in SI units."""
     label = function["ordinate_axis_units_lab"].strip()
     other = [system for system in systems if system["length"] != 1 or system["force"] != 1]
     if foreign(label):

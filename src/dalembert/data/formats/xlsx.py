@@ -31,7 +31,6 @@ class Xlsx(LinesFormat):
 
 
 def _lines(sheet: Any) -> tuple[list[Line], int]:
-    """The rows of a sheet as lines of cells between tabs, with their numbers, and how many cells are numbers."""
     lines, numbers = [], 0
     for number, row in enumerate(sheet.iter_rows(values_only=True), start=1):
         if any(cell is not None for cell in row):
@@ -41,7 +40,6 @@ def _lines(sheet: Any) -> tuple[list[Line], int]:
 
 
 def _text(cell: Any) -> str:
-    """A cell as a text file would have it."""
     if cell is None:
         return ""
     if isinstance(cell, timedelta):

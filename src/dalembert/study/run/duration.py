@@ -205,7 +205,6 @@ def within(limit: float, sentences: Callable[[], Iterator[str]]) -> Iterator[str
 
 
 def _clocked(effort: Effort, share: float) -> tuple[float, float]:
-    """Share of a simulation that was computed, and its seconds."""
     began = perf_counter()
     done = effort.part(share)
     return done, perf_counter() - began
@@ -229,7 +228,6 @@ def _shortest(model: Any) -> float:
 
 
 def _evaluate(model: Any, vector: np.ndarray, share: float, batch: int) -> float:
-    """Evaluate a share of a model, and return what it was."""
     part, done = model.part(share) if hasattr(model, "part") and share < 1 else (model, 1.0)
     failure = part.evaluate(np.tile(vector, (batch, 1))).failures[0]
     if failure is not None:

@@ -103,7 +103,6 @@ class RunFolder:
         return state
 
     def _logged_state(self) -> dict[str, Any]:
-        """The state that the events of a run say, where that in its own file is damaged."""
         begun: dict[str, Any] = {}
         last: dict[str, Any] = {}
         for event in read_events(self.events):
@@ -289,7 +288,6 @@ def new_folder(name: str, out: Path | None = None, *, force: bool = False) -> Ru
 
 
 def _empty(folder: RunFolder, force: bool) -> None:
-    """Remove what a run left in a folder."""
     if not folder.path.is_dir():
         raise InputError(f"{folder.path} is a file; expected a folder for the run")
     if not any(folder.path.iterdir()):

@@ -19,7 +19,6 @@ def model_findings(study: Study) -> tuple[Finding, ...]:
 
 
 def _unused(study: Study) -> tuple[Finding, ...]:
-    """A finding about parameters that nothing in the file names."""
     names = unused_parameters(study.file)
     if not names:
         return ()

@@ -45,7 +45,6 @@ class Told:
         return bool(text)
 
     def _told(self, event: Event) -> tuple[str, int, int | None]:
-        """Text of an event, and how much is done of how much."""
         match event:
             case {"event": "iteration", "best": best, "values": values, "start": start, "simulations": simulations}:
                 said = f"start {start + 1} · {simulations} simulations"
@@ -98,7 +97,6 @@ class Told:
 
 
 def _in_segments(least: float, misfit: float, gap: float) -> str:
-    """What multiple shooting minimises, in words."""
     return f"minimised {least:.4g} = misfit {misfit:.4g} + weighted gaps, largest gap {gap:.2g} · "
 
 

@@ -266,14 +266,12 @@ def report_run(folder: RunFolder) -> Path:
 
 
 def _with_findings(outcome: Outcome, folder: RunFolder) -> Outcome:
-    """An outcome with the findings about its run and its model that its result has not."""
     known = outcome.findings
     of_run = (*mixed_versions(folder.computed_with()), *model_findings(outcome.study))
     return replace(outcome, of_run=tuple(finding for finding in of_run if finding not in known))
 
 
 def _ending(error: BaseException) -> tuple[str, str]:
-    """State and message of a run that an error ended."""
     if isinstance(error, KeyboardInterrupt):
         return INTERRUPTED, "stopped by the user"
     if isinstance(error, DalembertError):

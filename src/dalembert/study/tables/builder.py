@@ -66,7 +66,6 @@ class SystemBuilder:
         return system
 
     def _system(self, options: dict[str, Any]) -> "Mechanism":
-        """A mechanism without components, in the plane or in space."""
         if self.model.space:
             from dalembert.multibody.spatial import SpatialSystem
 
@@ -195,7 +194,6 @@ def built(
 
 
 def _resolved(given: Any, values: Values, bodies: Values, system: Any, where: str) -> Any:
-    """What a key's value stands for once the parameters are known."""
     match given:
         case Expression():
             return resolved(given, values, where)
@@ -226,7 +224,6 @@ def resolved(given: float | Expression, values: Values, where: str) -> complex:
 
 
 def _place(given: Place, values: Values, bodies: Values, system: Any, where: str) -> Any:
-    """Point of a body or of the ground."""
     if given.position is not None:
         numbers = tuple(resolved(one, values, where) for one in given.position)
         with placed(where):

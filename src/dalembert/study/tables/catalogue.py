@@ -47,7 +47,6 @@ def kind_names() -> Iterator[str]:
 
 
 def _of_others(base: str, space: bool) -> Iterator[type]:
-    """Public dataclasses of other packages that derive from a base."""
     load_plugins()
     home = sys.modules.get(f"dalembert.multibody.{(SPATIAL_HOMES if space else HOMES)[base]}")
     kinds = derived_dataclasses(getattr(home, base)) if home is not None else ()  # without it nothing derives from it

@@ -193,7 +193,6 @@ class ChannelFile(FileTable):
             return data if self.lowpass is None or self._filters_later(data) else data.filtered(self.lowpass)
 
     def _filters_later(self, data: "Measurements") -> bool:
-        """Whether the low-pass filter follows other steps."""
         return False
 
 
@@ -291,7 +290,6 @@ class DataTable(ChannelFile):
             return data.filtered(self.lowpass) if later and self.lowpass is not None else data
 
     def _filters_later(self, data: "Measurements") -> bool:
-        """Whether samples at uneven times are resampled before they are filtered."""
         from dalembert.data.filtering import is_even
 
         return self.resample is not None and not self.more and not is_even(data)

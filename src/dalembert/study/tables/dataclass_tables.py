@@ -177,7 +177,6 @@ def _kind(value: Any, default: str) -> str:
 def _key(
     name: str, hint: Any, numeric: Any, signal: Any, part: Callable[[str], Any], place: Callable[[bool], Any]
 ) -> Any:
-    """Type of the key for an argument."""
     leaves = _leaves(hint)
     if name == "name":
         return Name if hint is str else hint
@@ -251,13 +250,11 @@ def _is_mapping(kind: Any) -> bool:
 
 
 def _is_list(hint: Any) -> bool:
-    """Whether a list of TOML gives what a hint takes."""
     origin = typing.get_origin(hint)
     return isinstance(origin, type) and issubclass(origin, Iterable) and not _is_mapping(origin)
 
 
 def _settled(value: Any) -> Any:
-    """Lists as the tuples that dataclasses hold, and tables as the dataclasses that they are for."""
     if isinstance(value, KindTable):
         return value.settings()
     return tuple(map(_settled, value)) if isinstance(value, list) else value

@@ -20,7 +20,6 @@ from dalembert.units import si_unit
 
 
 def _of_their_kinds(constants: dict[str, float], info: ValidationInfo) -> dict[str, float]:
-    """Constants, refused if one is in a unit of another kind than the constant that it replaces."""
     known = info.context.names if isinstance(info.context, Context) else {}
     units = {name: si_unit(kind) for name, kind in known.items() if kind is not None}
     if wrong := list(wrong_units(constants, units, "")):
@@ -64,7 +63,6 @@ class ExperimentTable(DataTable):
         return {name: self._local(name, sensor) for name, sensor in super().sensors(shared).items()}
 
     def _local(self, name: str, sensor: Sensor) -> Sensor:
-        """A sensor with bounds as they are in this experiment."""
         given = self.own if isinstance(self.own, dict) else {}
         for what in QUANTITIES:
             bounds, own = getattr(sensor, what), given.get(f"{name} {what}")
@@ -123,13 +121,11 @@ def wrong_experiments(file: Any) -> list[str]:
 
 
 def _sensor_parameters(sensors: Mapping[str, SensorTable], table: DataTable) -> list[str]:
-    """Names of the parameters of the sensors of a table's channels."""
     seen = [name for name in sensors if reads(name, table.channels)]
     return [f"{name} {what}" for name in seen for what in QUANTITIES if getattr(sensors[name], what) is not None]
 
 
 def _wrong_own(table: ExperimentTable, file: Any, where: str) -> list[str]:
-    """Sentences about bounds and first guesses of a single experiment that do not fit to each other."""
     try:
         table.parameters(file.parameters)
         table.sensors(file.sensors)

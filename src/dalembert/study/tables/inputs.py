@@ -130,7 +130,6 @@ class InputTable(FileTable):
         return MeasuredInput(name, self, data.coordinate.values[there], values[there], str(table.file), unit)
 
     def _refuse_gaps(self, name: str, times: np.ndarray, source: str) -> None:
-        """Refuse an input of which time stamps are missing: what drives the model there is not known."""
         found = gaps(times)
         if self.missing == "refuse" and len(found):
             begin, end = times[found[0]], times[found[0] + 1]
@@ -290,7 +289,6 @@ def _used(model: Any) -> Iterator[tuple[str, str, str]]:
 
 
 def _varies(given: Any, file: Any) -> bool:
-    """Whether a number depends on a parameter, through constants too."""
     if not isinstance(given, Expression):
         return False
     return any(name in file.parameters or _varies(file.constants.get(name), file) for name in given.names)

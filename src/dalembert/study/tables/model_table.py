@@ -142,7 +142,6 @@ class ModelTable(StudyTable):
 
 
 def _wrong_names(components: list[tuple[str, Any]], robot: RobotTable | None) -> list[str]:
-    """Sentences for names that repeat, and for places at bodies that are not there, or not yet."""
     of_robot: tuple[list[str], list[str]] = robot.names if robot else ([], [])
     bodies, joints = (
         [*names, *(component.name for table, component in components if table == kind)]
@@ -168,7 +167,6 @@ def _wrong_names(components: list[tuple[str, Any]], robot: RobotTable | None) ->
 
 
 def _only_mechanism(schema: dict[str, Any]) -> None:
-    """Leave keys of other models out of a schema."""
     for key in ("function", "forward", "arguments", "structure", *PARTS):
         schema["properties"].pop(key, None)
 
@@ -208,7 +206,6 @@ def spatial_model_table(words: Words = None) -> type[ModelTable]:
 
 
 def _components(words: Words, *, space: bool = False, **options: Any) -> dict[str, Any]:
-    """Keys for the components of a mechanism; ``options`` of their tables."""
     lists: dict[str, Any] = {}
     if words is None or not words.isdisjoint(_TABLES):
         signal = signal_or_input(one_of([table_of(target) for target in kinds_of("signal")]))

@@ -52,7 +52,6 @@ def unknown_names(study: Study) -> tuple[str, ...]:
 
 
 def _of_readings(study: Study, table: DataTable) -> list[Parameter]:
-    """Parameters of the sensors of some data, and of the time at which the motion begins."""
     found = [
         reading_parameter(f"{channel} {what}", bounds, "s" if what in TIMES and study.has_system else "", usual)
         for channel, sensor in table.sensors(study.file.sensors).items()
@@ -122,7 +121,6 @@ def _check_units(table: DataTable, model: ForwardModel, where: str, sensors: Map
 
 
 def _model(study: Study, data: "Measurements", table: DataTable, later: Sequence[str] = ()) -> ForwardModel:
-    """The model at the samples of data, seen by the sensors that there are; with channels that are states later."""
     sensors = table.sensors(study.file.sensors)
     stamps, start = data.coordinate.values, table.unknown_start
     if study.has_system and start is None:

@@ -67,7 +67,6 @@ class StructureBuilder:
         return self.model.structure or StructureTable.model_validate({})
 
     def _parts(self, name: str, values: Mapping[str, Any]) -> list[Any]:
-        """Masses, springs, forces or contacts, their numbers known."""
         found = []
         for number, table in enumerate(getattr(self.model, name), start=1):
             where = f"[[model.{name}]] {repr(table.name) if hasattr(table, 'name') else f'number {number}'}"
@@ -127,7 +126,6 @@ class StructureBuilder:
         return _told("[model.structure], reduction", craig_bampton, self._matrices, masters, reduction.modes)
 
     def _moved(self) -> list[str]:
-        """Degrees of freedom that forces, springs and contacts act on."""
         found = [force.dof for force in self.model.force]
         for spring in self.model.spring:
             ends = spring.dofs if hasattr(spring, "dofs") else (spring.first, spring.second)
@@ -140,7 +138,6 @@ class StructureBuilder:
 
 
 def _told(where: str, function: Any, *arguments: Any) -> Any:
-    """Result of a function, its error with its place in the study file."""
     try:
         return function(*arguments)
     except DalembertError as error:

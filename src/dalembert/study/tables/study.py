@@ -42,7 +42,6 @@ def _plain(value: Any) -> Any:
 
 
 def _watched(file: StudyFile) -> Iterator[str]:
-    """Degrees of freedom, nodes or sets whose motion the task or the data name."""
     for table in file.tasks.values():
         yield from getattr(table, "observe", None) or ()
         yield from (channel.partition(" ")[0] for channel in getattr(table, "channels", None) or ())
@@ -50,14 +49,12 @@ def _watched(file: StudyFile) -> Iterator[str]:
 
 
 def _require_given(channels: Sequence[str], model: ForwardModel) -> None:
-    """Refuse channels that a model does not give."""
     names = [channel.name for channel in model.channels]
     for name in channels:
         require_known("channel", name, names)
 
 
 def _refuse_outside(files: str, times: np.ndarray) -> None:
-    """Refuse times of data before the motion begins, or at its beginning alone."""
     if files and times[0] < 0:
         raise DataError(
             f"{files}: the times reach from {times[0]:g} to {times[-1]:g} s, and the motion begins at 0 s; shift the "
@@ -224,14 +221,12 @@ class Study(Displayed):
 
     @property
     def _named_in(self) -> str:
-        """Where the file names the channels of its model."""
         given = [f"[{self.task}], channels"] if getattr(self.table, "channels", None) else []
         given += [f"[{name}], columns" for name in ("data", "bands") if getattr(self.file, name) is not None]
         return " or ".join(given) or "[[experiments]], columns"
 
     @property
     def _measured_in(self) -> str:
-        """Files that say where the samples of the model lie."""
         tables = [self.file.data, self.file.bands, *self.file.experiments]
         return " or ".join(dict.fromkeys(str(table.file) for table in tables if table is not None))
 
@@ -277,7 +272,6 @@ class Study(Displayed):
         return self._with(constants={**self.file.constants, **constants}, model=model, parameters=parameters)
 
     def _with(self, **tables: Any) -> "Study":
-        """The same study with other tables."""
         return replace(self, file=self.file.model_copy(update=tables))
 
     def data(self) -> "Measurements":

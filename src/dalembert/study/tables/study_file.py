@@ -84,7 +84,6 @@ class StudyFile(StudyTable):
 
 
 def _wrong_correlations(file: StudyFile) -> list[str]:
-    """Sentences about correlations of priors that cannot be."""
     wrong = [sentence for table in file.prior_correlations for sentence in table.wrong(file.parameters)]
     if wrong:
         return wrong
@@ -96,7 +95,6 @@ def _wrong_correlations(file: StudyFile) -> list[str]:
 
 
 def _wrong_settings(file: StudyFile) -> list[str]:
-    """Sentences about tables of settings that are not for this model."""
     wrong = []
     if file.vibrates and file.solver is not None:
         wrong.append("[solver] integrates mechanisms; a structure over frequency takes [harmonic_balance], or neither")

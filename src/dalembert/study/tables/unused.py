@@ -34,7 +34,6 @@ def few(names: Sequence[str]) -> str:
 
 
 def _names(value: Any) -> Iterator[str]:
-    """Names in the expressions of a table and of what is in it."""
     if isinstance(value, Expression):
         yield from value.names
     elif isinstance(value, StudyTable):

@@ -46,7 +46,6 @@ def reported(told: Mapping[str, Any]) -> list[Any]:
 
 
 def _of(experiment: str) -> str:
-    """Name of the file of an experiment's prediction."""
     return f"{PREDICTION}-{experiment}"
 
 

@@ -79,7 +79,6 @@ class CampbellTask(ResultTask):
 
 
 def _values(study: Study) -> tuple[str, np.ndarray]:
-    """The parameter, and its values."""
     ((name, along),) = study.table.over.items()
     return name, values_along(study.parameters, name, along)
 

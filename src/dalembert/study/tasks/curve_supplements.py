@@ -67,7 +67,6 @@ def beside_family(study: Study, family: Any) -> dict[str, Any]:
 
 
 def _deformed(study: Study, curve: Any, system: Any) -> dict[str, Any]:
-    """The motion at the point with the largest amplitude, where it can be drawn."""
     from dalembert.vibration import deformation
 
     table = study.table

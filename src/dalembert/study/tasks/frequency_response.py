@@ -96,7 +96,6 @@ class Response(Outcome):
 
 
 def _best(table: FrequencyResponseTable, result: Any) -> dict[str, Any]:
-    """The peak, or the smallest of the peaks of a family."""
     dof = table.dof or result.dofs[0]
     if table.sweep is None:
         if not result.converged.any():
@@ -122,7 +121,6 @@ def drawn_dofs(table: FrequencyResponseTable, result: Any) -> tuple[str, ...]:
 
 
 def _response(study: Study, result: Any, told: Mapping[str, Any]) -> Response:
-    """The outcome, with the numbers of its peak."""
     dofs = drawn_dofs(study.table, result)
     if study.table.dof is not None and study.table.sweep is None:  # else its peak might be that of another one
         dofs = tuple(name for name in dofs if study.table.dof in (name, name.rpartition(".")[0]))
@@ -278,7 +276,6 @@ def _any_curve(study: Study) -> None:
 
 
 def _points_told(study: Study, emit: Emit) -> Callable[["FollowedPoint"], None]:
-    """Writes each point of a curve as it is found, with the amplitude that the study tells."""
     from dalembert.vibration.paths.amplitudes import Amplitude
 
     kind, dof = study.table.amplitude, study.table.dof
@@ -296,7 +293,6 @@ def _points_told(study: Study, emit: Emit) -> Callable[["FollowedPoint"], None]:
 
 
 def _observed(study: Study) -> list[str] | None:
-    """Observed names, with the nodes of sets in the place of these."""
     names = study.table.observe
     expanded = getattr(study.builder, "expanded", None)
     return names if names is None or expanded is None else expanded(names)

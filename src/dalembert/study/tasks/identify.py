@@ -125,12 +125,10 @@ def _cost(table: Any, parameters: int) -> tuple[str, int | None, int | None]:
 
 
 def _simulations(swarm: Swarm, starts: int | None) -> int:
-    """Return the number of simulations of a swarm, which does not stop before its last iteration."""
     return swarm.particles * swarm.iterations * (starts or 1)
 
 
 def _segments(shooting: ShootingTable) -> str:
-    """How many segments there are to begin with, in words."""
     if shooting.segments is None and shooting.states is None:
         return "segments within which errors grow at most tenfold, and"
     return f"{shooting.settings().count} segments"
@@ -153,7 +151,6 @@ class Identification(Outcome):
         return [self._motion(), *assessments.reported(self.told)]
 
     def _motion(self) -> Any:
-        """The motion at the identified values; of several experiments the first ones', by name."""
         study, fit = self.study, self.result
         if not study.has_system:
             return None
@@ -260,7 +257,6 @@ class Identify(Task):
 
 
 def _identified(study: Study, fit: "Fit", told: Mapping[str, Any]) -> Identification:
-    """The outcome, with the values and their standard deviations."""
     known = [one if np.isfinite(one) else None for one in fit.deviations.tolist()]
     deviations = dict(zip(fit.parameters.names, known, strict=True))
     values = fit.parameters.mapping(fit.values)
@@ -268,7 +264,6 @@ def _identified(study: Study, fit: "Fit", told: Mapping[str, Any]) -> Identifica
 
 
 def _wrong_population(file: Any) -> list[str]:
-    """Sentences about specimens where there are too few, or where they have no local parameter in common."""
     asked, where = file.identify.population, "[identify], population"
     if not asked:
         return []
@@ -291,7 +286,6 @@ def _wrong_population(file: Any) -> list[str]:
 
 
 def _wrong_shooting(file: Any) -> list[str]:
-    """Sentences about multiple shooting where it cannot be."""
     table = file.identify
     if table.shooting is None:
         return []
@@ -306,7 +300,6 @@ def _wrong_shooting(file: Any) -> list[str]:
 
 
 def _measured(model: Any, data: Any) -> str:
-    """What is fitted, in words."""
     if data is not None:
         return f"{len(data.coordinate.values)} samples of {', '.join(data.channels)}"
     each = [f"{item.name}: {_measured(item.model, item.data)}" for item in model]

@@ -100,7 +100,6 @@ def _method(study: Study) -> Any:
 
 
 def _cost(method: Any, parameters: int) -> tuple[str, int | None]:
-    """A method's name, and about how many simulations it takes; None where its surrogate decides."""
     from dalembert.inverse import Nested
 
     name = type(method).__name__

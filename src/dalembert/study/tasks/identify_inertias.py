@@ -188,7 +188,6 @@ def _record(study: Study, table: DataTable, where: str) -> tuple[np.ndarray, np.
 
 
 def _records(study: Study) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """The fitted motion, and the unseen one if there is one."""
     data, unseen = study.file.data, study.table.unseen
     assert data is not None  # or the study was refused
     found = [_record(study, data, "[data]")]

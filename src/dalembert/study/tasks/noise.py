@@ -86,7 +86,6 @@ class NoiseTable(ChannelNoiseTable):
 
 
 def _table(given: object) -> object:
-    """The table that the name of a noise model stands for."""
     return {"model": given} if isinstance(given, str) else given
 
 
@@ -146,7 +145,6 @@ def likelihood_of(table: Any, model: Any, data: Any, weights: Any, place: str, *
 
 
 def _closed(noise: "NoiseModel") -> "NoiseModel":
-    """The noise, of order 0 where its order is chosen later."""
     return replace(noise, order=0) if getattr(noise, "order", 0) is None else noise
 
 

@@ -112,7 +112,6 @@ class Propagate(ResultTask):
 
 
 def _box(study: Study) -> Box:
-    """The box in the order of the parameters."""
     given = study.table.intervals
     return Box.of(
         {

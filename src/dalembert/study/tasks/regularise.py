@@ -94,7 +94,6 @@ class Regularise(ResultTask):
 
 
 def _smooth(file: Any) -> list[str] | None:
-    """Names of the smooth parameters; None for all."""
     given = file.regularise.smooth
     if not isinstance(given, str):
         return given

@@ -153,13 +153,11 @@ def samplers() -> dict[str, type]:
 
 
 def _starts(model: Any) -> dict[str, float]:
-    """First guesses by name."""
     parameters = assessments.whole(model).parameters
     return parameters.mapping(parameters.start)
 
 
 def _cost(table: Any, parameters: int) -> tuple[int, int]:
-    """Number of simulations at least and at most, about."""
     kind = "nuts" if table.sampler is None else table.sampler.kind
     if table.surrogate or kind == "delayed-acceptance":
         return table.chains * table.draws // 2, table.chains * (table.draws + 20) + 2000
@@ -198,7 +196,6 @@ def _quantity(value: Any, unit: str | None) -> float:
 
 
 def _outcome(study: Study, posterior: Any, told: dict[str, Any]) -> Sampled:
-    """The outcome, with means and standard deviations."""
     deviations = dict(zip(posterior.parameters.names, posterior.deviations.tolist(), strict=True))
     best = {"values": posterior.estimates, "deviations": deviations}
     return Sampled(study, posterior, best, told=told)

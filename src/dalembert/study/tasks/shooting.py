@@ -52,7 +52,6 @@ class ShootingTable(StudyTable):
 
 
 def _table(given: object) -> object:
-    """The table that ``shooting = true`` stands for."""
     return {} if given is True else None if given is False else given
 
 

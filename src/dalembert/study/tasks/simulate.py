@@ -65,7 +65,6 @@ class Motion(Outcome):
             write_samples(path.with_name(OUTPUTS), outputs, self.result.times, self.result.channels(outputs))
 
     def _outputs(self) -> list[str]:
-        """Names of the channels, then of the coordinates of the points, each once."""
         table, axes = self.study.table, self.result.system.AXES
         return list(dict.fromkeys((*table.channels, *(f"{point}.{axis}" for point in table.points for axis in axes))))
 

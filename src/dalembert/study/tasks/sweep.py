@@ -168,7 +168,6 @@ def _instant(model: ForwardModel, at: float) -> str:
 
 
 def _sample(model: ForwardModel, at: float) -> int:
-    """Number of the model's sample at an instant."""
     values = model.coordinate.values
     nearest = int(np.argmin(np.abs(values - at)))
     if abs(values[nearest] - at) > 1e-9 * max(1.0, abs(at)):
@@ -199,7 +198,6 @@ def _values(study: Study) -> dict[str, np.ndarray]:
 
 
 def _empty(study: Study, model: ForwardModel, name: str, values: np.ndarray) -> Curve:
-    """A curve with NaN where responses will stand."""
     channels = [model.channels[column] for column in _columns(model, study.table.channels)]
     shape = (len(values), len(channels))
     unit = next(item.unit for item in study.parameters if item.name == name)
@@ -235,7 +233,6 @@ def _fill(study: Study, model: ForwardModel, curve: Curve) -> Iterator[tuple[int
 
 
 def _dataset(curve: Curve) -> Any:
-    """A curve as xarray's Dataset, with units as attributes."""
     import xarray as xr
 
     given = [("{}", curve.responses, "{}", "response")]
@@ -250,7 +247,6 @@ def _dataset(curve: Curve) -> Any:
 
 
 def _curve(name: str, dataset: Any) -> Curve:
-    """A curve from a Dataset."""
     channels = tuple(key for key, column in dataset.data_vars.items() if column.attrs["role"] == "response")
     responses = np.stack([dataset[channel].values for channel in channels], axis=1)
     slopes = [dataset[f"d({channel})"].values for channel in channels if f"d({channel})" in dataset]

@@ -116,7 +116,6 @@ class Expression:
 
 
 def _names(node: ast.expr) -> set[str]:
-    """Names used, and a check that nothing else than arithmetic stands there."""
     match node:
         case ast.Constant(value=bool()):
             pass

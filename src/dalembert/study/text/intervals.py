@@ -42,7 +42,6 @@ class IntervalTable(StudyTable):
 
 
 def _as_table(value: Any) -> Any:
-    """A list of two ends, or one number, as the table that says the same."""
     match value:
         case [lower, upper]:
             return {"lower": lower, "upper": upper}

@@ -74,12 +74,10 @@ def _likeliest(document: Any, entries: Iterable[Any]) -> list[tuple[Any, list[st
 
 
 def _of_type(entry: Any) -> bool:
-    """Whether an error is only that a value has another type."""
     return entry["type"].endswith("_type")
 
 
 def _placed(document: Any, path: list[str | int], text: str) -> str:
-    """Sentence with its place in front, unless it begins with a table by itself."""
     return text if not path or _TABLE.match(text) else f"{place(document, path)}: {text}"
 
 
@@ -162,7 +160,6 @@ def _texts(entry: Any, space: bool) -> list[str]:
 
 
 def _unknown_kind(kind: str, known: list[str], space: bool) -> str:
-    """Sentence for a kind that is none of these; a component of the other mechanisms, in the plane or in space."""
     others = KINDS if space else SPATIAL_KINDS
     here = SPATIAL_KINDS if space else KINDS
     for base in ("Body", "Joint", "Load"):
@@ -177,7 +174,6 @@ def _unknown_kind(kind: str, known: list[str], space: bool) -> str:
 
 
 def _quoted(listed: str) -> list[str]:
-    """Names in a text such as ``"'a', 'b'"``."""
     return [str(name) for name in ast.literal_eval(f"[{listed}]")]
 
 

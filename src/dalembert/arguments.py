@@ -100,7 +100,11 @@ def _check(made: Any, passed_on: tuple[Any, ...]) -> None:
                 break
         else:
             raise InputError(refusal(_owner(made, name), name, value, kinds, unit))
-        if within is not None and value is not None and not isinstance(value, str) and value not in within:
+        if within is None or value is None or isinstance(value, str):
+            continue
+        if isinstance(value, float) and within.above < value < within.below and within.least <= value <= within.most:
+            continue
+        if value not in within:
             first = next(one for one in np.ravel(np.real(value)) if one not in within)
             number = f"{first:g} {unit}".strip()
             words = str(within).replace("number", "whole number") if int in kinds else str(within)

@@ -148,8 +148,8 @@ def check(
     from dalembert.study.channels import channel_lines
     from dalembert.study.run.duration import within
     from dalembert.study.run.model_findings import model_lines
-    from dalembert.study.run.runner import looked
-    from dalembert.study.run.spoken import spoken
+    from dalembert.study.run.progress import duration_text
+    from dalembert.study.run.validation import forecast
     from dalembert.study.sources import source_lines
     from dalembert.study.text.table import placed
 
@@ -159,10 +159,10 @@ def check(
         for line in (*model_lines(read), *source_lines(read), *channel_lines(read)):
             typer.echo(line)
         try:
-            for sentence in within(limit, lambda: looked(read, limit)):
+            for sentence in within(limit, lambda: forecast(read, limit)):
                 typer.echo(sentence)
         except TimeoutError:
-            typer.echo(f"The check ends at its time limit, {spoken(limit)}, during a simulation. Raise --limit.")
+            typer.echo(f"The check ends at its time limit, {duration_text(limit)}, during a simulation. Raise --limit.")
             _leave(DONE)
         except KeyboardInterrupt:
             typer.echo("stopped", err=True)

@@ -32,9 +32,9 @@ def derived(base: type) -> Iterator[type]:
             yield kind
 
 
-def derived_dataclasses(base: type) -> Iterator[type]:
-    """Public concrete dataclasses that derive from a class."""
-    return filter(dataclasses.is_dataclass, derived(base))
+def derived_dataclasses(*bases: type) -> Iterator[type]:
+    """Public concrete dataclasses that derive from some classes."""
+    return filter(dataclasses.is_dataclass, (kind for base in bases for kind in derived(base)))
 
 
 def distinct(kinds: Iterable[type], key: Callable[[type], str] = attrgetter("__name__")) -> dict[str, type]:

@@ -7,7 +7,7 @@ import pytest
 
 from dalembert.errors import DalembertError
 from dalembert.study import load, plan, run_study
-from dalembert.study.run.runner import looked
+from dalembert.study.run.validation import forecast
 
 IDENTIFY = """
 [parameters.k]
@@ -150,7 +150,7 @@ def test_it_is_told_with_its_place(case: str, tmp_path: Path, monkeypatch: pytes
     assert sentence in str(error.value)
     if case.startswith("call "):  # it is called when the run simulates
         assert sentence in (Path("runs/study/state.json").read_text()).replace('\\"', '"')
-        assert sentence in " ".join(looked(load("study.toml")))
+        assert sentence in " ".join(forecast(load("study.toml")))
         return
     assert not Path("runs").exists()
     with pytest.raises(DalembertError) as error:

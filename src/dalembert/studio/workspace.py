@@ -14,8 +14,8 @@ from dalembert.studio.editor.cursor import tolerant
 from dalembert.studio.editor.model_kind import model_file
 from dalembert.studio.studies.documents import table_names
 from dalembert.study import schema_file
-from dalembert.study.basics import LARGEST, SHARED, task_names
 from dalembert.study.run.folder import RunFolder, find_runs
+from dalembert.study.schema_file import LARGEST, SHARED, task_names
 
 NAME = re.compile(r"""(?![ .-])[^/\\:*?"<>|]{1,100}(?<![ .])""")
 """What a study, a file or a run may be called on every system. A dot first would hide it."""

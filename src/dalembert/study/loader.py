@@ -9,16 +9,16 @@ from typing import Any
 from pydantic import ValidationError
 
 from dalembert.errors import InputError, no_text, unknown
-from dalembert.study.basics import LARGEST, MODEL_FILE
 from dalembert.study.schema import study_file, words_of
+from dalembert.study.schema_file import LARGEST, MODEL_FILE
 from dalembert.study.tables.parameters import series_in
 from dalembert.study.tables.study import Study
 from dalembert.study.tables.study_file import StudyFile
 from dalembert.study.tasks import TASKS
-from dalembert.study.text.context import Context
+from dalembert.study.text.expressions import kinds_of
 from dalembert.study.text.messages import mistakes
-from dalembert.study.text.quantity_kinds import kinds_of
 from dalembert.study.text.spaces import elsewhere, is_in_space
+from dalembert.study.text.table import Context
 from dalembert.units import is_quantity
 
 

@@ -52,7 +52,7 @@ def words_of(document: Mapping[str, Any]) -> frozenset[str]:
     model = document.get("model")
     tables = {*document, *(model if isinstance(model, Mapping) else ())} - {IN_SPACE}
     tables |= {IN_SPACE} if is_in_space(model) else set()
-    return frozenset(tables | {*kind_names()}.intersection(_texts(document)))
+    return frozenset(tables | kind_names().intersection(_texts(document)))
 
 
 def _texts(value: Any) -> Iterator[str]:
@@ -88,8 +88,8 @@ class _Schema(GenerateJsonSchema):
 
 
 def schema_text() -> str:
-    """JSON schema of a study file, as text."""
-    return json.dumps(json_schema(), indent=1, ensure_ascii=False) + "\n"
+    """JSON schema of a study file, as one line of text."""
+    return json.dumps(json_schema(), separators=(",", ":"), ensure_ascii=False) + "\n"
 
 
 def json_schema() -> dict[str, Any]:

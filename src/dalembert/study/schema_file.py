@@ -1,4 +1,4 @@
-"""The JSON schema of study files as a file beside them, by which editors complete and check keys.
+"""The JSON schema of study files as a file, which needs no import of tasks and kinds.
 
 The package contains the schema of its own kinds, `study.schema.json`. `make schema` writes it in some seconds, as this
 imports all kinds.
@@ -14,6 +14,15 @@ from typing import Any
 from dalembert.files import write_text
 from dalembert.kinds import PLUGINS, TASKS
 
+LARGEST = 10_000_000
+"""Bytes of a study file; one of this size is some other file."""
+SHARED = (
+    "study", "constants", "parameters", "model", "solver", "harmonic_balance", "data", "bands", "experiments", "inputs",
+    "sensors",
+)  # fmt: skip
+"""Tables that are no tasks."""
+MODEL_FILE = ("model", "constants")
+"""Tables of a file that ``[model] file = "..."`` names."""
 NAME = "study.schema.json"
 LINE = f"#:schema ./{NAME}"
 """First line of a study with its schema beside it; the TOML extensions of VS Code and other editors read it."""
@@ -40,3 +49,13 @@ def write(folder: Path) -> Path:
     path = folder / NAME
     write_text(path, text())
     return path
+
+
+@cache
+def task_names() -> tuple[str, ...]:
+    """Return the names of the tasks that there are, as the schema has them.
+
+    >>> "identify" in task_names(), "model" in task_names()
+    (True, False)
+    """
+    return tuple(name for name in schema()["properties"] if name not in SHARED)

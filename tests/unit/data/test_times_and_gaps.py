@@ -11,7 +11,7 @@ from dalembert.data.preview import preview
 from dalembert.errors import DataError
 from dalembert.studio.data.choices import of_table, table_of
 from dalembert.study.tables.data_table import DataTable
-from dalembert.study.text.context import Context
+from dalembert.study.text.table import Context
 
 CLOCKS = {
     "2024-03-01 23:59:59.5": "2024-03-02 00:00:00.25",

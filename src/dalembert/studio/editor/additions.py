@@ -10,7 +10,7 @@ from dalembert.studio.editor.editing import with_table, with_value, without
 from dalembert.studio.editor.fields import KIND, fields_at, kinds_at, tables_of
 from dalembert.studio.editor.lines import Place
 from dalembert.studio.editor.model_kind import model_elsewhere, model_kind
-from dalembert.study.basics import task_names
+from dalembert.study.schema_file import task_names
 
 _MECHANISM = {"body": "Body", "joint": "Joint", "load": "Force"}
 _STRUCTURE = {"mass": "Mass", "spring": "Spring", "force": "Force", "contact": "Contact"}

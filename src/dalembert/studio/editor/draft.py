@@ -17,7 +17,7 @@ from dalembert.studio.editor.lines import Place
 from dalembert.studio.editor.outline import Outline
 from dalembert.studio.editor.reading import Mistake, Reading, mistake, read
 from dalembert.studio.editor.watched_files import WatchedFiles
-from dalembert.study.basics import LARGEST
+from dalembert.study.schema_file import LARGEST
 
 Topic = Literal["text", "study", "mistakes", "values", "selection", "disk", "files"]
 Disk = Literal["same", "changed", "gone"]

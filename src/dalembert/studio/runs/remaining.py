@@ -9,7 +9,7 @@ from pathlib import Path
 
 from dalembert.study.run.events import Event
 from dalembert.study.run.folder import RunFolder
-from dalembert.study.run.spoken import spoken
+from dalembert.study.run.progress import duration_text
 
 WINDOW = 200
 """Events that the speed is taken from."""
@@ -65,7 +65,7 @@ class Remaining:
         if not 0 < max(speeds) <= STEADY * min(speeds) < float("inf"):
             return ""
         (begin, first), (end, last) = self._seen[0], self._seen[-1]
-        return f"about {spoken((goal - last) * (end - begin) / (last - first))} left in this stage"
+        return f"about {duration_text((goal - last) * (end - begin) / (last - first))} left in this stage"
 
     @property
     def _searches(self) -> bool:

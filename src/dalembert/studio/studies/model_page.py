@@ -18,7 +18,7 @@ from dalembert.studio.studies.checking import Checking
 from dalembert.studio.studies.text_head import text_head
 from dalembert.studio.worker import Worker
 from dalembert.studio.workspace import Workspace
-from dalembert.study.basics import MODEL_FILE
+from dalembert.study.schema_file import MODEL_FILE
 
 
 def model_page(workspace: Workspace, name: str) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from dalembert.studio.runs.last_runs import LastRun, last_runs
 from dalembert.studio.studies.documents import document_of, name_in
 from dalembert.studio.workspace import Workspace
-from dalembert.study.basics import task_names
+from dalembert.study.schema_file import task_names
 
 EXPECTED = "expected.toml"
 """File with the numbers that must come out of the studies of a folder: such studies are examples."""

@@ -14,7 +14,7 @@ from dalembert.errors import SolveError
 from dalembert.findings import Finding
 from dalembert.forward import ForwardModel, Sensors
 from dalembert.forward.wrapped import Wrapped
-from dalembert.study.run.spoken import DAY, spoken, spoken_size
+from dalembert.study.run.progress import DAY, duration_text, size_text
 
 ENOUGH = 0.3
 """Seconds of simulation that are extrapolated, at least, where the whole takes longer."""
@@ -136,12 +136,12 @@ def duration(effort: Effort, timing: Timing) -> str:
         part = f", extrapolated from its first {100 * timing.share:.2g} %"
     source = f"{effort.source}{part}"
     if effort.least is None or effort.most is None:
-        return f"A simulation takes about {spoken(each)} ({source}); how many there will be shows on the way."
+        return f"A simulation takes about {duration_text(each)} ({source}); how many there will be shows on the way."
     if effort.most == 1:
-        return f"This takes about {spoken(each)} ({source})."
-    times = [spoken(count * each) for count in dict.fromkeys((effort.least, effort.most))]
+        return f"This takes about {duration_text(each)} ({source})."
+    times = [duration_text(count * each) for count in dict.fromkeys((effort.least, effort.most))]
     counts = " to ".join(str(count) for count in dict.fromkeys((effort.least, effort.most)))
-    return f"This takes about {' to '.join(times)}: {counts} simulations of {spoken(each)} ({source})."
+    return f"This takes about {' to '.join(times)}: {counts} simulations of {duration_text(each)} ({source})."
 
 
 def storage(effort: Effort) -> str:
@@ -150,12 +150,10 @@ def storage(effort: Effort) -> str:
     if number is None:
         if effort.response < SMALL / 1000:
             return ""
-        return (
-            f"Each simulation adds {spoken_size(effort.response)} to the checkpoint, which the run removes at its end."
-        )
+        return f"Each simulation adds {size_text(effort.response)} to the checkpoint, which the run removes at its end."
     if number * effort.response < SMALL:
         return ""
-    return f"The checkpoint takes up to {spoken_size(number * effort.response)} until the run ends."
+    return f"The checkpoint takes up to {size_text(number * effort.response)} until the run ends."
 
 
 def too_long(effort: Effort, timing: Timing) -> Finding | None:
@@ -167,7 +165,7 @@ def too_long(effort: Effort, timing: Timing) -> Finding | None:
         "long-run",
         "warning",
         {"seconds": seconds, "simulation": timing.each},
-        f"The study may take {spoken(seconds)}, more than a day.",
+        f"The study may take {duration_text(seconds)}, more than a day.",
         "Check the step of the solver and the number of samples, simulate a shorter motion, or use a cluster.",
     )
 

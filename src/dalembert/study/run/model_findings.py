@@ -1,7 +1,8 @@
-"""Findings about the model of a study, which do not depend on a result."""
+"""Findings about the model and the data of a study, which do not depend on a result."""
 
 from collections.abc import Iterator
 
+from dalembert.errors import DalembertError
 from dalembert.findings import Finding
 from dalembert.study.tables.study import Study
 from dalembert.study.tables.unused import few, unused_parameters
@@ -31,3 +32,23 @@ def model_lines(study: Study) -> Iterator[str]:
     """Yield the findings about the model for a terminal."""
     for finding in model_findings(study):
         yield f"{finding.severity.capitalize()}: {finding}"
+
+
+def time_scale_findings(study: Study) -> Iterator[Finding]:
+    """Yield a finding where the times of data are probably in another unit, from short simulations for each record.
+
+    A simulation that fails has no finding: what follows the check reports it.
+    """
+    if not study.has_system or study.task not in ("identify", "sample", "regularise"):
+        return
+    from dalembert.inverse.experiments.suspect_times import time_findings
+
+    records = [(study.variant(table), table) for table in study.file.experiments]
+    records += [] if study.file.data is None else [(study, study.file.data)]
+    for varied, table in records:
+        data = table.read()
+        try:
+            model = varied.forward(data.channels, data.coordinate.values)
+        except DalembertError:
+            continue
+        yield from time_findings(model, data, model.parameters.start)

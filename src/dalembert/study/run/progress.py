@@ -1,4 +1,4 @@
-"""What a user sees of a run while it goes on: on a terminal a live line, elsewhere now and then a line."""
+"""The progress of a run in words: a live line on a terminal, a line now and then elsewhere."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -11,6 +11,8 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.progress import Progress
 
+DAY = 86_400.0
+"""Seconds."""
 _EVERY = 2.0  # s between plain lines
 MOST_LISTED = 8
 """Unknowns whose values a line lists."""
@@ -153,3 +155,32 @@ class Watch:
         elif monotonic() >= self._next:
             self._next = monotonic() + _EVERY
             self.console.print(text, markup=False, highlight=False)
+
+
+def duration_text(seconds: float) -> str:
+    """Return a duration with two digits.
+
+    >>> [duration_text(value) for value in (2.345e-4, 0.1234, 41.7, 250.0, 7400.0)]
+    ['0.23 ms', '0.12 s', '42 s', '4.2 min', '2.1 h']
+    >>> [duration_text(value) for value in (9e5, 1.33e9, 1e15)]
+    ['10 days', '42 years', '3.2e+07 years']
+    """
+    units = ((365.25 * DAY, " years"), (DAY, " days"), (3600.0, " h"), (60.0, " min"), (1.0, " s"))
+    for size, unit in units:
+        if seconds >= 2 * size:
+            number = seconds / size
+            return f"{number:.0f}{unit}" if 9.95 <= number < 1e4 else f"{number:.2g}{unit}"
+    return f"{seconds:.2g} s" if seconds >= 0.01 else f"{1e3 * seconds:.2g} ms"
+
+
+def size_text(size: float) -> str:
+    """Return a size in bytes with two digits.
+
+    >>> [size_text(value) for value in (512, 48_000, 2.4e8, 3.1e12)]
+    ['0.51 kB', '48 kB', '240 MB', '3.1 TB']
+    """
+    for unit in ("kB", "MB", "GB", "TB"):
+        size /= 1000
+        if size < 999.5 or unit == "TB":
+            break
+    return f"{float(f'{size:.2g}'):g} {unit}"

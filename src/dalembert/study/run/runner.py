@@ -1,13 +1,13 @@
-"""Run a study in a folder of its own: events while it runs, then a result and a report, and its state throughout."""
+"""Run a study in a new folder: its events, its state, its result and its report."""
 
 import os
 import traceback
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
-from math import inf
+from dataclasses import dataclass, replace
 from pathlib import Path
-from time import monotonic, perf_counter
+from time import perf_counter
+from typing import Any
 
 from dalembert import __version__
 from dalembert.errors import DalembertError, InputError, SolveError, StorageError, not_begun, users_place
@@ -17,13 +17,11 @@ from dalembert.forward import Checkpoint, Executor, connected
 from dalembert.forward.cluster import noted, worker_versions
 from dalembert.kernels.preparation import observed
 from dalembert.study.run.computed_with import mixed_versions, refuse_other_sources, this_process
-from dalembert.study.run.duration import StartFailed, duration, storage, timed, too_long
+from dalembert.study.run.duration import storage
 from dalembert.study.run.events import LOST, STORAGE, Event, EventLog, plain
 from dalembert.study.run.folder import DAMAGED, FAILED, FINISHED, INPUT, INTERRUPTED, RUNNING, RunFolder, new_folder
 from dalembert.study.run.interrupts import kept_interrupts
 from dalembert.study.run.model_findings import model_findings
-from dalembert.study.run.spoken import spoken
-from dalembert.study.run.time_scales import time_scale_findings
 from dalembert.study.run.validation import plan
 from dalembert.study.tables.study import Study
 from dalembert.study.tasks import TASKS, Outcome
@@ -47,7 +45,9 @@ def run_study(
     listener: Listener | None = None,
     executor: Executor = None,
 ) -> tuple[RunFolder, Outcome]:
-    """Do what a study says.
+    """Run the task of a study in a new folder.
+
+    The run checks its plan, keeps the study and its files, computes, and writes the result and the report.
 
     Parameters
     ----------
@@ -71,7 +71,13 @@ def run_study(
         What is wrong with the study, before there is a folder; or what stopped the run, as the folder's state says.
     """
     compiled: list[Compilation] = []
-    with observed(_noting(compiled, listener)):
+
+    def note(done: int, total: int, _: str) -> None:
+        compiled.append((done, total))  # for the log, which does not exist yet
+        if listener is not None:
+            listener({"event": "run-compiling", "done": done, "total": total})
+
+    with observed(note):
         plan(study)
     with connected(executor) as client:
         folder = new_folder(study.name, out, force=force)
@@ -124,121 +130,118 @@ def resume_run(folder: RunFolder, *, listener: Listener | None = None, executor:
         return _executed(replace(folder.kept(), executor=executor), folder, "run-resumed", listener)
 
 
-def _executed(
-    study: Study,
-    folder: RunFolder,
-    beginning: str,
-    listener: Listener | None,
-    compiled: Sequence[Compilation] = (),
-) -> Outcome:
-    """Do what a study says in a folder that is held, and say so in its state and its events."""
-    about = {"study": study.name, "title": study.title, "task": study.task, "version": __version__}
-    with EventLog(folder.events, (listener,) if listener else ()) as log:
-        earlier = float(folder.state().get("seconds") or 0.0) if folder.is_run else 0.0
-        folder.set_state(RUNNING, **about, process=os.getpid(), seconds=earlier)
-        folder.pause.unlink(missing_ok=True)
-        began = perf_counter()
-        try:
-            log.emit(beginning, **about)
-            folder.add_computed_with(this_process(versions()))
-            for done, total in compiled:
-                log.emit("run-compiling", done=done, total=total)
-            with observed(lambda done, total, _: log.emit("run-compiling", done=done, total=total)):
-                with (
-                    kept_interrupts(),
-                    connected(study.executor) as client,
-                    noted(client, lambda workers: folder.add_computed_with(this_process(workers))),
-                    Checkpoint(folder.checkpoint, lambda sentence: log.emit(LOST, message=sentence)) as checkpoint,
-                    users_code(),
-                    one_thread(),
-                ):
-                    for workers in [] if client is None else worker_versions(client):
-                        folder.add_computed_with(this_process(workers))
-                    task = TASKS[study.task]
-                    study = replace(study, executor=client)
-                    if task.keeps_responses and (size := storage(task.effort(study))):
-                        log.emit(STORAGE, message=size)
-                    outcome = task.run(replace(study, checkpoint=checkpoint), log.emit)
-                outcome = _with_findings(outcome, folder)
-                outcome.save(folder.result)
-                outcome.report(folder.report)
-        except BaseException as error:
-            state, message = _ending(error)
-            with suppress(StorageError):  # the error itself says it, and a run without a state was killed
-                if state != INTERRUPTED and (not isinstance(error, DalembertError) or users_place(error.__cause__)):
-                    write_text(folder.path / "error.txt", traceback.format_exc())
-                log.emit("run-ended", state=state, message=message)
-            with suppress(StorageError):  # the state may fit where the event does not
-                folder.set_state(state, message=message, **about, seconds=_since(began, earlier))
-            if isinstance(error, KeyboardInterrupt):
-                raise Stopped(folder.path) from None
-            raise
-        state = FINISHED if outcome.success else FAILED
-        ended = {"state": state, "message": outcome.status, "digests": folder.digests()}
-        log.emit("run-ended", **ended, seconds=_since(began))
-        findings = plain(stored_findings(outcome.findings))
-        folder.set_state(**ended, best=outcome.best, findings=findings, **about, seconds=_since(began, earlier))
-        folder.checkpoint.unlink(missing_ok=True)
-    return outcome
-
-
-def _since(began: float, earlier: float = 0.0) -> float:
-    """Seconds since ``began``, a value of ``perf_counter``, and those that a run took before it was resumed."""
-    return round(earlier + perf_counter() - began, 3)
-
-
-def _noting(compiled: list[Compilation], listener: Listener | None) -> Callable[[int, int, str], None]:
-    """Progress of compilation, noted for a log that does not exist yet, and passed on as events."""
-
-    def progress(done: int, total: int, _: str) -> None:
-        compiled.append((done, total))
-        if listener is not None:
-            listener({"event": "run-compiling", "done": done, "total": total})
-
-    return progress
-
-
-def looked(study: Study, limit: float = inf) -> Iterator[str]:
-    """Yield sentences on how long a study takes and what comes out, from few simulations.
+@dataclass(frozen=True, eq=False)
+class Attempt:
+    """The part of a run that one process computes, from its start or from where it is resumed.
 
     Parameters
     ----------
     study : Study
-    limit : float
-        Seconds. What takes longer is left out, and a sentence says so.
-
-    Raises
-    ------
-    DalembertError
-        What the first simulations of a run would raise.
+    folder : RunFolder
+        Locked.
+    log : EventLog
+    facts : mapping
+        Of the study, for the first event and for the state of the run.
+    earlier : float
+        Seconds that the run took before it was resumed.
+    began : float
+        Value of ``perf_counter`` at its start.
     """
-    task, began = TASKS[study.task], monotonic()
-    with users_code(), one_thread():
-        yield from (f"Warning: {finding}" for finding in time_scale_findings(study))
-        effort = task.effort(study)
+
+    study: Study
+    folder: RunFolder
+    log: EventLog
+    facts: Mapping[str, Any]
+    earlier: float
+    began: float
+
+    def seconds(self, earlier: float = 0.0) -> float:
+        """Return the seconds since the start, and those before it."""
+        return round(earlier + perf_counter() - self.began, 3)
+
+    def keep_state(self, state: str, **details: Any) -> None:
+        """Write the state of the run after this part of it."""
+        self.folder.set_state(state, **details, **self.facts, seconds=self.seconds(self.earlier))
+
+
+def _executed(
+    study: Study,
+    folder: RunFolder,
+    first_event: str,
+    listener: Listener | None,
+    compiled: Sequence[Compilation] = (),
+) -> Outcome:
+    """Start, compute, write, end: the run of a study in a locked folder."""
+    with EventLog(folder.events, (listener,) if listener else ()) as log:
+        attempt = _started(study, folder, log)
         try:
-            timing = timed(effort)
-        except StartFailed as error:
-            yield f"Warning: the simulation at the first guesses fails: {error}. Check the model or change the start."
-            return
-        yield duration(effort, timing)
-        if size := storage(effort):
-            yield size
-        long = too_long(effort, timing)
-        if long is not None:
-            yield f"Warning: {long}"
-        trials, count = task.trials(study), task.foresight(study)
-        needed, left = (trials + count) * timing.each, limit - (monotonic() - began)
-        if needed > left:
-            yield (
-                f"The check ends before its time limit, {spoken(limit)}: what it would simulate next takes "
-                f"{spoken(needed)}. Raise --limit."
-            )
-            return
-        if trials:
-            plan(study, trials)
-        if count:
-            yield from task.foreseen(study)
+            log.emit(first_event, **attempt.facts)
+            folder.add_computed_with(this_process(versions()))
+            for done, total in compiled:
+                log.emit("run-compiling", done=done, total=total)
+            with observed(lambda done, total, _: log.emit("run-compiling", done=done, total=total)):
+                outcome = _with_findings(_computed(attempt), folder)
+                outcome.save(folder.result)
+                outcome.report(folder.report)
+        except BaseException as error:
+            _end_by(error, attempt)
+            if isinstance(error, KeyboardInterrupt):
+                raise Stopped(folder.path) from None
+            raise
+        _end(outcome, attempt)
+    return outcome
+
+
+def _started(study: Study, folder: RunFolder, log: EventLog) -> Attempt:
+    facts = {"study": study.name, "title": study.title, "task": study.task, "version": __version__}
+    earlier = float(folder.state().get("seconds") or 0.0) if folder.is_run else 0.0
+    folder.set_state(RUNNING, **facts, process=os.getpid(), seconds=earlier)
+    folder.pause.unlink(missing_ok=True)
+    return Attempt(study, folder, log, facts, earlier, perf_counter())
+
+
+def _computed(attempt: Attempt) -> Outcome:
+    study, folder, log = attempt.study, attempt.folder, attempt.log
+    with (
+        kept_interrupts(),
+        connected(study.executor) as client,
+        noted(client, lambda workers: folder.add_computed_with(this_process(workers))),
+        Checkpoint(folder.checkpoint, lambda sentence: log.emit(LOST, message=sentence)) as checkpoint,
+        users_code(),
+        one_thread(),
+    ):
+        for workers in [] if client is None else worker_versions(client):
+            folder.add_computed_with(this_process(workers))
+        task = TASKS[study.task]
+        study = replace(study, executor=client)
+        if task.keeps_responses and (size := storage(task.effort(study))):
+            log.emit(STORAGE, message=size)
+        return task.run(replace(study, checkpoint=checkpoint), log.emit)
+
+
+def _end(outcome: Outcome, attempt: Attempt) -> None:
+    folder = attempt.folder
+    state = FINISHED if outcome.success else FAILED
+    ended = {"state": state, "message": outcome.status, "digests": folder.digests()}
+    attempt.log.emit("run-ended", **ended, seconds=attempt.seconds())
+    attempt.keep_state(**ended, best=outcome.best, findings=plain(stored_findings(outcome.findings)))
+    folder.checkpoint.unlink(missing_ok=True)
+
+
+def _end_by(error: BaseException, attempt: Attempt) -> None:
+    """Write the state and the last event of a run that an error ends."""
+    if isinstance(error, KeyboardInterrupt):
+        state, message = INTERRUPTED, "stopped by the user"
+    elif isinstance(error, DalembertError):
+        state, message = FAILED if isinstance(error, SolveError | StorageError) else INPUT, str(error)
+    else:
+        state, message = FAILED, f"{type(error).__name__}: {error}"
+    with suppress(StorageError):  # the error itself says it, and a run without a state was killed
+        if state != INTERRUPTED and (not isinstance(error, DalembertError) or users_place(error.__cause__)):
+            write_text(attempt.folder.path / "error.txt", traceback.format_exc())
+        attempt.log.emit("run-ended", state=state, message=message)
+    with suppress(StorageError):  # the state may fit where the event does not
+        attempt.keep_state(state, message=message)
 
 
 def unknowns(study: Study) -> tuple[str, ...]:
@@ -269,11 +272,3 @@ def _with_findings(outcome: Outcome, folder: RunFolder) -> Outcome:
     known = outcome.findings
     of_run = (*mixed_versions(folder.computed_with()), *model_findings(outcome.study))
     return replace(outcome, of_run=tuple(finding for finding in of_run if finding not in known))
-
-
-def _ending(error: BaseException) -> tuple[str, str]:
-    if isinstance(error, KeyboardInterrupt):
-        return INTERRUPTED, "stopped by the user"
-    if isinstance(error, DalembertError):
-        return (FAILED if isinstance(error, SolveError | StorageError) else INPUT), str(error)
-    return FAILED, f"{type(error).__name__}: {error}"

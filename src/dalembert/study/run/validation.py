@@ -1,16 +1,22 @@
-"""Whether a study can run: all that its run checks before its first simulation."""
+"""Checks of a study before its run, and a forecast of its duration and its result."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
+from math import inf
+from time import monotonic
 
 import numpy as np
 
 from dalembert.forward import Checkpoint
 from dalembert.forward.checkpoint import Arrays
+from dalembert.study.run.duration import StartFailed, duration, storage, timed, too_long
+from dalembert.study.run.model_findings import time_scale_findings
+from dalembert.study.run.progress import duration_text
 from dalembert.study.tables.study import Study
 from dalembert.study.tasks import TASKS
 from dalembert.study.text.functions import users_code
+from dalembert.threads import one_thread
 
 
 class FirstSimulation(BaseException):
@@ -72,3 +78,46 @@ def plan(study: Study, simulations: int = 0) -> str:
             with suppress(FirstSimulation):
                 part()
     return sentence
+
+
+def forecast(study: Study, limit: float = inf) -> Iterator[str]:
+    """Yield sentences on how long a study takes and what its result will be, from few simulations.
+
+    Parameters
+    ----------
+    study : Study
+    limit : float
+        Seconds. What takes longer is left out, and a sentence says so.
+
+    Raises
+    ------
+    DalembertError
+        What the first simulations of a run would raise.
+    """
+    task, began = TASKS[study.task], monotonic()
+    with users_code(), one_thread():
+        yield from (f"Warning: {finding}" for finding in time_scale_findings(study))
+        effort = task.effort(study)
+        try:
+            timing = timed(effort)
+        except StartFailed as error:
+            yield f"Warning: the simulation at the first guesses fails: {error}. Check the model or change the start."
+            return
+        yield duration(effort, timing)
+        if size := storage(effort):
+            yield size
+        long = too_long(effort, timing)
+        if long is not None:
+            yield f"Warning: {long}"
+        trials, count = task.trials(study), task.foresight(study)
+        needed, left = (trials + count) * timing.each, limit - (monotonic() - began)
+        if needed > left:
+            yield (
+                f"The check ends before its time limit, {duration_text(limit)}: what it would simulate next takes "
+                f"{duration_text(needed)}. Raise --limit."
+            )
+            return
+        if trials:
+            plan(study, trials)
+        if count:
+            yield from task.foreseen(study)

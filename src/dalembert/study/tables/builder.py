@@ -9,7 +9,7 @@ from dalembert.study.tables.dataclass_tables import KindTable, Written
 from dalembert.study.tables.inputs import InputReference, MeasuredInput, input_named
 from dalembert.study.tables.model_table import ModelTable
 from dalembert.study.tables.robot_table import RobotTable
-from dalembert.study.text.expressions import Expression
+from dalembert.study.text.expressions import Expression, resolved
 from dalembert.study.text.functions import FunctionReference
 from dalembert.study.text.places import JointName, Place
 from dalembert.study.text.table import placed
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 Values = Mapping[str, Any]
 EMPTY: Values = {}
+_COMPOSED = (Place, JointName, KindTable, FunctionReference, list, dict)
+"""Types of values of keys that contain numbers or stand for objects."""
 
 
 @dataclass(frozen=True)
@@ -183,14 +185,16 @@ def built(
     >>> built(table, {"zeta": 0.005}, "[model.structure], damping")
     Modal(ratio=0.01)
     """
-    arguments = {
-        key: signals[given.input]
-        if isinstance(given, InputReference)
-        else _resolved(given, values, bodies, system, f"{where}, {key}")
-        for key, given in table.given().items()
-    }
-    made = table.target_type(**arguments)
-    return made.value if isinstance(made, Written) else made
+    arguments = table.given()
+    for key, given in arguments.items():
+        if isinstance(given, Expression):
+            arguments[key] = resolved(given, values, f"{where}, {key}")
+        elif isinstance(given, InputReference):
+            arguments[key] = signals[given.input]
+        elif isinstance(given, _COMPOSED):
+            arguments[key] = _resolved(given, values, bodies, system, f"{where}, {key}")
+    result = table.target_type(**arguments)
+    return result.value if isinstance(result, Written) else result
 
 
 def _resolved(given: Any, values: Values, bodies: Values, system: Any, where: str) -> Any:
@@ -215,20 +219,11 @@ def _resolved(given: Any, values: Values, bodies: Values, system: Any, where: st
     return given
 
 
-def resolved(given: float | Expression, values: Values, where: str) -> complex:
-    """A number, that of an expression once the parameters are known."""
+def _place(given: Place, values: Values, bodies: Values, system: Any, where: str) -> Any:
+    numbers = tuple(resolved(number, values, where) for number in given.position or ())
     try:
-        return given(values) if isinstance(given, Expression) else given
+        if numbers:
+            return system.ground.point(numbers) if len(system.AXES) == 3 else system.ground.point(*numbers)
+        return bodies[given.body].point(given.point) if given.body else system.ground
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
-
-
-def _place(given: Place, values: Values, bodies: Values, system: Any, where: str) -> Any:
-    if given.position is not None:
-        numbers = tuple(resolved(one, values, where) for one in given.position)
-        with placed(where):
-            return system.ground.point(numbers) if len(system.AXES) == 3 else system.ground.point(*numbers)
-    if not given.body:
-        return system.ground
-    with placed(where):
-        return bodies[given.body].point(given.point)

@@ -38,12 +38,16 @@ def kinds_of(role: str, words: Words = None, *, space: bool = False) -> tuple[ty
     return tuple(sorted([*own, *others.values()], key=lambda kind: kind.__name__))
 
 
-def kind_names() -> Iterator[str]:
+def kind_names() -> set[str]:
     """Names of all kinds; none of the package is imported for them."""
-    for space, kinds in ((False, KINDS), (True, SPATIAL_KINDS)):
-        for base, names in kinds.items():
-            yield from names
-            yield from (kind.__name__ for kind in _of_others(base, space))
+    load_plugins()
+    names: set[str] = set()
+    bases: list[type] = []
+    for kinds, homes in ((KINDS, HOMES), (SPATIAL_KINDS, SPATIAL_HOMES)):
+        names.update(*kinds.values())
+        modules = {base: sys.modules.get(f"dalembert.multibody.{homes[base]}") for base in kinds}
+        bases += [getattr(module, base) for base, module in modules.items() if module is not None]
+    return names | {kind.__name__ for kind in derived_dataclasses(*bases)}
 
 
 def _of_others(base: str, space: bool) -> Iterator[type]:

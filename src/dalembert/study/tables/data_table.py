@@ -25,9 +25,8 @@ from dalembert.forward import Sensor
 from dalembert.forward.sensors import START
 from dalembert.parameters import Parameter
 from dalembert.study.tables.sensor_table import SensorTable, reads
-from dalembert.study.text.context import Context
 from dalembert.study.text.numbers import Number, Samples, Seconds, fixed, pair, read_number
-from dalembert.study.text.table import Read, StudyTable, checked, problem, told_apart
+from dalembert.study.text.table import Context, Read, StudyTable, checked, problem, told_apart
 
 if TYPE_CHECKING:
     from dalembert.data import Bands, Measurements

@@ -27,13 +27,12 @@ from pydantic import (
 )
 from pydantic_core import CoreSchema, core_schema
 
-from dalembert.study.text.context import Context
 from dalembert.study.text.docstrings import explained, meanings
 from dalembert.study.text.functions import FunctionName
 from dalembert.study.text.numbers import fixed, number
 from dalembert.study.text.places import JOINT_KEY
 from dalembert.study.text.places import place as planar_place
-from dalembert.study.text.table import Name, StudyTable, checked, problem, told_apart
+from dalembert.study.text.table import Context, Name, StudyTable, checked, problem, told_apart
 
 FORM = "form"  # the key for an argument that is called kind, since the key kind names the dataclass
 _PLACES = {"Point", "GroundPoint", "Ground"}

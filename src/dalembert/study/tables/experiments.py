@@ -13,9 +13,8 @@ from dalembert.study.tables.data_table import DataTable
 from dalembert.study.tables.inputs import InputTable
 from dalembert.study.tables.parameters import OwnParameterTable, ParameterTable
 from dalembert.study.tables.sensor_table import SensorTable, reads
-from dalembert.study.text.context import Context
 from dalembert.study.text.numbers import Number, wrong_units
-from dalembert.study.text.table import Name, problem
+from dalembert.study.text.table import Context, Name, problem
 from dalembert.units import si_unit
 
 

@@ -19,11 +19,9 @@ from dalembert.study.tables.data_table import (
     Start,
     StartTable,
 )
-from dalembert.study.text.context import Context
-from dalembert.study.text.expressions import Expression
+from dalembert.study.text.expressions import Expression, Kinds, kind_of_number
 from dalembert.study.text.numbers import Quantity, Times, fixed, number
-from dalembert.study.text.quantity_kinds import Kinds, kind_of_number
-from dalembert.study.text.table import Read, StudyTable, problem, told_apart
+from dalembert.study.text.table import Context, Read, StudyTable, problem, told_apart
 from dalembert.unit_table import Unit, readings
 from dalembert.units import difference, expected, si_unit, wrong_kind
 

@@ -10,11 +10,9 @@ from pydantic import Field, ValidationInfo
 from dalembert.errors import InputError
 from dalembert.parameters import Parameter, Parameters
 from dalembert.study.tables.priors import CorrelationTable, PriorTable, prior
-from dalembert.study.text.context import Context
-from dalembert.study.text.expressions import RESERVED, Expression
+from dalembert.study.text.expressions import OF_BOUNDS, RESERVED, Expression, kind_of
 from dalembert.study.text.numbers import read_number
-from dalembert.study.text.quantity_kinds import OF_BOUNDS, kind_of
-from dalembert.study.text.table import StudyTable, problem
+from dalembert.study.text.table import Context, StudyTable, problem
 from dalembert.units import is_quantity, is_si, symbol
 
 MOST = 10_000
@@ -59,18 +57,19 @@ class ParameterTable(StudyTable):
                 f"unit {self.unit!r} was given; expected an SI unit such as 'm', 'rad' or 'Pa', in which the numbers "
                 "are; a bound may have another unit with it: lower = '100 MPa'"
             )
+        try:
+            self.parameter("parameter")
+        except InputError as error:
+            mistake = str(error).removeprefix("parameter 'parameter': ")
+        else:
+            return []
         wrong = []
         for key in OF_BOUNDS:
             try:
                 self.number(key)
             except InputError as error:
                 wrong.append(f"{key}: {error}")
-        if not wrong:
-            try:
-                self.parameter("parameter")
-            except InputError as error:
-                wrong.append(str(error).removeprefix("parameter 'parameter': "))
-        return wrong
+        return wrong or [mistake]
 
     @property
     def symbol(self) -> str | None:
@@ -92,9 +91,13 @@ class ParameterTable(StudyTable):
 
     def parameter(self, name: str) -> Parameter:
         """The parameter."""
-        numbers: dict[str, Any] = {key: self.number(key) for key in OF_BOUNDS}
+        unit = self.symbol
+        numbers: dict[str, Any] = {}
+        for key in OF_BOUNDS:
+            value = getattr(self, key)
+            numbers[key] = None if value is None else read_number(value, unit)
         known = self.prior and prior(self.prior, (numbers["lower"], numbers["upper"]), self._quantity)
-        return Parameter(name, unit=self.symbol or "", log=self.log, prior=known, **numbers)
+        return Parameter(name, unit=unit or "", log=self.log, prior=known, **numbers)
 
 
 def series_in(tables: Mapping[str, Any]) -> dict[str, tuple[str, ...]]:

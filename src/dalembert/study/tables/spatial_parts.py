@@ -20,10 +20,9 @@ from dalembert.multibody.components.spatial.inertia import Inertia
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose, Vector
 from dalembert.multibody.components.spatial.points import GroundPoint
 from dalembert.study.tables.dataclass_tables import KindTable, Written, one_of, table_of
-from dalembert.study.text.context import Context
 from dalembert.study.text.numbers import read_number
 from dalembert.study.text.places import place
-from dalembert.study.text.table import checked, told_apart
+from dalembert.study.text.table import Context, checked, told_apart
 
 _USUAL = "moments"  # the kind of an inertia where none is given
 _BLOCKS = {

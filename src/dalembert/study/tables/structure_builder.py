@@ -7,11 +7,11 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from dalembert.errors import DalembertError, InputError
-from dalembert.study.tables.builder import built, named_values, resolved
+from dalembert.study.tables.builder import built, named_values
 from dalembert.study.tables.model_table import ModelTable
 from dalembert.study.tables.structure_parts import LinearSpring
 from dalembert.study.tables.structure_table import StructureTable
-from dalembert.study.text.expressions import Expression
+from dalembert.study.text.expressions import Expression, resolved
 
 if TYPE_CHECKING:
     from dalembert.structure import Structure

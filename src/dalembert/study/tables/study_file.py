@@ -85,7 +85,7 @@ class StudyFile(StudyTable):
 
 def _wrong_correlations(file: StudyFile) -> list[str]:
     wrong = [sentence for table in file.prior_correlations for sentence in table.wrong(file.parameters)]
-    if wrong:
+    if wrong or not file.prior_correlations:
         return wrong
     try:
         parameters_of(file.parameters, file.prior_correlations)
@@ -95,16 +95,16 @@ def _wrong_correlations(file: StudyFile) -> list[str]:
 
 
 def _wrong_settings(file: StudyFile) -> list[str]:
-    wrong = []
-    if file.vibrates and file.solver is not None:
+    wrong, vibrates = [], file.vibrates
+    if vibrates and file.solver is not None:
         wrong.append("[solver] integrates mechanisms; a structure over frequency takes [harmonic_balance], or neither")
-    if file.harmonic_balance is not None and not file.vibrates:
+    if file.harmonic_balance is not None and not vibrates:
         wrong.append("[harmonic_balance] is for structures over frequency, and here is another model; leave it out")
     for where, table in (("[data]", file.data), ("[bands]", file.bands)):
         if table is None:
             continue
-        if file.vibrates and table.frequency is None and not table.universal:
+        if vibrates and table.frequency is None and not table.universal:
             wrong.append(f"{where}: the key 'frequency' is missing; expected the name of the column of frequencies")
-        if file.model.forward is None and not file.vibrates and table.frequency is not None:
+        if file.model.forward is None and not vibrates and table.frequency is not None:
             wrong.append(f"{where}, frequency: the samples of a mechanism lie along time; name its column by time")
     return wrong

@@ -10,12 +10,13 @@ from dalembert.data.record import FIRST
 from dalembert.errors import DataError, unknown
 from dalembert.study.run.duration import Effort, whole
 from dalembert.study.run.events import Emit
-from dalembert.study.tables.builder import named_values, resolved, tree_of
+from dalembert.study.tables.builder import named_values, tree_of
 from dalembert.study.tables.data_table import DataFile, DataTable
 from dalembert.study.tables.robot_table import RobotTable
 from dalembert.study.tables.study import Study
 from dalembert.study.tasks.requirements import needs_data, needs_robot
 from dalembert.study.tasks.task import Outcome, ResultTask
+from dalembert.study.text.expressions import resolved
 from dalembert.study.text.numbers import Number, fixed, wrong_units
 from dalembert.study.text.table import Read, StudyTable, placed
 from dalembert.units import wrong_kind

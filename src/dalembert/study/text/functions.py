@@ -16,8 +16,7 @@ from typing import Annotated, Any
 from pydantic import PlainValidator, ValidationInfo, WithJsonSchema
 
 from dalembert.errors import DalembertError, InputError, listed, told, unknown, users_place
-from dalembert.study.text.context import Context
-from dalembert.study.text.table import checked
+from dalembert.study.text.table import Context, checked
 
 _WAYS = "'model.py:function' (a file beside the study) or 'package.module:function'"
 

@@ -10,8 +10,8 @@ from pydantic import ValidationError
 
 from dalembert.component_index import KINDS, SPATIAL_KINDS
 from dalembert.errors import unknown
-from dalembert.study.text.context import Context
 from dalembert.study.text.spaces import is_in_space
+from dalembert.study.text.table import Context
 
 _TABLE = re.compile(r"\[\[?[a-z]")
 _EXPECTED = {

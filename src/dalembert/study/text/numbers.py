@@ -1,5 +1,6 @@
 """Numbers of a study file: plain, with a unit, or as an expression of parameters and constants."""
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -17,10 +18,8 @@ from pydantic import (
 from pydantic_core import CoreSchema
 
 from dalembert.errors import InputError, unknown
-from dalembert.study.text.context import Context
-from dalembert.study.text.expressions import Expression
-from dalembert.study.text.quantity_kinds import require_kind
-from dalembert.study.text.table import Read, StudyTable, checked, completed, problem, told_apart
+from dalembert.study.text.expressions import Expression, require_kind
+from dalembert.study.text.table import Context, Read, StudyTable, checked, completed, problem, told_apart
 from dalembert.units import expected, is_quantity, sentence, si
 
 MOST = 1_000_000  # numbers of a range
@@ -38,7 +37,9 @@ def read_number(value: object, unit: str | None, names: Iterable[str] | None = (
     >>> read_number("-theta1", "rad", ["theta1"]).text
     '-theta1'
     """
-    if not isinstance(value, str) or is_quantity(value):
+    if isinstance(value, float) and math.isfinite(value):
+        return float(value)
+    if not isinstance(value, str) or (not value.isidentifier() and is_quantity(value)):
         return si(value, unit)
     try:
         expression = Expression.of(value)
@@ -59,22 +60,28 @@ def number(unit: str | None) -> Any:
     """Type of a key whose number may depend on parameters."""
 
     def read(value: Any, info: ValidationInfo) -> float | Expression:
-        names = info.context.names if isinstance(info.context, Context) else None
-        return checked(read_number, value, unit, names)
+        return _validated(value, unit, info.context.names if isinstance(info.context, Context) else None)
 
     return Annotated[Any, PlainValidator(read), _Described(unit)]
+
+
+def _validated(value: object, unit: str | None, names: Iterable[str] | None = ()) -> float | Expression:
+    try:
+        return read_number(value, unit, names)
+    except InputError as error:
+        raise problem(str(error)) from None
 
 
 def _read_quantity(value: Any, info: ValidationInfo) -> float | Expression:
     if isinstance(value, str) and is_quantity(value):
         return checked(WithUnit.of, value)
-    return checked(read_number, value, None, info.context.names if isinstance(info.context, Context) else None)
+    return _validated(value, None, info.context.names if isinstance(info.context, Context) else None)
 
 
 @cache
 def fixed(unit: str | None) -> Any:
     """Type of a key whose number may not depend on parameters."""
-    return Annotated[float, PlainValidator(lambda value: checked(read_number, value, unit)), _Described(unit)]
+    return Annotated[float, PlainValidator(lambda value: _validated(value, unit)), _Described(unit)]
 
 
 class WithUnit(float):

@@ -12,10 +12,9 @@ from typing import Annotated, Any
 from pydantic import PlainValidator, ValidationInfo, WithJsonSchema
 
 from dalembert.errors import InputError
-from dalembert.study.text.context import Context
 from dalembert.study.text.expressions import Expression
 from dalembert.study.text.numbers import read_number
-from dalembert.study.text.table import checked, problem
+from dalembert.study.text.table import Context, problem
 
 NAMES = "x-names"
 """Keyword of the JSON schema where a text is the name of something in the study: what it is."""
@@ -93,7 +92,10 @@ def place(bare: bool = True, space: bool = False) -> Any:
 
     def read(value: Any, info: ValidationInfo) -> Place:
         names = info.context.names if isinstance(info.context, Context) else None
-        return checked(lambda: read_place(value, names, bare=bare, space=space))
+        try:
+            return read_place(value, names, bare=bare, space=space)
+        except InputError as error:
+            raise problem(str(error)) from None
 
     schema = {"type": ["string", "array", "object"], "description": f"a point such as {_ways(bare, space)}"}
     schema |= {NAMES: "point"}

@@ -5,9 +5,8 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, ValidationInfo
 
-from dalembert.study.text.context import Context
 from dalembert.study.text.numbers import number, read_number, row
-from dalembert.study.text.table import checked, problem
+from dalembert.study.text.table import Context, checked, problem
 
 IN_SPACE = "space"  # the key of [model] that says so
 _EXPECTED = {

@@ -1,9 +1,10 @@
-"""The base of every table of a study file: unknown keys are refused, and the known ones kept for that error."""
+"""The base of every table of a study file, and what its validators know of the rest of the file."""
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Annotated, Any, Self, TypeVar
 
 from pydantic import (
@@ -21,10 +22,50 @@ from pydantic import (
 from pydantic_core import CoreSchema, PydanticCustomError
 
 from dalembert.errors import DalembertError, InputError
-from dalembert.study.text.context import Context
+from dalembert.unit_table import Unit
 
 T = TypeVar("T")
 _NAME = r"^[^\W\d][\w-]*$"
+
+
+@dataclass
+class Context:
+    """Surroundings of a study file while it is read.
+
+    Parameters
+    ----------
+    folder : Path
+        Files named in the study are relative to it.
+    names : mapping of str to Unit or None
+        Parameters and constants, which an expression may use, with the units that they have.
+    series : mapping of str to tuple of str
+        Names of the parameters of each series, which a list of numbers may name as a whole.
+    files : mapping of str to Path
+        Where a file named in the study lies if not relative to the folder: a run folder keeps copies.
+    used : dict of str to Path
+        Files that were asked for.
+    """
+
+    folder: Path = field(default_factory=Path)
+    names: Mapping[str, Unit | None] = field(default_factory=dict)
+    series: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    files: dict[str, Path] = field(default_factory=dict)
+    used: dict[str, Path] = field(default_factory=dict)
+    _keys: dict[int, tuple[str, ...]] = field(default_factory=dict)
+
+    def file(self, given: str) -> Path:
+        """Path of a file named in the study."""
+        path = self.files.get(given, self.folder / given)
+        self.used[given] = path
+        return path
+
+    def remember(self, table: Any, keys: Iterable[str]) -> None:
+        """Keep the keys that a table of the document may have, for the error about one that it may not."""
+        self._keys[id(table)] = tuple(keys)
+
+    def known_keys(self, table: Any) -> tuple[str, ...]:
+        """Keys that a table of the document may have; none if it was never read as a table."""
+        return self._keys.get(id(table), ())
 
 
 class StudyTable(BaseModel):
@@ -36,7 +77,7 @@ class StudyTable(BaseModel):
     @classmethod
     def _remember_keys(cls, data: Any, info: ValidationInfo) -> Any:
         if isinstance(info.context, Context):
-            info.context.remember(data, cls.model_fields)
+            info.context.remember(data, cls.model_fields)  # for the error about an unknown key
         return data
 
     def picked(self, *keys: str) -> dict[str, Any]:

@@ -9,7 +9,7 @@ import pytest
 from dalembert.errors import InputError
 from dalembert.study import load
 from dalembert.study.run.duration import Effort, duration, storage, timed, too_long, within
-from dalembert.study.run.runner import looked
+from dalembert.study.run.validation import forecast
 
 MODEL = """
 import numpy as np
@@ -57,7 +57,7 @@ def sentence(tmp_path):
 
     def of(text):
         (tmp_path / "study.toml").write_text(text)
-        return next(looked(load(tmp_path / "study.toml")))
+        return next(forecast(load(tmp_path / "study.toml")))
 
     return of
 

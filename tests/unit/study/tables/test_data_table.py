@@ -10,7 +10,7 @@ from dalembert.study.loader import load
 from dalembert.study.run.runner import plan
 from dalembert.study.tables.data_table import BandsTable
 from dalembert.study.tasks import TASKS
-from dalembert.study.text.context import Context
+from dalembert.study.text.table import Context
 from dalembert.units import expected
 from support import says
 

@@ -12,7 +12,7 @@ from dalembert.data import Measurements
 from dalembert.errors import DalembertError, InputError
 from dalembert.structure import Modal, eigenmodes, lumped
 from dalembert.study import load, plan, report_run, run_study
-from dalembert.study.run.runner import looked
+from dalembert.study.run.validation import forecast
 from dalembert.study.tasks.assessments import foreseen
 from dalembert.vibration import (
     Deformation,
@@ -132,7 +132,7 @@ def write(tmp_path, monkeypatch):
 def test_a_structure_of_tables_is_the_one_of_calls(write, tmp_path):
     study = load(write(WHOLE))
     assert plan(study) == "follows the response from 0.12 to 0.16 Hz (5 points, 5 harmonics): 1 simulation"
-    assert re.search(r": 5 simulations of .* \(a point, going by both ends of the curve\)\.$", next(looked(study)))
+    assert re.search(r": 5 simulations of .* \(a point, going by both ends of the curve\)\.$", next(forecast(study)))
     folder, outcome = run_study(study, tmp_path / "run")
     ours = FrequencyCurve.load(folder.result)
     theirs = frequency_response(two_masses(), np.linspace(0.12, 0.16, 5), HarmonicBalance(5, samples=256))
@@ -341,7 +341,7 @@ def test_friction_is_identified_from_a_curve_and_bounds_it(write, tmp_path):
 def test_each_task_runs_and_its_report_is_made_anew(write, tmp_path, task, told, numbers):
     study = load(write(PARAMETERS + MODEL + task))
     assert plan(study) == told
-    assert next(looked(study))
+    assert next(forecast(study))
     folder, outcome = run_study(study, tmp_path / "run")
     assert outcome.success
     assert set(outcome.best["values"]) == numbers

@@ -4,7 +4,7 @@ import pytest
 
 from dalembert.errors import InputError
 from dalembert.study import load, run_study
-from dalembert.study.run.runner import looked, plan
+from dalembert.study.run.validation import forecast, plan
 from dalembert.study.tasks import TASKS
 from study_texts import BAR
 
@@ -38,7 +38,7 @@ def _load(tmp_path, text):
 def test_it_runs_and_is_read_again(tmp_path):
     study = _load(tmp_path, STUDY)
     assert plan(study) == "compares 1 integrators in 2 settings over 1 s: 6 simulations"
-    assert ": 6 simulations of " in next(looked(study))
+    assert ": 6 simulations of " in next(forecast(study))
     folder, outcome = run_study(study, tmp_path / "run")
     assert outcome.success
     assert [row.steps for row in outcome.result.rows] == [50, 100]

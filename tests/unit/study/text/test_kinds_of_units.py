@@ -5,8 +5,8 @@ import pytest
 
 from dalembert.errors import DataError, InputError
 from dalembert.study.loader import load
-from dalembert.study.run.runner import looked, plan
-from dalembert.study.run.time_scales import time_scale_findings
+from dalembert.study.run.model_findings import time_scale_findings
+from dalembert.study.run.validation import forecast, plan
 from dalembert.study.sources import source_lines
 from dalembert.study.tables.posing import posed
 
@@ -227,7 +227,7 @@ def test_milliseconds_read_as_seconds_are_named_before_a_fit(study, tmp_path):
     (tmp_path / "run.csv").write_text("\n".join(["t (s);angle (deg);torque", *rows]) + "\n")
     (finding,) = time_scale_findings(case)
     assert (finding.code, finding.values["step"]) == ("suspect-time-unit", 10.0)
-    assert next(looked(case)) == f"Warning: {finding}"
+    assert next(forecast(case)) == f"Warning: {finding}"
     (tmp_path / "run.csv").write_text("\n".join(["t (ms);angle (deg);torque", *rows]) + "\n")
     text = (tmp_path / "study.toml").read_text().replace('"t (s)"', '"t (ms)"')
     (tmp_path / "study.toml").write_text(text)

@@ -163,7 +163,8 @@ def _suits(sample: Sequence[str], first: Sequence[str], separator: str, decimal:
     """Share of the cells that are numbers or empty times that of the lines of equal length; the number of columns."""
     rows = [cells for _, cells in split(enumerate(sample), separator)]
     cells = [cell for row in rows for cell in row]
-    good = sum(is_number(cell, decimal) or cell.lower() in GAPS or is_clock(cell) for cell in cells)
+    texts = [cell for cell in cells if not is_number(cell, decimal) and cell.lower() not in GAPS]
+    good = len(cells) - len(texts) + sum(map(is_clock, texts))
     width = Counter(map(len, rows)).most_common(1)[0][0] if rows else 0
     even = sum(len(cells) == width for _, cells in split(enumerate(first), separator)) / max(1, len(first))
     return even * good / max(1, len(cells)), width

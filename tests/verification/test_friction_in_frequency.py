@@ -16,7 +16,7 @@ from dalembert.vibration import (
     VibrationSystem,
     frequency_response,
 )
-from dalembert.vibration.balance.fourier import Fourier
+from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.laws.contact_sums import Shape, contact_sums
 from dalembert.vibration.laws.friction_law import SLIPPING, STUCK
 from vibrating_systems import chain, duffing, massless_foot, one_mass, two_masses

@@ -18,8 +18,8 @@ from dalembert.vibration import (
     floquet_multipliers,
     frequency_response,
 )
-from dalembert.vibration.balance.fourier import Fourier
-from dalembert.vibration.system.lowering import lower
+from dalembert.vibration.fourier import Fourier
+from dalembert.vibration.interface.lowering import lower
 
 TOPIC = "Hysteretic laws in frequency"
 TURN = 2 * np.pi

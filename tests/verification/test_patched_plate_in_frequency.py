@@ -8,7 +8,7 @@ import pytest
 from scipy.linalg import eigh, null_space
 
 from dalembert import HarmonicBalance, frequency_response
-from dalembert.vibration.system.lowering import lower
+from dalembert.vibration.interface.lowering import lower
 
 STUDY = Path(__file__).parents[2] / "studies" / "patched-plate" / "plate.py"
 TOPIC = "Friction in frequency"

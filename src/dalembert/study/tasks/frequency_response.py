@@ -81,7 +81,7 @@ class FrequencyResponseTable(StudyTable):
 
     @property
     def along(self) -> Any:
-        """Frequencies as :func:`~dalembert.vibration.paths.frequency_response` takes them."""
+        """Frequencies as :func:`~dalembert.vibration.responses.frequency_response` takes them."""
         return tuple(self.between) if self.between is not None else np.array(self.frequencies)
 
 

@@ -18,14 +18,14 @@ from functools import cached_property
 
 import numpy as np
 
-from dalembert.vibration.balance.condensation import Point
-from dalembert.vibration.balance.fourier import Fourier, real_blocks
-from dalembert.vibration.balance.free_motions import HeldByElements
 from dalembert.vibration.balance.tangents import BlockTangent, DenseTangent, Tangent
+from dalembert.vibration.fourier import Fourier, real_blocks
+from dalembert.vibration.interface.condensation import Point
+from dalembert.vibration.interface.free_motions import HeldByElements
+from dalembert.vibration.interface.lowering import ELASTIC, FrictionBlock, Lowered
 from dalembert.vibration.laws.contact_sums import ContactSums, Shape, contact_sums
 from dalembert.vibration.laws.friction_law import GAP, NORMAL, STUCK, TANGENTIAL
 from dalembert.vibration.laws.sums import Sums
-from dalembert.vibration.system.lowering import ELASTIC, FrictionBlock, Lowered
 
 LARGE = 500
 """Unknowns above which the Jacobian is kept by its structure. Measured where all of a row of sliders slip, the dearest

@@ -23,9 +23,9 @@ import numpy as np
 from scipy.linalg import lu_factor, lu_solve
 from scipy.sparse.linalg import LinearOperator, gmres
 
-from dalembert.vibration.balance.condensation import Point
-from dalembert.vibration.balance.fourier import Fourier, complex_blocks, real_blocks
-from dalembert.vibration.balance.free_motions import HeldByElements
+from dalembert.vibration.fourier import Fourier, complex_blocks, real_blocks
+from dalembert.vibration.interface.condensation import Point
+from dalembert.vibration.interface.free_motions import HeldByElements
 
 ACTIVE = 1e-11
 """Difference from its stuck stiffness, as part of that, above which a contact is active."""

@@ -7,10 +7,10 @@ import numpy as np
 
 from dalembert.errors import listed
 from dalembert.findings import Finding
-from dalembert.vibration.balance.condensation import NEARLY, norm
 from dalembert.vibration.balance.equations import Equations
-from dalembert.vibration.balance.free_motions import FLOATING, MOVING, NAMED
 from dalembert.vibration.balance.newton import VERIFIED, Solution
+from dalembert.vibration.interface.condensation import NEARLY, norm
+from dalembert.vibration.interface.free_motions import FLOATING, MOVING, NAMED
 
 LEFT = 0.1
 """Part of the residual, along a motion that no stiffness holds, from which this motion is the cause."""

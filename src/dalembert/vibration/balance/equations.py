@@ -11,16 +11,16 @@ import numpy as np
 from dalembert.errors import InputError
 from dalembert.forward import Checkpoint
 from dalembert.vibration.balance.balance import Balance
-from dalembert.vibration.balance.condensation import Condensation, Point, norm
-from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.balance.harmonic_balance import AUTOMATIC, MOST_SAMPLES, HarmonicBalance
 from dalembert.vibration.balance.newton import Plane, Solution, correct, scale_of
+from dalembert.vibration.balance.preparation import prepare_balance
 from dalembert.vibration.balance.rest import at_rest
+from dalembert.vibration.fourier import Fourier
+from dalembert.vibration.interface.condensation import Condensation, Point, norm
+from dalembert.vibration.interface.lowering import ELASTIC, Lowered, lower
 from dalembert.vibration.laws.law_block import LawBlock
 from dalembert.vibration.laws.sampled_sums import forces_from_rest
 from dalembert.vibration.paths.continuation import along
-from dalembert.vibration.preparation import prepare_balance
-from dalembert.vibration.system.lowering import ELASTIC, Lowered, lower
 from dalembert.vibration.system.system import StaticForce, VibrationSystem
 
 SIZES = 10.0 ** np.arange(-9, 7, 3)

@@ -13,9 +13,9 @@ from typing import Any, TypeVar
 import numpy as np
 
 from dalembert.vibration.balance.balance import Balance, Evaluation
-from dalembert.vibration.balance.condensation import Point, norm
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.tangents import Tangent, bordered
+from dalembert.vibration.interface.condensation import Point, norm
 
 DAMPINGS = (1.0, 0.5, 0.25, 0.125, 0.03125)
 """Parts of a Newton step of the line search, until the residual falls."""

@@ -6,8 +6,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from dalembert.vibration.balance.balance import Balance
-from dalembert.vibration.balance.condensation import Point, norm
-from dalembert.vibration.balance.fourier import Fourier
+from dalembert.vibration.fourier import Fourier
+from dalembert.vibration.interface.condensation import Point, norm
 
 STEPS = 50
 """Newton steps, at most."""

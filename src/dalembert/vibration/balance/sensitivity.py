@@ -16,7 +16,7 @@ import numpy as np
 from dalembert.vibration.balance.balance import Balance
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.newton import Solution
-from dalembert.vibration.system.lowering import Lowered
+from dalembert.vibration.interface.lowering import Lowered
 
 STEP = 1e-30
 """Size of the imaginary step; second-order terms vanish below the rounding of the first."""

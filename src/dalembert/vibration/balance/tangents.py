@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.vibration.balance.block_tangent import EXACT, BlockTangent
-from dalembert.vibration.balance.free_motions import HeldByElements
+from dalembert.vibration.interface.free_motions import HeldByElements
 
 
 @dataclass(frozen=True)

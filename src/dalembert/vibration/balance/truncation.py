@@ -8,11 +8,11 @@ import numpy as np
 
 from dalembert.findings import Finding
 from dalembert.vibration.balance.equations import Equations
-from dalembert.vibration.balance.fourier import Fourier, in_orders
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Solution
+from dalembert.vibration.fourier import Fourier, in_orders
+from dalembert.vibration.interface.lowering import ELASTIC, Lowered
 from dalembert.vibration.laws.contacts import RIGID_KINDS
-from dalembert.vibration.system.lowering import ELASTIC, Lowered
 
 _, VELOCITY = RIGID_KINDS
 SLOW = 2.5

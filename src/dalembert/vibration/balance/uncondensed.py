@@ -15,10 +15,10 @@ from scipy.sparse import issparse
 
 from dalembert.errors import InputError
 from dalembert.vibration.balance.balance import Balance, Evaluation
-from dalembert.vibration.balance.condensation import Condensation
-from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.balance.tangents import DenseTangent
-from dalembert.vibration.system.lowering import ELASTIC, Lowered
+from dalembert.vibration.fourier import Fourier
+from dalembert.vibration.interface.condensation import Condensation
+from dalembert.vibration.interface.lowering import ELASTIC, Lowered
 from dalembert.vibration.system.requirements import require_viscous
 
 REMEMBERING = "displacement"

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from dalembert.kernels.blas import gemm
-from dalembert.vibration.balance.fourier import Fourier
+from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.laws import event_sums_in_plane as in_plane
 from dalembert.vibration.laws.event_sums import sums_and_slopes, sums_complex, sums_real
 from dalembert.vibration.laws.friction_law import FRICTION, LOAD, TANGENTIAL

@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from dalembert.arguments import Checked
-from dalembert.vibration.balance.fourier import Fourier
+from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.laws.contacts import Number
 from dalembert.vibration.laws.law import Law
 from dalembert.vibration.laws.law_block import LawBlock

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from dalembert.vibration.balance.fourier import Fourier
+from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.laws.law import Law
 from dalembert.vibration.laws.sums import Sums
 

@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from dalembert.vibration.balance.fourier import Fourier, synthesis
+from dalembert.vibration.fourier import Fourier, synthesis
 from dalembert.vibration.laws.law_block import LawBlock
 from dalembert.vibration.laws.law_march import UNPERTURBED, Called, Motion, Room, Rule, marches
 from dalembert.vibration.laws.sampled_sums import STEP, derivatives, require_complex_steps, sampled_motion

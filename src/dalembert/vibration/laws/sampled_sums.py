@@ -14,7 +14,7 @@ from dalembert.errors import InputError
 from dalembert.forward.complex_steps import DROPPING, attempted, lost_step
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Complexes, Complexes2, Complexes3, Reals3, Reals4
-from dalembert.vibration.balance.fourier import Fourier
+from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.laws.law import call_law
 from dalembert.vibration.laws.law_block import LawBlock
 

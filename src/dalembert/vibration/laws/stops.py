@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from dalembert.ranges import NOT_NEGATIVE, POSITIVE
-from dalembert.vibration.balance.fourier import Fourier
+from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.laws.contact_sums import ContactSums, Shape, contact_sums
 from dalembert.vibration.laws.contacts import Number
 from dalembert.vibration.laws.element import LawElement

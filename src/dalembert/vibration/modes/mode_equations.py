@@ -21,10 +21,10 @@ from scipy.linalg import eig
 
 from dalembert.errors import InputError, SolveError
 from dalembert.vibration.balance.equations import Equations
-from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.balance.harmonic_balance import AUTOMATIC, MOST_SAMPLES
 from dalembert.vibration.balance.newton import ROUNDING, line_search
 from dalembert.vibration.balance.uncondensed import Local, Uncondensed
+from dalembert.vibration.fourier import Fourier
 
 PHASES = 1024
 """Instants of a period among which the extreme positions are sought."""

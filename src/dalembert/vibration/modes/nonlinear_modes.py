@@ -14,7 +14,6 @@ from dalembert.forward import Checkpoint
 from dalembert.threads import one_thread
 from dalembert.units import unit_of
 from dalembert.vibration.balance.equations import equations
-from dalembert.vibration.balance.fourier import in_orders
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.truncation import (
     SLOW,
@@ -24,6 +23,7 @@ from dalembert.vibration.balance.truncation import (
     enough_harmonics,
     hardest,
 )
+from dalembert.vibration.fourier import in_orders
 from dalembert.vibration.modes.mode_equations import FreeMotion, Linear, ModeEquations, Plane
 from dalembert.vibration.paths.amplitudes import Amplitude, observed_column
 from dalembert.vibration.paths.continuation import EASY, MOST_AROUND, MOST_POINTS, SHORTEST, STEADY

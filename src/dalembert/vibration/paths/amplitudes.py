@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from dalembert.errors import InputError, require_known, unknown
-from dalembert.vibration.balance.fourier import synthesis
+from dalembert.vibration.fourier import synthesis
 
 PHASES = 4096
 """Instants of a period among which a peak is sought."""

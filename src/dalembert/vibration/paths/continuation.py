@@ -8,10 +8,10 @@ from typing import Protocol, TypeVar, cast
 import numpy as np
 from scipy.optimize import brentq
 
-from dalembert.vibration.balance.condensation import norm
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Plane, Solution
 from dalembert.vibration.balance.tangents import bordered, orientation
+from dalembert.vibration.interface.condensation import norm
 from dalembert.vibration.paths.path_end import Progress
 
 STEADY = 0.9

@@ -11,7 +11,7 @@ from scipy.optimize import minimize_scalar
 from dalembert.errors import InputError
 from dalembert.findings import Finding
 from dalembert.units import unit_of
-from dalembert.vibration.balance.fourier import synthesis
+from dalembert.vibration.fourier import synthesis
 from dalembert.vibration.paths.amplitudes import Amplitude, coordinate_row, observed_column
 from dalembert.vibration.storage import ConvergedResult, Over
 

@@ -11,12 +11,12 @@ from dalembert.structure.mode_shapes import drawn_nodes, node_motion
 from dalembert.structure.structure import known_nodes
 from dalembert.threads import one_thread
 from dalembert.vibration.balance.equations import Equations
-from dalembert.vibration.balance.fourier import synthesis
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
+from dalembert.vibration.fourier import synthesis
+from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.laws.contacts import FrictionContact
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.storage import Over, VibrationResult
-from dalembert.vibration.system.lowering import lower
 from dalembert.vibration.system.system import VibrationSystem
 
 

@@ -18,9 +18,9 @@ import numpy as np
 from scipy.linalg import eig
 
 from dalembert.vibration.balance.equations import Equations
-from dalembert.vibration.balance.fourier import Fourier, in_orders
 from dalembert.vibration.balance.newton import Solution
 from dalembert.vibration.balance.uncondensed import Uncondensed
+from dalembert.vibration.fourier import Fourier, in_orders
 
 SHIFT = 0.7
 """Where the pencil is inverted, in parts of ω: a place where no exponent lies, as that would double in 0.16 periods."""

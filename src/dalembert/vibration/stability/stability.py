@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.vibration.balance.equations import Equations
-from dalembert.vibration.balance.fourier import Fourier, in_orders
 from dalembert.vibration.balance.newton import Solution
 from dalembert.vibration.balance.uncondensed import Uncondensed
+from dalembert.vibration.fourier import Fourier, in_orders
 from dalembert.vibration.stability.hill import hill
 from dalembert.vibration.stability.time_map import monodromy
 

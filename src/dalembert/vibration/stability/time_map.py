@@ -19,9 +19,9 @@ from scipy.linalg import cholesky
 
 from dalembert.errors import InputError
 from dalembert.vibration.balance.uncondensed import Uncondensed
+from dalembert.vibration.interface.lowering import ELASTIC
 from dalembert.vibration.laws.friction_law import FRICTION, SEPARATED, STUCK, TANGENTIAL
 from dalembert.vibration.laws.marched_sums import MarchedSums
-from dalembert.vibration.system.lowering import ELASTIC
 
 MEMORY = 4_000_000
 """Numbers that the steps made at once may have."""

@@ -12,9 +12,9 @@ from dalembert.errors import InputError
 from dalembert.forward import Checkpoint, ensemble
 from dalembert.threads import one_thread
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
+from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.storage import Over, VibrationResult
-from dalembert.vibration.system.lowering import lower
 from dalembert.vibration.system.system import VibrationSystem
 from dalembert.vibration.time.newmark import Newmark
 from dalembert.vibration.time.reference import LONG_RUN, steady_state

@@ -12,17 +12,17 @@ from dalembert.arguments import takes_checked
 from dalembert.errors import InputError, SolveError, require_known
 from dalembert.threads import one_thread
 from dalembert.vibration.balance.equations import equations
-from dalembert.vibration.balance.fourier import Fourier, synthesis
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
+from dalembert.vibration.balance.preparation import prepare_time
+from dalembert.vibration.fourier import Fourier, synthesis
+from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.paths.curve import FrequencyCurve
-from dalembert.vibration.paths.frequency_response import observed, response_of, restarted
-from dalembert.vibration.preparation import prepare_time
+from dalembert.vibration.responses.frequency_response import observed, response_of, restarted
 from dalembert.vibration.storage import versions
-from dalembert.vibration.system.lowering import lower
 from dalembert.vibration.system.requirements import require_force
 from dalembert.vibration.system.system import VibrationSystem
 from dalembert.vibration.time.elements import Elements, Instant, Reaction, react, reaction, settle
-from dalembert.vibration.time.lowering import InTime, address
+from dalembert.vibration.time.modal_system import InTime, address
 from dalembert.vibration.time.newmark import Newmark
 from dalembert.vibration.time.periodic_motion import PeriodicMotion
 from dalembert.vibration.time.steps import LOST, Modes, Record, Scheme, State, go_through, room

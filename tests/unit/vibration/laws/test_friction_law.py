@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dalembert.vibration.balance.fourier import Fourier
+from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.laws.contact_sums import PlainSums, Shape
 from dalembert.vibration.laws.friction_law import SEPARATED, SLIPPING, STUCK
 

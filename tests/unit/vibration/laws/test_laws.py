@@ -29,12 +29,12 @@ from dalembert.vibration import (
     law,
 )
 from dalembert.vibration.balance.equations import equations
-from dalembert.vibration.balance.fourier import Fourier
+from dalembert.vibration.fourier import Fourier
+from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.laws.contact_sums import Shape, contact_sums
 from dalembert.vibration.laws.friction_law import update
 from dalembert.vibration.laws.law_block import LawBlock
 from dalembert.vibration.laws.marched_sums import MarchedSums
-from dalembert.vibration.system.lowering import lower
 from refusals import refused
 
 TURN = 2 * np.pi

@@ -21,7 +21,7 @@ from dalembert.vibration import (
     frequency_response,
     steady_state,
 )
-from dalembert.vibration.system.lowering import lower
+from dalembert.vibration.interface.lowering import lower
 
 METHOD = HarmonicBalance(3)
 FREQUENCIES = np.array([0.1, 0.2])

@@ -29,9 +29,9 @@ from dalembert.vibration import (
     frequency_response,
     steady_state,
 )
-from dalembert.vibration.system.lowering import lower
+from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.time.elements import Instant, react, reaction
-from dalembert.vibration.time.lowering import InTime, address
+from dalembert.vibration.time.modal_system import InTime, address
 from support import says
 from vibrating_systems import chain, duffing, one_mass, two_masses
 

@@ -10,8 +10,8 @@ from scipy.sparse import csc_array
 
 from dalembert.errors import InputError, ModelError
 from dalembert.structure import Structure
-from dalembert.vibration.balance.coordinates import Coordinates, coordinates
-from dalembert.vibration.balance.fourier import Fourier
+from dalembert.vibration.fourier import Fourier
+from dalembert.vibration.interface.coordinates import Coordinates, coordinates
 from dalembert.vibration.laws.contacts import ElasticSlider, FrictionContact, Rigid
 from dalembert.vibration.laws.element import LawElement
 from dalembert.vibration.laws.friction_law import sliding

@@ -23,8 +23,8 @@ from scipy.sparse.linalg import splu
 from dalembert.errors import ModelError, SolveError, listed
 from dalembert.structure import Structure
 from dalembert.structure.eigenmodes import real_part
-from dalembert.vibration.balance.coordinates import Coordinates
-from dalembert.vibration.balance.free_motions import FLOATING, free_motions, moving_names
+from dalembert.vibration.interface.coordinates import Coordinates
+from dalembert.vibration.interface.free_motions import FLOATING, free_motions, moving_names
 
 DENSE = 1500
 """Size up to which a sparse interior is treated as a dense one."""

@@ -21,9 +21,9 @@ from dalembert.results import Result
 from dalembert.threads import one_thread
 from dalembert.units import unit_of
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
+from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.paths.curve import FrequencyCurve, Peak
-from dalembert.vibration.paths.frequency_response import FollowedPoint, frequency_response
-from dalembert.vibration.system.lowering import lower
+from dalembert.vibration.responses.frequency_response import FollowedPoint, frequency_response
 from dalembert.vibration.system.requirements import values_of
 from dalembert.vibration.system.system import VibrationSystem
 

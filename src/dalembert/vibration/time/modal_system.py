@@ -15,10 +15,10 @@ from scipy.linalg import LinAlgError, eigh
 
 from dalembert.errors import ModelError
 from dalembert.structure.eigenmodes import dense
-from dalembert.vibration.balance.condensation import DENSE, coupled
-from dalembert.vibration.balance.fourier import Fourier
+from dalembert.vibration.fourier import Fourier
+from dalembert.vibration.interface.condensation import DENSE, coupled
+from dalembert.vibration.interface.lowering import ELASTIC, Lowered
 from dalembert.vibration.laws.friction_law import NORMAL, TANGENTIAL
-from dalembert.vibration.system.lowering import ELASTIC, Lowered
 from dalembert.vibration.system.requirements import require_viscous
 from dalembert.vibration.system.system import StaticForce
 from dalembert.vibration.time.elements import Elements, Ruled

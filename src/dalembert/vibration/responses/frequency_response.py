@@ -17,7 +17,6 @@ from dalembert.vibration.balance.conclusions import (
     unconverged_findings,
 )
 from dalembert.vibration.balance.equations import Equations, equations
-from dalembert.vibration.balance.fourier import in_orders
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Solution
 from dalembert.vibration.balance.truncation import (
@@ -28,12 +27,13 @@ from dalembert.vibration.balance.truncation import (
     hardest,
     truncation_findings,
 )
+from dalembert.vibration.fourier import in_orders
+from dalembert.vibration.interface.lowering import Lowered
 from dalembert.vibration.paths.continuation import PathPoint, across, at_frequencies, natural
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.path_end import end_findings
 from dalembert.vibration.stability.bifurcations import FOLD, fold_findings, judged
 from dalembert.vibration.storage import versions
-from dalembert.vibration.system.lowering import Lowered
 from dalembert.vibration.system.requirements import positive_numbers, require_force, require_viscous
 from dalembert.vibration.system.system import VibrationSystem
 

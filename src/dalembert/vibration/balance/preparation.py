@@ -5,14 +5,14 @@ from threading import Lock
 
 from dalembert.kernels.kernel import Compiled
 from dalembert.kernels.preparation import prepare
-from dalembert.vibration.balance.fourier import Fourier
+from dalembert.vibration.fourier import Fourier
+from dalembert.vibration.interface.lowering import ELASTIC, Lowered
 from dalembert.vibration.laws.contact_sums import EventSums, Shape, sums_for
 from dalembert.vibration.laws.friction_law import sliding
 from dalembert.vibration.laws.friction_tangent import forces_and_slopes
 from dalembert.vibration.laws.law_march import marches
 from dalembert.vibration.laws.marched_sums import MarchedSums
 from dalembert.vibration.laws.sampled_sums import law_derivatives, sampled_forces
-from dalembert.vibration.system.lowering import ELASTIC, Lowered
 from dalembert.vibration.time.elements import react, settle
 from dalembert.vibration.time.steps import go_through
 

@@ -23,12 +23,12 @@ from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Solution
 from dalembert.vibration.balance.sensitivity import STEP, sensitivities
 from dalembert.vibration.balance.truncation import ForcedLevel, choice_findings, hardest
+from dalembert.vibration.interface.complex_steps import check_laws, check_numbers
+from dalembert.vibration.interface.lowering import Lowered, lower
 from dalembert.vibration.paths.amplitudes import Amplitude, highest_order
 from dalembert.vibration.paths.continuation import at_frequencies
 from dalembert.vibration.paths.curve import FrequencyCurve
-from dalembert.vibration.paths.frequency_response import frequency_response, response_of, restarted
-from dalembert.vibration.system.complex_steps import check_laws, check_numbers
-from dalembert.vibration.system.lowering import Lowered, lower
+from dalembert.vibration.responses.frequency_response import frequency_response, response_of, restarted
 from dalembert.vibration.system.requirements import positive_numbers
 from dalembert.vibration.system.system import VibrationSystem
 

@@ -15,9 +15,9 @@ from dalembert.forward.complex_steps import check_steps
 from dalembert.parameters import Parameters
 from dalembert.structure.craig_bampton import HeldBases
 from dalembert.structure.structure import MATRICES, Structure
+from dalembert.vibration.interface.lowering import Lowered, lower
 from dalembert.vibration.laws.law_block import LawBlock
 from dalembert.vibration.laws.user_element import UserElement
-from dalembert.vibration.system.lowering import Lowered, lower
 from dalembert.vibration.system.system import VibrationSystem
 
 NUMBERS = ("tangential stiffness", "normal stiffness", "gap", "friction", "preload")

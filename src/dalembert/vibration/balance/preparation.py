@@ -13,8 +13,6 @@ from dalembert.vibration.laws.friction_tangent import forces_and_slopes
 from dalembert.vibration.laws.law_march import marches
 from dalembert.vibration.laws.marched_sums import MarchedSums
 from dalembert.vibration.laws.sampled_sums import law_derivatives, sampled_forces
-from dalembert.vibration.time.elements import react, settle
-from dalembert.vibration.time.steps import go_through
 
 _TURN = Lock()
 """Threads of an ensemble start together: one of them compiles, and the others wait."""
@@ -22,16 +20,16 @@ _TURN = Lock()
 
 def prepare_balance(lowered: Lowered, events: bool, *, residuals: bool, stability: bool, derivatives: bool) -> None:
     """Prepare the kernels of harmonic balance, for the same arguments as ``equations`` takes."""
-    kernels = _kernels(lowered, events, residuals, derivatives)
+    kernels = balance_kernels(lowered, events, residuals, derivatives)
     if stability and lowered.blocks:  # the map of stability goes from sample to sample
         kernels.append(forces_and_slopes)
         if any(block.kind == ELASTIC for block in lowered.blocks):
             kernels += [marches, law_derivatives, *sliding.all_kernels()]
     if kernels:
-        _prepare(list(dict.fromkeys(kernels)))
+        prepare_together(list(dict.fromkeys(kernels)))
 
 
-def _kernels(lowered: Lowered, events: bool, residuals: bool, derivatives: bool) -> list[Compiled]:
+def balance_kernels(lowered: Lowered, events: bool, residuals: bool, derivatives: bool) -> list[Compiled]:
     """Kernels of the sums of contacts and stops."""
     shapes = [(block.numbers, Shape(block.tangents, block.normal, block.memory)) for block in lowered.blocks]
     corrected = [events and block.element.switches for block in lowered.laws]
@@ -48,15 +46,7 @@ def _kernels(lowered: Lowered, events: bool, residuals: bool, derivatives: bool)
     return kernels + [kernel for law in laws for kernel in law.all_kernels()]
 
 
-def prepare_time(lowered: Lowered, events: bool | None) -> None:
-    """Compile or load the kernels of integration in time.
-
-    With ``events`` it begins at a point of a curve, and they are as the method of the curve has them.
-    """
-    balance = [] if events is None else [settle, *_kernels(lowered, events, residuals=True, derivatives=False)]
-    _prepare([react, go_through, *balance])
-
-
-def _prepare(kernels: Sequence[Compiled]) -> None:
+def prepare_together(kernels: Sequence[Compiled]) -> None:
+    """Compile or load kernels, once for all threads."""
     with _TURN:
         prepare(kernels)

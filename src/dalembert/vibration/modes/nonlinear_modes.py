@@ -13,6 +13,7 @@ from dalembert.findings import Finding
 from dalembert.forward import Checkpoint
 from dalembert.threads import one_thread
 from dalembert.units import unit_of
+from dalembert.vibration.balance.arc_length import EASY, MOST_POINTS, SHORTEST, STEADY, Progress
 from dalembert.vibration.balance.equations import equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.truncation import (
@@ -26,8 +27,8 @@ from dalembert.vibration.balance.truncation import (
 from dalembert.vibration.fourier import in_orders
 from dalembert.vibration.modes.mode_equations import FreeMotion, Linear, ModeEquations, Plane
 from dalembert.vibration.paths.amplitudes import Amplitude, observed_column
-from dalembert.vibration.paths.continuation import EASY, MOST_AROUND, MOST_POINTS, SHORTEST, STEADY
-from dalembert.vibration.paths.path_end import Progress, end_findings
+from dalembert.vibration.paths.continuation import MOST_AROUND
+from dalembert.vibration.paths.path_end import end_findings
 from dalembert.vibration.storage import ConvergedResult, Over, versions
 from dalembert.vibration.system.requirements import positive_numbers
 from dalembert.vibration.system.system import StaticForce, VibrationSystem

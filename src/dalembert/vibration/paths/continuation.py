@@ -1,86 +1,29 @@
 """Continuation of responses over frequency: from one given frequency to the next, or along the curve past its folds."""
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import replace
 from itertools import islice
-from typing import Protocol, TypeVar, cast
 
 import numpy as np
-from scipy.optimize import brentq
 
-from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
-from dalembert.vibration.balance.newton import Plane, Solution
-from dalembert.vibration.balance.tangents import bordered, orientation
-from dalembert.vibration.interface.condensation import norm
-from dalembert.vibration.paths.path_end import Progress
+from dalembert.vibration.balance.arc_length import EASY, PathPoint, PathProblem, along, on_border
+from dalembert.vibration.balance.newton import Solution
 
-STEADY = 0.9
-"""Cosine of the angle between directions of a path, below which a step was too long."""
-EASY = 4
-"""Newton iterations of a step up to which the next step is longer."""
-SHORTEST = 1e-7
-"""Smallest step relative to the largest. Continuation stops below it."""
-SHARP = 1e-3
-"""Step, as part of the longest, from which on the path may have a sharp turn."""
-REACHES = (1.0, 4.0, 16.0, 64.0)
-"""Steps beyond a sharp turn, in parts of the one that failed before it."""
 BEHIND = 2.0
 """Part of the way between two frequencies by which the curve from one to the other may turn back behind the first, as
 long as it keeps half of that."""
 MOST_AROUND = 500
 """Points of that curve after which continuation to the second frequency stops."""
-STILL = 1e-3
-"""Motion, as part of what the forces would cause on the stiffness of the structure alone, that counts as none."""
 MOST_LOST = 20
 """Points in succession that are not found, after which continuation stops. Their steps grow to the longest."""
-MOST_POINTS = 20_000
-Found = TypeVar("Found")
 
 
-class Problem(Protocol):
-    """Equations with a parameter, such as the frequency, over which paths are followed."""
-
-    @property
-    def method(self) -> HarmonicBalance: ...
-
-    def solve(self, unknowns: np.ndarray, omega: float, samples: int, plane: Plane | None = None, /) -> Solution: ...
-
-    def first(self, omega: float, /) -> Solution: ...
-
-
-@dataclass(frozen=True)
-class PathPoint:
-    """A point of a curve.
-
-    Parameters
-    ----------
-    solution : Solution
-    fold : bool
-        Whether the curve turns back here, or where the turn is sharp, just before.
-    returned : bool
-        Whether the curve comes back here to the frequencies that were asked for.
-    stable : int
-        1, 0, or -1 where it is not known.
-    marker : str
-        Kind of the bifurcation that lies here, or nothing.
-    across_fold : bool
-        Whether stability is not known because a fold lies between the motion and its perturbations.
-    """
-
-    solution: Solution
-    fold: bool = False
-    returned: bool = False
-    stable: int = -1
-    marker: str = ""
-    across_fold: bool = False
-
-
-def at_frequencies(equations: Problem, omegas: np.ndarray, start: Solution | None) -> Iterator[PathPoint]:
+def at_frequencies(equations: PathProblem, omegas: np.ndarray, start: Solution | None) -> Iterator[PathPoint]:
     """Yield solutions at given frequencies, each from the last converged one, else from the next one."""
     return _from_behind(equations, _at_frequencies(equations, omegas, start))
 
 
-def _from_behind(equations: Problem, points: Iterator[PathPoint]) -> Iterator[PathPoint]:
+def _from_behind(equations: PathProblem, points: Iterator[PathPoint]) -> Iterator[PathPoint]:
     """Yield points of a curve in their order; those that were not found are sought from the one behind them.
 
     At a kink of the forces a branch may end, and the next one begin before that: it is found from its other points.
@@ -102,7 +45,7 @@ def _from_behind(equations: Problem, points: Iterator[PathPoint]) -> Iterator[Pa
     yield from missed
 
 
-def _at_frequencies(equations: Problem, omegas: np.ndarray, start: Solution | None) -> Iterator[PathPoint]:
+def _at_frequencies(equations: PathProblem, omegas: np.ndarray, start: Solution | None) -> Iterator[PathPoint]:
     known = start
     for omega in omegas:
         solution = equations.first(omega) if known is None else _towards(equations, known, omega)
@@ -110,7 +53,7 @@ def _at_frequencies(equations: Problem, omegas: np.ndarray, start: Solution | No
         yield PathPoint(solution)
 
 
-def _towards(equations: Problem, known: Solution, omega: float) -> Solution:
+def _towards(equations: PathProblem, known: Solution, omega: float) -> Solution:
     """Return the solution at a frequency from a known one. Steps that do not converge are halved."""
     way = [omega]
     worst = None
@@ -129,7 +72,7 @@ def _towards(equations: Problem, known: Solution, omega: float) -> Solution:
     return known
 
 
-def _around(equations: Problem, known: Solution, omega: float) -> Solution | None:
+def _around(equations: PathProblem, known: Solution, omega: float) -> Solution | None:
     """Return the solution at a frequency along the curve from a known one, past folds."""
     if known.omega == omega or not equations.method.halvings:
         return None
@@ -148,12 +91,12 @@ def _predicted(known: Solution, omega: float) -> np.ndarray:
         return known.unknowns
 
 
-def natural(equations: Problem, begin: float, end: float, start: Solution | None) -> Iterator[PathPoint]:
+def natural(equations: PathProblem, begin: float, end: float, start: Solution | None) -> Iterator[PathPoint]:
     """Yield solutions from one frequency to another, with steps as long as Newton's method allows."""
     return _from_behind(equations, _natural(equations, begin, end, start))
 
 
-def _natural(equations: Problem, begin: float, end: float, start: Solution | None) -> Iterator[PathPoint]:
+def _natural(equations: PathProblem, begin: float, end: float, start: Solution | None) -> Iterator[PathPoint]:
     known = start if start is not None else equations.first(begin)
     yield PathPoint(known)
     longest = (end - begin) * equations.method.resolution
@@ -175,57 +118,7 @@ def _natural(equations: Problem, begin: float, end: float, start: Solution | Non
         step = min(2 * step, longest, key=abs) if lost or solution.iterations <= EASY else step
 
 
-def along(
-    equations: Problem, begin: float, end: float, start: Solution | None, behind: float = 0.0
-) -> Iterator[PathPoint]:
-    """Points along the curve from one frequency to another, by arc length, with its folds.
-
-    It may turn back behind its beginning, by a part of the way.
-    """
-    known = start if start is not None else equations.first(begin)
-    yield PathPoint(known)
-    if not known.converged:
-        return
-    width = abs(end - begin) / 10
-    longest = 10 * equations.method.resolution
-    low, high = sorted((begin - behind * (end - begin), end))
-    onward = np.zeros(known.unknowns.size + 1)
-    onward[-1] = np.sign(end - begin)
-    step, points, progress = longest / 4, 1, Progress(longest)
-    path = Path(known, direction_at(known, onward, width), width)
-    while points < MOST_POINTS:
-        solution, direction = path.step(equations, step)
-        if direction is None and step <= SHARP * longest:
-            beyond = path.turned(equations, solution, step)
-            if beyond is not None:
-                yield PathPoint(beyond.known, fold=bool(beyond.direction[-1] * path.direction[-1] < 0))
-                path, points = beyond, points + 1
-                continue
-        bent = direction is not None and float(path.direction @ direction) < STEADY
-        if direction is None or (bent and step > longest * 1e-2):
-            step /= 2
-            if step < SHORTEST * longest:
-                yield PathPoint(solution)
-                return
-            continue
-        if not low <= solution.omega <= high:
-            border = low if solution.omega < low else high
-            last = equations.solve(*_on_border(path.known, solution, border), solution.samples)
-            yield PathPoint(last)
-            return
-        folds = bool(direction[-1] * path.direction[-1] < 0)
-        fold = _fold(equations, path, step) if folds else None
-        if fold is not None:
-            yield PathPoint(fold, fold=True)
-        yield PathPoint(solution, fold=folds and fold is None)
-        points += 1
-        if progress.ends(step):
-            return
-        path = Path(solution, direction_at(solution, direction, width), width)
-        step = min(longest, step * (1.5 if solution.iterations <= EASY else 0.7))
-
-
-def across(equations: Problem, begin: float, end: float, start: Solution | None) -> Iterator[PathPoint]:
+def across(equations: PathProblem, begin: float, end: float, start: Solution | None) -> Iterator[PathPoint]:
     """Points of :func:`along` between two frequencies, where the curve may leave and come back at the first of them."""
     low, high = min(begin, end), max(begin, end)
     before: Solution | None = None
@@ -233,7 +126,7 @@ def across(equations: Problem, begin: float, end: float, start: Solution | None)
     for found in along(equations, begin, end, start, _behind(begin, end)):
         solution, leaves = found.solution, not low <= found.solution.omega <= high
         if before is not None and leaves != bool(outside) and solution.converged:
-            border = equations.solve(*_on_border(before, solution, begin), solution.samples)
+            border = equations.solve(*on_border(before, solution, begin), solution.samples)
             yield PathPoint(border, returned=not leaves)
         if not leaves:
             yield found
@@ -245,104 +138,3 @@ def across(equations: Problem, begin: float, end: float, start: Solution | None)
 
 def _behind(begin: float, end: float) -> float:
     return min(BEHIND, 0.5 * abs(begin / (end - begin)))
-
-
-@dataclass(frozen=True)
-class Path:
-    """A point of a curve and the direction of the curve there, in scaled unknowns."""
-
-    known: Solution
-    direction: np.ndarray
-    width: float
-
-    @property
-    def size(self) -> float:
-        return _size(self.known)
-
-    def step(self, equations: Problem, length: float) -> tuple[Solution, np.ndarray | None]:
-        """Return the point after a step, and the direction there in the scales of this point; None if not converged."""
-        # The guess y + s t is corrected on the plane t · (y' - y - s t) = 0 across the path (pseudo-arc length).
-        moved = self.direction[:-1].reshape(self.known.unknowns.shape) * (length * self.size)
-        guess, omega = self.known.unknowns + moved, self.known.omega + self.direction[-1] * length * self.width
-        plane = Plane(self.direction, guess, omega, self.size, self.width)
-        solution = equations.solve(guess, omega, self.known.samples, plane)
-        if not solution.converged:
-            return solution, None
-        return solution, direction_at(solution, self.direction, self.width, self.size)
-
-    def turned(self, equations: Problem, failed: Solution, length: float) -> "Path | None":
-        """Return the path behind a sharp turn, from the tangent where a step over it failed.
-
-        The tangent is oriented by the sign of the determinant with the direction as a row, which a path keeps.
-        """
-        sign = _sign(self.known, self.direction, self.width, self.size)
-        if not sign:
-            return None
-        try:
-            beyond = direction_at(failed, self.direction, self.width, self.size)
-        except np.linalg.LinAlgError:
-            return None
-        if not np.all(np.isfinite(beyond)):
-            return None
-        beyond *= sign * _sign(failed, beyond, self.width, self.size)
-        for reach in REACHES if np.any(beyond) else ():
-            solution, direction = replace(self, direction=beyond).step(equations, reach * length)
-            if direction is None or float(direction @ beyond) < STEADY:
-                continue
-            if _sign(solution, direction, self.width, self.size) == sign:
-                return Path(solution, direction_at(solution, direction, self.width), self.width)
-        return None
-
-
-def _sign(known: Solution, direction: np.ndarray, width: float, size: float) -> float:
-    return orientation(known.tangent, direction, (size, width, known.scale))
-
-
-def _size(known: Solution) -> float:
-    """Size of the unknowns; where all contacts stick and these are rounding, a part of what the forces could move."""
-    return max(norm(known.unknowns), STILL * known.point.load / (known.point.stiffest or 1.0)) or 1.0
-
-
-def direction_at(known: Solution, before: np.ndarray, width: float, size: float | None = None) -> np.ndarray:
-    """Return the unit tangent of the curve in scaled unknowns, in the sense of the one before."""
-    # (J, ∂R/∂ω; t_beforeᵀ) t = (0; 1): the tangent has J dU + ∂R/∂ω dω = 0, and goes to the side of the one before.
-    size = size or _size(known)
-    change, turned = bordered(known.tangent, before, (size, width, known.scale), np.zeros_like(known.unknowns), 1.0)
-    tangent = np.append(change, turned)
-    return tangent / np.linalg.norm(tangent)
-
-
-def _on_border(before: Solution, after: Solution, border: float) -> tuple[np.ndarray, float]:
-    """Return a guess of the point at which the curve between two points crosses a limit of the frequencies."""
-    part = (border - before.omega) / (after.omega - before.omega)
-    return before.unknowns + part * (after.unknowns - before.unknowns), border
-
-
-def _fold(equations: Problem, path: Path, step: float) -> Solution | None:
-    """Return the fold within a step: the point at which the last component of the direction is zero."""
-
-    def turning(length: float) -> tuple[Solution, float]:
-        solution, direction = path.step(equations, length)
-        return solution, float("nan") if direction is None else float(direction[-1])
-
-    return zero_between(turning, step, {0.0: (path.known, float(path.direction[-1]))}, 1e-6 * step)
-
-
-def zero_between(
-    trial: Callable[[float], tuple[Found, float]], end: float, tried: dict[float, tuple[Found, float]], tolerance: float
-) -> Found | None:
-    """Return what a trial between 0 and an end gives where its value is zero; None if a trial gives no value.
-
-    ``tried`` gets all trials, and has those that are known.
-    """
-
-    def value(part: float) -> float:
-        if part not in tried:
-            tried[part] = trial(part)
-        return tried[part][1]
-
-    try:
-        value(part := float(cast(float, brentq(value, 0.0, end, xtol=tolerance))))
-    except (ValueError, RuntimeError):  # a point in between was not found, or lies on another branch
-        return None
-    return tried[part][0]

@@ -1,33 +1,15 @@
 """Whether a path came to its end, and why it did not."""
 
-from collections import deque
-from dataclasses import dataclass, field
-
 import numpy as np
 
 from dalembert.findings import Finding
 
-POINTS = 300
-"""Steps that together must be as long as the longest step; else the path makes no progress."""
 ADVICE = {
     "fold": "The response beyond is on another branch. Give single values there in place of two ends.",
     "stopped": "Use more harmonics or smaller steps, or start behind this place.",
     "no-progress": "Use more harmonics or samples, or events=True, so that the path has no sharp turns.",
 }
 """What to do, by the reason."""
-
-
-@dataclass(frozen=True)
-class Progress:
-    """The last steps of a path, whose longest step is ``longest``."""
-
-    longest: float
-    steps: deque[float] = field(default_factory=lambda: deque(maxlen=POINTS))
-
-    def ends(self, step: float) -> bool:
-        """Add a step; return whether the last ones lead nowhere."""
-        self.steps.append(step)
-        return len(self.steps) == POINTS and sum(self.steps) < self.longest
 
 
 def end_findings(

@@ -28,7 +28,8 @@ from dalembert.vibration.interface.lowering import Lowered, lower
 from dalembert.vibration.paths.amplitudes import Amplitude, highest_order
 from dalembert.vibration.paths.continuation import at_frequencies
 from dalembert.vibration.paths.curve import FrequencyCurve
-from dalembert.vibration.responses.frequency_response import frequency_response, response_of, restarted
+from dalembert.vibration.paths.curve_points import response_of, restarted
+from dalembert.vibration.responses.frequency_response import frequency_response
 from dalembert.vibration.system.requirements import positive_numbers
 from dalembert.vibration.system.system import VibrationSystem
 

@@ -10,6 +10,7 @@ from dalembert.arguments import takes_checked
 from dalembert.errors import InputError, require_known
 from dalembert.forward import Checkpoint
 from dalembert.threads import one_thread
+from dalembert.vibration.balance.arc_length import PathPoint
 from dalembert.vibration.balance.conclusions import (
     free_findings,
     largest,
@@ -27,10 +28,9 @@ from dalembert.vibration.balance.truncation import (
     hardest,
     truncation_findings,
 )
-from dalembert.vibration.fourier import in_orders
-from dalembert.vibration.interface.lowering import Lowered
-from dalembert.vibration.paths.continuation import PathPoint, across, at_frequencies, natural
+from dalembert.vibration.paths.continuation import across, at_frequencies, natural
 from dalembert.vibration.paths.curve import FrequencyCurve
+from dalembert.vibration.paths.curve_points import observed, response_of, restarted
 from dalembert.vibration.paths.path_end import end_findings
 from dalembert.vibration.stability.bifurcations import FOLD, fold_findings, judged
 from dalembert.vibration.storage import versions
@@ -40,8 +40,6 @@ from dalembert.vibration.system.system import VibrationSystem
 NATURAL, ARC_LENGTH = "natural", "arc-length"
 PHASES = 64
 """Instants of a period at which a curve keeps the contacts' states."""
-ALL = 60
-"""Size up to which all degrees of freedom are observed if none are named."""
 
 
 @dataclass(frozen=True)
@@ -254,35 +252,6 @@ class _Asked:
         )
 
 
-def restarted(problem: Equations, curve: FrequencyCurve, point: int, where: str) -> Solution:
-    """Solve a point of a curve again. ``where`` is the caller, for errors."""
-    if not -len(curve) <= point < len(curve):
-        raise InputError(
-            f"{where}: the point is {point}; expected a number below {len(curve)}, the points of the curve"
-        )
-    unknowns, samples, orders = curve.unknowns[point], int(curve.samples[point]), problem.method.orders
-    if set(curve.orders) < set(orders):
-        unknowns, samples = in_orders(unknowns, curve.orders, orders), max(samples, problem.method.first_samples)
-    if unknowns.shape != problem.balance(samples).shape or not set(curve.orders) <= set(orders):
-        raise InputError(
-            f"{where}: the start has unknowns of shape {unknowns.shape} and harmonics {curve.orders}; the "
-            f"system has {problem.balance(samples).shape} and {orders}; "
-            "start from a curve of the same system"
-        )
-    return problem.solve(unknowns, 2 * np.pi * float(curve.frequencies[point]), samples)
-
-
-def observed(lowered: Lowered, names: Sequence[str] | None) -> np.ndarray:
-    """Return the rows of the observed degrees of freedom: those named, or all, or those with forces and elements."""
-    structure = lowered.structure
-    if names is not None:
-        return np.array(structure.rows(names), dtype=int)
-    if structure.size <= ALL:
-        return np.arange(structure.size)
-    forced = [structure.dofs.index(force.dof) for force in lowered.forces]
-    return np.unique([*forced, *lowered.matrix.nonzero()[1]]).astype(int)
-
-
 def _kept(problem: Equations, one: PathPoint, rows: np.ndarray) -> dict[str, Any]:
     """What a curve keeps of a point, by the names of its arrays; the response in some rows of the structure.
 
@@ -313,10 +282,3 @@ def _kept(problem: Equations, one: PathPoint, rows: np.ndarray) -> dict[str, Any
         "forces": forces,
         "states": states,
     }
-
-
-def response_of(problem: Equations, solution: Solution) -> np.ndarray:
-    """Return the coefficients of all degrees of freedom at a solution, (n, coefficients)."""
-    series = problem.balance(solution.samples).series
-    retained = series.phasors(solution.unknowns)
-    return series.coefficients(problem.condensation.full(retained, solution.point.interior(retained)))

@@ -19,6 +19,7 @@ from dalembert.forward import Checkpoint
 from dalembert.forward.builders import check_function
 from dalembert.threads import one_thread
 from dalembert.units import unit_of
+from dalembert.vibration.balance.arc_length import Path, direction_at, zero_between
 from dalembert.vibration.balance.equations import Equations, equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Plane, Solution
@@ -26,9 +27,9 @@ from dalembert.vibration.balance.truncation import ForcedLevel, Truncation, choi
 from dalembert.vibration.fourier import synthesis
 from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.paths.amplitudes import Amplitude, highest_order
-from dalembert.vibration.paths.continuation import Path, direction_at, zero_between
 from dalembert.vibration.paths.curve import FrequencyCurve
-from dalembert.vibration.responses.frequency_response import ARC_LENGTH, frequency_response, response_of, restarted
+from dalembert.vibration.paths.curve_points import response_of, restarted
+from dalembert.vibration.responses.frequency_response import ARC_LENGTH, frequency_response
 from dalembert.vibration.storage import ConvergedResult, Over, versions
 from dalembert.vibration.system.requirements import values_of
 from dalembert.vibration.system.system import VibrationSystem

@@ -7,9 +7,9 @@ import numpy as np
 
 from dalembert.errors import counted
 from dalembert.findings import Finding
+from dalembert.vibration.balance.arc_length import PathPoint, zero_between
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.newton import Plane, Solution
-from dalembert.vibration.paths.continuation import PathPoint, zero_between
 from dalembert.vibration.stability.stability import REAL, Exponents, exponents, remembers
 
 FOLD, TORUS, DOUBLING, BRANCH = "fold", "torus", "period doubling", "branch point"

@@ -8,7 +8,7 @@ from dalembert.threads import one_thread
 from dalembert.vibration.balance.equations import equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.paths.curve import FrequencyCurve
-from dalembert.vibration.responses.frequency_response import restarted
+from dalembert.vibration.paths.curve_points import restarted
 from dalembert.vibration.stability.stability import AUTOMATIC, HILL, TIME_MAP, exponents
 from dalembert.vibration.system.system import VibrationSystem
 

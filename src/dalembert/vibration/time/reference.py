@@ -13,11 +13,11 @@ from dalembert.errors import InputError, SolveError, require_known
 from dalembert.threads import one_thread
 from dalembert.vibration.balance.equations import equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
-from dalembert.vibration.balance.preparation import prepare_time
+from dalembert.vibration.balance.preparation import balance_kernels, prepare_together
 from dalembert.vibration.fourier import Fourier, synthesis
 from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.paths.curve import FrequencyCurve
-from dalembert.vibration.responses.frequency_response import observed, response_of, restarted
+from dalembert.vibration.paths.curve_points import observed, response_of, restarted
 from dalembert.vibration.storage import versions
 from dalembert.vibration.system.requirements import require_force
 from dalembert.vibration.system.system import VibrationSystem
@@ -95,7 +95,11 @@ def steady_state(
     lowered = lower(system).real
     problem = InTime(lowered, 2 * np.pi * frequency, method.steps_per_period, method.stand_in)
     rows = observed(lowered, observe)
-    prepare_time(lowered, None if start is None else HarmonicBalance(**start[0].provenance["method"]).events)
+    kernels = [react, go_through]
+    if start is not None:  # the motion starts as the method of the curve has it
+        events = HarmonicBalance(**start[0].provenance["method"]).events
+        kernels += [settle, *balance_kernels(lowered, events, residuals=True, derivatives=False)]
+    prepare_together(kernels)
     run = _Run(problem, method, [])
     state = run.rest() if start is None else run.on_curve(system, *start)
     ended = run.long(state, method.periods, method.tolerance) if way == LONG_RUN else run.shot(state)

@@ -20,7 +20,8 @@ from dalembert.vibration import (
     frequency_response,
     steady_state,
 )
-from dalembert.vibration.paths.path_end import POINTS, Progress, end_findings
+from dalembert.vibration.balance.arc_length import POINTS, Progress
+from dalembert.vibration.paths.path_end import end_findings
 from sliders_in_time import Sliders
 
 FREQUENCIES = np.array([0.5, 0.8, 1.2, 2.0, 3.0]) / (2 * np.pi)

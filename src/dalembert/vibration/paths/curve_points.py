@@ -1,0 +1,51 @@
+"""Points of a curve: solved again, in all degrees of freedom, and which of these are observed."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from dalembert.errors import InputError
+from dalembert.vibration.balance.equations import Equations
+from dalembert.vibration.balance.newton import Solution
+from dalembert.vibration.fourier import in_orders
+from dalembert.vibration.interface.lowering import Lowered
+from dalembert.vibration.paths.curve import FrequencyCurve
+
+ALL = 60
+"""Size up to which all degrees of freedom are observed if none are named."""
+
+
+def restarted(problem: Equations, curve: FrequencyCurve, point: int, where: str) -> Solution:
+    """Solve a point of a curve again. ``where`` is the caller, for errors."""
+    if not -len(curve) <= point < len(curve):
+        raise InputError(
+            f"{where}: the point is {point}; expected a number below {len(curve)}, the points of the curve"
+        )
+    unknowns, samples, orders = curve.unknowns[point], int(curve.samples[point]), problem.method.orders
+    if set(curve.orders) < set(orders):
+        unknowns, samples = in_orders(unknowns, curve.orders, orders), max(samples, problem.method.first_samples)
+    if unknowns.shape != problem.balance(samples).shape or not set(curve.orders) <= set(orders):
+        raise InputError(
+            f"{where}: the start has unknowns of shape {unknowns.shape} and harmonics {curve.orders}; the "
+            f"system has {problem.balance(samples).shape} and {orders}; "
+            "start from a curve of the same system"
+        )
+    return problem.solve(unknowns, 2 * np.pi * float(curve.frequencies[point]), samples)
+
+
+def observed(lowered: Lowered, names: Sequence[str] | None) -> np.ndarray:
+    """Return the rows of the observed degrees of freedom: those named, or all, or those with forces and elements."""
+    structure = lowered.structure
+    if names is not None:
+        return np.array(structure.rows(names), dtype=int)
+    if structure.size <= ALL:
+        return np.arange(structure.size)
+    forced = [structure.dofs.index(force.dof) for force in lowered.forces]
+    return np.unique([*forced, *lowered.matrix.nonzero()[1]]).astype(int)
+
+
+def response_of(problem: Equations, solution: Solution) -> np.ndarray:
+    """Return the coefficients of all degrees of freedom at a solution, (n, coefficients)."""
+    series = problem.balance(solution.samples).series
+    retained = series.phasors(solution.unknowns)
+    return series.coefficients(problem.condensation.full(retained, solution.point.interior(retained)))

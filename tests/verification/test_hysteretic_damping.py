@@ -15,7 +15,7 @@ from dalembert.vibration import (
     VibrationSystem,
     frequency_response,
 )
-from dalembert.vibration.balance import condensation
+from dalembert.vibration.interface import condensation
 
 TOPIC = "Hysteretic damping"
 DIRECT = "direct solution with a complex stiffness, by the test itself"

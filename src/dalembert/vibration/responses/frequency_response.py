@@ -1,6 +1,6 @@
 """The response of a vibrating system over frequency."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -12,6 +12,7 @@ from dalembert.forward import Checkpoint
 from dalembert.threads import one_thread
 from dalembert.vibration.balance.arc_length import PathPoint
 from dalembert.vibration.balance.conclusions import (
+    Unconverged,
     free_findings,
     largest,
     unconverged,
@@ -67,6 +68,8 @@ class FollowedPoint:
 
 
 OnPoint = Callable[[FollowedPoint], object]
+CurvePoint = tuple[FrequencyCurve, int]
+"""A curve and the number of one of its points."""
 
 
 @takes_checked("frequencies", "continuation", "observe")
@@ -144,124 +147,170 @@ def frequency_response(
     >>> curve.amplitude("m").round(3).tolist()
     [3.625]
     """
+    posed = _pose(system, frequencies, continuation, observe, start, stability, checkpoint, on_point)
     method = method or HarmonicBalance()
-    ends = isinstance(frequencies, tuple)
+    if method.automatic:
+        return _refine(posed, method)
+    return _conclude(posed, _follow(posed, posed.equations(method), start, stability, check))
+
+
+@dataclass(frozen=True)
+class _PosedCurve:
+    """A curve to follow with any number of harmonics. ``omegas``: the values (rad/s), or the two ends of a path."""
+
+    system: VibrationSystem
+    omegas: np.ndarray
+    is_path: bool
+    settings: dict[str, Any]
+    observe: Sequence[str] | None
+    start: CurvePoint | None
+    stability: bool
+    checkpoint: Checkpoint | None
+    on_point: OnPoint | None
+
+    def equations(self, method: HarmonicBalance) -> Equations:
+        """The equations of the system with the harmonics of a method."""
+        return equations(self.system, method, self.checkpoint, stability=self.stability)
+
+
+@dataclass(frozen=True)
+class _FollowedCurve:
+    """The points of a curve with a number of harmonics.
+
+    ``arrays``: those that a curve keeps, by name, (points, ...). ``unconverged``: causes, of the points that are not
+    converged. ``across_fold``: frequencies, Hz, of the points whose stability is unknown because of a fold.
+    ``largest``: the largest motion, None if it is not to be checked.
+    """
+
+    equations: Equations
+    dofs: tuple[str, ...]
+    arrays: dict[str, np.ndarray]
+    markers: tuple[tuple[str, int], ...]
+    unconverged: tuple[Unconverged, ...]
+    across_fold: tuple[float, ...]
+    largest: Solution | None
+
+
+def _pose(
+    system: VibrationSystem,
+    frequencies: np.ndarray | tuple[float, float],
+    continuation: str,
+    observe: Sequence[str] | None,
+    start: CurvePoint | None,
+    stability: bool,
+    checkpoint: Checkpoint | None,
+    on_point: OnPoint | None,
+) -> _PosedCurve:
+    is_path = isinstance(frequencies, tuple)
     require_force(system.forces, "frequency_response")
     omegas = 2 * np.pi * positive_numbers(frequencies, "frequency_response", "frequencies", "Hz")
     require_known("continuation", continuation, (NATURAL, ARC_LENGTH), "frequency_response")
-    if continuation == ARC_LENGTH and not ends:
+    if continuation == ARC_LENGTH and not is_path:
         raise InputError(
             "frequency_response: a path by arc length finds its own frequencies; give a tuple of two, (begin, end)"
         )
     if stability:
         require_viscous(system.structure, "stability and Floquet multipliers")
-    settings = {"continuation": continuation, "frequencies": list(map(float, frequencies)) if ends else "given"}
-    asked = _Asked(system, omegas, ends, settings, observe, checkpoint, on_point)
-    if not method.automatic:
-        return asked.curve(asked.equations(method, stability), start, stability, check)
-    method = method.keeping(system.highest_harmonic).at_least(1 if start is None else start[0].orders[-1])
-    return _with_enough_harmonics(asked, method, start, stability)
+    settings = {"continuation": continuation, "frequencies": list(map(float, frequencies)) if is_path else "given"}
+    return _PosedCurve(system, omegas, is_path, settings, observe, start, stability, checkpoint, on_point)
 
 
-def _with_enough_harmonics(
-    asked: "_Asked", method: HarmonicBalance, start: tuple[FrequencyCurve, int] | None, stability: bool
-) -> FrequencyCurve:
+def _follow(
+    posed: _PosedCurve, problem: Equations, start: CurvePoint | None, stability: bool, check: bool
+) -> _FollowedCurve:
+    """Follow the curve with a number of harmonics; ``check``: whether the largest motion is kept."""
+    rows = observed(problem.lowered, posed.observe)
+    dofs = tuple(problem.lowered.structure.dofs.names[row] for row in rows)
+    points = _points(posed, problem, start)
+    records, causes, across_fold, done = [], [], [], 0.0
+    top: Solution | None = None
+    for point in judged(problem, points, located=posed.is_path) if stability else points:
+        solution = point.solution
+        records.append(_record(problem, point, rows))
+        causes.append(unconverged(problem, solution))
+        across_fold += [float(solution.omega) / (2 * np.pi)] * point.across_fold
+        top = largest(top, solution) if check else None
+        if posed.on_point is not None:
+            done = max(done, _progress(posed, float(solution.omega), len(records)))
+            frequency, response = records[-1]["frequencies"], records[-1]["response"]
+            posed.on_point(FollowedPoint(frequency, response, dofs, done, problem.method.orders))
+    markers = tuple((marker, row) for row, record in enumerate(records) if (marker := record.pop("marker")))
+    arrays = {name: np.array([record[name] for record in records]) for name in records[0]}
+    return _FollowedCurve(problem, dofs, arrays, markers, tuple(filter(None, causes)), tuple(across_fold), top)
+
+
+def _points(posed: _PosedCurve, problem: Equations, start: CurvePoint | None) -> Iterator[PathPoint]:
+    known = None if start is None else restarted(problem, *start, "frequency_response")
+    if start is not None and start[0].orders != problem.method.orders and known is not None and not known.converged:
+        known = None
+    if not posed.is_path:
+        return at_frequencies(problem, posed.omegas, known)
+    follow = across if posed.settings["continuation"] == ARC_LENGTH else natural
+    return follow(problem, float(posed.omegas[0]), float(posed.omegas[1]), known)
+
+
+def _progress(posed: _PosedCurve, omega: float, count: int) -> float:
+    """Part of the way between the ends of a path, or of the given frequencies."""
+    omegas = posed.omegas
+    part = (omega - omegas[0]) / (omegas[1] - omegas[0]) if posed.is_path else count / len(omegas)
+    return float(min(part, 1.0))
+
+
+def _conclude(posed: _PosedCurve, followed: _FollowedCurve) -> FrequencyCurve:
+    """Return the curve with the findings on its points, its end, its mean, its stability and its harmonics."""
+    problem, arrays = followed.equations, followed.arrays
+    method, frequencies = problem.method, arrays["frequencies"]
+    limits = float(posed.omegas[0]) / (2 * np.pi), float(posed.omegas[-1]) / (2 * np.pi)
+    return FrequencyCurve(
+        dofs=followed.dofs,
+        coordinates=problem.lowered.row_names,
+        contacts=problem.lowered.contacts,
+        orders=method.orders,
+        **{**arrays, "stable": arrays["stable"].astype(np.int8)},
+        markers=followed.markers,
+        provenance={**versions(), "method": asdict(method), **posed.settings},
+        findings=(
+            *unconverged_findings(len(frequencies), followed.unconverged),
+            *(end_findings(frequencies, arrays["converged"], limits, "frequency", "Hz") if posed.is_path else ()),
+            *free_findings(problem),
+            *fold_findings(followed.across_fold, frequencies[arrays["fold"]], method.highest),
+            *(() if followed.largest is None else truncation_findings(problem, followed.largest)),
+        ),
+    )
+
+
+def _refine(posed: _PosedCurve, method: HarmonicBalance) -> FrequencyCurve:
     """Return the curve with so many harmonics that its truncation errors are small, from few harmonics on."""
-    level, begin = method.first(), start
+    start = posed.start
+    level = method.keeping(posed.system.highest_harmonic).at_least(1 if start is None else start[0].orders[-1]).first()
+    begin = start
     while True:
-        problem = asked.equations(level, stability)
-        curve = asked.curve(problem, begin, stability=False, check=False)
+        problem = posed.equations(level)
+        curve = _conclude(posed, _follow(posed, problem, begin, stability=False, check=False))
         points = hardest(curve.unknowns, curve.converged)
         solutions = [restarted(problem, curve, point, "frequency_response") for point in points]
-        found = [one for one in solutions if one.converged]
-        better, error = enough_harmonics(ForcedLevel.of(problem, found), found)
+        motions = [solution for solution in solutions if solution.converged]
+        better, error = enough_harmonics(ForcedLevel.of(problem, motions), motions)
         if better.highest == level.highest:
+            # With few harmonics a motion that is not converged may be one that more harmonics have.
             more = None if curve.converged.all() or level.highest >= RELIABLE else level.next()
             if more is None:
                 break
             better = more
         level = better
         begin = (curve, 0) if start is None and curve.converged[0] else start
-    if stability:
-        curve = asked.curve(problem, begin, stability=True, check=False)
+    if posed.stability:
+        curve = _conclude(posed, _follow(posed, problem, begin, stability=True, check=False))
     return replace(curve, findings=(*curve.findings, *choice_findings(level, error)))
 
 
-@dataclass(frozen=True)
-class _Asked:
-    """What is asked for besides the method: the system, angular frequencies or the two ends of a path, and so on."""
-
-    system: VibrationSystem
-    omegas: np.ndarray
-    ends: bool
-    settings: dict[str, Any]
-    observe: Sequence[str] | None
-    checkpoint: Checkpoint | None
-    on_point: OnPoint | None
-
-    def equations(self, method: HarmonicBalance, stability: bool) -> Equations:
-        """The equations of the system with a number of harmonics."""
-        return equations(self.system, method, self.checkpoint, stability=stability)
-
-    def curve(
-        self, problem: Equations, start: tuple[FrequencyCurve, int] | None, stability: bool, check: bool
-    ) -> FrequencyCurve:
-        """Follow the curve with a number of harmonics."""
-        omegas, ends, method = self.omegas, self.ends, problem.method
-        known = None if start is None else restarted(problem, *start, "frequency_response")
-        if start is not None and start[0].orders != method.orders and known is not None and not known.converged:
-            known = None
-        if ends:
-            follow = across if self.settings["continuation"] == ARC_LENGTH else natural
-            found = follow(problem, float(omegas[0]), float(omegas[1]), known)
-        else:
-            found = at_frequencies(problem, omegas, known)
-        rows = observed(problem.lowered, self.observe)
-        lowered, records, lost, across_fold, done = problem.lowered, [], [], [], 0.0
-        top: Solution | None = None
-        dofs = tuple(lowered.structure.dofs.names[row] for row in rows)
-        for one in judged(problem, found, located=ends) if stability else found:
-            records.append(_kept(problem, one, rows))
-            lost.append(unconverged(problem, one.solution))
-            across_fold += [float(one.solution.omega) / (2 * np.pi)] * one.across_fold
-            top = largest(top, one.solution) if check else None
-            if self.on_point is not None:
-                omega = one.solution.omega
-                come = (omega - omegas[0]) / (omegas[1] - omegas[0]) if ends else len(records) / len(omegas)
-                done = float(max(done, min(come, 1.0)))
-                frequency, response = records[-1]["frequencies"], records[-1]["response"]
-                self.on_point(FollowedPoint(frequency, response, dofs, done, method.orders))
-        limits = float(omegas[0]) / (2 * np.pi), float(omegas[-1]) / (2 * np.pi)
-        markers = [one.pop("marker") for one in records]
-        kept = {name: np.array([one[name] for one in records]) for name in records[0]}
-        return FrequencyCurve(
-            dofs=dofs,
-            coordinates=lowered.row_names,
-            contacts=lowered.contacts,
-            orders=method.orders,
-            **{**kept, "stable": kept["stable"].astype(np.int8)},
-            markers=tuple((marker, number) for number, marker in enumerate(markers) if marker),
-            provenance={**versions(), "method": asdict(method), **self.settings},
-            findings=(
-                *unconverged_findings(len(records), filter(None, lost)),
-                *(end_findings(kept["frequencies"], kept["converged"], limits, "frequency", "Hz") if ends else ()),
-                *free_findings(problem),
-                *fold_findings(across_fold, kept["frequencies"][kept["fold"]], method.highest),
-                *(() if top is None else truncation_findings(problem, top)),
-            ),
-        )
-
-
-def _kept(problem: Equations, one: PathPoint, rows: np.ndarray) -> dict[str, Any]:
-    """What a curve keeps of a point, by the names of its arrays; the response in some rows of the structure.
-
-    Matrices of some megabytes are not kept.
-    """
-    solution, lowered = one.solution, problem.lowered
+def _record(problem: Equations, point: PathPoint, rows: np.ndarray) -> dict[str, Any]:
+    """What a curve keeps of a point, by the names of its arrays: not its matrices, which have some megabytes."""
+    solution, lowered = point.solution, problem.lowered
     states = np.zeros((len(lowered.contacts), PHASES), dtype=np.uint8)
     instants = np.arange(PHASES) * solution.samples // PHASES
-    for block, own in zip(lowered.blocks, solution.evaluation.states, strict=True):
-        np.maximum.at(states, block.contacts, own[:, instants])
+    for block, block_states in zip(lowered.blocks, solution.evaluation.states, strict=True):
+        np.maximum.at(states, block.contacts, block_states[:, instants])
     response, forces = response_of(problem, solution)[rows], solution.evaluation.forces
     displacements = problem.balance(solution.samples).displacements(solution.unknowns)
     if not solution.converged:
@@ -272,11 +321,11 @@ def _kept(problem: Equations, one: PathPoint, rows: np.ndarray) -> dict[str, Any
         "iterations": solution.iterations,
         "residuals": solution.error,
         "converged": solution.converged,
-        "fold": one.fold,
+        "fold": point.fold,
         "samples": solution.samples,
         "sampling_errors": solution.sampling_error,
-        "stable": one.stable,
-        "marker": one.marker or (FOLD if one.fold else ""),
+        "stable": point.stable,
+        "marker": point.marker or (FOLD if point.fold else ""),
         "response": response,
         "displacements": displacements,
         "forces": forces,

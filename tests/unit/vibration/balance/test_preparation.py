@@ -27,10 +27,10 @@ from dalembert.vibration import (
     floquet_multipliers,
     frequency_response,
     frequency_responses,
-    preparation,
     steady_state,
     track_resonance,
 )
+from dalembert.vibration.balance import preparation
 from dalembert.vibration.laws.law import Law
 from vibrating_systems import duffing, one_mass, two_masses
 

@@ -15,7 +15,7 @@ from dalembert.vibration import (
     VibrationSystem,
     frequency_response,
 )
-from dalembert.vibration.balance import condensation
+from dalembert.vibration.interface import condensation
 
 K = 4 * np.pi**2
 """Stiffness, N/m, with which 1 kg resonates at exactly 1 Hz."""

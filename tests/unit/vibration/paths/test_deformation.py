@@ -5,7 +5,8 @@ import pytest
 
 from dalembert.errors import InputError
 from dalembert.structure import ModeShapes, eigenmodes, mode_shapes, node_motion
-from dalembert.vibration import Deformation, HarmonicBalance, deformation, frequency_response, preparation
+from dalembert.vibration import Deformation, HarmonicBalance, deformation, frequency_response
+from dalembert.vibration.balance import preparation
 from frequency_cases import strip
 from support import says
 from vibrating_systems import two_masses

@@ -10,12 +10,7 @@ import numpy as np
 class Fourier:
     r"""Harmonics :math:`x(\tau) = X_0 + \sum_h X_{ch} \cos h\tau + X_{sh} \sin h\tau` and samples of a period.
 
-    Parameters
-    ----------
-    orders : tuple of int
-        Harmonics that are kept, in ascending order; 0 is the mean.
-    samples : int
-        Samples of a period.
+    ``orders``: harmonics that are kept, in ascending order; 0 is the mean; ``samples``: samples of a period.
 
     Examples
     --------
@@ -47,6 +42,8 @@ class Fourier:
     @cached_property
     def analysis(self) -> np.ndarray:
         """From samples to coefficients, (coefficients, samples)."""
+        # Samples are equally spaced and more than twice the highest harmonic: waves are orthogonal over them, and the
+        # trapezoidal rule is exact for the kept harmonics.
         rows = self.synthesis.T * (2 / self.samples)
         rows[: self.mean] /= 2
         return np.ascontiguousarray(rows)
@@ -55,6 +52,7 @@ class Fourier:
     def derivative(self) -> np.ndarray:
         """Coefficients of the derivative by tau from those of the motion, (coefficients, coefficients)."""
         matrix = np.zeros((self.count, self.count))
+        # (X_c cos hτ + X_s sin hτ)' = h X_s cos hτ - h X_c sin hτ
         for order, cosine in zip(self.orders[self.mean :], range(self.mean, self.count, 2), strict=True):
             matrix[cosine, cosine + 1], matrix[cosine + 1, cosine] = order, -order
         return matrix
@@ -117,6 +115,7 @@ def real_blocks(matrices: np.ndarray, mean: int) -> np.ndarray:
     result = np.zeros((q, count, r, count))
     own, up, down = map(_diagonal, (result, result[:, :-1, :, 1:], result[:, 1:, :, :-1]))
     real, imaginary = np.real(matrices), np.imag(matrices)
+    # Z (X_c - i X_s) with Z = A + i B: cosines A X_c + B X_s, sines A X_s - B X_c.
     own[:mean] = real[:mean]
     own[mean::2] = own[mean + 1 :: 2] = real[mean:]
     up[mean::2] = imaginary[mean:]
@@ -137,5 +136,7 @@ def complex_blocks(matrices: np.ndarray, mean: int) -> np.ndarray:
     own = np.moveaxis(np.diagonal(matrices, axis1=-3, axis2=-1), -1, 0)
     up = np.moveaxis(np.diagonal(matrices[..., :-1, :, 1:], axis1=-3, axis2=-1), -1, 0)[mean::2]
     down = np.moveaxis(np.diagonal(matrices[..., 1:, :, :-1], axis1=-3, axis2=-1), -1, 0)[mean::2]
+    # The part of a 2 × 2 block that is a complex number: mean of its diagonal, half of its antisymmetric part. The rest
+    # acts on conjugates.
     turning = (own[mean::2] + own[mean + 1 :: 2]) / 2 + 0.5j * (up - down)
     return np.concatenate([own[:mean].astype(complex), turning])

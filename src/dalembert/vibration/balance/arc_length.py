@@ -46,19 +46,10 @@ class PathProblem(Protocol):
 class PathPoint:
     """A point of a curve.
 
-    Parameters
-    ----------
-    solution : Solution
-    fold : bool
-        Whether the curve turns back here, or where the turn is sharp, just before.
-    returned : bool
-        Whether the curve comes back here to the frequencies that were asked for.
-    stable : int
-        1, 0, or -1 where it is not known.
-    marker : str
-        Kind of the bifurcation that lies here, or nothing.
-    across_fold : bool
-        Whether stability is not known because a fold lies between the motion and its perturbations.
+    ``fold``: whether the curve turns back here, or where the turn is sharp, just before; ``returned``: whether the
+    curve comes back here to the frequencies that were asked for; ``stable``: 1, 0, or -1 where it is not known;
+    ``marker``: kind of the bifurcation that lies here, or nothing; ``across_fold``: whether stability is not known
+    because a fold lies between the motion and its perturbations.
     """
 
     solution: Solution
@@ -93,6 +84,8 @@ def along(
     yield PathPoint(known)
     if not known.converged:
         return
+    # Scaled unknowns (U/size, ω/width): a tenth of the range counts as much as a motion of the present size. One width
+    # for the whole path, so that steps compare; the size follows the motion.
     width = abs(end - begin) / 10
     longest = 10 * equations.method.resolution
     low, high = sorted((begin - behind * (end - begin), end))
@@ -102,6 +95,8 @@ def along(
     path = Path(known, direction_at(known, onward, width), width)
     while points < MOST_POINTS:
         solution, direction = path.step(equations, step)
+        # Behind a corner, such as a contact that opens at once, no shorter step converges: halving would only creep up
+        # to it. The branch behind is sought from its own tangent.
         if direction is None and step <= SHARP * longest:
             beyond = path.turned(equations, solution, step)
             if beyond is not None:
@@ -115,11 +110,13 @@ def along(
                 yield PathPoint(solution)
                 return
             continue
+        # The path leaves the range: its last point is on the border, from a guess between the points on both sides.
         if not low <= solution.omega <= high:
             border = low if solution.omega < low else high
             last = equations.solve(*on_border(path.known, solution, border), solution.samples)
             yield PathPoint(last)
             return
+        # dω/ds changes its sign: a fold lies within this step, and its point comes before the step's end.
         folds = bool(direction[-1] * path.direction[-1] < 0)
         fold = _fold(equations, path, step) if folds else None
         if fold is not None:
@@ -129,6 +126,7 @@ def along(
         if progress.ends(step):
             return
         path = Path(solution, direction_at(solution, direction, width), width)
+        # The number of iterations measures how much the path bends in a step.
         step = min(longest, step * (1.5 if solution.iterations <= EASY else 0.7))
 
 
@@ -147,6 +145,8 @@ class Path:
     def step(self, equations: PathProblem, length: float) -> tuple[Solution, np.ndarray | None]:
         """Return the point after a step, and the direction there in the scales of this point; None if not converged."""
         # The guess y + s t is corrected on the plane t · (y' - y - s t) = 0 across the path (pseudo-arc length).
+        # Pseudo-arc length (Keller): a plane across the tangent keeps the added equation linear; `STEADY` refuses steps
+        # that bend too much for it.
         moved = self.direction[:-1].reshape(self.known.unknowns.shape) * (length * self.size)
         guess, omega = self.known.unknowns + moved, self.known.omega + self.direction[-1] * length * self.width
         plane = Plane(self.direction, guess, omega, self.size, self.width)
@@ -169,8 +169,10 @@ class Path:
             return None
         if not np.all(np.isfinite(beyond)):
             return None
+        # A path of regular points keeps the sign of det(J, ∂R/∂ω; t): it chooses between both senses of the tangent.
         beyond *= sign * _sign(failed, beyond, self.width, self.size)
         for reach in REACHES if np.any(beyond) else ():
+            # Longer and longer steps along that tangent, until one reaches the branch behind.
             solution, direction = replace(self, direction=beyond).step(equations, reach * length)
             if direction is None or float(direction @ beyond) < STEADY:
                 continue

@@ -36,13 +36,8 @@ case for it: a point of 480 unknowns took 28 ms densely and 31 by the structure,
 class Evaluation:
     """Residual, forces and states of contacts at a point.
 
-    Parameters
-    ----------
-    residual : array, shape (q, coefficients)
-    forces : array, shape (rows, coefficients)
-        Of all elements, by the rows that they see.
-    states : tuple of array of uint8, shape (cells, samples)
-        Of each friction block.
+    ``residual`` (q, coefficients); ``forces`` (rows, coefficients): of all elements, by the rows that they see;
+    ``states`` (cells, samples): of each friction block.
     """
 
     residual: np.ndarray
@@ -54,12 +49,7 @@ class Evaluation:
 class Balance:
     """The elements of a system and a series, ready to be balanced with a condensed structure.
 
-    Parameters
-    ----------
-    lowered : Lowered
-    series : Fourier
-    events : bool
-        Whether the sums of contacts and stops are corrected at the events between samples.
+    ``events``: whether the sums of contacts and stops are corrected at the events between samples.
     """
 
     lowered: Lowered
@@ -93,6 +83,8 @@ class Balance:
 
     def linear(self, stiffness: np.ndarray, force: np.ndarray, unknowns: np.ndarray) -> np.ndarray:
         """Z_q U - F_q, or the same of their derivatives, (q, coefficients)."""
+        # A linear structure does not couple harmonics: one complex matrix for each, in place of a real one of twice the
+        # size.
         phasors = self.series.phasors(unknowns)
         return self.series.coefficients((stiffness @ phasors[:, :, None])[:, :, 0] - force)
 
@@ -108,8 +100,11 @@ class Balance:
 
     def tangent(self, point: Point, unknowns: np.ndarray) -> Tangent:
         """The tangent of the structure alone, to which :meth:`residual` adds the elements."""
+        # ∂R/∂ω of the structure at fixed U; laws that see velocities add their part in `_add_laws`.
         slope = self.linear(point.slope, point.force_slope, unknowns)
         held = None if point.held else self._held_by_elements(point)
+        # Elements that share a coordinate, or see velocities as trial forces, have no separate blocks: those stay
+        # dense.
         if unknowns.size > LARGE and self._separate:
             return BlockTangent(point, self.series, slope, self._reference(point), self._rigid, held)
         return DenseTangent(real_blocks(point.stiffness, self.series.mean), slope, held)
@@ -122,9 +117,12 @@ class Balance:
                 continue
             for rows, penalties, numbers in zip(block.rows, _penalties(block), block.numbers, strict=True):
                 shapes = self._combination[rows]
+                # Z_q + L^T k L: all sliders stick, as under a friction limit without bound.
                 stiffness += shapes.T @ (penalties[:, None] * shapes)
                 if block.normal and self.series.mean:
+                    # k_n (u_N - g): the gap of a closed contact is a force on the mean.
                     force[0] += numbers[NORMAL] * numbers[GAP] * shapes[-1]
+        # Least squares, not a solution: contacts may leave a motion free, and the matrix is singular along it.
         found = np.stack([np.linalg.lstsq(own, right)[0] for own, right in zip(stiffness, force, strict=True)])
         return self.series.coefficients(found)
 
@@ -135,6 +133,7 @@ class Balance:
             if block.kind == ELASTIC or not block.normal or not self.series.mean:
                 continue
             places = self._retained[block.rows[:, -1]]
+            # The mean is g - max u_N of the varying part, so that the highest position just reaches the contact.
             varying = unknowns[places, 1:] @ self.series.synthesis[:, 1:].T
             result[places, 0] = block.numbers[:, GAP] - varying.max(axis=1)
         return result
@@ -155,6 +154,8 @@ class Balance:
         for rigid in (False, True):  # rigid contacts last: their prediction needs the residual without them
             blocks = [number for number, block in enumerate(self.lowered.blocks) if (block.kind != ELASTIC) == rigid]
             total = linear + self._combination.T @ acting if blocks and rigid else linear
+            # J_0 and R_0 are without all rigid contacts: both are taken once, before the first of these blocks adds its
+            # part.
             before = tangent.copy() if isinstance(tangent, DenseTangent) and blocks and rigid else None
             for number in blocks:
                 states[number] = self._add_friction(number, acting, unknowns, total, tangent, before)
@@ -167,6 +168,8 @@ class Balance:
             force, slopes = element.law((self._combination[rows] @ unknowns) @ series.synthesis.T)
             acting[rows] += force @ series.analysis.T
             if tangent is not None:
+                # G = A diag(∂λ/∂u) S by the chain rule through the samples, with the synthesis S and the analysis A
+                # (alternating frequency and time: Cameron and Griffin, Journal of Applied Mechanics 56, 1989).
                 blocks = series.analysis @ (slopes[:, :, :, None] * series.synthesis)
                 local = np.swapaxes(blocks, 1, 2).reshape(1, len(rows) * series.count, -1)
                 self._spread(rows[None], local, tangent)
@@ -182,6 +185,7 @@ class Balance:
             else:
                 force, local, by_omega = sums.with_slopes(displacements, omega)
                 self._spread(block.rows, local, tangent)
+                # Velocities are ω ∂u/∂τ: forces of rated laws depend on ω at fixed U.
                 shapes = self._combination[block.rows.ravel()]
                 tangent.slope[:] += rate * shapes.T @ by_omega.reshape(len(shapes), -1)
             np.add.at(acting, block.rows, force)
@@ -232,10 +236,12 @@ class Balance:
                 self._spread(block.rows, local, tangent, _penalties(block))
         for cell in self._undetermined(block, states):
             places = self._retained[block.rows[cell, : block.tangents]]
+            # A stuck contact that sees velocities: ε U_0 in place of its mean force holds the mean at zero.
             penalty = block.numbers[cell, TANGENTIAL]
             result[cell, : block.tangents, 0] += penalty * unknowns[places, 0]
             if isinstance(tangent, DenseTangent):
                 tangent.jacobian[places, 0, places, 0] += penalty
+        # Cells of an Iwan contact share their rows: `+=` with an index array would add only one of them.
         np.add.at(acting, block.rows, result)
         return states
 
@@ -334,6 +340,8 @@ class Balance:
         """Stiffness of the element of each retained coordinate, (q,), with which no motion of the structure is free."""
         stiffness = self._stuck
         if not point.held:
+            # A must be regular where the structure alone leaves a part free: stops count as closed, and an element of
+            # unknown stiffness as stiff as the structure. J itself does not depend on this choice.
             closed = self._mean_stiffness(point)
             stiffness = np.where(stiffness > 0, stiffness, np.where(closed > 0, closed, point.stiffest))
         return stiffness[self.lowered.coordinates.rows]

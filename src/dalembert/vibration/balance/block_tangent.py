@@ -41,19 +41,10 @@ KRYLOV, CYCLES = 100, 4
 class BlockTangent:
     """Derivatives of the residual by their structure, filled while the elements are evaluated.
 
-    Parameters
-    ----------
-    point : Point
-    series : Fourier
-    slope : array, shape (q, coefficients)
-        By ω.
-    reference : array, shape (q,)
-        Stiffness of each coordinate's contact if it sticks; 0 where there is none, unless only elements hold a part.
-    rigid : array of bool, shape (q,)
-    held : HeldByElements, optional
-        Mean motions that the elements alone may hold, if there are any.
-    active : list of (array of int, shape (cells, columns), array, shape (cells, unknowns, unknowns))
-        Coordinates, and blocks of m.
+    ``slope`` (q, coefficients): by ω; ``reference`` (q,): stiffness of each coordinate's contact if it sticks; 0 where
+    there is none, unless only elements hold a part; ``rigid`` (q,); ``held``: mean motions that the elements alone may
+    hold, if there are any; ``active``: coordinates (cells, columns) and blocks of m
+    (cells, unknowns, unknowns).
     """
 
     point: Point
@@ -75,16 +66,20 @@ class BlockTangent:
         deviation[:, diagonal, diagonal] -= stiffness
         scale = stiffness.max(axis=1)
         if self.rigid[places[0, 0]]:
+            # A rigid contact: J_0 + G (1 - J_0/ε) = ε + (1 - G/ε)(J_0 - ε), so that A = ε, m = 1 - G/ε and V = J_0 - ε.
+            # The derivative by ω has the same factor.
             along = self.slope[places].reshape(stiffness.shape) / stiffness
             self.slope[places] -= (gradients @ along[:, :, None]).reshape(*places.shape, -1)
             deviation /= -stiffness[:, None, :]
             scale = np.ones(len(places))
+        # A contact that sticks all period has G = A to rounding: m = 0, and its rows leave the coupled system.
         moving = np.abs(deviation).max(axis=(1, 2)) > ACTIVE * scale
         if moving.any():
             self.active.append((places[moving], deviation[moving]))
 
     def solve(self, right: np.ndarray, tolerance: float = EXACT) -> np.ndarray:
         """J⁻¹ times right-hand sides (q, coefficients, columns)."""
+        # The dense system costs the cube of the active unknowns, GMRES some products with J.
         own = self._iterated if len(self._rows) * self.series.count > DIRECT else self._direct
         return np.stack([own(column, tolerance) for column in np.moveaxis(right, 2, 0)], axis=2)
 
@@ -107,6 +102,7 @@ class BlockTangent:
         if not self.active:
             return float(own)
         matrix, pivots = self._coupled[1]
+        # LU with row exchanges: the determinant is the product of U's diagonal, with a sign for each exchange.
         swapped = np.sum(pivots != np.arange(len(pivots))) % 2
         return float(own * (-1) ** swapped * np.prod(np.sign(np.diag(matrix))))
 
@@ -198,6 +194,7 @@ class BlockTangent:
         unit[:, rows, np.arange(len(rows))] = 1.0
         response = self._stuck(unit)
         size = len(rows) * self.series.count
+        # 1 + V A⁻¹ E m (Woodbury), in the order that inverts no m, which is singular where a contact stays open.
         among = real_blocks(self._across @ response, self.series.mean).reshape(size, size)
         at, matrix = 0, np.empty_like(among)
         for _, blocks in self.active:
@@ -212,6 +209,7 @@ class BlockTangent:
     def _direct(self, right: np.ndarray, tolerance: float = EXACT) -> np.ndarray:
         """J⁻¹ times (q, coefficients) by a dense system among the active contacts; to rounding."""
         series = self.series
+        # J⁻¹ b = A⁻¹ b - A⁻¹ E m (1 + V A⁻¹ E m)⁻¹ V A⁻¹ b
         first = self._stuck(series.phasors(right)[:, :, None])
         if not self.active:
             return series.coefficients(first[:, :, 0])
@@ -228,6 +226,8 @@ class BlockTangent:
         own = np.zeros((len(self.series.orders), q, q), dtype=complex)
         for places, blocks in self.active:
             cells, columns = places.shape
+            # m couples harmonics through kinks of the force; without this coupling each harmonic has its own small
+            # matrix.
             local = complex_blocks(blocks.reshape(cells, columns, -1, columns, self.series.count), mean)
             for part, blocks in zip(own, local, strict=True):
                 np.add.at(part, (places[:, :, None], places[:, None, :]), blocks)  # type: ignore[arg-type]

@@ -20,14 +20,8 @@ LEFT = 0.1
 class Unconverged:
     """A point that is not converged.
 
-    Parameters
-    ----------
-    frequency : float
-        Hz.
-    residual : float
-        Norm of the residual divided by that of the forces.
-    cause : Finding, optional
-        None if the cause is not known.
+    ``frequency``: Hz; ``residual``: norm of the residual divided by that of the forces; ``cause``: None if the cause is
+    not known.
     """
 
     frequency: float
@@ -44,6 +38,7 @@ def unconverged(problem: Equations, solution: Solution) -> Unconverged | None:
 
 def _cause(problem: Equations, solution: Solution) -> Finding | None:
     residual, motions = solution.evaluation.residual, solution.tangent.unresisted
+    # The part of the residual along motions that nothing resists: a mean force that no position balances.
     along = motions.T @ residual[:, 0]
     force = float(np.linalg.norm(along))
     if force > max(LEFT * float(np.linalg.norm(residual)), VERIFIED * solution.point.load):
@@ -91,6 +86,7 @@ def _resonates(solution: Solution) -> bool:
     stiffness = point.stiffness[forced & (point.frequencies > 0)]
     if not stiffness.size:
         return False
+    # The smallest singular value is the dynamic stiffness against the least resisted motion at this harmonic.
     smallest = np.linalg.svd(stiffness, compute_uv=False)[:, -1]
     return bool(np.any(smallest <= NEARLY * point.stiffest))
 

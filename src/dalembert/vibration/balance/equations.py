@@ -30,15 +30,9 @@ SIZES = 10.0 ** np.arange(-9, 7, 3)
 class Equations:
     """A lowered system and a method.
 
-    Parameters
-    ----------
-    lowered : Lowered
-        Real.
-    method : HarmonicBalance
-    checkpoint : Checkpoint, optional
-        From which solutions are read, and to which new ones are added. A path goes from one solution to the next, so it
-        takes the same way again, bit for bit. Where a solution is known, its forces and its Jacobian are evaluated
-        once, in place of once an iteration.
+    ``lowered``: real; ``checkpoint``: from which solutions are read, and to which new ones are added. A path goes from
+    one solution to the next, so it takes the same way again, bit for bit. Where a solution is known, its forces and its
+    Jacobian are evaluated once, in place of once an iteration.
     """
 
     lowered: Lowered
@@ -110,6 +104,8 @@ class Equations:
             first = correct(self.balance(samples), self.condensation.at, self.method, *near, plane, found.point)
             return first if first.converged else found
 
+        # Samples first, motion later: a residual below `sampling` that Newton's method cannot reduce is one of kinks,
+        # or a mean force, that more samples remove.
         solution = solved(samples)
         while solution.error <= self.method.sampling and not solution.converged and self._doubles(solution):
             before, solution = solution.error, finer(solution)
@@ -117,8 +113,11 @@ class Equations:
                 break
         alternates = solution.error <= self.method.sampling and not solution.converged
         if alternates and plane is None and self.method.samples == AUTOMATIC:  # on a path, a shorter step is cheaper
+            # Other numbers of samples have their kinks at other motions; from their solution the first number often
+            # converges.
             others = (int(part * samples) for part in RESAMPLED if part * samples <= MOST_SAMPLES)
             solution = next((back(found) for found in map(solved, others) if found.converged), solution)
+        # Enough samples: twice as many change the balance by less than `sampling` of the forces. At most 8192.
         while solution.converged:
             solution = replace(solution, sampling_error=self._sampling_error(solution))
             if solution.sampling_error <= self.method.sampling or not self._doubles(solution):
@@ -146,16 +145,22 @@ class Equations:
         balance = self.balance(self.method.first_samples)
         pressed = any(block.normal and block.kind == ELASTIC for block in self.lowered.blocks)
         if not point.held and (self.lowered.laws or self.lowered.functions):
+            # 1. Only elements hold a part: the place of rest under the static forces, from which stops are touched or
+            # not.
             yield at_rest(balance, point)
+        # 2. Closed contacts that stick, as under small varying forces; zero without such contacts.
         yield balance.stuck(point) if pressed else np.zeros(balance.shape)
         try:
+            # 3. The motion without contacts, to which large forces are close.
             free = np.linalg.solve(point.stiffness, point.force[:, :, None])[:, :, 0]
         except np.linalg.LinAlgError:  # springs without a linear part hold the structure
             free = (np.linalg.pinv(point.stiffness) @ point.force[:, :, None])[:, :, 0]
         moved = balance.series.coefficients(free)
         yield moved
+        # 4. A path over the varying forces from 1 % to all of them: the dearest guess, so a late one.
         if self.method.halvings:
             yield Loading(balance, replace(self.method, resolution=RESOLUTION), point).last()
+        # 5. Rigid contacts just touched by the motion without them.
         if any(block.normal and block.kind != ELASTIC for block in self.lowered.blocks):
             yield balance.touching(moved)
 
@@ -210,23 +215,11 @@ def equations(
 ) -> Equations:
     """Return the equations of a system. Their kernels are compiled or loaded.
 
-    Parameters
-    ----------
-    system : VibrationSystem
-    method : HarmonicBalance
-    checkpoint : Checkpoint, optional
-        Where solutions are stored.
-    residuals, stability, derivatives : bool
-        What is computed in addition to residuals with their Jacobians: residuals alone (:meth:`Equations.solve` needs
-        them), the stability of solutions by the time map, derivatives with respect to parameters.
-
-    Raises
-    ------
-    InputError
-        For parts on degrees of freedom that the structure lacks, and for odd harmonics alone where a force has a mean
-        or even harmonics.
-    ModelError
-        For rigid contacts that depend on each other, and for mean forces along a motion that nothing holds.
+    ``checkpoint``: where solutions are stored; ``residuals``, ``stability``, ``derivatives``: what is computed in
+    addition to residuals with their Jacobians: residuals alone (:meth:`Equations.solve` needs them), the stability of
+    solutions by the time map, derivatives with respect to parameters. Raises InputError for parts on degrees of freedom
+    that the structure lacks, and for odd harmonics alone where a force has a mean or even harmonics; ModelError for
+    rigid contacts that depend on each other, and for mean forces along a motion that nothing holds.
     """
     lowered = lower(system).real
     if method.odd_only:
@@ -268,6 +261,9 @@ def _odd(force: Callable[[np.ndarray], np.ndarray], count: int) -> bool:
     """Whether opposite displacements have opposite forces, at displacements of many sizes."""
     for size in SIZES:
         u = size * np.random.default_rng(0).normal(size=(count, 16))
+        # λ(-u) = -λ(u) is what motions of odd harmonics alone need. Random motions of many sizes find a mean or even
+        # harmonics at gaps and
+        # limits from 1e-9 to 1e6 m.
         there, back = force(u), force(-u)
         scale = np.abs(there).max(initial=0.0)
         if np.isfinite(scale) and not np.allclose(there, -back, rtol=1e-9, atol=1e-12 * scale):

@@ -25,12 +25,7 @@ class Loading:
 
     Static forces act from the beginning: they may be what presses the contacts.
 
-    Parameters
-    ----------
-    balance : Balance
-    method : HarmonicBalance
-    point : Point
-        At the frequency, with all of the force.
+    ``point``: at the frequency, with all of the force.
     """
 
     balance: Balance
@@ -39,6 +34,8 @@ class Loading:
 
     def at(self, load: float) -> Point:
         """The structure with a part of the varying forces, and its derivatives by that."""
+        # f(p) = f_0 + p f_varying at one frequency: ∂R/∂p = -f_varying, and no matrix depends on p. Static forces stay,
+        # as they may be what presses the contacts.
         varying = np.where(self.point.frequencies[:, None] > 0, self.point.force, 0.0)
         return replace(
             self.point, slope=np.zeros_like(self.point.slope),

@@ -33,14 +33,8 @@ VERIFIED = 1e-8
 class Plane:
     """A plane across a path in scaled unknowns: direction · (y - place) = 0, with y = (U/size, ω/width).
 
-    Parameters
-    ----------
-    direction : array, shape (unknowns + 1,)
-    unknowns : array, shape (q, coefficients)
-    omega : float
-        A place on the plane.
-    size, width : float
-        Scales of U and of ω.
+    ``direction`` (unknowns + 1,); ``unknowns`` (q, coefficients); ``omega``: a place on the plane; ``size``, ``width``:
+    scales of U and of ω.
     """
 
     direction: np.ndarray
@@ -59,24 +53,9 @@ class Plane:
 class Solution:
     """Last iterate of Newton's method, converged or not.
 
-    Parameters
-    ----------
-    omega : float
-    unknowns : array, shape (q, coefficients)
-    point : Point
-    evaluation : Evaluation
-    tangent : Tangent
-    scale : float
-        Size of the forces that are in balance, N.
-    iterations : int
-    error : float
-        Residual as part of the forces.
-    converged : bool
-    samples : int
-    sampling_error : float
-        Change of the residual with twice the samples, as part of the forces.
-    distance : float
-        From the plane across the path on which it was sought, in the plane's scales; 0 without a plane.
+    ``unknowns`` (q, coefficients); ``scale``: size of the forces that are in balance, N; ``error``: residual as part of
+    the forces; ``sampling_error``: change of the residual with twice the samples, as part of the forces; ``distance``:
+    from the plane across the path on which it was sought, in the plane's scales; 0 without a plane.
     """
 
     omega: float
@@ -99,6 +78,7 @@ class Solution:
 
 def scale_of(point: Point, evaluation: Evaluation) -> float:
     """Return the size of the forces that are in balance, of which residuals are parts."""
+    # Of load and element forces, since a free or self-excited motion has no load; 1 N where there is no force at all.
     return point.load + norm(evaluation.forces) or 1.0
 
 
@@ -112,6 +92,8 @@ def line_search(trial: Callable[[float], Trial], error: float) -> Trial | None:
         trials.append(trial(part))
         if trials[-1].error <= (1 - 0.1 * part) * error:
             break
+    # At a kink the residual may rise behind every part. The best one is taken then: Newton's method needs to cross to
+    # the other side, and a rule that demands a fall would stop here.
     return min((one for one in trials if np.isfinite(one.error)), key=lambda one: one.error, default=None)
 
 
@@ -137,7 +119,10 @@ def correct(
         evaluation, tangent = found
         distance = 0.0 if plane is None else plane.distance(unknowns, omega)
         scale = scale_of(point, evaluation)
+        # On a plane two equations hold, R = 0 and distance = 0, both without dimension: one error for both.
         error = math.hypot(norm(evaluation.residual) / scale, distance)
+        # Terms as large as Z U cancel in R, so that a residual of some 100 eps of them is rounding. `VERIFIED` limits
+        # the excuse: with a stiff penalty rounding would otherwise pass motions that are not in balance.
         rounding = min(ROUNDING * point.stiffest * norm(unknowns) / scale, VERIFIED)
         converged = error <= max(method.tolerance, rounding)
         return Solution(
@@ -153,6 +138,8 @@ def correct(
     errors: list[float] = []
     at = place(unknowns, omega, point)
     errors.append(at.error)
+    # Semismooth Newton: at a kink the tangent is that of one side, which still converges, since pieces are finite in
+    # number (Qi and Sun, Mathematical Programming 58, 1993). The line search stops it from alternating.
     while not (at.converged or len(errors) > method.iterations or _stalls(errors)):
         step = _step(at, plane)
         if step is None:
@@ -167,6 +154,7 @@ def correct(
 
 def _stalls(errors: list[float]) -> bool:
     """Whether residuals stagnate: Newton's method alternates between the sides of kinks."""
+    # A law beyond its domain returns no finite force; no part of this step is better.
     if not np.isfinite(errors[-1]):
         return True
     return len(errors) > PATIENCE and min(errors[-PATIENCE:]) > PROGRESS * min(errors[:-PATIENCE])
@@ -176,6 +164,8 @@ def _step(at: Solution, plane: Plane | None) -> tuple[np.ndarray, float] | None:
     """Newton's step of U and ω; None where the matrix is singular."""
     residual = at.evaluation.residual
     try:
+        # The linear system is solved to 1e-6 only where GMRES solves it: the step still gains up to six digits, and the
+        # next iteration corrects the rest (Dembo, Eisenstat and Steihaug, SIAM Journal on Numerical Analysis 19, 1982).
         if plane is not None:
             scales = plane.size, plane.width, at.scale
             top = -residual / at.scale

@@ -24,6 +24,7 @@ def at_rest(balance: Balance, point: Point) -> np.ndarray:
     Newton's method with an exact line search on the potential energy, whose slope along a step is that of the forces.
     Where no element is touched, the energy falls on a line, and the search ends at the element that stops the motion.
     """
+    # Harmonic 0 alone: four samples of a constant, which the sums take as any other motion.
     still = Balance(balance.lowered, Fourier((0,), 4), balance.events)
     mean = replace(
         point, frequencies=point.frequencies[:1], stiffness=point.stiffness[:1], slope=0 * point.slope[:1],
@@ -38,6 +39,8 @@ def at_rest(balance: Balance, point: Point) -> np.ndarray:
             step = -tangent.solve(evaluation.residual[:, :, None])[:, :, 0]
         except np.linalg.LinAlgError:
             break
+        # Line search on the energy E, whose slope along a step s is R(x + p s) · s. A residual norm would not do: it
+        # does not fall while no stop is touched.
         part = _lowest(still, mean, places, step)
         if part is None:
             break
@@ -56,6 +59,7 @@ def _lowest(still: Balance, mean: Point, places: np.ndarray, step: np.ndarray) -
         there = slope(part)
         if abs(there) <= BALANCED * abs(first):
             return part
+        # E falls first and rises here: its minimum lies between. A step that does not fall at first has none to find.
         if there > 0:
             return float(brentq(slope, 0.0, part)) if first < 0 else None  # pyright: ignore[reportArgumentType]
         part *= 2

@@ -25,13 +25,7 @@ STEP = 1e-30
 def sensitivities(problem: Equations, solution: Solution, perturbed: Sequence[Lowered]) -> np.ndarray:
     """Return the derivatives of the coefficients of all degrees of freedom, (parameters, n, coefficients).
 
-    Parameters
-    ----------
-    problem : Equations
-    solution : Solution
-        Converged.
-    perturbed : sequence of Lowered
-        The system along each parameter, moved by a complex step.
+    ``solution``: converged; ``perturbed``: the system along each parameter, moved by a complex step.
     """
     series, condensation, point = problem.balance(solution.samples).series, problem.condensation, solution.point
     retained = series.phasors(solution.unknowns)
@@ -39,9 +33,13 @@ def sensitivities(problem: Equations, solution: Solution, perturbed: Sequence[Lo
     linear = problem.balance(solution.samples).linear(point.stiffness, point.force, solution.unknowns)
     given, residuals = [], []
     for own in perturbed:
+        # f' - Z' x of all degrees of freedom: what the parameter changes where the motion is held.
         push = series.phasors(_step(own.loads(series))) - _unbalanced(own, point.frequencies, motion)
         outer, inner = push @ condensation.retained, np.asarray((condensation.back.T @ push.T).T)
+        # V^T (f' - Z' x) with V = (1, -Y): the part at q less that at the interior, condensed as loads are.
         condensed = outer - (np.swapaxes(point.follow, 1, 2) @ inner[:, :, None])[:, :, 0]
+        # The laws see the real motion and complex numbers; the linear part carries its derivative in its imaginary
+        # part, so that rigid contacts, which see the residual, take both at once.
         elements = replace(problem.lowered, blocks=own.blocks, laws=own.laws, functions=own.functions)
         stepped = linear - 1j * STEP * series.coefficients(condensed)
         residuals.append(

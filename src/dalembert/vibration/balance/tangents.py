@@ -12,13 +12,8 @@ from dalembert.vibration.interface.free_motions import HeldByElements
 class DenseTangent:
     """Derivatives of the residual.
 
-    Parameters
-    ----------
-    jacobian : array, shape (q, coefficients, q, coefficients)
-    slope : array, shape (q, coefficients)
-        By ω.
-    held : HeldByElements, optional
-        Mean motions that the elements alone may hold, if there are any.
+    ``jacobian`` (q, coefficients, q, coefficients); ``slope`` (q, coefficients): by ω; ``held``: mean motions that the
+    elements alone may hold, if there are any.
     """
 
     jacobian: np.ndarray
@@ -46,6 +41,7 @@ class DenseTangent:
         if self.held is None or not motions.size:
             return self.matrix
         jacobian = self.jacobian.copy()
+        # Only the mean, coefficient 0, has motions without resistance; harmonics have inertia.
         jacobian[:, 0, :, 0] += self.held.support(motions, self._largest)
         return jacobian.reshape(self.slope.size, self.slope.size)
 
@@ -79,20 +75,13 @@ def bordered(
 ) -> tuple[np.ndarray, float]:
     """Return the solution of the bordered system, which is regular at folds: changes of U/size and ω/width.
 
-    Parameters
-    ----------
-    tangent : DenseTangent or BlockTangent
-    direction : array, shape (unknowns + 1,)
-        The row.
-    scales : (size, width, force)
-    top : array, shape (q, coefficients)
-        Right-hand side, as part of the force.
-    bottom : float
-    tolerance : float
-        As :class:`BlockTangent` takes it.
+    ``direction`` (unknowns + 1,): the row; ``top`` (q, coefficients): right-hand side, as part of the force;
+    ``tolerance``: as :class:`BlockTangent` takes it.
     """
     size, width, force = scales
     if isinstance(tangent, DenseTangent):
+        # The whole bordered matrix, which is regular where J is singular at a fold (Keller, in Applications of
+        # Bifurcation Theory, 1977). Rows and columns have the scales of forces, U and ω, as pivots compare entries.
         matrix = _with_row(tangent, direction, scales)
         change = np.linalg.solve(matrix, np.append(top.ravel(), bottom))
         return change[:-1].reshape(top.shape), float(change[-1])
@@ -100,6 +89,8 @@ def bordered(
     # change = a - turned b.
     right = np.stack([top * (force / size), tangent.slope * (width / size)], axis=2)
     solved = tangent.solve(right, tolerance)
+    # Near a fold a and b are large and cancel in part; Newton's next iteration corrects what this loses. The factors of
+    # A are those of the ordinary solution, which a bordered matrix could not use.
     row, (still, moving) = direction[:-1], np.moveaxis(solved, 2, 0)
     turned = (bottom - float(row @ still.ravel())) / (float(direction[-1]) - float(row @ moving.ravel()))
     return still - turned * moving, turned
@@ -110,6 +101,7 @@ def orientation(tangent: Tangent, direction: np.ndarray, scales: tuple[float, fl
     if isinstance(tangent, DenseTangent):
         return float(np.linalg.slogdet(_with_row(tangent, direction, scales))[0])
     size, width, _ = scales
+    # det of the bordered matrix = det J (t_ω - t · J⁻¹ ∂R/∂ω), by its Schur complement; only signs are kept.
     moving = tangent.solve(tangent.slope[:, :, None])[:, :, 0] * (width / size)
     return tangent.sign * float(np.sign(direction[-1] - direction[:-1] @ moving.ravel()))
 

@@ -30,14 +30,8 @@ TAILS = 3
 class Truncation:
     """Truncation error of a motion.
 
-    Parameters
-    ----------
-    frequency : float
-        Hz.
-    error : float
-        As part of the motion; NaN if no motion with more harmonics is converged.
-    heavy : bool
-        Whether rigid contacts carry mass, so that the error falls slowly.
+    ``frequency``: Hz; ``error``: as part of the motion; NaN if no motion with more harmonics is converged; ``heavy``:
+    whether rigid contacts carry mass, so that the error falls slowly.
     """
 
     frequency: float
@@ -119,6 +113,7 @@ def hardest(unknowns: np.ndarray, converged: np.ndarray, small: float = SMALL) -
     sizes = np.linalg.norm(unknowns[places].reshape(len(places), -1), axis=1)
     upper = unknowns.shape[2] // 2
     tails = np.linalg.norm(unknowns[places][:, :, upper:].reshape(len(places), -1), axis=1)
+    # Small motions have large relative tails that nobody looks at: they count as parts of a tenth of the largest.
     whole = np.maximum(sizes, small * sizes.max())
     parts = tails / np.where(whole > 0, whole, 1.0)
     order = [int(sizes.argmax()), *np.argsort(-parts, kind="stable")[:TAILS].tolist()]
@@ -158,6 +153,8 @@ def enough_harmonics(first: Level[M], motions: Sequence[M]) -> tuple[HarmonicBal
     """
     method, largest = first.method, None
     for motion in motions:
+        # Each motion starts from the number of harmonics that the motions before it needed: the largest number holds
+        # for all.
         level, known = (first, motion) if method == first.method else first.padded(motion, method)
         while known.converged:
             found = _confirmed(level, known)
@@ -178,6 +175,8 @@ def _confirmed(level: Level[M], motion: M) -> Truncation:
     The first few harmonics may change a motion less than those after them.
     """
     found, more = level.truncation(motion), level.method.next()
+    # From 9 harmonics on one change is enough. Below, den Hartog's block with a limit of 0.3 of the force changes by
+    # 0.14 % from 3 to 7 harmonics and by 0.44 % from 7 to 15.
     if level.method.highest >= RELIABLE or more is None or not found.error <= more.truncation:
         return found
     finer, known = level.padded(motion, more)
@@ -190,11 +189,7 @@ def _confirmed(level: Level[M], motion: M) -> Truncation:
 class ForcedLevel:
     """The equations of forced motions with a number of harmonics.
 
-    Parameters
-    ----------
-    problem : Equations
-    least : float
-        Amplitude, m, of which an error is a part at least.
+    ``least``: amplitude, m, of which an error is a part at least.
     """
 
     problem: Equations
@@ -223,14 +218,8 @@ class ForcedLevel:
 def truncation(problem: Equations, solution: Solution, least: float = 0.0, afresh: bool = True) -> Truncation:
     """Return the truncation error at a solution.
 
-    Parameters
-    ----------
-    problem : Equations
-    solution : Solution
-    least : float
-        Amplitude, m, of which the error is a part at least.
-    afresh : bool
-        Whether the motion with more harmonics is also sought without a start.
+    ``least``: amplitude, m, of which the error is a part at least; ``afresh``: whether the motion with more harmonics
+    is also sought without a start.
     """
     what = "truncation" if afresh else "truncation from here"
     change, size = problem.once(what, solution, lambda: np.array(_change(problem, solution, afresh))).tolist()
@@ -262,12 +251,15 @@ def _change(problem: Equations, solution: Solution, afresh: bool) -> tuple[float
     method = problem.method.refined()
     if method is None or not problem.nonlinear:
         return 0.0, 1.0
+    # Where contacts carry mass, the displacement kind converges more slowly in H than the velocity kind: 1.6 % against
+    # 0.2 % of error at 39 harmonics where a mass sticks for half of the period.
     finer = Equations(_robust(problem, solution.omega), method)
     better = _padded(finer, problem.method, solution)
     if not better.converged and afresh:
         better = finer.first(solution.omega)
     if not better.converged:
         return np.nan, 1.0
+    # Of the degree of freedom that moves most: relative errors of small ones say little.
     own, other = _amplitudes(problem.method, solution), _amplitudes(method, better)
     most = int(np.argmax(other))
     return float(abs(own[most] - other[most])), float(other[most])
@@ -279,6 +271,8 @@ def _heavy(problem: Equations, omega: float) -> tuple[bool, ...]:
     They do if the highest harmonic meets more inertia than stiffness, with everything else held.
     """
     lowered, (stiffness, mass, *_) = problem.lowered, problem.condensation.outer
+    # m (H ω)² > k: at the highest harmonic the contact sees inertia, so that its force jumps where motion stops and
+    # falls with 1/h.
     inertia = np.diag(mass) * (problem.method.highest * omega) ** 2
     place = {row: number for number, row in enumerate(lowered.coordinates.rows.tolist())}
     rows = [[place[row] for row in block.rows.ravel().tolist() if row in place] for block in lowered.blocks]

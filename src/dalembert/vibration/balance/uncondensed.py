@@ -40,16 +40,9 @@ class Local(NamedTuple):
 class Uncondensed:
     """A system in its retained and interior coordinates.
 
-    Parameters
-    ----------
-    lowered : Lowered
-        Real. Rigid contacts of the velocity kind are taken as such of the displacement kind, which say the same of a
-        solution and also of its mean.
-    condensation : Condensation
-        Which splits the structure.
-    series : Fourier
-    events : bool
-        As :class:`Balance` takes it.
+    ``lowered``: real. Rigid contacts of the velocity kind are taken as such of the displacement kind, which say the
+    same of a solution and also of its mean; ``condensation``: which splits the structure; ``events``: as
+    :class:`Balance` takes it.
     """
 
     lowered: Lowered
@@ -76,10 +69,7 @@ class Uncondensed:
     def matrices(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """K, M and C in these coordinates, (n, n) each.
 
-        Raises
-        ------
-        InputError
-            For a structure so large that its interior is kept sparse, and for hysteretic damping.
+        Raises InputError for a structure so large that its interior is kept sparse, and for hysteretic damping.
         """
         own = self.condensation
         require_viscous(self.lowered.structure, "stability and nonlinear modes")
@@ -100,6 +90,8 @@ class Uncondensed:
         if not rigid:
             return Local(evaluation, None, tangent.matrix, tangent.slope)
         scale = float(max(rigid))
+        # The Jacobian is W ∂L/∂U + B, linear in ∂L/∂U: with 0 in its place it is B, and with a multiple of the unit
+        # matrix W follows. The multiple is of the size of a penalty, so that W keeps its digits.
         other = self._tangent(scale, linear, unknowns, omega)[1]
         return Local(evaluation, (other.matrix - tangent.matrix) / scale, tangent.matrix, tangent.slope)
 

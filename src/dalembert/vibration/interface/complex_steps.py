@@ -32,10 +32,7 @@ def check_numbers(
 ) -> None:
     """Raise where a number of a system loses the complex step of a parameter.
 
-    Raises
-    ------
-    InputError
-        It names the parameter, the component and its number.
+    Raises InputError, which names the parameter, the component and its number.
     """
     _check(builder, parameters, vector, lambda system: _parts(lower(system)), thorough)
 
@@ -48,16 +45,8 @@ def check_laws(
 ) -> None:
     """Raise where a law of the user's loses the complex step of a parameter.
 
-    Parameters
-    ----------
-    builder, parameters, vector
-    displacements : mapping of str to array (dofs, samples)
-        Of each element with a law of the user's, over a period, m.
-
-    Raises
-    ------
-    InputError
-        It names the parameter and the element.
+    ``displacements``: of each element with a law of the user's, over a period, m. Raises InputError, which names the
+    parameter and the element.
     """
 
     def forces(system: VibrationSystem) -> Iterator[Part]:

@@ -40,25 +40,11 @@ DECOUPLED = 1e-10
 class Point:
     """A condensed structure at one frequency, and the matrices that recover all coordinates.
 
-    Parameters
-    ----------
-    omega : float
-        rad/s.
-    frequencies : array, shape (orders,)
-        h ω, rad/s.
-    stiffness, slope : array, shape (orders, q, q), complex
-        Z_q and its derivative by ω.
-    force, force_slope : array, shape (orders, q), complex
-    follow : array, shape (orders, l, q), complex
-        Z_ll⁻¹ Z_lq: the interior follows q by the negative of it.
-    free : array, shape (orders, l), complex
-        Z_ll⁻¹ f_l: the interior with q held.
-    kept : dict
-        Factors that serve all iterations here.
-    shared : dict
-        What all frequencies have in common.
-    rate : float
-        Derivative of ω by what ``slope`` and ``force_slope`` are derivatives by: 1, unless that is not ω.
+    ``omega``: rad/s; ``frequencies`` (orders,): h ω, rad/s; ``stiffness``, ``slope`` (orders, q, q), complex: Z_q and
+    its derivative by ω; ``force``, ``force_slope`` (orders, q), complex; ``follow`` (orders, l, q), complex: Z_ll⁻¹
+    Z_lq: the interior follows q by the negative of it; ``free`` (orders, l), complex: Z_ll⁻¹ f_l: the interior with q
+    held; ``kept``: factors that serve all iterations here; ``shared``: what all frequencies have in common; ``rate``:
+    derivative of ω by what ``slope`` and ``force_slope`` are derivatives by: 1, unless that is not ω.
     """
 
     omega: float
@@ -107,13 +93,7 @@ class Point:
 class Condensation:
     """A structure ready to be condensed at any frequency.
 
-    Parameters
-    ----------
-    structure : Structure
-    coordinates : Coordinates
-    orders : tuple of int
-    loads : array, shape (orders, n), complex
-        Phasors of the forces.
+    ``loads`` (orders, n), complex: phasors of the forces.
     """
 
     def __init__(
@@ -128,6 +108,7 @@ class Condensation:
         retained, interior = coordinates.retained, coordinates.interior
         dense = size <= DENSE or not issparse(structure.stiffness)
         self.retained, self.back = retained.toarray(), interior.toarray() if dense else interior
+        # A congruence with x = T_q q + T_l l: symmetric blocks, and exact, as no coordinate is left out.
         inner = [self.back.T @ (matrix @ self.back) for matrix in matrices]
         if dense and interior.shape[1]:
             inner = self._modal(inner)
@@ -188,10 +169,7 @@ class Condensation:
 
         They carry mass and no mean force, so that periodic motions exist, each about any mean position.
 
-        Raises
-        ------
-        ModelError
-            For motions without mass, and for static forces along them.
+        Raises ModelError for motions without mass, and for static forces along them.
         """
         if not motions.size:
             return
@@ -206,6 +184,7 @@ class Condensation:
                 f"the structure can move freely, at {moving_names(self.names, size)}, without a mass, a spring or a "
                 "contact that holds it, so its motion is not determined; clamp it, or give it mass"
             )
+        # An orthonormal basis, so that `full` removes exactly the part along free motions.
         self.free = np.linalg.qr(moved)[0]
         static = np.real(self.loads[0])
         force = float(np.linalg.norm(self.free.T @ static))
@@ -254,15 +233,15 @@ class Condensation:
 
         That is exact where nothing moves such a mode, and close to it where the retained coordinates hold it.
 
-        Raises
-        ------
-        SolveError
-            Where forces, the last of the right-hand sides, move one that the retained coordinates do not hold.
+        Raises SolveError where forces, the last of the right-hand sides, move one that the retained coordinates do not
+        hold.
         """
         if self._pins.size:
             inner = self._pinned(inner)
         if isinstance(inner, list) or inner.ndim > 2:
             return inner
+        # K - s²M of an undamped mode at its own frequency is rounding of its two terms. Half of the digits are kept by
+        # a small value in its place.
         still = np.abs(inner) <= self._resonant
         if not still.any():
             return inner

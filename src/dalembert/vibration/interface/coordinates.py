@@ -15,16 +15,8 @@ DEPENDENT = 1e-10
 class Coordinates:
     r"""Retained coordinates :math:`q = S x`, and :math:`x = T_q q + T_l x_l` with interior ones that x holds itself.
 
-    Parameters
-    ----------
-    rows : array of int, shape (q,)
-        Which of the elements' rows are the retained coordinates.
-    combination : array, shape (elements' rows, q)
-        All elements' rows from the retained ones.
-    retained : sparse array, shape (n, q)
-        T_q.
-    interior : sparse array, shape (n, n - q)
-        T_l.
+    ``rows`` (q,): which of the elements' rows are the retained coordinates; ``combination`` (elements' rows, q): all
+    elements' rows from the retained ones; ``retained`` (n, q): T_q; ``interior`` (n, n - q): T_l.
     """
 
     rows: np.ndarray
@@ -36,11 +28,8 @@ class Coordinates:
 def coordinates(rows: Any, first: np.ndarray) -> Coordinates:
     """Coordinates of a structure from the rows (elements' rows, n) that its elements see.
 
-    Parameters
-    ----------
-    rows : sparse array, shape (elements' rows, n)
-    first : array of int
-        Rows that are to be retained coordinates themselves; they must be independent.
+    ``rows`` (elements' rows, n); ``first``: rows that are to be retained coordinates themselves; they must be
+    independent.
     """
     count, n = rows.shape
     columns = np.flatnonzero(np.diff(rows.indptr))
@@ -53,6 +42,8 @@ def coordinates(rows: Any, first: np.ndarray) -> Coordinates:
     combination[kept] = np.eye(len(kept))
     if not len(kept):
         return Coordinates(kept, combination, csc_array((n, 0)), csc_array(eye_array(n)))
+    # QR with column pivots chooses the degrees of freedom that the retained rows replace, so that their block is well
+    # conditioned.
     pivots = qr(basis, mode="r", pivoting=True)[-1][: len(kept)]
     others = np.setdiff1d(np.arange(len(columns)), pivots)
     inverse = solve(basis[:, pivots], np.eye(len(kept)))
@@ -82,6 +73,7 @@ def _independent(dense: np.ndarray, order: list[int]) -> list[int]:
         if len(kept) == len(directions):
             break
         left = dense[row] / np.linalg.norm(dense[row])
+        # Twice is enough (Kahan and Parlett): once loses orthogonality where a row is nearly dependent.
         for _ in range(2):
             left = left - directions[: len(kept)].T @ (directions[: len(kept)] @ left)
         size = np.linalg.norm(left)

@@ -32,6 +32,7 @@ def free_motions(stiffness: Any) -> np.ndarray:
     if not issparse(stiffness):
         return _unresisted(stiffness, np.eye(len(stiffness)))
     try:
+        # A small pivot of LU shows a singular matrix; without one no subspace is needed, which costs more.
         pivots = np.abs(splu(csc_array(stiffness)).U.diagonal())
     except RuntimeError:  # a pivot is zero
         pivots = np.zeros(1)
@@ -55,13 +56,9 @@ def _unresisted(stiffness: Any, basis: np.ndarray) -> np.ndarray:
 class HeldByElements:
     """Mean motions that the structure does not resist, so that its elements alone may hold them.
 
-    Parameters
-    ----------
-    motions : array, shape (q, motions)
-        Of the retained coordinates.
-    stiffness : array, shape (motions, motions)
-        By which the elements' mean forces change with them, N/m, where all contacts and stops are closed. Sliders,
-        which remember, have none: their mean force does not depend on the mean position.
+    ``motions`` (q, motions): of the retained coordinates; ``stiffness`` (motions, motions): by which the elements' mean
+    forces change with them, N/m, where all contacts and stops are closed. Sliders, which remember, have none: their
+    mean force does not depend on the mean position.
     """
 
     motions: np.ndarray
@@ -70,13 +67,11 @@ class HeldByElements:
     def unresisted(self, forces: np.ndarray, largest: float) -> np.ndarray:
         """Return the motions (q, motions) that no element resists either.
 
-        Parameters
-        ----------
-        forces : array, shape (unknowns, motions)
-            Of the tangent under each motion.
-        largest : float
-            Stiffness, N/m, of which those that are rounding are parts.
+        ``forces`` (unknowns, motions): of the tangent under each motion; ``largest``: stiffness, N/m, of which those
+        that are rounding are parts.
         """
+        # Combinations of the free motions under which the elements answer with no force: right singular vectors of
+        # value 0.
         _, sizes, shapes = np.linalg.svd(forces, full_matrices=False)
         return self.motions @ shapes[sizes <= RESISTED * largest].T
 

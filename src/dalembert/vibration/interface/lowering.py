@@ -27,17 +27,9 @@ ELASTIC = "elastic"
 class FrictionBlock:
     """Sliders of one shape and one kind of law.
 
-    Parameters
-    ----------
-    kind : {"elastic", "displacement", "velocity"}
-    tangents : int
-    normal : bool
-    rows : array of int, shape (cells, tangents + normal)
-        Among the rows of all elements.
-    contacts : array of int, shape (cells,)
-        Which contact a cell belongs to.
-    numbers : array, shape (cells, 5)
-        As :mod:`dalembert.vibration.laws.friction_law` takes them; stiffnesses of rigid contacts are their penalties.
+    ``kind``: "elastic", "displacement", "velocity"; ``rows`` (cells, tangents + normal): among the rows of all
+    elements; ``contacts`` (cells,): which contact a cell belongs to; ``numbers`` (cells, 5): as
+    :mod:`dalembert.vibration.laws.friction_law` takes them; stiffnesses of rigid contacts are their penalties.
     """
 
     kind: str
@@ -62,19 +54,8 @@ class FrictionBlock:
 class Lowered:
     """A vibrating system as arrays.
 
-    Parameters
-    ----------
-    structure : Structure
-    forces : tuple
-    row_names : tuple of str
-        Names of the coordinates that elements see, such as ``"foot.x"``.
-    matrix : sparse array, shape (rows, n)
-    contacts : tuple of str
-        Names of the friction contacts.
-    blocks : tuple of FrictionBlock
-    laws : tuple of LawBlock
-    functions : tuple of (array of int, UserElement)
-        Rows of each element whose law is a function of arrays.
+    ``row_names``: names of the coordinates that elements see, such as ``"foot.x"``; ``matrix`` (rows, n); ``contacts``:
+    names of the friction contacts; ``functions``: rows of each element whose law is a function of arrays.
     """
 
     structure: Structure
@@ -148,12 +129,8 @@ class Lowered:
 def lower(system: VibrationSystem) -> Lowered:
     """Arrays of a system.
 
-    Raises
-    ------
-    InputError
-        For an element or a force on a degree of freedom that is not there.
-    ModelError
-        For a rigid contact on a degree of freedom without stiffness and no penalty.
+    Raises InputError for an element or a force on a degree of freedom that is not there; ModelError for a rigid contact
+    on a degree of freedom without stiffness and no penalty.
     """
     rows, names = _Rows(system.structure), []
     cells: dict[tuple[str, int, bool], list[tuple[list[int], int, list]]] = {}

@@ -33,6 +33,7 @@ _PLACES, _WEIGHTS = (tuple(float(x) for x in own) for own in np.polynomial.legen
 @inner
 def _power(z, n):
     """|z|^n, in complex arithmetic the analytic continuation of its branch."""
+    # Without abs, which would drop the imaginary part: |z|^n is analytic on each side of zero.
     size = z if z.real >= 0.0 else -z
     return size**n if size.real > 0.0 else 0.0 * z
 
@@ -57,6 +58,7 @@ def _to_zero(z, side, numbers):
 def _smooth(z, way, numbers):
     """Runge and Kutta's classical method over a displacement/u_y on which z does not change its sign."""
     side = 1.0 if way.real >= 0.0 else -1.0
+    # Steps in displacement, not in time: the law has no rate, and its result must not depend on the number of samples.
     count = min(int(STEPS * abs(way.real)) + 1, MOST)
     h = way / count
     for _ in range(count):
@@ -71,6 +73,8 @@ def _smooth(z, way, numbers):
 def bouc_wen(u, v, z, numbers, force):
     """The state: z, and the displacement before."""
     way = (u[0] - z[1]) / numbers[YIELD]
+    # z passes zero on the way: there sgn(z du) changes, so that Runge-Kutta steps across it would lose their order. The
+    # way to it is a quadrature.
     if way.real * z[0].real < 0.0:
         side = 1.0 if way.real >= 0.0 else -1.0
         first = _to_zero(z[0], side, numbers)

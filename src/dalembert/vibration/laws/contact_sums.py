@@ -32,13 +32,7 @@ class Shape(NamedTuple):
 def contact_sums(numbers: np.ndarray, shape: Shape, series: Fourier, events: bool) -> "ContactSums":
     """Return the sums for contacts: corrected ones if asked for, and if their events can be found.
 
-    Parameters
-    ----------
-    numbers : array, shape (contacts, 5)
-        As :mod:`dalembert.vibration.laws.friction_law` takes them.
-    shape : Shape
-    series : Fourier
-    events : bool
+    ``numbers`` (contacts, 5): as :mod:`dalembert.vibration.laws.friction_law` takes them.
     """
     return sums_for(numbers, shape, events)(numbers, shape, series)
 
@@ -64,11 +58,7 @@ class _Sums:
     numbers too. ``with_slopes`` returns the same, and Jacobians (contacts, columns · coefficients,
     columns · coefficients).
 
-    Parameters
-    ----------
-    numbers : array, shape (contacts, 5)
-    shape : Shape
-    series : Fourier
+    ``numbers`` (contacts, 5).
     """
 
     kernels: ClassVar[tuple[Any, Any, Any]]
@@ -176,6 +166,7 @@ class EventSums(_Sums):
     def _coefficients(self, results: tuple[np.ndarray, np.ndarray, np.ndarray]) -> np.ndarray:
         """Coefficients of the forces: the sums of samples, and the corrections as integrals over a period."""
         sampled, _, corrections = results
+        # Corrections are integrals ∫ λ c dτ; coefficients are these by π, the mean by 2π.
         return _times(sampled, self.series.analysis) + corrections * self._weights
 
     @cached_property
@@ -225,6 +216,7 @@ ContactSums = PlainSums | EventSums
 
 def _times(rows: np.ndarray, matrix: np.ndarray) -> np.ndarray:
     """Rows (contacts, columns, numbers) times a transposed matrix: one product for several contacts is faster."""
+    # Many small products cost more in calls than in arithmetic; with one contact the copy would.
     if len(rows) == 1:
         return rows @ matrix.T
     return (rows.reshape(-1, rows.shape[-1]) @ matrix.T).reshape(*rows.shape[:-1], len(matrix))

@@ -21,6 +21,7 @@ def bend(x, terms):
     c, s = np.cos(x[10]), np.sin(x[10])
     along, across = c * x[0] + s * x[3], c * x[3] - s * x[0]
     along2, across2, across3 = c * x[1] + s * x[4], c * x[4] - s * x[1], c * x[5] - s * x[2]
+    # φ', φ'' and φ''' from L φ' = a'·n, differentiated twice; with e' = φ' n and n' = -φ' e.
     limit, first, second, third = x[6], 0.0 * x[6], 0.0 * x[6], 0.0 * x[6]
     if terms == 3:
         first = across / limit
@@ -28,11 +29,14 @@ def bend(x, terms):
         rate = across3 - first * along2 - second * along - first * (along2 + first * across)
         third = (rate - x[8] * first - 2.0 * x[7] * second) / limit
     else:
+        # L = 0: the equations of the next order determine φ' = a''·n/(L' + a'·e) and φ'' = ..., as far as these are
+        # finite.
         limit = 0.0 * limit
         if terms > 0:
             first = across2 / (x[7] + along)
         if terms > 1:
             second = (across3 - 2.0 * first * along2 - x[8] * first) / (2.0 * x[7] + along)
+    # (L e)'' and (L e)''' in the directions e and n, then in x and y.
     e2, n2 = x[8] - limit * first * first, 2.0 * x[7] * first + limit * second
     e3 = x[9] - 3.0 * x[7] * first * first - 3.0 * limit * first * second
     n3 = 3.0 * x[8] * first + 3.0 * x[7] * second + limit * (third - first * first * first)
@@ -60,9 +64,12 @@ def add_slip(sign, phi, terms, numbers, normal, wanted, table, values, x, seeds,
     for k in range(11):
         seeds[k] = x[k].real
     for number in range(11):
+        # Gradients of the jumps by the complex step through `bend`: eleven calls of a short function.
         seeds[number] += 1e-30j
         slopes = bend(seeds, terms)
         seeds[number] = seeds[number].real
+        # φ is the slider's own number and has a gradient; the signals have theirs by the waves and by the angle of the
+        # event.
         if number == 10:
             for k in range(6):
                 factor = sign * slopes[k].imag * 1e30
@@ -125,6 +132,7 @@ def correct(first, stride, h, theta, wanted, table, jumps, grads, result, slopes
 @inner
 def smooth_terms(values, friction, size):
     """How many derivatives the direction of slip has where a contact lifts off or closes."""
+    # |a'|/|L'| is the power with which φ tends to its end before lift-off: derivatives below it exist.
     rise = (friction * values[1, PRESSED]).real
     if rise >= 0.0 or size > -3.0 * rise:
         return 2

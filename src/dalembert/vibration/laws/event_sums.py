@@ -37,6 +37,7 @@ MOST = 12
 
 
 @inner
+# By the displacements at a fixed angle: the same terms with the gradients of κ', κ'' and κ'''.
 def slope_of(weights, order, contact, table, gradient):
     """Set the gradient (unknowns,) of a combination of signals by the displacements' coefficients."""
     count, numbers, tangents = table.shape[1], contact.numbers, contact.tangents
@@ -51,6 +52,8 @@ def slope_of(weights, order, contact, table, gradient):
 @inner
 def bernoulli(theta, h):
     """The terms of Euler's and Maclaurin's sum at a part of an interval: B_1, and those of the first three jumps."""
+    # B_2/2 h², -B_3/6 h³ and B_4/24 h⁴ with Bernoulli's polynomials; the trapezoidal sum has no B_1 term where the
+    # force is continuous (Abramowitz and Stegun, 23.1.30).
     cube = theta * theta * theta
     b2 = (theta * theta - theta + 1.0 / 6.0) * 0.5 * h * h
     b3 = -(cube - 1.5 * theta * theta + 0.5 * theta) * h * h * h / 6.0
@@ -81,6 +84,8 @@ def add_correction(weights, contact, h, theta, table, values, result, slopes, mo
     """
     count = table.shape[1]
     b1, b2, b3, b4 = bernoulli(theta, h)
+    # With κ the jump of the force and c a wave: s_1 = κ'c, s_2 = 2κ'c' + κ''c, s_3 = 3κ'c'' + 3κ''c' + κ'''c. Sums are
+    # sorted by c, c', c'' so that each wave is read once.
     f1, f2, f3 = value(weights, values, 1), value(weights, values, 2), value(weights, values, 3)
     own, first, second = b2 * f1 + b3 * f2 + b4 * f3, 2.0 * b3 * f1 + 3.0 * b4 * f2, 3.0 * b4 * f1
     for j in range(count):
@@ -118,6 +123,8 @@ def entered(values, memory):
     """
     if not memory:
         return 1.0 if values[0, TRIAL].real > 0.0 else -1.0
+    # At the limit the force follows mu N if the trial force grows faster than the limit, and else it sticks: the
+    # consistency condition of slip, |p|' > (mu N)'.
     rate, limit = values[1, TRIAL].real, values[1, LIMIT].real
     if rate - limit > 0.0:
         return 1.0
@@ -174,6 +181,8 @@ def march(contact, signals, synthesis, grid, sums, room):
         place[:] = 0.0
     if normal and here[0, PRESSED].real <= 0.0:
         state = SEPARATED
+    # The first guess of the slider is zero. Its place after the first slip does not depend on this, so that a second
+    # period is exact.
     elif tangents == 1 and abs(here[0, TRIAL].real) > here[0, LIMIT].real:
         sign = 1.0 if here[0, TRIAL].real > 0.0 else -1.0
         state = SLIPPING
@@ -183,6 +192,8 @@ def march(contact, signals, synthesis, grid, sums, room):
                 for j in range(count):
                     table[0, j] = synthesis[0, j]
                 place_at_limit(sign, contact, table, place)
+    # Two periods: the first forgets the guess, the second is periodic and writes the corrections. A slider that never
+    # moves needs one.
     for period in range(2):
         last, moved = period == 1 or not remembers, state != STUCK
         result[:] = 0.0
@@ -197,6 +208,8 @@ def march(contact, signals, synthesis, grid, sums, room):
             if tangents == 1:
                 forces[0, t] = nothing
                 if state == STUCK:
+                    # Samples take the state before the events of their interval: the corrections belong to the
+                    # one-sided values.
                     forces[0, t] = here[0, TRIAL] - stiffness * z
                 elif state == SLIPPING:
                     forces[0, t] = sign * here[0, LIMIT]
@@ -219,6 +232,7 @@ def march(contact, signals, synthesis, grid, sums, room):
                 # the event that ends this piece: where a combination of signals grows through zero
                 event, weights, shift, order, side = -1.0, (0.0, 0.0, 0.0), nothing, 0, 0.0
                 if state == STUCK and tangents == 1:
+                    # |k (u - z)| - mu N grows through zero: at ±(k u - k z) - mu N = 0, whichever comes first.
                     for direction in range(2):
                         turn = 1.0 - 2.0 * direction
                         own, offset = (turn, -1.0, 0.0), -turn * stiffness * z
@@ -226,11 +240,15 @@ def march(contact, signals, synthesis, grid, sums, room):
                         if found >= 0.0 and (event < 0.0 or found < event):
                             event, weights, shift, side = found, own, offset, turn
                 if state == SLIPPING:
+                    # Slip ends where the slider stops: ±k u' = mu N'. Without memory the force itself returns to the
+                    # limit.
                     order = 1 if memory else 0
                     weights = (-sign, 1.0, 0.0)
                     event = crossing(weights, shift, order, begin, end, here, there, signals, table, values)
                 opens = False
                 if normal:
+                    # N = 0, from below where the contact closes, from above where it opens; an opening wins over a slip
+                    # at the same angle only if it is earlier.
                     own = (0.0, 0.0, 1.0 if state == SEPARATED else -1.0)
                     found = crossing(own, nothing, 0, begin, end, here, there, signals, table, values)
                     if found >= 0.0 and (event < 0.0 or found < event):
@@ -239,17 +257,23 @@ def march(contact, signals, synthesis, grid, sums, room):
                     break
                 moved = True
                 at(event, signals, table, values)
+                # One more step of Newton in the arithmetic of the displacements: bisection and real Newton steps leave
+                # the angle real, this one carries the complex step or leaves it as it is.
                 error, slope = value(weights, values, order) + shift, value(weights, values, order + 1)
                 angle = event + nothing
                 if abs(error) < 1e-6 * h * abs(slope):  # Newton's last step carries directions of differentiation
                     angle = event - error / slope
                     at(angle, signals, table, values)
                 if wanted:
+                    # Implicit function: ψ(τ, U) = 0 gives dτ/dU = -ψ_U/ψ'. The slider's place moves the limit at which
+                    # slip begins.
                     slope_of(weights, order, contact, table, move)
                     for j in range(len(move)):
                         own_shift = stiffness * side * place[j] if state == STUCK and not opens else 0.0
                         move[j] = -(move[j] - own_shift) / slope if slope != 0.0 else 0.0
                 # what comes next, and by what combination of signals the tangential force jumps
+                # The jump of the force is the combination of signals after the event less that before: both are
+                # continued smoothly through it.
                 before = weights_of(state, sign)
                 if state == SEPARATED:
                     sign = entered(values, memory) if tangents == 1 else 0.0
@@ -267,6 +291,7 @@ def march(contact, signals, synthesis, grid, sums, room):
                 else:
                     state = STUCK
                     if memory:
+                        # z = u - mu N/k at the end of slip: the force is continuous where the slider stops.
                         z = (values[0, TRIAL] - sign * values[0, LIMIT]) / stiffness
                         if wanted:
                             place_at_limit(sign, contact, table, place)

@@ -32,6 +32,7 @@ TURNS = 24
 @inner
 def _loading(x, numbers):
     """F_0 of a displacement that is not negative."""
+    # All sliders slip beyond φ_max: the force stays.
     if x.real >= numbers[REACH].real:
         x = numbers[REACH]
     power = x ** (numbers[EXPONENT] + 2.0) if x.real > 0.0 else 0.0 * x
@@ -49,6 +50,8 @@ def _branch(u, start, part, numbers):
 def _forget(u, z, count):
     """Turns that remain where the motion is at u: those that u has passed are forgotten in pairs."""
     while count > 0:
+        # Masing's rule of memory: a loop that closes is forgotten with both of its turns, and the branch before it goes
+        # on.
         last = z[FIRST + count - 1]
         # A single turn is passed by the opposite displacement, where first loading begins again.
         opposite = -last if count == 1 else z[FIRST + count - 2]
@@ -68,6 +71,7 @@ def four_parameter_iwan(u, v, z, numbers, force):
     """The state: turns in their order, of which the last begins the present branch, and the displacement before."""
     count, place, before = int(z[COUNT].real), u[0], z[LAST]
     start = z[FIRST + count - 1] if count > 0 else 0.0 * place
+    # The direction changes at the displacement before: a turn, which begins a branch.
     if (place.real - before.real) * (before.real - start.real) < 0.0:
         if count == TURNS:
             z[FIRST + count - 1] = 0.0 * place
@@ -77,6 +81,8 @@ def four_parameter_iwan(u, v, z, numbers, force):
         count += 1
     count = _forget(place, z, count)
     total, start = 0.0 * place, 0.0 * place
+    # Forces add up over the turns: each branch is the loading curve with twice its size (Masing), the first one as it
+    # is.
     for i in range(count):
         total += _branch(z[FIRST + i], start, 1.0 if i == 0 else 2.0, numbers)
         start = z[FIRST + i]

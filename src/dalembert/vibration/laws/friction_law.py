@@ -30,9 +30,12 @@ TANGENTIAL, NORMAL, GAP, FRICTION, LOAD = range(5)
 @inner
 def update(d, z, force, numbers, tangents, normal, memory):
     """One sample: writes the forces (normal: N - N0), moves the slider; the state, and the size of the trial force."""
+    # Order matters: the load first, since the limit depends on it; then the trial force, as if the slider stuck; its
+    # return to the limit last (return mapping, as in plasticity: Simo and Hughes, Computational Inelasticity, 1998).
     load = numbers[LOAD]
     if normal:
         load = load + numbers[NORMAL] * (d[tangents] - numbers[GAP])
+        # An open contact lets its slider go along: it closes again without tangential force.
         if load.real <= 0.0:
             for i in range(tangents):
                 force[i] = 0.0
@@ -46,12 +49,14 @@ def update(d, z, force, numbers, tangents, normal, memory):
     for i in range(tangents):
         force[i] = stiffness * (d[i] - z[i])
     if tangents == 1:
+        # |p| without abs, which would drop the imaginary part; analytic on each side of zero.
         size = force[0] if force[0].real >= 0.0 else -force[0]
     else:
         size = np.sqrt(force[0] * force[0] + force[1] * force[1])
     if size.real <= limit.real:
         return STUCK, size
     for i in range(tangents):
+        # The radial return p mu N/|p|: exact for the step in one dimension, of first order in the step in two.
         force[i] = limit * force[i] / size
         if memory:
             z[i] = d[i] - force[i] / stiffness

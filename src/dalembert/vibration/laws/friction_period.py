@@ -89,11 +89,14 @@ def _period(d, z, force, forces, states, kept, numbers, tangents, normal, memory
             forces[i, t] = force[i]
         if state == STUCK:
             continue
+        # Each sample that moves the slider forgets part of its past: `kept` is the product of these derivatives,
+        # ∂z(end)/∂z(start).
         moving += 1
         limit = 0.0 if state == SEPARATED or tangents == 1 else np.hypot(force[0].real, force[1].real)
         if limit == 0.0:
             kept[:] = 0.0
             continue
+        # A slip of fixed size keeps the part across its direction, by the ratio of the limit to the trial force.
         project(kept[0], kept[1], force[0].real / limit, force[1].real / limit, limit / size.real)
     return moving
 
@@ -106,6 +109,7 @@ def _settle(d, z, before, force, forces, states, kept, numbers, tangents, normal
     all these periods did not stick.
     """
     scale, last, moving = largest(d), np.inf, 0
+    # From rest: where a contact sticks all period, its force depends on the past, and this past is the convention.
     z[:] = 0.0
     for sweep in range(SWEEPS if memory else 1):
         for i in range(tangents):
@@ -113,6 +117,8 @@ def _settle(d, z, before, force, forces, states, kept, numbers, tangents, normal
         moving += _period(d, z, force, forces, states, kept, numbers, tangents, normal, memory)
         if sweep > 0 and (tangents == 1 or settled(z, before, tangents, scale)):
             break
+        # Newton's method on z(end) - z(start), once the first period has the states about right. Plain repetition
+        # converges slowly where slip is short: its factor is `kept`.
         if direct and sweep > 0 and restart(kept, tangents) > NEUTRAL:
             change = 0.0
             for i in range(tangents):
@@ -133,6 +139,8 @@ def balanced(d, z, before, force, forces, states, kept, numbers, tangents, norma
     """
     moving = _settle(d, z, before, force, forces, states, kept, numbers, tangents, normal, memory, True)
     forgets = restart(kept, tangents) > NEUTRAL
+    # A neutral slider stays wherever Newton's method leaves it: the periods from rest are repeated without it, so that
+    # its place is that of the convention.
     if memory and not forgets and tangents == 2:
         moving = _settle(d, z, before, force, forces, states, kept, numbers, tangents, normal, memory, False)
     return forgets, moving > 0

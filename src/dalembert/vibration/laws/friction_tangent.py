@@ -27,6 +27,7 @@ def _line_slopes(states, stiffness, synthesis, slopes):
     """
     last = 0
     for t in range(len(states)):
+        # Of the period before: the place at the first sample is that of the last slip.
         last = t if states[t] == SLIPPING else last
     for t in range(len(states)):
         if states[t] == SLIPPING:
@@ -57,6 +58,8 @@ def _slopes(d, z, force, states, moved, kept, slopes, past, numbers, tangents, n
             slopes[tangents, t, :own] = 0.0
             for j in range(count):
                 slopes[tangents, t, own + j] = rise * synthesis[t, j]
+        # ∂f = k (∂d - ∂z) where it sticks; the same, projected across the direction, where it slips in two directions;
+        # in one direction only the limit changes.
         held = stiffness if state == STUCK or (state == SLIPPING and tangents == 2) else 0.0
         for i in range(tangents):
             for j in range(unknowns):
@@ -71,15 +74,18 @@ def _slopes(d, z, force, states, moved, kept, slopes, past, numbers, tangents, n
             if tangents == 2:
                 e, f = direction[0], direction[1]
                 ratio = (force[0] * e + force[1] * f) / size
+                # mu N/|p| (1 - e e^T) k (∂d - ∂z)
                 project(slopes[0, t], slopes[1, t], e, f, ratio)
                 project(past[0, t], past[1, t], e, f, ratio)
             if normal:
                 for i in range(tangents):
                     for j in range(own, unknowns):
+                        # + mu e ∂N
                         slopes[i, t, j] += friction * direction[i] * slopes[tangents, t, j]
         if memory and state != STUCK:
             for i in range(tangents):
                 for j in range(unknowns):
+                    # z = d - f/k after slip, so that ∂z = ∂d - ∂f/k; an open contact has f = 0.
                     moved[i, j] = -slopes[i, t, j] / stiffness
                 for j in range(count):
                     moved[i, i * count + j] += synthesis[t, j]
@@ -116,6 +122,7 @@ def _differentiate(
 def _begin_again(kept, moved, tangents):
     """Turn the derivative of the slider's place at the end of a period into that of the periodic motion's place."""
     for j in range(moved.shape[1]):
+        # z(end) = z(start): ∂z = (1 - ∂z(end)/∂z(start))⁻¹ ∂z(end)/∂U
         first, second = restarted(kept, tangents, moved[0, j], moved[tangents - 1, j])
         moved[0, j] = first
         if tangents == 2:

@@ -14,15 +14,8 @@ from dalembert.vibration.laws.sums import Sums
 class LawBlock:
     """Elements of one kind and one law.
 
-    Parameters
-    ----------
-    element : LawElement
-        One of them: law, events and internal numbers are those of all.
-    names : tuple of str
-        Of the elements.
-    rows : array of int, shape (elements, columns)
-        Among the rows of all elements.
-    numbers : array, shape (elements, numbers)
+    ``element``: one of them: law, events and internal numbers are those of all; ``names``: of the elements; ``rows``
+    (elements, columns): among the rows of all elements; ``numbers`` (elements, numbers).
     """
 
     element: Any

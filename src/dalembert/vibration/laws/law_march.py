@@ -124,6 +124,8 @@ def _zero(law, k, low, high, first, last, motion, z, rule, room):
     """The angle between two angles at which an event's function is zero, by regula falsi (Illinois)."""
     side = 0
     for _ in range(REFINEMENTS):
+        # Regula falsi keeps its bracket without derivatives of the user's function; Illinois halves the value of an end
+        # that stays, which makes it superlinear (Dowell and Jarratt, BIT 11, 1971).
         place = low + (high - low) * first / (first - last)
         if not low < place < high:
             break
@@ -145,12 +147,15 @@ def _zero(law, k, low, high, first, last, motion, z, rule, room):
 @inner
 def _next_event(law, begin, end, motion, z, rule, room):
     """The next event between two angles and whether there is one, else the end."""
+    # At an event its own function is zero with either sign: the signs are taken a little behind it.
     low = (begin + NEAR * (end - begin)).real
     _events(law, low + 0j, motion, z, rule, room, room.first)
     _events(law, end + 0j, motion, z, rule, room, room.last)
     event, angle = -1, end
     for k in range(law.event_count):
         first, last = room.first[k].real, room.last[k].real
+        # Only a change of sign between both ends counts: an event function that touches zero between two samples
+        # divides nothing, since the law is smooth there.
         if (first > 0.0) != (last > 0.0):
             zero = _zero(law, k, low, end, first, last, motion, z, rule, room)
             if zero < angle or event < 0:
@@ -194,6 +199,7 @@ def _march(law, motion, z, largest, rule, room, sampled, pieces):
                 for c in range(len(room.force)):
                     sampled[c, k] = room.force[c]
             continue
+        # Pieces between events: Gauss's rule on each, so that kinks cost no order.
         for _ in range(MOST):
             for k in range(nodes):
                 _move(begin + (end - begin) * rule.offsets[k], motion, rule, room)

@@ -90,6 +90,7 @@ def march(numbers, normal, wanted, waving, signals, state, y, sums, room, grads)
     if wanted:
         slopes[:] = 0.0
         sampled[:] = 0.0
+    # Signals at samples come from a table of waves by dot products; angles of events need their own waves.
     at(0.0, signals, table, there)
     for t in range(steps):
         end, begin, opened, after = (t + 1) * h, t * h, t * h + nothing, (t + 1) % steps
@@ -114,6 +115,7 @@ def march(numbers, normal, wanted, waving, signals, state, y, sums, room, grads)
                 if state == STUCK:
                     sampled[0, t, m], sampled[1, t, m] = -grads[PLACE, m], -grads[PLACE + 1, m]
                 else:
+                    # f = L e(φ): ∂f = e ∂L + L n ∂φ; here the part of φ, that of L below.
                     sampled[0, t, m], sampled[1, t, m] = -limit * s * grads[PLACE, m], limit * c * grads[PLACE, m]
             for q in range(count):
                 wave = waving[0, t, q]
@@ -129,6 +131,7 @@ def march(numbers, normal, wanted, waving, signals, state, y, sums, room, grads)
             # the contact opens or closes at ``stop``, unless it begins or ends to slip before
             stop, changes = end, False
             if normal:
+                # Lift-off and closing are zeros of the load alone: they are found before the slip is integrated.
                 weights = (0.0, 0.0, 1.0 if state == SEPARATED else -1.0)
                 found = crossing(weights, nothing, 0, begin, end, here, there, signals, table, values)
                 if found >= 0.0:
@@ -140,6 +143,7 @@ def march(numbers, normal, wanted, waving, signals, state, y, sums, room, grads)
                     exact = stop - values[0, PRESSED] / values[1, PRESSED]
             before, event = state, changes
             if state == STUCK:
+                # |f|² = L² rather than |f| = L: a polynomial of the signals, without a root that is singular at f = 0.
                 found = first_slip(begin, stop, zx, zy, friction, signals, table, values)
                 if found >= 0.0:
                     at(found, signals, table, values)
@@ -149,15 +153,20 @@ def march(numbers, normal, wanted, waving, signals, state, y, sums, room, grads)
                         exact = found - size / rate
             if state == SLIPPING:
                 stopped = False
+                # Column of the step's end: zero until the first step, then φ'.
                 grads[PLACE, unknowns + 2] = 0.0
                 while (exact - opened).real > 0.0:
                     goal, whole = exact, True
                     change, known = step(opened, goal, phi, friction, signals, tables, stages, radau)
+                    # Radau's stages find only one branch of φ if it turns by less than about a radian in a step; halves
+                    # of the step do, down to 1/64.
                     while not known or abs(change.real) > TURN:
                         if (goal - opened).real < PARTS * h:
                             break
                         goal, whole = nothing + 0.5 * (goal.real + opened.real), False
                         change, known = step(opened, goal, phi, friction, signals, tables, stages, radau)
+                    # a'·e < L': the slider would go backwards at the end of the step, so it has stopped before. Both
+                    # inner stages are looked at too, since it may stop and start again between.
                     late = slides(stages[2], phi + change, friction).real < 0.0
                     for j in range(2):
                         if not late and slides(stages[j], radau[1, j], friction).real < 0.0:
@@ -169,6 +178,8 @@ def march(numbers, normal, wanted, waving, signals, state, y, sums, room, grads)
                             else:
                                 change, known = step(opened, goal, phi, friction, signals, tables, stages, radau)
                     if late:
+                        # The end of slip is a zero of a'·e - L' along the numerical solution: the step is taken again
+                        # with each trial of its length, so that the end is that of the step, and its derivative exact.
                         goal = opened + stop_slip(opened, goal, phi, friction, signals, tables, stages, radau)
                         stopped = True
                         change, known = step(opened, goal, phi, friction, signals, tables, stages, radau)
@@ -184,6 +195,7 @@ def march(numbers, normal, wanted, waving, signals, state, y, sums, room, grads)
             c, s = np.cos(phi), np.sin(phi)
             limit, rise = friction * values[0, PRESSED], friction * values[1, PRESSED]
             # the derivative of the event's angle
+            # dτ/dU = -ψ_U/ψ' of the event's function ψ: the load, |f|² - L², or a'·e - L'.
             tau[:] = 0.0
             if changes:
                 if wanted:
@@ -216,6 +228,8 @@ def march(numbers, normal, wanted, waving, signals, state, y, sums, room, grads)
             jumps[:] = 0.0
             grads[JUMPS:] = 0.0
             size = np.hypot(values[1, 0].real, values[1, 1].real)
+            # Where L = 0 the angle has fewer derivatives: before lift-off it tends to its end with a power of the time
+            # left, which need not be whole, so that the order falls to about two.
             terms = smooth_terms(values, friction, size) if changes else (3 if limit.real * LAYER > h * size else 0)
             if before == STUCK:
                 for row in range(2):
@@ -230,6 +244,7 @@ def march(numbers, normal, wanted, waving, signals, state, y, sums, room, grads)
             else:
                 state = SLIPPING if before == STUCK else STUCK
             if state == SLIPPING:
+                # A contact that closes has no force yet: it slips along the rate a' of the trial force.
                 order = 1 if before == SEPARATED else 0
                 fx, fy = values[order, 0], values[order, 1]
                 if order == 0:
@@ -248,6 +263,7 @@ def march(numbers, normal, wanted, waving, signals, state, y, sums, room, grads)
             elif state == STUCK:
                 if before == SEPARATED:
                     limit, rise = nothing, nothing
+                # ζ = a - L e(φ): the force is continuous where slip ends.
                 zx, zy = values[0, 0] - limit * c, values[0, 1] - limit * s
                 for m in range(unknowns + 2):
                     angle = grads[PLACE, m] if before == SLIPPING else nothing
@@ -267,6 +283,8 @@ def march(numbers, normal, wanted, waving, signals, state, y, sums, room, grads)
                 grads[PLACE + 1] = 0.0
             theta = (exact - t * h) / h
             for row in range(2):
+                # Both tangential forces jump in their derivatives at any event of slip, the load only where the contact
+                # opens or closes.
                 correct(row, 2, h, theta, wanted, table, jumps, grads, result[row], slopes[row])
             if changes:
                 sign = -1.0 if state == SEPARATED else 1.0

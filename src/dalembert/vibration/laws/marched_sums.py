@@ -39,13 +39,8 @@ BEYOND = np.errstate(over="ignore", invalid="ignore")
 class MarchedSums:
     """Sums of laws with internal state or events.
 
-    Parameters
-    ----------
-    block : LawBlock
-    series : Fourier
-    events : bool
-        Whether the law's events divide the intervals. The intervals then have Gauss's nodes; else each sample is a
-        node.
+    ``events``: whether the law's events divide the intervals. The intervals then have Gauss's nodes; else each sample
+    is a node.
     """
 
     block: LawBlock
@@ -94,6 +89,8 @@ class MarchedSums:
         series = self.series
         offsets, weights, intervals = np.zeros(1), np.ones(1), series.samples
         if self.events:
+            # Three nodes of Gauss in each interval of two samples: 1.5 calls of the law a sample, and
+            # order six.
             nodes, weights = np.polynomial.legendre.leggauss(GAUSS)
             offsets, weights, intervals = (nodes + 1) / 2, weights / 2, max(series.samples // PER_INTERVAL, 4)
         angles = 2 * np.pi / intervals * (np.arange(intervals)[:, None] + offsets).ravel()
@@ -120,16 +117,20 @@ class _Run:
         """Coefficients (columns, -) and their derivatives by all coefficients and ω, (coefficients, those + 1)."""
         start, sweeps = self.periodic()
         count = self.displacements.size + 1
+        # Two periods from rest were enough for the state: derivatives along the same two periods usually return as
+        # well, which saves the system with 1 - Φ_z.
         if sweeps <= PLAIN:  # derivatives often return with the state
             forces, settled = self._from_rest(sweeps)
             if settled:
                 return np.real(forces[0]), _derivatives(forces)
         ends = np.tile(start, (count + self.states, 1))
+        # Directions of coefficients, then of ω, then of the state at the start, which has its own complex step.
         ends[count:] += 1j * STEP * np.eye(self.states)
         forces = self.forces([*range(count), *[UNPERTURBED] * self.states], ends)
         slopes, moved = _derivatives(forces), _derivatives(ends)
         free = np.eye(self.states) - moved[:, count:]
         if _forgets(free):
+            # dF = F_U dU + F_z (1 - Φ_z)⁻¹ Φ_U dU
             total = slopes[:, :count] + slopes[:, count:] @ np.linalg.solve(free, moved[:, :count])
         else:
             total = _derivatives(self._from_rest(sweeps)[0])
@@ -149,6 +150,7 @@ class _Run:
         """State (states,) at the start of a period that returns to it, and the periods that it took."""
         start, best = np.zeros(self.states, complex), np.inf
         for sweep in range(SWEEPS if self.states else 1):
+            # Newton's method on z - Φ(z) after `PLAIN` periods from rest.
             newton = sweep >= PLAIN
             ends = np.tile(start, (1 + newton * self.states, 1))
             ends[1:] += 1j * STEP * np.eye(self.states)[: len(ends) - 1]
@@ -161,6 +163,7 @@ class _Run:
             if not np.isfinite(error):
                 break
             free = np.eye(self.states) - _derivatives(ends[1:] - ends[0]) if newton else np.zeros((0, 0))
+            # A Newton step only while the error falls; else the plain period, whose fixed point is the same.
             start = start + np.linalg.solve(free, change) if error < best and _forgets(free) else ends[0]
             best = error if newton else best
         return start, SWEEPS
@@ -181,6 +184,8 @@ class _Run:
             self.called, motion, start, np.array(directions, dtype=np.int64), periods, self.rule,
             Room(u, v, force, first, last, values, np.zeros((2, 1, count), complex)), largest, sampled, pieces,
         )  # fmt: skip
+        # Integrals over pieces and weighted samples of whole intervals, divided by π as Euler and Fourier's formulas
+        # demand; half of that for the mean.
         weights = 2 * np.pi * len(self.rule.weights) / place.shape[1] * self.rule.weights
         result = (pieces + sampled * np.resize(weights, place.shape[1]) @ self.rule.nodes[0]) / np.pi
         result[:, :, : self.rule.mean] /= 2

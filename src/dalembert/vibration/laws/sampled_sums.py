@@ -73,6 +73,8 @@ def law_derivatives(
         for s in range(states):
             room.state[s] = start[e, s].real
         for t in range(place.shape[2]):
+            # One call of the law for each derivative and sample: the law is short, and the complex step has no error of
+            # differences.
             for direction in range(directions):
                 _place(place[e], velocity[e], t, room)
                 for s in range(states):
@@ -96,13 +98,7 @@ def law_derivatives(
 
 @dataclass(frozen=True)
 class SampledSums:
-    """Sums of samples, of laws without internal state.
-
-    Parameters
-    ----------
-    block : LawBlock
-    series : Fourier
-    """
+    """Sums of samples, of laws without internal state."""
 
     block: LawBlock
     series: Fourier
@@ -118,11 +114,14 @@ class SampledSums:
         rated, columns, series = self.block.element.rated, displacements.shape[1], self.series
         motion, none = self._motion(displacements, omega), np.zeros((len(displacements), 0))
         force, slopes = derivatives(self.block, *motion, none, (1 + rated) * columns)
+        # ∂λ/∂U_k = λ_u cos kτ, and -ω k λ_v sin kτ where velocities count: weights of samples, analysed as the force
+        # is.
         local = slopes[:, :, :columns, None] * series.synthesis.T  # (elements, columns, columns, coefficients, samples)
         by_omega = np.zeros(displacements.shape)
         if rated:
             by_rate, rates = slopes[:, :, columns:], displacements @ series.waves[1].T
             local = local + omega * (by_rate[:, :, :, None] * series.waves[1].T)
+            # v = ω ∂u/∂τ: ∂λ/∂ω = λ_v ∂u/∂τ
             by_omega = np.einsum("eijt,ejt->eit", by_rate, rates) @ series.analysis.T
         local = np.moveaxis((local.reshape(-1, series.samples) @ series.analysis.T).reshape(*local.shape[:4], -1), 4, 2)
         unknowns = columns * series.count
@@ -166,14 +165,13 @@ _compared: set[str] = set()
 def require_complex_steps(block: LawBlock, series: Fourier, displacements: np.ndarray, omega: float) -> None:
     """Refuse a law of the user's that drops the imaginary part of displacements or of its state.
 
-    Raises
-    ------
-    InputError
+    Raises InputError.
     """
     law = block.law
     if law.packaged or law.digest in _compared or not np.any(displacements):
         return
     place, velocity = sampled_motion(displacements, omega, series)
+    # Along one random direction of the size of the motion: a law that drops the step anywhere shows it there.
     way = np.random.default_rng(0).uniform(0.5, 1.0, displacements.shape)
     way *= np.max(np.abs(place)) / max(np.max(np.abs(way @ series.synthesis.T)), np.finfo(float).tiny)
     moves, speeds = sampled_motion(way, omega, series)

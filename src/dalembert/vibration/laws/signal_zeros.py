@@ -41,12 +41,14 @@ def waves(tau, orders, mean, table, rows):
     c, s, reached = cosine, sine, 1
     for number in range(mean, len(orders)):
         order = orders[number]
+        # The addition theorem in place of a cosine for each harmonic: two products a harmonic.
         while reached < order:
             c, s, reached = c * cosine - s * sine, s * cosine + c * sine, reached + 1
         at = mean + 2 * (number - mean)
         table[0, at], table[0, at + 1] = c, s
         table[1, at], table[1, at + 1] = -order * s, order * c
         for row in range(2, rows):
+            # cos'' = -h² cos: even derivatives repeat.
             table[row, at] = -order * order * table[row - 2, at]
             table[row, at + 1] = -order * order * table[row - 2, at + 1]
 
@@ -131,6 +133,7 @@ def zero(weights, shift, order, low, high, rising, signals, table):
             high = place
         else:
             low = place
+        # Newton inside a bracket: bisection where its step leaves the bracket, so that it ends at rounding in any case.
         trial = between(low, high, place, size.real, slope.real)
         close = abs(trial - place) <= SETTLED
         place = trial
@@ -148,6 +151,8 @@ def crossing(weights, shift, order, begin, end, here, there, signals, table, val
     """
     high = end
     if (value(weights, there, order) + shift).real <= signals.least:
+        # Both ends below zero: two zeros lie between only around a maximum, where the slope changes from rising to
+        # falling. Shorter excursions than an interval are found that way, several maxima are not.
         rise, fall = value(weights, here, order + 1).real, value(weights, there, order + 1).real
         if not (rise > 0.0 and fall < 0.0):
             return -1.0

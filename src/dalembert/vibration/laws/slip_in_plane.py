@@ -38,6 +38,7 @@ PLACE, OPENED, MOVE, STAGES, JUMPS, ROWS = 0, 2, 3, 4, 7, 16
 @inner
 def direction(x, y):
     """Angle of a vector; the step of Newton's method carries directions of differentiation."""
+    # arctan2 of real parts, and one step of Newton for φ in e(φ) × (x, y) = 0, which is exact in the complex step.
     angle = np.arctan2(y.real, x.real)
     c, s = np.cos(angle), np.sin(angle)
     return angle + (c * y - s * x) / (c * x + s * y)
@@ -68,6 +69,7 @@ def step(begin, end, phi, friction, signals, tables, stages, radau):
     ``radau`` (7, 3) keeps the changes κ of the stages, their φ, and the inverse of their matrix (rows 2 to 4); the
     derivative of the stages by the end of the step (row 5).
     """
+    # Stages κ_j with φ_j = φ + Σ a_ji κ_i and L_j κ_j = h a'_j · n(φ_j): multiplied by L, so that L = 0 is regular.
     size, found, done = end - begin, False, False
     for j in range(3):
         at(begin + NODES[j] * size, signals, tables[j], stages[j])
@@ -82,8 +84,12 @@ def step(begin, end, phi, friction, signals, tables, stages, radau):
             across, along = c * stages[j, 1, 1] - s * stages[j, 1, 0], c * stages[j, 1, 0] + s * stages[j, 1, 1]
             radau[1, j], radau[6, j] = angle, size * across - limit * radau[0, j]
             for i in range(3):
+                # Matrix of Newton's method: L_j δ_ji + h a'_j · e(φ_j) a_ji, as n' = -e. Slip has a'·e > L' there, so
+                # that it is regular with L = 0, too.
                 radau[2 + j, i] = size * along * WEIGHTS[j][i]
             radau[2 + j, j] += limit
+        # One more iteration after the last change is below 1e-9: quadratic convergence takes it to rounding, and it
+        # makes the inverse that of the solution, which the gradients need.
         if done:
             found = True
         if not invert(radau):
@@ -101,6 +107,7 @@ def step(begin, end, phi, friction, signals, tables, stages, radau):
         angle = radau[1, j]
         c, s = np.cos(angle), np.sin(angle)
         across, bent = c * stages[j, 1, 1] - s * stages[j, 1, 0], c * stages[j, 2, 1] - s * stages[j, 2, 0]
+        # Derivative of the stages by the end of the step: the size of h, and the waves at stages that move with it.
         push = size * bent - radau[0, j] * friction * stages[j, 1, PRESSED]
         radau[6, j] = across + NODES[j] * push
     for j in range(3):
@@ -147,6 +154,8 @@ def carry(begin, end, numbers, normal, wanted, tables, stages, radau, grads):
         c, s, kappa = np.cos(radau[1, j]), np.sin(radau[1, j]), radau[0, j]
         along, across = c * stages[j, 1, 0] + s * stages[j, 1, 1], c * stages[j, 1, 1] - s * stages[j, 1, 0]
         bent = c * stages[j, 2, 1] - s * stages[j, 2, 0]
+        # The beginning of the step may be an event, which moves with the displacements by `OPENED`: the stages move by
+        # (1 - c_j) of it.
         shift = (1.0 - NODES[j]) * (size * bent - kappa * friction * stages[j, 1, PRESSED]) - across
         for m in range(unknowns + 2):
             grads[STAGES + j, m] = shift * grads[OPENED, m] - size * along * grads[PLACE, m]
@@ -180,6 +189,7 @@ def stop_slip(begin, end, phi, friction, signals, tables, stages, radau):
         rate += (c * stages[2, 1, 1] - s * stages[2, 1, 0]) * speed(radau)
         if close and found:  # the last step carries directions of differentiation
             return length - size / rate
+        # a'·e - L' > 0: it still slips at this length. A step that is not found counts as too long.
         if found and size.real > 0.0:
             low = place
         else:
@@ -220,6 +230,7 @@ def first_slip(begin, end, zx, zy, friction, signals, table, values):
     low, high = begin, end
     if size.real <= least:
         if rate.real >= 0.0:
+            # No zero if |f|² - L² does not fall towards the end: it has no maximum inside.
             return -1.0
         at(begin, signals, table, values)
         _, rate = pull(values, zx, zy, friction)

@@ -97,13 +97,7 @@ class BilinearStop(_Stop):
 class StopSums:
     """Sums of stops by those of contacts without friction: a stop on both sides is two on one side.
 
-    Parameters
-    ----------
-    numbers : array, shape (stops, 2)
-        Stiffness and gap.
-    sides : array, shape (sides,)
-        Signs of the displacements.
-    series : Fourier
+    ``numbers`` (stops, 2): stiffness and gap; ``sides`` (sides,): signs of the displacements.
     """
 
     numbers: np.ndarray
@@ -112,6 +106,8 @@ class StopSums:
 
     @cached_property
     def _contacts(self) -> ContactSums:
+        # k (u - g) for u > g is the normal force of a contact without friction and preload: the sums of contacts serve,
+        # events included.
         zero = np.zeros(len(self.numbers))
         numbers = np.stack([zero, *self.numbers.T, zero, zero], axis=1)
         shape = Shape(tangents=0, normal=True, memory=True)

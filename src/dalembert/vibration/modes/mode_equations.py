@@ -81,6 +81,7 @@ class Plane:
         """A motion some step on."""
         return replace(
             motion,
+            # ω and a are positive and vary by decades: steps are in their logarithms, clipped to a factor e.
             harmonics=motion.harmonics + self.scale * step[:-3].reshape(motion.harmonics.shape),
             omega=float(motion.omega * np.exp(np.clip(step[-3], -1.0, 1.0))),
             growth=float(motion.growth + self.at.omega * step[-2]),
@@ -103,14 +104,8 @@ class _Trial:
 class Softened:
     """The elements with a part of their nonlinearity: the rest of their force is linear about the position at rest.
 
-    Parameters
-    ----------
-    part : float
-        From 0 (linear) to 1.
-    rest, force : array, shape (q, coefficients)
-        Retained coordinates and forces at rest.
-    stiffness : array, shape (q · coefficients, q · coefficients)
-        At rest.
+    ``part``: from 0 (linear) to 1; ``rest``, ``force`` (q, coefficients): retained coordinates and forces at rest;
+    ``stiffness`` (q · coefficients, q · coefficients): at rest.
     """
 
     part: float
@@ -120,6 +115,8 @@ class Softened:
 
     def of(self, local: Local, linear: np.ndarray, unknowns: np.ndarray) -> Local:
         """Return the elements at a point, whose linear part and retained coordinates (q, coefficients) are these."""
+        # p λ(u) + (1 - p) (λ_0 + k_0 (u - u_0)): from the linear mode at p = 0 to all of the nonlinearity at p = 1 (a
+        # homotopy).
         along = self.force + (self.stiffness @ (unknowns - self.rest).ravel()).reshape(unknowns.shape)
         residual = linear + self.part * (local.evaluation.residual - linear) + (1 - self.part) * along
         stiffness = self.part * local.stiffness + (1 - self.part) * self.stiffness
@@ -163,14 +160,18 @@ class ModeEquations:
         """A linear mode about the position in which the static forces hold the system."""
         first = self.system(self.problem.method.first_samples)
         (stiffness, mass, damping), series = first.matrices, first.series
+        # Modes are those about the static position, where contacts under load stick: K there contains their stiffness.
         rest = self._at_rest(first)
         size, cosine = first.retained, series.mean
         local = first.elements(self._linear_part(first, rest, 0.0, 0.0)[:size], rest[:size], 0.0)
         stiff = _weighted(first, local, stiffness, cosine)
+        # The tangent at rest, of the first cosine's coefficient: all coefficients of a small motion have the same one.
         stiff[:size, :size] += _block(local.stiffness, first, cosine)
         pairs = eig(stiff, _weighted(first, local, mass, cosine))
         values, shapes = cast(tuple[np.ndarray, np.ndarray], pairs)
         squares, off = np.real(values), np.abs(np.imag(values))
+        # Undamped eigenvalues ω² of the pencil: infinite ones belong to coordinates without mass, complex ones to the
+        # unsymmetric tangent of friction.
         plausible = np.isfinite(values) & (squares > 0) & (off < 1e-6 * np.abs(squares))
         order = [int(place) for place in np.argsort(squares, kind="stable") if plausible[place]]
         if not 1 <= mode <= len(order):
@@ -179,6 +180,7 @@ class ModeEquations:
                 "contacts stick"
             )
         moved = np.real(shapes[:, order[mode - 1]])
+        # ξ = φ^T C φ/φ^T M φ: for a small motion the negative damping gives back what C takes.
         growth = float(moved @ damping @ moved / (moved @ mass @ moved))
         omega = float(np.sqrt(squares[order[mode - 1]]))
         return Linear(omega, growth, rest, moved, self.basis @ moved)
@@ -208,6 +210,7 @@ class ModeEquations:
 
     def at_size(self, guess: FreeMotion, size: float, samples: int) -> FreeMotion:
         """The motion at an amplitude, from a guess at any."""
+        # A plane of constant log a: the amplitude stays, everything else is free.
         level = np.zeros(guess.harmonics.size + 3)
         level[-1] = 1.0
         at = replace(guess, size=size)
@@ -260,6 +263,7 @@ class ModeEquations:
         plane = Plane(before, motion, self.scale(motion))
         system = self.system(motion.samples)
         matrix = self._jacobian(system, self._at(system, motion, plane), plane)
+        # The plane is across the direction before: the last right-hand side is 1, so that the tangent keeps its sense.
         tangent = np.linalg.solve(matrix, np.append(np.zeros(len(matrix) - 1), 1.0))
         return tangent / np.linalg.norm(tangent)
 
@@ -274,6 +278,7 @@ class ModeEquations:
             residual = np.vstack([local.evaluation.residual, linear[size:]])[:, 0]
             matrix = _weighted(system, local, system.matrices[0], 0)
             matrix[:size, :size] += _block(local.stiffness, system, 0)
+            # Newton's method for the mean alone, with the tangent of closed or stuck contacts.
             scale = np.linalg.norm(self.static) + np.linalg.norm(local.evaluation.forces)
             if np.linalg.norm(residual) <= method.tolerance * (scale or 1.0):
                 return rest
@@ -287,6 +292,7 @@ class ModeEquations:
         """L(Y), (n, coefficients)."""
         # K Y + (C - ξ M) ω Y Dᵀ + M ω² Y D²ᵀ - F, with D the derivative by τ
         (stiffness, mass, damping), turn = system.matrices, system.series.derivative
+        # Time derivatives by ω∇: x' = ω X ∇^T, twice for accelerations, with ∇ the derivative by τ.
         velocity = omega * harmonics @ turn.T
         inertia = mass @ (omega * velocity @ turn.T)
         return stiffness @ harmonics + (damping - growth * mass) @ velocity + inertia - self.static
@@ -300,8 +306,13 @@ class ModeEquations:
         residual = np.vstack([local.evaluation.residual, linear[count:]])
         scale = self._scale(system, motion, local)
         first = system.series.mean
+        # The phase and the amplitude: X_1c = a and X_1s = 0 at the row that measures it (Krack 2015 fixes a modal
+        # amplitude).
         wrong = (self.basis[self.row] @ harmonics)[first : first + 2] - [size, 0.0]
+        # Each equation in its own size: forces by the forces in balance, the amplitude by itself, the plane in scaled
+        # unknowns.
         everything = np.concatenate([residual.ravel() / scale, wrong / size, [plane.distance(motion)]])
+        # Stiff coordinates cancel large terms: a residual of their rounding counts as converged.
         floor = ROUNDING * np.abs(system.matrices[0]).max() * np.linalg.norm(harmonics) / scale
         error = float(np.linalg.norm(everything))
         return _Trial(motion, local, everything, error, float(floor))

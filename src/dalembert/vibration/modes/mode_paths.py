@@ -29,6 +29,7 @@ With 0.7, Newton's iteration passed a fold of a chain to a mode of another frequ
 
 def first_motion(mode: ModeEquations, linear: Linear, size: float) -> FreeMotion:
     """Return the motion at the first amplitude, or at a smaller one if the linear mode is too far from it."""
+    # A smaller amplitude is nearer to the linear mode, unless the stiffness changes at rest.
     for part in SMALLER:
         harmonics = linear.rest.copy()
         harmonics[:, int(mode.problem.method.orders[0] == 0)] += part * size * linear.moved
@@ -68,6 +69,7 @@ def same_mode(mode: ModeEquations, known: FreeMotion, found: FreeMotion) -> bool
         return False
     matrix, mean = mode.system(found.samples).matrices[1], int(mode.problem.method.orders[0] == 0)
     one, other = (motion.harmonics[:, mean : mean + 2] for motion in (known, found))
+    # MAC of first harmonics, weighted by the mass: 1 for the same shape, 0 for another linear mode.
     inner = [float(np.sum(left * (matrix @ right))) for left, right in ((one, other), (one, one), (other, other))]
     return inner[0] > SAME * np.sqrt(inner[1] * inner[2])
 
@@ -89,6 +91,7 @@ def motion_towards(mode: ModeEquations, known: FreeMotion, size: float, rest: np
         if way[-1] == known.size:
             way.pop()
             continue
+        # All harmonics in proportion to the amplitude, about the static position.
         guess = replace(known, harmonics=rest + (known.harmonics - rest) * (way[-1] / known.size))
         found = mode.at_size(guess, way[-1], known.samples)
         if same_mode(mode, known, found):
@@ -101,6 +104,7 @@ def motion_towards(mode: ModeEquations, known: FreeMotion, size: float, rest: np
             return replace(worst or found, size=size, converged=False)
         else:
             worst = worst or found
+            # The geometric mean: amplitudes vary by decades.
             way.append(float(np.sqrt(known.size * way[-1])))
     return known
 
@@ -123,10 +127,12 @@ def motions_along(
     for _ in range(MOST_POINTS):
         scale = mode.scale(known)
         plane = Plane(direction, known, scale)
+        # Predictor and corrector as for forced motions; the plane is across the direction at the predicted motion.
         guess = plane.moved(known, step * direction)
         motion = mode.solve(guess, replace(plane, at=guess), known.samples)
         after = mode.direction(motion, direction) if same_mode(mode, known, motion) else None
         bent = after is not None and float(direction @ after) < STEADY
+        # A refused or bent step is halved; a path of friction has corners, at which no step is short enough.
         if after is None or (bent and step > 1e-2 * longest):
             step /= 2
             if step > SHORTEST * longest:
@@ -157,6 +163,7 @@ def _around_a_corner(
     The tangent behind it is that of the equations a little beyond; of its two senses one leads on, the other back.
     """
     scale = mode.scale(known)
+    # The tangent at a point beyond the corner, though that is no solution: contacts there have the states behind it.
     beyond = Plane(direction, known, scale).moved(known, step * direction)
     tangent = mode.direction(beyond, direction)
     for way in (tangent, -tangent):

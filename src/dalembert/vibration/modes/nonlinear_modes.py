@@ -142,6 +142,7 @@ class FreeLevel:
         if not better.converged:
             return Truncation(frequency, np.nan, heavy)
         shape, finer_shape = (level.equations.amplitudes(place) for level, place in ((self, motion), (finer, better)))
+        # Three results depend on the harmonics: amplitude of the coordinate that moves most, frequency and damping.
         most = int(np.argmax(finer_shape))
         first, second = (each.growth / (2 * each.omega) for each in (motion, better))
         changes = (
@@ -232,5 +233,7 @@ def _energy_and_work(mode: ModeEquations, motion: FreeMotion) -> tuple[float, fl
     system = mode.system(motion.samples)
     velocity = motion.omega * motion.harmonics @ system.series.derivative.T
     mass, samples = system.matrices[1], velocity @ system.series.synthesis.T
+    # T = v^T M v/2 at the samples; its largest value is the energy of a conservative mode at an instant of rest
+    # position.
     kinetic = 0.5 * np.einsum("it,it->t", samples, mass @ samples)
     return float(kinetic.max()), float(np.sum(velocity * (mass @ velocity)) / motion.omega)

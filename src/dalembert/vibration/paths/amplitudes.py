@@ -18,16 +18,7 @@ KINDS = "'peak', 'rms', or 'harmonic K' with K among the harmonics kept"
 class Amplitude:
     """A size of a periodic motion: its largest absolute value, its root mean square, or one harmonic's amplitude.
 
-    Parameters
-    ----------
-    kind : str
-        ``"peak"``, ``"rms"``, or ``"harmonic 1"`` and so on.
-    orders : tuple of int
-
-    Raises
-    ------
-    InputError
-        For another kind.
+    ``kind``: ``"peak"``, ``"rms"``, or ``"harmonic 1"`` and so on. Raises InputError for another kind.
     """
 
     kind: str
@@ -92,10 +83,7 @@ def _order(kind: str) -> int:
 def coordinate_row(coordinates: Sequence[str], name: str) -> int:
     """Return the row of a coordinate that elements see.
 
-    Raises
-    ------
-    InputError
-        For an unknown one.
+    Raises InputError for an unknown one.
     """
     require_known("coordinate", name, coordinates)
     return coordinates.index(name)
@@ -106,10 +94,7 @@ def observed_column(dofs: Sequence[str], dof: str) -> int:
 
     If only one degree of freedom of a node was observed, the name of the node is enough.
 
-    Raises
-    ------
-    InputError
-        For a degree of freedom that was not observed.
+    Raises InputError for a degree of freedom that was not observed.
     """
     own = [name for name in dofs if name.rpartition(".")[0] == dof]
     name = own[0] if len(own) == 1 else dof

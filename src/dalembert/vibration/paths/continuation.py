@@ -35,6 +35,7 @@ def _from_behind(equations: PathProblem, points: Iterator[PathPoint]) -> Iterato
             continue
         known = point.solution
         for place in range(len(missed) - 2, -1, -1):
+            # Backwards, from the nearest point to the farthest: each is the start of the next.
             omega = missed[place].solution.omega
             known = equations.solve(_predicted(known, omega), omega, known.samples)
             if not known.converged:
@@ -64,6 +65,7 @@ def _towards(equations: PathProblem, known: Solution, omega: float) -> Solution:
             known = solution
             way.pop()
         elif len(way) > equations.method.halvings:
+            # After the last halving: a fresh start, then the way along the curve and its folds.
             fresh = equations.first(omega)
             return fresh if fresh.converged else _around(equations, known, omega) or worst or solution
         else:
@@ -99,6 +101,7 @@ def natural(equations: PathProblem, begin: float, end: float, start: Solution | 
 def _natural(equations: PathProblem, begin: float, end: float, start: Solution | None) -> Iterator[PathPoint]:
     known = start if start is not None else equations.first(begin)
     yield PathPoint(known)
+    # Steps from a quarter of the longest on; they double after few iterations and halve where none converges.
     longest = (end - begin) * equations.method.resolution
     step, lost = longest / 4, 0
     while known.omega != end and lost < MOST_LOST:
@@ -125,6 +128,7 @@ def across(equations: PathProblem, begin: float, end: float, start: Solution | N
     outside = 0
     for found in along(equations, begin, end, start, _behind(begin, end)):
         solution, leaves = found.solution, not low <= found.solution.omega <= high
+        # The curve crosses the first frequency: a point on the border ends the part inside, or begins it again.
         if before is not None and leaves != bool(outside) and solution.converged:
             border = equations.solve(*on_border(before, solution, begin), solution.samples)
             yield PathPoint(border, returned=not leaves)

@@ -17,14 +17,8 @@ def end_findings(
 ) -> tuple[Finding, ...]:
     """Return the finding on a path that did not reach its end.
 
-    Parameters
-    ----------
-    places : array, shape (points,)
-        Values of what the path leads over, in its order.
-    converged : array of bool, shape (points,)
-    ends : pair of float
-    what, unit : str
-        Of the values.
+    ``places`` (points,): values of what the path leads over, in its order; ``converged`` (points,); ``what``, ``unit``:
+    of the values.
     """
     (begin, end), last = ends, float(places[-1])
     if np.isclose(last, end, rtol=1e-12, atol=0.0):  # a point that was not found there has its finding

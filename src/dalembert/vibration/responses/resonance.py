@@ -287,6 +287,7 @@ def _carried(own: Equations, known: _Peak, before: _Peak | None, value: float) -
     """Return a solution at another value near a known peak, on a plane across the path, and the number of trials."""
     last, tries = known.solution, [0.0]
     if before is not None and known.value != before.value:
+        # A secant through the last two peaks first, then the last peak itself.
         tries.insert(0, (value - known.value) / (known.value - before.value))
     width = WIDTH * last.omega
     direction = direction_at(last, _upwards(last), width)
@@ -295,6 +296,8 @@ def _carried(own: Equations, known: _Peak, before: _Peak | None, value: float) -
         if part and before is not None and guess.shape == before.solution.unknowns.shape:
             guess = guess + part * (guess - before.solution.unknowns)
             omega = omega + part * (omega - before.solution.omega)
+        # Across the path, not at a frequency: beside a fold the peak's frequency may have no solution at the next
+        # value.
         plane = Plane(direction, guess, omega, float(np.linalg.norm(last.unknowns)) or 1.0, width)
         solution = own.solve(guess, omega, last.samples, plane)
         if solution.converged and solution.omega > 0:
@@ -333,6 +336,7 @@ class _Climber:
                     return None, count
                 continue
             beyond = self._rise(own, ahead, onward, path.size, width)
+            # The slope of the amplitude changes its sign within this step: Brent's method narrows it.
             if beyond < 0:
                 peak, spent = self._narrowed(own, path, ahead, (rise, beyond), length)
                 return peak, count + spent
@@ -378,6 +382,7 @@ def _gradient(size: Amplitude, motion: np.ndarray) -> np.ndarray:
     orders = np.array([h for h in size.orders for _ in range(1 if h == 0 else 2)])
     for _ in range(3):
         waves = synthesis(size.orders, np.array([angle]))[0]
+        # A peak lies at x'(τ) = 0: three steps of Newton from the nearest sample take its instant to rounding.
         turned = synthesis(size.orders, np.array([angle + 1e-30j]))[0].imag / 1e-30
         angle -= float(turned @ motion) / float(-(orders**2 * waves) @ motion)
     waves = synthesis(size.orders, np.array([angle]))[0]

@@ -23,12 +23,7 @@ PLACED = 1e-4
 def judged(problem: Equations, path: Iterable[PathPoint], located: bool) -> Iterator[PathPoint]:
     """Yield points with their stability, and the points at which it changes.
 
-    Parameters
-    ----------
-    problem : Equations
-    path : iterable of PathPoint
-    located : bool
-        Whether changes become points of their own; else the first point behind one is marked.
+    ``located``: whether changes become points of their own; else the first point behind one is marked.
     """
     before: tuple[Solution, Exponents] | None = None
     folded, adjacent = False, True
@@ -45,6 +40,7 @@ def judged(problem: Equations, path: Iterable[PathPoint], located: bool) -> Iter
             folded = True
         else:
             own = exponents(problem, one.solution)
+            # Between two judged points this one says nothing, and a bifurcation between them cannot be placed.
             if not own.judged and np.isfinite(own.error):
                 # A change of sign within the error is no bifurcation: points further on show whether there is one.
                 yield replace(one, across_fold=own.across_fold)
@@ -69,14 +65,8 @@ def judged(problem: Equations, path: Iterable[PathPoint], located: bool) -> Iter
 def fold_findings(frequencies: Sequence[float], folds: np.ndarray, harmonics: int) -> tuple[Finding, ...]:
     """Return the finding on points whose stability is not known because a fold lies between motion and perturbations.
 
-    Parameters
-    ----------
-    frequencies : sequence of float
-        Of these points, Hz.
-    folds : array, shape (folds,)
-        Frequencies of the folds, Hz. The steps of a time map move a fold a little, which is no finding.
-    harmonics : int
-        Of the curve.
+    ``frequencies``: of these points, Hz; ``folds`` (folds,): frequencies of the folds, Hz. The steps of a time map move
+    a fold a little, which is no finding; ``harmonics``: of the curve.
     """
     apart = [one for one in frequencies if not np.any(np.abs(folds - one) <= AT_FOLD * one)]
     if not apart:
@@ -105,6 +95,8 @@ def _kind(before: Exponents, after: Exponents, rank: int | None = None) -> str:
     """From the side on which the exponent grows."""
     rank = _rank(before, after) if rank is None else rank
     grows = before if before.unstable > after.unstable else after
+    # A multiplier crosses the unit circle at +1, at -1 or elsewhere: an imaginary part of none, of a half or of another
+    # part of ω.
     turn, none = abs(grows.values[rank].imag) % 1.0, max(REAL, grows.error if np.isfinite(grows.error) else 0.0)
     if min(turn, 1 - turn) < none:
         return BRANCH
@@ -131,6 +123,7 @@ def _located(
         return None
     size = float(np.linalg.norm(last.unknowns - first.unknowns)) or 1.0
     width = abs(last.omega - first.omega) or 1.0
+    # A plane across the chord between both points, not a frequency: near a fold two motions have the same one.
     chord = np.append((last.unknowns - first.unknowns).ravel() / size, (last.omega - first.omega) / width)
 
     def growth(part: float) -> tuple[tuple[Solution, Exponents], float]:

@@ -33,12 +33,10 @@ COPY = 1e-3
 def hill(problem: Equations, solution: Solution) -> np.ndarray:
     """Floquet exponents in parts of ω, (exponents,): as many as the system has states, the fastest growing first.
 
-    Raises
-    ------
-    InputError
-        For a structure that is too large for dense matrices.
+    Raises InputError for a structure that is too large for dense matrices.
     """
     orders = problem.method.orders
+    # The motion may have odd harmonics only; its disturbances may have any.
     every = Fourier(tuple(range(orders[-1] + 1)), solution.samples)
     own = problem.balance(solution.samples)
     linear = own.linear(solution.point.stiffness, solution.point.force, solution.unknowns)
@@ -56,6 +54,7 @@ def _pencil(system: Uncondensed, linear: np.ndarray, unknowns: np.ndarray, omega
     stiffness, mass, damping = system.matrices
     turn, unit = system.series.derivative, np.eye(system.series.count)
     pencil = [
+        # (ω∇ + ν)² M + (ω∇ + ν) C + K + J by powers of μ = ν/ω, with ∇ the derivative of coefficients by τ.
         np.kron(mass, omega**2 * turn @ turn) + np.kron(damping, omega * turn) + np.kron(stiffness, unit),
         np.kron(mass, 2 * omega**2 * turn) + np.kron(damping, omega * unit),
         np.kron(mass, omega**2 * unit),
@@ -63,6 +62,7 @@ def _pencil(system: Uncondensed, linear: np.ndarray, unknowns: np.ndarray, omega
     local, rows = system.elements(linear, unknowns, omega), slice(0, unknowns.size)
     if local.weight is not None:
         for matrix in pencil:
+            # Rigid contacts: the rows of q are W dL + B dU, with W for each power of μ.
             matrix[rows] = local.weight @ matrix[rows]
     pencil[0][rows, rows] += local.stiffness
     return pencil
@@ -74,6 +74,8 @@ def _eigenvalues(pencil: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     size = len(still)
     at_shift = still + SHIFT * moving + SHIFT**2 * mass
     solved = np.linalg.solve(at_shift, np.hstack([moving + 2 * SHIFT * mass, mass]))
+    # First companion form of the pencil in 1/(μ - shift): coordinates without mass give zeros in place of infinities,
+    # which QZ would have to separate.
     companion = np.block([[-solved[:, :size], -solved[:, size:]], [np.eye(size), np.zeros((size, size))]])
     inverse, vectors = cast(tuple[np.ndarray, np.ndarray], eig(companion))
     finite = np.abs(inverse) > INFINITE
@@ -98,6 +100,7 @@ def _distinct(values: np.ndarray, centres: np.ndarray, count: int) -> np.ndarray
     """Return as many exponents as states, those centred about the mean, each once, the fastest growing first."""
     kept: list[complex] = []
     for number in np.argsort(centres, kind="stable"):
+        # Copies differ by i k exactly; with a truncated series by little, so that `COPY` is a distance.
         turns = [(values[number] - other) / 1j for other in kept]
         if not any(abs(turn - np.round(turn.real)) < COPY and abs(turn) > 0.5 for turn in turns):
             kept.append(complex(values[number]))

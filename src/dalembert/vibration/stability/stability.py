@@ -36,14 +36,9 @@ FORGOTTEN = 1e-12
 class Exponents:
     """Floquet exponents of a periodic motion.
 
-    Parameters
-    ----------
-    values : array, shape (exponents,), complex
-        In parts of ω, those that grow fastest first.
-    error : float
-        Of their real parts, in parts of ω; infinite where it is not known.
-    across_fold : bool
-        Whether a fold lies between the motion and the one with all harmonics, to which the exponents belong.
+    ``values`` (exponents,), complex: in parts of ω, those that grow fastest first; ``error``: of their real parts, in
+    parts of ω; infinite where it is not known; ``across_fold``: whether a fold lies between the motion and the one with
+    all harmonics, to which the exponents belong.
     """
 
     values: np.ndarray
@@ -73,6 +68,8 @@ def exponents(problem: Equations, solution: Solution, way: str = AUTOMATIC) -> E
     with twice the harmonics, and their change is the error.
     """
     if way == TIME_MAP or (way == AUTOMATIC and remembers(problem)):
+        # Hill's matrix lacks the memory of sliders: multipliers of 2.7 for a motion whose largest is 0.94 (three masses
+        # with sliders, cubic springs and a stop, at 1.63 rad/s).
         values = _held(problem, problem.once(TIME_MAP, solution, lambda: _by_time_map(problem, solution)))
         return Exponents(values, across_fold=_across_fold(problem, solution, values))
     values = _held(problem, problem.once(HILL, solution, lambda: hill(problem, solution)))
@@ -81,6 +78,8 @@ def exponents(problem: Equations, solution: Solution, way: str = AUTOMATIC) -> E
     method = problem.method.refined()
     if method is None or problem.lowered.structure.size * (2 * method.highest + 1) > LARGEST:
         return Exponents(values, TRUNCATED)
+    # A map over a period with the stop's exact events was tried and was less accurate: the motion was truncated and its
+    # disturbance was not. Hill's method truncates both alike.
     finer = problem.once(FINER, solution, lambda: _finer(Equations(problem.lowered, method), problem, solution))
     if not finer.size:
         return Exponents(values, np.inf)
@@ -94,6 +93,7 @@ def _across_fold(problem: Equations, solution: Solution, values: np.ndarray) -> 
     With all harmonics, the determinant of the balance has the sign of :math:`\det(1 - \Phi)`, where Φ is the map of
     disturbances over a period: each real multiplier above 1 changes it.
     """
+    # A real multiplier above 1 is an exponent with a whole imaginary part in parts of ω.
     turns = np.abs(np.imag(values) - np.round(np.imag(values)))
     growing = int(np.sum((np.real(values) > NEUTRAL) & (turns < REAL)))
     return bool(_sign(problem, solution) * (-1) ** growing < 0)
@@ -114,6 +114,7 @@ def _sign(problem: Equations, solution: Solution) -> float:
 
 def _held(problem: Equations, values: np.ndarray) -> np.ndarray:
     """Return exponents with the pairs of free motions (position and velocity) at zero: rounding splits such pairs."""
+    # Position and velocity along a free motion are a Jordan block of two zeros: rounding splits it by the root of eps.
     nearest = np.argsort(np.abs(values))[: 2 * problem.condensation.free.shape[1]]
     result = values.copy()
     result[nearest[np.abs(values[nearest]) < SPLIT]] = 0.0
@@ -155,6 +156,7 @@ def _by_time_map(problem: Equations, solution: Solution) -> np.ndarray:
     series = Fourier(problem.method.orders, max(FEWEST, solution.samples))
     # The map goes from sample to sample, and so do the states that it takes from the elements.
     system = Uncondensed(problem.lowered, problem.condensation, series, events=False)
+    # Exponents from multipliers: the logarithm by 2π, in parts of ω; forgotten states have multiplier zero and none.
     factors = np.linalg.eigvals(monodromy(system, linear, solution.unknowns, solution.omega)).astype(complex)
     values = np.log(factors[np.abs(factors) > FORGOTTEN]) / (2 * np.pi)
     return np.array(sorted(values, key=lambda value: (-value.real, abs(value.imag), value.imag)))

@@ -33,20 +33,12 @@ class Laws(NamedTuple):
     Internal are the places of sliders that slip, and, of other laws with a memory, their states and their forces at the
     end of the step before.
 
-    Parameters
-    ----------
-    reaction : array, shape (samples, q, q)
-        Forces at the end of a step by displacements there.
-    memory : array, shape (samples, q, z)
-        The same by internal numbers at its begin.
-    following : array, shape (samples, z, q)
-        Internal numbers at the end by displacements there.
-    keeping : array, shape (samples, z, z)
-        The same by internal numbers at the begin.
-    stiffness, release : array, shape (samples, q, q) and (samples, q, z)
-        The same forces by displacements and internal numbers at the end, from which the next step begins.
-    damping, ended, turning : array, shape (samples, q, q), the same, (samples, z, q)
-        Forces at the end of a step, forces from which the next one begins, and internal numbers, by velocities there.
+    ``reaction`` (samples, q, q): forces at the end of a step by displacements there; ``memory`` (samples, q, z): the
+    same by internal numbers at its begin; ``following`` (samples, z, q): internal numbers at the end by displacements
+    there; ``keeping`` (samples, z, z): the same by internal numbers at the begin; ``stiffness``, ``release`` (samples,
+    q, q) and (samples, q, z): the same forces by displacements and internal numbers at the end, from which the next
+    step begins; ``damping``, ``ended`` (samples, q, q), ``turning`` (samples, z, q): forces at the end of a step,
+    forces from which the next one begins, and internal numbers, by velocities there.
     """
 
     reaction: np.ndarray
@@ -71,17 +63,8 @@ class Held(NamedTuple):
 def monodromy(system: Uncondensed, linear: np.ndarray, unknowns: np.ndarray, omega: float) -> np.ndarray:
     """Disturbances after a period from those before, (states, states): displacements, velocities, sliders that slip.
 
-    Parameters
-    ----------
-    system : Uncondensed
-    linear, unknowns : array, shape (q, coefficients)
-        Linear part of the balance, and the motion.
-    omega : float
-
-    Raises
-    ------
-    InputError
-        For coordinates that only together with others have a mass.
+    ``linear``, ``unknowns`` (q, coefficients): linear part of the balance, and the motion. Raises InputError for
+    coordinates that only together with others have a mass.
     """
     mass = system.matrices[1]
     light = _massless(mass)
@@ -97,7 +80,9 @@ def monodromy(system: Uncondensed, linear: np.ndarray, unknowns: np.ndarray, ome
         made = _steps(system, laws, held, light, 2 * np.pi / omega / samples, steps)
         for t, step, length in zip(steps, made, lengths[first : first + chunk], strict=True):
             if begins[t].any():
+                # The impulse acts before the step that begins to hold.
                 result[n : 2 * n] = _stopped(mass, result[n : 2 * n], held.rows[held.active[t]], light)
+            # Steps between two changes of a law's slopes are equal: powers by squaring.
             result = np.linalg.matrix_power(step, int(length)) @ result
     return result
 
@@ -119,6 +104,8 @@ def _steps(system: Uncondensed, laws: Laws, held: Held, light: np.ndarray, h: fl
     """Matrices (steps, states, states) from each sample's predecessor to it."""
     stiffness, mass, damping = system.matrices
     n, q, z, r = len(mass), system.retained, laws.memory.shape[2], len(held.rows)
+    # Coordinates without mass follow backward differences, as the trapezoidal rule would let their velocities
+    # alternate.
     carried = 4 / h**2 * mass + 2 / h * damping
     carried[light] = damping[light] / h
     heavy = ~light
@@ -130,6 +117,7 @@ def _steps(system: Uncondensed, laws: Laws, held: Held, light: np.ndarray, h: fl
     matrix[:, :q, :q] += laws.reaction[steps] + laws.damping[steps] * speeds
     matrix[:, n:, :q] = np.where(held.active[steps, :, None], held.rows, 0.0)
     matrix[:, :q, n:] = np.swapaxes(held.push[steps], 1, 2)
+    # Rows that do not hold have a unit equation for their multiplier, so that the matrix has one size for all steps.
     matrix[:, np.arange(n, n + r), np.arange(n, n + r)] = ~held.active[steps]
     right[:, :n, :n] = carried - stiffness * heavy[:, None]
     right[:, :q, :q] -= laws.stiffness[steps - 1] * heavy[:q, None]
@@ -157,6 +145,7 @@ def _massless(mass: np.ndarray) -> np.ndarray:
     """Which coordinates have no mass, (n,)."""
     light = ~np.any(mass, axis=1)
     try:
+        # Mass of the others must be positive definite: else a velocity is not determined by its momentum.
         cholesky(mass[np.ix_(~light, ~light)])
     except np.linalg.LinAlgError:
         raise InputError(
@@ -245,6 +234,7 @@ def _laws(system: Uncondensed, unknowns: np.ndarray, omega: float) -> Laws:
             spring = own[:, :columns, :columns].copy()  # its force, whatever the slider did: k (u - z)
             spring[:, :tangents] = np.eye(tangents, columns) * numbers[TANGENTIAL]
             stiffness += seen.T @ spring @ seen
+            # A slider that sticks at all samples keeps its place: a multiplier of 1 that says nothing, and is left out.
             if not np.allclose(own[:, columns:, 2 * columns :], np.eye(tangents)):  # else where it rests is given
                 parts.append(_slid(seen, own, numbers[TANGENTIAL]))
     ends = np.cumsum([0, *(part.keeping.shape[1] for part in parts)])

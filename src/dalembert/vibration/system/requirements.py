@@ -10,15 +10,7 @@ from dalembert.structure import Structure
 def require_viscous(structure: Structure, what: str) -> None:
     """Refuse a structure with hysteretic damping where motions are not periodic of a given frequency.
 
-    Parameters
-    ----------
-    structure : Structure
-    what : str
-        What is not defined with it, in the plural.
-
-    Raises
-    ------
-    InputError
+    ``what``: what is not defined with it, in the plural. Raises InputError.
     """
     if structure.loss is not None and abs(structure.loss).max() > 0:
         raise InputError(
@@ -30,9 +22,7 @@ def require_viscous(structure: Structure, what: str) -> None:
 def require_force(forces: list, where: str) -> None:
     """Refuse a system without forces.
 
-    Raises
-    ------
-    InputError
+    Raises InputError.
     """
     if not forces:
         raise InputError(
@@ -44,9 +34,7 @@ def require_force(forces: list, where: str) -> None:
 def positive_numbers(given: object, owner: str, what: str, unit: str) -> np.ndarray:
     """Return positive numbers (count,), two different ones of a tuple.
 
-    Raises
-    ------
-    InputError
+    Raises InputError.
     """
     numbers = np.atleast_1d(numbers_of(given, owner, what))
     if numbers.ndim != 1 or not len(numbers) or not np.all(np.isfinite(numbers) & (numbers > 0)):
@@ -59,9 +47,7 @@ def positive_numbers(given: object, owner: str, what: str, unit: str) -> np.ndar
 def values_of(given: object, owner: str, parameter: str) -> np.ndarray:
     """Return the values (count,) of a parameter that is varied.
 
-    Raises
-    ------
-    InputError
+    Raises InputError.
     """
     values = numbers_of(given, owner, "values")
     if values.ndim != 1 or not len(values) or not np.all(np.isfinite(values)):

@@ -67,15 +67,8 @@ class Instant(NamedTuple):
 class Reaction(NamedTuple):
     """What elements answer to displacements of the rows that they see.
 
-    Parameters
-    ----------
-    force : array, shape (rows,)
-    slopes : array, shape (rows, rows)
-    moved : array, shape (cells, 2)
-        Where sliders go.
-    next : array
-        States of laws after.
-    states : array of uint8, shape (contacts,)
+    ``force`` (rows,); ``slopes`` (rows, rows); ``moved`` (cells, 2): where sliders go; ``next``: states of laws after;
+    ``states`` (contacts,).
     """
 
     force: Reals
@@ -179,6 +172,7 @@ def settle(
     reaction: Reaction,
 ) -> None:  # fmt: skip
     """Move sliders (cells, 2) and states to where they end in a period (steps, rows) gone through repeatedly."""
+    # The motion is known: sliders and states follow it from rest until its past no longer matters.
     for _ in range(PERIODS):
         for t in range(len(displacements)):
             answer(elements, users, Instant(displacements[t], velocities[t], 0.0, sliders, states), reaction)

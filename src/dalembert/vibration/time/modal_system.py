@@ -33,13 +33,8 @@ _C_FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_
 class Spectral:
     """A structure in its modes.
 
-    Parameters
-    ----------
-    shapes : array, shape (n, modes)
-    mass, stiffness, damping : array, shape (modes,)
-        Diagonals.
-    coupled : array, shape (modes, modes) or (0, 0)
-        The damping where it couples modes.
+    ``shapes`` (n, modes); ``mass``, ``stiffness``, ``damping`` (modes,): diagonals; ``coupled`` (modes, modes) or (0,
+    0): the damping where it couples modes.
     """
 
     shapes: np.ndarray
@@ -58,12 +53,8 @@ class Spectral:
 def spectral(structure: Any, omega: float) -> Spectral:
     """Modes of a structure, normalised to 1 in mass and stiffness/ω².
 
-    Raises
-    ------
-    InputError
-        For hysteretic damping.
-    ModelError
-        For a structure too large, or with degrees of freedom that have neither mass nor stiffness.
+    Raises InputError for hysteretic damping; ModelError for a structure too large, or with degrees of freedom that have
+    neither mass nor stiffness.
     """
     if structure.size > DENSE:
         raise ModelError(
@@ -76,12 +67,14 @@ def spectral(structure: Any, omega: float) -> Spectral:
         np.real(dense(matrix)) for matrix in (*given[:2], given[0] * 0.0 if given[2] is None else given[2])
     )
     try:
+        # M + K/ω² is positive definite even where M or K is singular; its modes diagonalise both matrices.
         shapes = eigh(mass, mass + stiffness / omega**2)[1]
     except LinAlgError:
         raise ModelError(
             "the structure has degrees of freedom with neither mass nor stiffness, or with negative ones, and cannot "
             "be integrated in time; give them some mass or a spring"
         ) from None
+    # Damping that couples these modes is kept whole: nothing is approximated.
     modal = shapes.T @ damping @ shapes
     inertia, hold = (np.einsum("ij,ij->j", shapes, matrix @ shapes) for matrix in (mass, stiffness))
     return Spectral(shapes, inertia, hold, np.diag(modal).copy(), modal if coupled(modal) else np.zeros((0, 0)))
@@ -91,15 +84,8 @@ def spectral(structure: Any, omega: float) -> Spectral:
 class InTime:
     """A lowered system in its modes, at one frequency.
 
-    Parameters
-    ----------
-    lowered : Lowered
-        Real.
-    omega : float
-    steps : int
-        Of a period.
-    stand_in : float
-        Stiffness of the springs in place of rigid contacts, in multiples of the penalties.
+    ``lowered``: real; ``steps``: of a period; ``stand_in``: stiffness of the springs in place of rigid contacts, in
+    multiples of the penalties.
     """
 
     lowered: Lowered
@@ -128,6 +114,7 @@ class InTime:
         """On the modes at the steps' ends, (steps, modes); those of the last end are those of the period's start."""
         highest = max((0 if isinstance(one, StaticForce) else one.harmonic for one in self.lowered.forces), default=0)
         series = Fourier(tuple(range(max(highest, 1) + 1)), self.steps)
+        # Forces at the ends of steps: sample t + 1 in row t.
         samples = series.synthesis @ (np.real(self.lowered.loads(series)).T @ self.spectral.shapes)
         return np.ascontiguousarray(np.roll(samples, -1, axis=0))
 
@@ -136,12 +123,16 @@ class InTime:
         own, seen = self.spectral, self.seen
         ratio = (1 - scheme.alpha_f) / (1 - scheme.alpha_m)
         by_place, by_velocity = scheme.beta * scheme.step**2 * ratio, scheme.gamma * scheme.step * ratio
+        # S = M + g C + b K: its inverse is a diagonal in modes, if damping does not couple them, so that a step costs
+        # as much as it has modes and rows.
         inverse = 1 / (own.mass + by_velocity * own.damping + by_place * own.stiffness)
         solver = own.coupled
         if len(solver):
             solver = np.linalg.inv(np.diag(own.mass + by_place * own.stiffness) + by_velocity * own.coupled)
         pushed = solver @ seen.T if len(solver) else inverse[:, None] * seen.T
         compliance = by_place * (seen @ pushed)
+        # Contacts are matched to the compliance behind them: a single stiff contact then needs one iteration, whatever
+        # its stiffness is.
         elements, shifts = _matched(self.elements, np.diag(compliance))
         modes = Modes(
             own.mass, own.damping, own.stiffness, inverse, own.coupled, solver, seen, np.ascontiguousarray(pushed.T),
@@ -160,6 +151,7 @@ class InTime:
             rows.append(np.pad(own, ((0, 0), (0, 3 - block.rows.shape[1]))))
             numbers.append(block.numbers.astype(float))
             if block.kind != ELASTIC:
+                # Rigid contacts become stiff springs; the error falls with the inverse of their stiffness.
                 numbers[-1][:, [TANGENTIAL, NORMAL]] *= self.stand_in
         return Elements(
             rows=np.concatenate(rows),
@@ -206,14 +198,12 @@ def _matched(elements: Elements, compliance: np.ndarray) -> tuple[Elements, np.n
     :math:`u + (1/\rho - 1/k) \lambda`. With :math:`1/\rho = y + 1/k` and y the compliance of a step behind it, a
     single contact is solved at once, whatever k is.
 
-    Returns
-    -------
-    elements : Elements
-    shifts : array, shape (rows,)
-        :math:`1/\rho - 1/k`; 0 where there is no cell.
+    Returns the elements, and the shifts (rows,) :math:`1/\rho - 1/k`; 0 where there is no cell.
     """
     numbers, shifts = elements.numbers.copy(), np.zeros(len(compliance))
     for own, rows, tangents, normal in zip(numbers, elements.rows, elements.tangents, elements.normal, strict=True):
+        # One stiffness for both tangents, as the law has only one: the larger compliance, with which Newton's method
+        # converges.
         behind = compliance[rows[:tangents]].max()
         shifts[rows[:tangents]] = behind
         own[TANGENTIAL] = 1 / (behind + 1 / own[TANGENTIAL])

@@ -51,6 +51,8 @@ class Newmark(Checked):
         if self.spectral_radius is None:
             return Scheme(step, 0.25, 0.5, 0.0, 0.0)
         radius = float(self.spectral_radius)
+        # Chung and Hulbert (1993), equations 17, 20 and 25: second order, and the least damping of low frequencies for
+        # the damping at infinity.
         alpha_m, alpha_f = (2 * radius - 1) / (radius + 1), radius / (radius + 1)
         shift = alpha_f - alpha_m
         return Scheme(step, (1 + shift) ** 2 / 4, 0.5 + shift, alpha_m, alpha_f)

@@ -104,6 +104,7 @@ def steady_state(
     state = run.rest() if start is None else run.on_curve(system, *start)
     ended = run.long(state, method.periods, method.tolerance) if way == LONG_RUN else run.shot(state)
     shapes = problem.spectral.shapes[rows]
+    # Records are at the ends of steps: rolled by one, the first is the beginning of the period.
     record = Record(*(np.roll(own, 1, axis=0) for own in ended.record))
     summed = np.zeros((method.steps_per_period, len(lowered.row_names)))
     np.add.at(summed.T, problem.places, record.forces.T)
@@ -137,24 +138,20 @@ DIRECTIONS = 60
 def shoot(period: Period, state: np.ndarray, tolerance: float, most: int) -> tuple[np.ndarray, int]:
     """A state (unknowns,) that a period returns to, and the periods to it; one with the least change if there is none.
 
-    Parameters
-    ----------
-    period : callable
-    state : array, shape (unknowns,)
-        In scales in which its parts are comparable.
-    tolerance : float
-        Of the change.
-    most : int
-        Periods.
+    ``state`` (unknowns,): in scales in which its parts are comparable; ``tolerance``: of the change; ``most``: periods.
     """
     (after, change), run = period(state), 1
     while change > tolerance and run < most:
         off, calls = after - state, []
+        # Newton's method on Φ(y) - y: GMRES needs only products with ∂Φ/∂y - 1, each a period with a perturbed state.
+        # Eigenvalues of a damped system cluster at -1, so that a few directions suffice.
         step, _ = gmres(
             _slope(period, state, after), -off, rtol=1e-4, restart=min(DIRECTIONS, len(state)), maxiter=1,
             callback=calls.append, callback_type="pr_norm",
         )  # fmt: skip
         run += len(calls) + 2
+        # A Newton step may cross a change of states: its parts are tried, then a plain period, which a damped motion
+        # always may take.
         for part in PARTS:
             place = state + part * step
             (end, moved), run = period(place), run + 1
@@ -171,6 +168,7 @@ def _slope(period: Period, state: np.ndarray, after: np.ndarray) -> Any:
     size = float(np.linalg.norm(after)) or 1.0
 
     def along(direction: np.ndarray) -> np.ndarray:
+        # Differences, not the complex step: kernels in time are real.
         step = DIFFERENCE * size / (float(np.linalg.norm(direction)) or 1.0)
         return (period(state + step * direction)[0] - after) / step - direction
 
@@ -223,6 +221,7 @@ class _Run:
         places = np.ascontiguousarray(waves @ seen.T)
         speeds = np.ascontiguousarray(self.problem.omega * waves @ Fourier(curve.orders, steps).derivative @ seen.T)
         settle(self.problem.elements, address(self._users), places, speeds, sliders, states, self._reaction())
+        # Displacements and velocities at the end of the period, where a step begins, in modes.
         places = np.stack([x @ waves[-1], self.problem.omega * (x @ rates)], axis=1)
         place, velocity = np.linalg.solve(self.problem.spectral.shapes, places).T
         return self._balanced(place, velocity, sliders, states)
@@ -252,6 +251,7 @@ class _Run:
 
     def shot(self, state: State) -> _Ended:
         """By shooting, after some periods."""
+        # A few periods first: transients of strongly damped modes are gone, and Newton's method starts near the motion.
         warm = self.long(state, min(WARMING, self.method.periods), self.method.tolerance)
         if warm.change <= self.method.tolerance:
             return warm
@@ -270,6 +270,7 @@ class _Run:
         """Of displacements, velocities and two kinds of accelerations, and of sliders, as :meth:`_flat` has them."""
         size = float(np.linalg.norm(warm.state.modes[:2] / [[1.0], [self.problem.omega]])) or 1.0
         widest = float(np.abs(warm.record.displacements).max(initial=0.0)) or 1.0
+        # ω, ω² times the displacements: shooting compares parts of the state in one norm.
         each = size * self.problem.omega ** np.array([0.0, 1.0, 2.0, 2.0])
         modes, states = np.repeat(each, len(self.problem.spectral.mass)), np.abs(warm.state.states)
         return np.concatenate([modes, np.full(warm.state.sliders.size, widest), np.where(states > 0, states, 1.0)])
@@ -294,6 +295,7 @@ class _Run:
         react(self.problem.elements, address(self._users), instant, found)
         if self.failures:
             raise self.failures[0]
+        # M a = f - L^T λ - C v - K x at the start; modes without mass have no acceleration.
         push = self.problem.forces[-1] - seen.T @ found.force
         acceleration = self.problem.spectral.accelerations(push, place, velocity)
         return State(np.stack([place, velocity, acceleration, acceleration]), sliders, states)

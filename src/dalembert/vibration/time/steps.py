@@ -138,14 +138,18 @@ def _balance(modes, elements, users, instant, reaction, room):
     for c in range(len(elements.normal)):
         if elements.normal[c]:
             scale = max(scale, elements.numbers[c, LOAD] / elements.numbers[c, NORMAL])
+    # Newton's method with a kept inverse: equations are linear between changes of contact states, so that one inverse
+    # serves many steps. It is renewed where the residual falls by less than a factor of ten.
     before, last = np.inf, False
     for iteration in range(NEWTON):
         if iteration == ASTRAY:
             before = 0.0
             for c in range(len(elements.tangents)):
+                # Sliders at their displacements: every contact sticks, with no force along its tangents.
                 for i in range(elements.tangents[c]):
                     u[elements.rows[c, i]] = instant.sliders[c, i]
         answer(elements, users, instant, reaction)
+        # The reaction belongs to the last displacements, whose change was below the accuracy.
         if last:
             return True
         apply(room.gemv, modes.compliance, reaction.force, residual)
@@ -159,6 +163,7 @@ def _balance(modes, elements, users, instant, reaction, room):
             invert(room.matrix, room.inverse)
         before = size
         apply(room.gemv, room.inverse, residual, change)
+        # Half steps where whole ones alternate between the sides of kinks.
         part = 0.5 if iteration >= BOLD else 1.0
         for i in range(len(u)):
             change[i] *= part
@@ -171,6 +176,7 @@ def _balance(modes, elements, users, instant, reaction, room):
 def _linearise(compliance, slopes, matrix):
     """Set the matrix to 1 + compliance · slopes."""
     for i in range(len(matrix)):
+        # 1 + (b L S⁻¹ L^T - 1/rho + 1/k) ∂λ/∂d
         for j in range(len(matrix)):
             matrix[i, j] = 1.0 if i == j else 0.0
         for k in range(len(matrix)):
@@ -182,6 +188,7 @@ def _linearise(compliance, slopes, matrix):
 def _step(modes, elements, users, scheme, state, t, reaction, room):
     """A step; whether the contacts are solved."""
     h, ratio = scheme.step, (1.0 - scheme.alpha_f) / (1.0 - scheme.alpha_m)
+    # With w_1 = (1 - α_f)/(1 - α_m) a_1 + history, x_1 and v_1 change by b and g with a_1.
     b, g = scheme.beta * h * h * ratio, scheme.gamma * h * ratio
     q, v, a, w = state.modes[0], state.modes[1], state.modes[2], state.modes[3]
     history, pull = room.history, room.pull
@@ -201,6 +208,7 @@ def _step(modes, elements, users, scheme, state, t, reaction, room):
         apply(room.gemv, modes.seen, pull, room.start)
         apply(room.gemv, modes.compliance, reaction.force, room.u)
         for i in range(len(room.u)):
+            # The guess: the forces of the step before, since d + compliance · λ(d) = u_0.
             room.u[i] = room.start[i] - room.u[i]
         if len(elements.ruled.laws):  # velocities follow displacements: v + g (u - x)/b
             apply(room.gemv, modes.seen, v, room.rate)
@@ -217,6 +225,7 @@ def _step(modes, elements, users, scheme, state, t, reaction, room):
             for i in range(len(a)):
                 a[i] -= modes.pushed[k, i] * reaction.force[k]
     for i in range(len(q)):
+        # Only now, since the elements' part of a_1 was missing in the predicted state.
         w[i] = history[i] + ratio * a[i]
         q[i] += b * a[i]
         v[i] += g * a[i]
@@ -236,10 +245,12 @@ def _distance(x, y):
 def _change(state, record, omega, room):
     """What a period changed, as part of the motion."""
     q, v = state.modes[0], state.modes[1]
+    # Velocities by ω have the size of displacements: the distance does not depend on the phase of the motion.
     size = np.sqrt(dot(q, q) + dot(v, v) / omega**2)
     off = np.sqrt(_distance(q, room.first_q) + _distance(v, room.first_v) / omega**2)
     change = off / size if size > 0.0 else 0.0
     for i in range(len(state.states)):
+        # States of laws have no common unit: each by its own largest value of the period.
         if room.largest[i] > 0.0:
             change = max(change, abs(state.states[i] - room.first_states[i]) / room.largest[i])
     if len(state.sliders) == 0 or np.isnan(change):
@@ -280,6 +291,7 @@ def go_through(
         change = _change(state, record, omega, room)
         if not np.isfinite(change):
             return LOST, period * steps, change
+        # Periodic to the tolerance: the record has the last period as it was gone through.
         if change <= tolerance:
             return STEADY, period + 1, change
     return MOVING, most, change

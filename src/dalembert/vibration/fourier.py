@@ -91,13 +91,13 @@ def synthesis(orders: tuple[int, ...], angles: np.ndarray) -> np.ndarray:
     return np.stack([column for pair in columns for column in pair], axis=1)
 
 
-def in_orders(coefficients: np.ndarray, orders: tuple[int, ...], others: tuple[int, ...]) -> np.ndarray:
+def in_orders(coefficients: np.ndarray, orders: tuple[int, ...], more_orders: tuple[int, ...]) -> np.ndarray:
     """Coefficients (rows, coefficients) of a series with other orders, which contain its own; the rest is 0.
 
     >>> in_orders(np.array([[1.0, 2.0]]), (1,), (0, 1, 2)).tolist()
     [[0.0, 1.0, 2.0, 0.0, 0.0]]
     """
-    columns = _columns(others)
+    columns = _columns(more_orders)
     result = np.zeros((len(coefficients), len(columns)))
     result[:, np.searchsorted(columns, _columns(orders))] = coefficients
     return result
@@ -113,11 +113,11 @@ def real_blocks(matrices: np.ndarray, mean: int) -> np.ndarray:
     orders, q, r = matrices.shape
     count = 2 * orders - mean
     result = np.zeros((q, count, r, count))
-    own, up, down = map(_diagonal, (result, result[:, :-1, :, 1:], result[:, 1:, :, :-1]))
+    diagonal, up, down = map(_diagonal, (result, result[:, :-1, :, 1:], result[:, 1:, :, :-1]))
     real, imaginary = np.real(matrices), np.imag(matrices)
     # Z (X_c - i X_s) with Z = A + i B: cosines A X_c + B X_s, sines A X_s - B X_c.
-    own[:mean] = real[:mean]
-    own[mean::2] = own[mean + 1 :: 2] = real[mean:]
+    diagonal[:mean] = real[:mean]
+    diagonal[mean::2] = diagonal[mean + 1 :: 2] = real[mean:]
     up[mean::2] = imaginary[mean:]
     down[mean::2] = -imaginary[mean:]
     return result
@@ -133,10 +133,10 @@ def complex_blocks(matrices: np.ndarray, mean: int) -> np.ndarray:
 
     (orders, ..., q, r): the inverse of :func:`real_blocks`, and without what couples harmonics or conjugates.
     """
-    own = np.moveaxis(np.diagonal(matrices, axis1=-3, axis2=-1), -1, 0)
+    diagonal = np.moveaxis(np.diagonal(matrices, axis1=-3, axis2=-1), -1, 0)
     up = np.moveaxis(np.diagonal(matrices[..., :-1, :, 1:], axis1=-3, axis2=-1), -1, 0)[mean::2]
     down = np.moveaxis(np.diagonal(matrices[..., 1:, :, :-1], axis1=-3, axis2=-1), -1, 0)[mean::2]
     # The part of a 2 × 2 block that is a complex number: mean of its diagonal, half of its antisymmetric part. The rest
     # acts on conjugates.
-    turning = (own[mean::2] + own[mean + 1 :: 2]) / 2 + 0.5j * (up - down)
-    return np.concatenate([own[:mean].astype(complex), turning])
+    turning = (diagonal[mean::2] + diagonal[mean + 1 :: 2]) / 2 + 0.5j * (up - down)
+    return np.concatenate([diagonal[:mean].astype(complex), turning])

@@ -50,7 +50,7 @@ class VibrationResult(Result):
         for name in ("converged", "fold"):  # NetCDF has no truth values
             if name in arrays:
                 arrays[name] = arrays[name].astype(bool)
-        facts = {name: _tuples(value) for name, value in json.loads(dataset.attrs["names"]).items()}
+        facts = {name: _tuples(entry) for name, entry in json.loads(dataset.attrs["names"]).items()}
         findings = findings_of(json.loads(dataset.attrs["findings"]))
         facts |= {"provenance": json.loads(dataset.attrs["provenance"]), **({"findings": findings} if findings else {})}
         return cls(**arrays, **facts)
@@ -76,7 +76,7 @@ class ConvergedResult(VibrationResult):
 
     @property
     def status(self) -> str:
-        """How many were found, in a sentence."""
+        """How many points are converged, in a sentence."""
         return self.summary().partition("\n")[0]
 
 
@@ -86,12 +86,10 @@ def versions() -> dict[str, str]:
 
 
 def _split(kind: Any) -> tuple[dict[str, Over], list[str]]:
-    """How the arrays of a result are stored, and the names of its other fields."""
-    given = {part.name: part.type for part in fields(kind) if part.name not in ("provenance", "findings")}
-    forms = {name: form for name, hint in given.items() for form in get_args(hint)[1:] if isinstance(form, Over)}
-    return forms, [name for name in given if name not in forms]
+    hints = {part.name: part.type for part in fields(kind) if part.name not in ("provenance", "findings")}
+    forms = {name: form for name, hint in hints.items() for form in get_args(hint)[1:] if isinstance(form, Over)}
+    return forms, [name for name in hints if name not in forms]
 
 
-def _tuples(given: Any) -> Any:
-    """The same with tuples in place of lists."""
-    return tuple(map(_tuples, given)) if isinstance(given, list) else given
+def _tuples(entry: Any) -> Any:
+    return tuple(map(_tuples, entry)) if isinstance(entry, list) else entry

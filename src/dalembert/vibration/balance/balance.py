@@ -25,7 +25,7 @@ from dalembert.vibration.interface.free_motions import HeldByElements
 from dalembert.vibration.interface.lowering import ELASTIC, FrictionBlock, Lowered
 from dalembert.vibration.laws.contact_sums import ContactSums, Shape, contact_sums
 from dalembert.vibration.laws.friction_law import GAP, NORMAL, STUCK, TANGENTIAL
-from dalembert.vibration.laws.sums import Sums
+from dalembert.vibration.laws.law_block import LawSums
 
 LARGE = 500
 """Unknowns above which the Jacobian is kept by its structure. Measured where all of a row of sliders slip, the dearest
@@ -102,12 +102,12 @@ class Balance:
         """The tangent of the structure alone, to which :meth:`residual` adds the elements."""
         # ∂R/∂ω of the structure at fixed U; laws that see velocities add their part in `_add_laws`.
         slope = self.linear(point.slope, point.force_slope, unknowns)
-        held = None if point.held else self._held_by_elements(point)
+        support = None if point.held else self._held_by_elements(point)
         # Elements that share a coordinate, or see velocities as trial forces, have no separate blocks: those stay
         # dense.
         if unknowns.size > LARGE and self._separate:
-            return BlockTangent(point, self.series, slope, self._reference(point), self._rigid, held)
-        return DenseTangent(real_blocks(point.stiffness, self.series.mean), slope, held)
+            return BlockTangent(point, self.series, slope, self._reference(point), self._rigid, support)
+        return DenseTangent(real_blocks(point.stiffness, self.series.mean), slope, support)
 
     def stuck(self, point: Point) -> np.ndarray:
         """Unknowns where all elastic contacts are closed and stick, without preload, (q, coefficients)."""
@@ -123,8 +123,8 @@ class Balance:
                     # k_n (u_N - g): the gap of a closed contact is a force on the mean.
                     force[0] += numbers[NORMAL] * numbers[GAP] * shapes[-1]
         # Least squares, not a solution: contacts may leave a motion free, and the matrix is singular along it.
-        found = np.stack([np.linalg.lstsq(own, right)[0] for own, right in zip(stiffness, force, strict=True)])
-        return self.series.coefficients(found)
+        phasors = np.stack([np.linalg.lstsq(matrix, right)[0] for matrix, right in zip(stiffness, force, strict=True)])
+        return self.series.coefficients(phasors)
 
     def touching(self, unknowns: np.ndarray) -> np.ndarray:
         """Unknowns with the mean positions at which rigid contacts just touch: near motions that bounce on them."""
@@ -162,7 +162,6 @@ class Balance:
         return Evaluation(linear + self._combination.T @ acting, acting, tuple(states))
 
     def _add_functions(self, acting: np.ndarray, unknowns: np.ndarray, tangent: Tangent | None) -> None:
-        """Elements whose law is a function of arrays: their forces, and their local Jacobians in the global one."""
         series = self.series
         for rows, element in self.lowered.functions:
             force, slopes = element.law((self._combination[rows] @ unknowns) @ series.synthesis.T)
@@ -177,7 +176,6 @@ class Balance:
     def _add_laws(
         self, acting: np.ndarray, unknowns: np.ndarray, omega: float, tangent: Tangent | None, rate: float
     ) -> None:
-        """Elements that follow a law: their forces, and their local Jacobians in the global one."""
         for block, sums in zip(self.lowered.laws, self._law_sums, strict=True):
             displacements = (self._combination @ unknowns)[block.rows]
             if tangent is None:
@@ -261,15 +259,13 @@ class Balance:
 
     @cached_property
     def _sums(self) -> list[ContactSums]:
-        """The sums of each block."""
         return [
             contact_sums(_given(block), Shape(block.tangents, block.normal, block.memory), self.series, self.events)
             for block in self.lowered.blocks
         ]
 
     @cached_property
-    def _law_sums(self) -> list[Sums]:
-        """The sums of each block of elements that follow a law."""
+    def _law_sums(self) -> list[LawSums]:
         return [block.sums(self.series, self.events) for block in self.lowered.laws]
 
     def _undetermined(self, block: FrictionBlock, states: np.ndarray) -> np.ndarray:
@@ -283,7 +279,7 @@ class Balance:
     ) -> None:
         """J += G ∂D/∂U with ∂D/∂U = 1 - J_0/ε, or ε ∂/∂τ - J_0 for trial forces; the same for ω."""
         count, columns = self.series.count, block.rows.shape[1]
-        own = np.tile(np.eye(count), (columns, 1, 1))
+        prediction = np.tile(np.eye(count), (columns, 1, 1))
         weights = 1 / _penalties(block)
         if not block.memory:
             weights[:, : block.tangents] = 1.0
@@ -291,9 +287,9 @@ class Balance:
             self._retained[block.rows], weights, block.numbers, local, strict=True
         ):
             if not block.memory:
-                own[: block.tangents] = numbers[TANGENTIAL] * self.series.derivative
+                prediction[: block.tangents] = numbers[TANGENTIAL] * self.series.derivative
             motion = -weight[:, None, None, None] * before.jacobian[places]
-            motion[np.arange(columns), :, places] += own
+            motion[np.arange(columns), :, places] += prediction
             # J = J_0 + G (1 - J_0/ε) for displacements, J_0 + G (ε ∂/∂τ - J_0) for trial forces.
             change = gradient @ motion.reshape(columns * count, -1)
             tangent.jacobian[places] += change.reshape(motion.shape)
@@ -356,7 +352,6 @@ class Balance:
 
     @cached_property
     def _kind(self) -> np.dtype:
-        """Real or complex: the type of the elements' numbers."""
         blocks = (*self.lowered.blocks, *self.lowered.laws)
         return np.result_type(float, *(block.numbers for block in blocks))
 

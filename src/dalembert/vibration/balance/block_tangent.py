@@ -80,8 +80,8 @@ class BlockTangent:
     def solve(self, right: np.ndarray, tolerance: float = EXACT) -> np.ndarray:
         """J⁻¹ times right-hand sides (q, coefficients, columns)."""
         # The dense system costs the cube of the active unknowns, GMRES some products with J.
-        own = self._iterated if len(self._rows) * self.series.count > DIRECT else self._direct
-        return np.stack([own(column, tolerance) for column in np.moveaxis(right, 2, 0)], axis=2)
+        solver = self._iterated if len(self._rows) * self.series.count > DIRECT else self._direct
+        return np.stack([solver(column, tolerance) for column in np.moveaxis(right, 2, 0)], axis=2)
 
     @property
     def jacobian(self) -> np.ndarray:
@@ -98,13 +98,13 @@ class BlockTangent:
     def sign(self) -> float:
         r"""Sign of the determinant of J, which is :math:`\det A\,\det(1 + V A^{-1} E m)`."""
         # Blocks of harmonics are complex numbers as pairs of real ones: their determinants are positive.
-        own = np.linalg.slogdet(self._supported_blocks[0].real)[0] if self.series.mean else 1.0
+        reference_sign = np.linalg.slogdet(self._supported_blocks[0].real)[0] if self.series.mean else 1.0
         if not self.active:
-            return float(own)
+            return float(reference_sign)
         matrix, pivots = self._coupled[1]
         # LU with row exchanges: the determinant is the product of U's diagonal, with a sign for each exchange.
         swapped = np.sum(pivots != np.arange(len(pivots))) % 2
-        return float(own * (-1) ** swapped * np.prod(np.sign(np.diag(matrix))))
+        return float(reference_sign * (-1) ** swapped * np.prod(np.sign(np.diag(matrix))))
 
     @cached_property
     def _rows(self) -> np.ndarray:
@@ -116,8 +116,8 @@ class BlockTangent:
         result, at = np.empty_like(values), 0
         for _, blocks in self.active:
             cells, size, _ = blocks.shape
-            own = slice(at, at + cells * size)
-            result[own] = (blocks @ values[own].reshape(cells, size, -1)).reshape(cells * size, -1)
+            span = slice(at, at + cells * size)
+            result[span] = (blocks @ values[span].reshape(cells, size, -1)).reshape(cells * size, -1)
             at += cells * size
         return result
 
@@ -165,9 +165,9 @@ class BlockTangent:
     def _across(self) -> np.ndarray:
         """V, (orders, active, q)."""
         rows, q = self._rows, len(self.reference)
-        own = np.zeros((len(rows), q))
-        own[np.arange(len(rows)), rows] = np.where(self.rigid[rows], -self.reference[rows], 1.0)
-        return np.where(self.rigid[rows][:, None], self.point.stiffness[:, rows], 0.0) + own
+        unit = np.zeros((len(rows), q))
+        unit[np.arange(len(rows)), rows] = np.where(self.rigid[rows], -self.reference[rows], 1.0)
+        return np.where(self.rigid[rows][:, None], self.point.stiffness[:, rows], 0.0) + unit
 
     def _stuck(self, right: np.ndarray) -> np.ndarray:
         """A⁻¹ times phasors (orders, q, columns)."""
@@ -179,11 +179,10 @@ class BlockTangent:
         if self._support is not None:
             factors = [self._supported_mean, *factors[1:]]
         pairs = zip(factors, right, strict=True)
-        return np.stack([lu_solve(own, columns, check_finite=False) for own, columns in pairs])
+        return np.stack([lu_solve(factor, columns, check_finite=False) for factor, columns in pairs])
 
     @cached_property
     def _supported_mean(self) -> Any:
-        """Factors of A with the support, at the mean."""
         return lu_factor(self._supported_blocks[0], check_finite=False)
 
     @cached_property
@@ -198,11 +197,11 @@ class BlockTangent:
         among = real_blocks(self._across @ response, self.series.mean).reshape(size, size)
         at, matrix = 0, np.empty_like(among)
         for _, blocks in self.active:
-            cells, own, _ = blocks.shape
-            columns = slice(at, at + cells * own)
-            product = among[:, columns].reshape(size, cells, own).transpose(1, 0, 2) @ blocks
-            matrix[:, columns] = product.transpose(1, 0, 2).reshape(size, cells * own)
-            at += cells * own
+            cells, width, _ = blocks.shape
+            columns = slice(at, at + cells * width)
+            product = among[:, columns].reshape(size, cells, width).transpose(1, 0, 2) @ blocks
+            matrix[:, columns] = product.transpose(1, 0, 2).reshape(size, cells * width)
+            at += cells * width
         matrix[np.arange(size), np.arange(size)] += 1.0
         return response, lu_factor(matrix, check_finite=False, overwrite_a=True)
 
@@ -223,18 +222,18 @@ class BlockTangent:
     def _preconditioner(self) -> np.ndarray:
         """Inverse of A + E m V without its coupling of harmonics, (orders, q, q)."""
         q, mean = len(self.reference), self.series.mean
-        own = np.zeros((len(self.series.orders), q, q), dtype=complex)
+        coupling = np.zeros((len(self.series.orders), q, q), dtype=complex)
         for places, blocks in self.active:
             cells, columns = places.shape
             # m couples harmonics through kinks of the force; without this coupling each harmonic has its own small
             # matrix.
             local = complex_blocks(blocks.reshape(cells, columns, -1, columns, self.series.count), mean)
-            for part, blocks in zip(own, local, strict=True):
+            for part, blocks in zip(coupling, local, strict=True):
                 np.add.at(part, (places[:, :, None], places[:, None, :]), blocks)  # type: ignore[arg-type]
         seen = np.where(self.rigid[:, None], self.point.stiffness, 0.0)
         diagonal = np.arange(q)
         seen[:, diagonal, diagonal] += np.where(self.rigid, -self.reference, 1.0)
-        return np.linalg.inv(self._supported_blocks + own @ seen)
+        return np.linalg.inv(self._supported_blocks + coupling @ seen)
 
     def _product(self, values: np.ndarray) -> np.ndarray:
         """J, with the support, times (q * coefficients,)."""
@@ -247,10 +246,10 @@ class BlockTangent:
     def _unsupported_product(self, values: np.ndarray) -> np.ndarray:
         """J times (q, coefficients)."""
         series, rigid, rows = self.series, self.rigid[:, None], self._rows
-        held = self.reference[:, None] * values
+        sticking = self.reference[:, None] * values
         moved = series.coefficients((self.point.stiffness @ series.phasors(values)[:, :, None])[:, :, 0])
-        result = np.where(rigid, held, moved + held)
-        seen = np.where(rigid, moved - held, values)[rows]
+        result = np.where(rigid, sticking, moved + sticking)
+        seen = np.where(rigid, moved - sticking, values)[rows]
         np.add.at(result, rows, self._times(seen.reshape(-1, 1)).reshape(len(rows), -1))
         return result
 
@@ -262,6 +261,10 @@ class BlockTangent:
             phasors = series.phasors(values.reshape(right.shape))
             return series.coefficients((self._preconditioner @ phasors[:, :, None])[:, :, 0]).ravel()
 
-        own, near = (LinearOperator((size, size), matvec=one, dtype=float) for one in (self._product, precondition))  # type: ignore[call-arg]
-        found, failed = gmres(own, right.ravel(), rtol=tolerance, atol=0.0, restart=KRYLOV, maxiter=CYCLES, M=near)
-        return self._direct(right) if failed else found.reshape(right.shape)
+        operator, near = (
+            LinearOperator((size, size), matvec=product, dtype=float) for product in (self._product, precondition)
+        )  # type: ignore[call-arg]
+        solution, failed = gmres(
+            operator, right.ravel(), rtol=tolerance, atol=0.0, restart=KRYLOV, maxiter=CYCLES, M=near
+        )
+        return self._direct(right) if failed else solution.reshape(right.shape)

@@ -97,11 +97,11 @@ def unconverged_findings(points: int, lost: Iterable[Unconverged]) -> tuple[Find
     if not lost:
         return ()
     count = f"{len(lost)} of {points} points were not found."
-    known = [(one.frequency, one.cause) for one in lost if one.cause is not None]
-    for frequency, cause in sorted(known, key=lambda one: one[1].code != "unbalanced-mean")[:1]:
+    known = [(entry.frequency, entry.cause) for entry in lost if entry.cause is not None]
+    for frequency, cause in sorted(known, key=lambda entry: entry[1].code != "unbalanced-mean")[:1]:
         values = {"points": len(lost), "frequency": frequency, **cause.values}
         return (replace(cause, values=values, message=f"{count} At {frequency:.6g} Hz {cause.message}"),)
-    worst = max(lost, key=lambda one: one.residual)
+    worst = max(lost, key=lambda entry: entry.residual)
     values = {"points": len(lost), "frequency": worst.frequency, "residual": worst.residual}
     message = f"{count} The largest residual is {worst.residual:.1e} of the forces, at {worst.frequency:.6g} Hz."
     advice = "Follow the curve by arc length, or with smaller steps of frequency, more harmonics or more samples."

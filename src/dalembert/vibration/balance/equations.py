@@ -1,7 +1,7 @@
 """Equations of harmonic balance of a system, solved at any frequency."""
 
 import hashlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 
@@ -10,14 +10,13 @@ import numpy as np
 from dalembert.errors import InputError
 from dalembert.forward import Checkpoint
 from dalembert.vibration.balance.balance import Balance
+from dalembert.vibration.balance.first_guesses import first_guesses
 from dalembert.vibration.balance.harmonic_balance import AUTOMATIC, MOST_SAMPLES, HarmonicBalance
-from dalembert.vibration.balance.loading import RESOLUTION, Loading
 from dalembert.vibration.balance.newton import Plane, Solution, correct, scale_of
 from dalembert.vibration.balance.preparation import prepare_balance
-from dalembert.vibration.balance.rest import at_rest
 from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.interface.condensation import Condensation, Point, norm
-from dalembert.vibration.interface.lowering import ELASTIC, Lowered, lower
+from dalembert.vibration.interface.lowering import Lowered, lower
 from dalembert.vibration.laws.law_block import LawBlock
 from dalembert.vibration.laws.sampled_sums import forces_from_rest
 from dalembert.vibration.system.system import StaticForce, VibrationSystem
@@ -76,33 +75,40 @@ class Equations:
         fresh = partial(self.newton, unknowns, omega, samples, plane, point)
         if self.checkpoint is None:
             return fresh()
-        made: list[Solution] = []
+        computed: list[Solution] = []
 
         def compute() -> tuple[np.ndarray, np.ndarray]:
-            made.append(found := fresh())
-            numbers = (found.omega, found.iterations, found.error, found.converged, found.samples, found.sampling_error)
-            return found.unknowns, np.array(numbers, dtype=float)
+            computed.append(solution := fresh())
+            numbers = (
+                solution.omega,
+                solution.iterations,
+                solution.error,
+                solution.converged,
+                solution.samples,
+                solution.sampling_error,
+            )
+            return solution.unknowns, np.array(numbers, dtype=float)
 
         values, numbers = self.checkpoint.once(self._key(unknowns, omega, samples, plane), compute)
-        return made[0] if made else self._restored(values, *numbers.tolist())
+        return computed[0] if computed else self._restored(values, *numbers.tolist())
 
     def newton(
         self, unknowns: np.ndarray, omega: float, samples: int, plane: Plane | None, point: Point | None
     ) -> Solution:
         """Solve as :meth:`solve` does, without a look at the checkpoint."""
 
-        def finer(found: Solution) -> Solution:
-            balance, near = self.balance(2 * found.samples), (found.unknowns, found.omega)
-            return correct(balance, self.condensation.at, self.method, *near, plane, found.point)
+        def finer(candidate: Solution) -> Solution:
+            balance, near = self.balance(2 * candidate.samples), (candidate.unknowns, candidate.omega)
+            return correct(balance, self.condensation.at, self.method, *near, plane, candidate.point)
 
         def solved(number: int) -> Solution:
             return correct(self.balance(number), self.condensation.at, self.method, unknowns, omega, plane, point)
 
-        def back(found: Solution) -> Solution:
+        def back(candidate: Solution) -> Solution:
             """The solution with the first number of samples, with which a curve goes on smoothly, if there is one."""
-            near = found.unknowns, found.omega
-            first = correct(self.balance(samples), self.condensation.at, self.method, *near, plane, found.point)
-            return first if first.converged else found
+            near = candidate.unknowns, candidate.omega
+            first = correct(self.balance(samples), self.condensation.at, self.method, *near, plane, candidate.point)
+            return first if first.converged else candidate
 
         # Samples first, motion later: a residual below `sampling` that Newton's method cannot reduce is one of kinks,
         # or a mean force, that more samples remove.
@@ -115,8 +121,8 @@ class Equations:
         if alternates and plane is None and self.method.samples == AUTOMATIC:  # on a path, a shorter step is cheaper
             # Other numbers of samples have their kinks at other motions; from their solution the first number often
             # converges.
-            others = (int(part * samples) for part in RESAMPLED if part * samples <= MOST_SAMPLES)
-            solution = next((back(found) for found in map(solved, others) if found.converged), solution)
+            numbers = (int(part * samples) for part in RESAMPLED if part * samples <= MOST_SAMPLES)
+            solution = next((back(candidate) for candidate in map(solved, numbers) if candidate.converged), solution)
         # Enough samples: twice as many change the balance by less than `sampling` of the forces. At most 8192.
         while solution.converged:
             solution = replace(solution, sampling_error=self._sampling_error(solution))
@@ -132,37 +138,13 @@ class Equations:
         With little varying force contacts stick, so that this is the way of a friction limit from infinity to its own.
         """
         point, best = self.condensation.at(omega), None
-        for guess in self._guesses(point):
-            found = self.solve(guess, omega, self.method.first_samples, point=point)
-            if found.converged:
-                return found
-            best = found if best is None or found.error < best.error else best
+        for guess in first_guesses(self.balance(self.method.first_samples), self.method, point):
+            solution = self.solve(guess, omega, self.method.first_samples, point=point)
+            if solution.converged:
+                return solution
+            best = solution if best is None or solution.error < best.error else best
         assert best is not None  # there is always a first guess
         return best
-
-    def _guesses(self, point: Point) -> Iterator[np.ndarray]:
-        """Yield guesses of a first point; the later ones are made if those before lead to no solution."""
-        balance = self.balance(self.method.first_samples)
-        pressed = any(block.normal and block.kind == ELASTIC for block in self.lowered.blocks)
-        if not point.held and (self.lowered.laws or self.lowered.functions):
-            # 1. Only elements hold a part: the place of rest under the static forces, from which stops are touched or
-            # not.
-            yield at_rest(balance, point)
-        # 2. Closed contacts that stick, as under small varying forces; zero without such contacts.
-        yield balance.stuck(point) if pressed else np.zeros(balance.shape)
-        try:
-            # 3. The motion without contacts, to which large forces are close.
-            free = np.linalg.solve(point.stiffness, point.force[:, :, None])[:, :, 0]
-        except np.linalg.LinAlgError:  # springs without a linear part hold the structure
-            free = (np.linalg.pinv(point.stiffness) @ point.force[:, :, None])[:, :, 0]
-        moved = balance.series.coefficients(free)
-        yield moved
-        # 4. A path over the varying forces from 1 % to all of them: the dearest guess, so a late one.
-        if self.method.halvings:
-            yield Loading(balance, replace(self.method, resolution=RESOLUTION), point).last()
-        # 5. Rigid contacts just touched by the motion without them.
-        if any(block.normal and block.kind != ELASTIC for block in self.lowered.blocks):
-            yield balance.touching(moved)
 
     def once(self, what: str, solution: Solution, compute: Callable[[], np.ndarray]) -> np.ndarray:
         """Return a named quantity of a solution. It is stored where solutions are."""
@@ -175,7 +157,6 @@ class Equations:
         self, unknowns: np.ndarray, omega: float, iterations: float, error: float, converged: float, samples: float,
         sampling_error: float,
     ) -> Solution:  # fmt: skip
-        """Return a solution from its stored values."""
         point = self.condensation.at(omega)
         evaluation, tangent = self.balance(int(samples)).linearised(point, unknowns)
         return Solution(
@@ -185,17 +166,16 @@ class Equations:
 
     def _key(self, unknowns: np.ndarray, omega: float, samples: int, plane: Plane | None) -> bytes:
         """Hash of all that a solution depends on."""
-        asked = [np.array([omega, samples]), unknowns]
+        parts = [np.array([omega, samples]), unknowns]
         if plane is not None:
-            asked += [plane.direction, plane.unknowns, np.array([plane.omega, plane.size, plane.width])]
-        return hashlib.sha256(self._system + b"".join(map(np.ndarray.tobytes, asked))).digest()
+            parts += [plane.direction, plane.unknowns, np.array([plane.omega, plane.size, plane.width])]
+        return hashlib.sha256(self._system + b"".join(map(np.ndarray.tobytes, parts))).digest()
 
     @cached_property
     def _system(self) -> bytes:
         return b"harmonic balance" + self.lowered.fingerprint(self.method).encode()
 
     def _doubles(self, solution: Solution) -> bool:
-        """Whether more samples may be taken."""
         return self.method.samples == AUTOMATIC and solution.samples < MOST_SAMPLES
 
     def _sampling_error(self, solution: Solution) -> float:
@@ -252,8 +232,8 @@ def _require_symmetry(lowered: Lowered) -> None:
 
 def _force(block: LawBlock, element: int, u: np.ndarray) -> np.ndarray:
     """Forces of an element of a block over motions (columns, samples), from rest."""
-    own, motion = replace(block, numbers=block.numbers[[element]]), u[None].astype(complex)
-    return np.real(forces_from_rest(own, motion, 0 * motion))[0]
+    single, motion = replace(block, numbers=block.numbers[[element]]), u[None].astype(complex)
+    return np.real(forces_from_rest(single, motion, 0 * motion))[0]
 
 
 @np.errstate(all="ignore")
@@ -264,8 +244,8 @@ def _odd(force: Callable[[np.ndarray], np.ndarray], count: int) -> bool:
         # λ(-u) = -λ(u) is what motions of odd harmonics alone need. Random motions of many sizes find a mean or even
         # harmonics at gaps and
         # limits from 1e-9 to 1e6 m.
-        there, back = force(u), force(-u)
-        scale = np.abs(there).max(initial=0.0)
-        if np.isfinite(scale) and not np.allclose(there, -back, rtol=1e-9, atol=1e-12 * scale):
+        forces, back = force(u), force(-u)
+        scale = np.abs(forces).max(initial=0.0)
+        if np.isfinite(scale) and not np.allclose(forces, -back, rtol=1e-9, atol=1e-12 * scale):
             return False
     return True

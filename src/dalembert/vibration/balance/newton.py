@@ -94,7 +94,11 @@ def line_search(trial: Callable[[float], Trial], error: float) -> Trial | None:
             break
     # At a kink the residual may rise behind every part. The best one is taken then: Newton's method needs to cross to
     # the other side, and a rule that demands a fall would stop here.
-    return min((one for one in trials if np.isfinite(one.error)), key=lambda one: one.error, default=None)
+    return min(
+        (candidate for candidate in trials if np.isfinite(candidate.error)),
+        key=lambda candidate: candidate.error,
+        default=None,
+    )
 
 
 @np.errstate(over="ignore", invalid="ignore")  # a trial may lie beyond what a law is for: the search returns
@@ -115,8 +119,8 @@ def correct(
 
     def place(unknowns: np.ndarray, omega: float, point: Point | None, step: bool = True) -> Solution:
         point = structure(omega) if point is None else point
-        found: Any = balance.linearised(point, unknowns) if step else (balance.at(point, unknowns), None)
-        evaluation, tangent = found
+        linearised: Any = balance.linearised(point, unknowns) if step else (balance.at(point, unknowns), None)
+        evaluation, tangent = linearised
         distance = 0.0 if plane is None else plane.distance(unknowns, omega)
         scale = scale_of(point, evaluation)
         # On a plane two equations hold, R = 0 and distance = 0, both without dimension: one error for both.

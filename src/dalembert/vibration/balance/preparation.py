@@ -33,16 +33,16 @@ def balance_kernels(lowered: Lowered, events: bool, residuals: bool, derivatives
     """Kernels of the sums of contacts and stops."""
     shapes = [(block.numbers, Shape(block.tangents, block.normal, block.memory)) for block in lowered.blocks]
     corrected = [events and block.element.switches for block in lowered.laws]
-    used = [sums_for(*own, events).kernels for own in shapes] + [EventSums.kernels] * any(corrected)
+    used = [sums_for(*entry, events).kernels for entry in shapes] + [EventSums.kernels] * any(corrected)
     needed = (True, residuals, derivatives)
     kernels: list[Compiled] = [
-        kernel for own in dict.fromkeys(used) for kernel, use in zip(own, needed, strict=True) if use
+        kernel for entry in dict.fromkeys(used) for kernel, use in zip(entry, needed, strict=True) if use
     ]
     sums = [block.sums(Fourier((0, 1), 4), events) for block in lowered.laws]
-    kernels += [marches] * any(isinstance(own, MarchedSums) for own in sums)
+    kernels += [marches] * any(isinstance(entry, MarchedSums) for entry in sums)
     if lowered.laws:
         kernels += [sampled_forces, law_derivatives]
-    laws = [own for block in lowered.laws for own in (block.law, block.element.events) if own is not None]
+    laws = [entry for block in lowered.laws for entry in (block.law, block.element.events) if entry is not None]
     return kernels + [kernel for law in laws for kernel in law.all_kernels()]
 
 

@@ -31,16 +31,16 @@ def sensitivities(problem: Equations, solution: Solution, perturbed: Sequence[Lo
     retained = series.phasors(solution.unknowns)
     motion = condensation.full(retained, point.interior(retained))
     linear = problem.balance(solution.samples).linear(point.stiffness, point.force, solution.unknowns)
-    given, residuals = [], []
-    for own in perturbed:
+    inner_pushes, residuals = [], []
+    for system in perturbed:
         # f' - Z' x of all degrees of freedom: what the parameter changes where the motion is held.
-        push = series.phasors(_step(own.loads(series))) - _unbalanced(own, point.frequencies, motion)
+        push = series.phasors(_step(system.loads(series))) - _unbalanced(system, point.frequencies, motion)
         outer, inner = push @ condensation.retained, np.asarray((condensation.back.T @ push.T).T)
         # V^T (f' - Z' x) with V = (1, -Y): the part at q less that at the interior, condensed as loads are.
         condensed = outer - (np.swapaxes(point.follow, 1, 2) @ inner[:, :, None])[:, :, 0]
         # The laws see the real motion and complex numbers; the linear part carries its derivative in its imaginary
         # part, so that rigid contacts, which see the residual, take both at once.
-        elements = replace(problem.lowered, blocks=own.blocks, laws=own.laws, functions=own.functions)
+        elements = replace(problem.lowered, blocks=system.blocks, laws=system.laws, functions=system.functions)
         stepped = linear - 1j * STEP * series.coefficients(condensed)
         residuals.append(
             _step(
@@ -49,11 +49,11 @@ def sensitivities(problem: Equations, solution: Solution, perturbed: Sequence[Lo
                 .residual
             )
         )
-        given.append(inner)
+        inner_pushes.append(inner)
     # dU/dp = -J⁻¹ ∂R/∂p for all parameters at once.
     moved = -np.moveaxis(solution.tangent.solve(np.stack(residuals, axis=2)), 2, 0)
     result = []
-    for change, inner in zip(moved, given, strict=True):
+    for change, inner in zip(moved, inner_pushes, strict=True):
         shift = series.phasors(change)
         # dx_l/dp = Z_ll⁻¹ (f' - Z' x)_l - Z_ll⁻¹ Z_lq dU/dp
         interior = condensation.solve(point.frequencies, inner[:, :, None])[:, :, 0]
@@ -62,13 +62,13 @@ def sensitivities(problem: Equations, solution: Solution, perturbed: Sequence[Lo
     return np.stack(result)
 
 
-def _unbalanced(own: Lowered, frequencies: np.ndarray, motion: np.ndarray) -> np.ndarray:
+def _unbalanced(lowered: Lowered, frequencies: np.ndarray, motion: np.ndarray) -> np.ndarray:
     """Z' x, (orders, n), from the imaginary parts of the matrices."""
-    structure, s = own.structure, frequencies
+    structure, s = lowered.structure, frequencies
     matrices = structure.stiffness, structure.mass, structure.damping, structure.loss
     factors = np.ones_like(s), -(s**2), 1j * s, 1j * np.sign(s)
     pairs = zip(matrices, factors, strict=True)
-    return np.asarray(sum((_step(own) @ motion.T) * factor for own, factor in pairs if own is not None)).T
+    return np.asarray(sum((_step(matrix) @ motion.T) * factor for matrix, factor in pairs if matrix is not None)).T
 
 
 def _step(array: Any) -> Any:

@@ -52,37 +52,37 @@ def truncation_findings(problem: Equations, solution: Solution) -> Iterator[Find
     yield from large_findings(truncation(problem, solution), problem.method)
 
 
-def large_findings(found: Truncation, method: HarmonicBalance, limit: int | None = None) -> Iterator[Finding]:
+def large_findings(estimate: Truncation, method: HarmonicBalance, limit: int | None = None) -> Iterator[Finding]:
     """Yield the finding on a truncation error that is not small enough.
 
     ``limit`` is that of harmonics that were chosen; None if their number was given.
     """
-    if found.error <= method.truncation:
+    if estimate.error <= method.truncation:
         return
     harmonics = method.highest
-    values = {"frequency": found.frequency, "harmonics": harmonics}
-    if np.isnan(found.error):
+    values = {"frequency": estimate.frequency, "harmonics": harmonics}
+    if np.isnan(estimate.error):
         message = (
-            f"Whether {harmonics} harmonics resolve the motion at {found.frequency:.6g} Hz is not known: with "
+            f"Whether {harmonics} harmonics resolve the motion at {estimate.frequency:.6g} Hz is not known: with "
             f"{2 * harmonics + 1} harmonics it was not found."
         )
         advice = "Try another number of harmonics, or compare the curve with integration in time."
-        yield Finding("unchecked-harmonics", "error" if found.heavy else "warning", values, message, advice)
+        yield Finding("unchecked-harmonics", "error" if estimate.heavy else "warning", values, message, advice)
         return
     message = (
-        f"{harmonics} harmonics do not resolve the motion at {found.frequency:.6g} Hz: its error is about "
-        f"{100 * found.error:.2g} %, by the change with {2 * harmonics + 1} harmonics."
+        f"{harmonics} harmonics do not resolve the motion at {estimate.frequency:.6g} Hz: its error is about "
+        f"{100 * estimate.error:.2g} %, by the change with {2 * harmonics + 1} harmonics."
     )
     advice = 'Use harmonics="auto", which chooses their number by this error.'
     if limit is not None:
         advice = f"The limit is {limit} harmonics: raise most_harmonics, or accept a larger error by truncation."
-    if found.heavy:
+    if estimate.heavy:
         advice += " The force of a rigid contact with mass jumps, so that the error falls slowly; "
         advice += "an elastic law falls faster."
     else:
         advice += " Compare the curve with integration in time."
-    values |= {"error": found.error}
-    yield Finding("few-harmonics", "error" if found.heavy else "warning", values, message, advice)
+    values |= {"error": estimate.error}
+    yield Finding("few-harmonics", "error" if estimate.heavy else "warning", values, message, advice)
 
 
 def choice_findings(method: HarmonicBalance, largest: Truncation | None) -> tuple[Finding, ...]:
@@ -114,10 +114,10 @@ def hardest(unknowns: np.ndarray, converged: np.ndarray, small: float = SMALL) -
     upper = unknowns.shape[2] // 2
     tails = np.linalg.norm(unknowns[places][:, :, upper:].reshape(len(places), -1), axis=1)
     # Small motions have large relative tails that nobody looks at: they count as parts of a tenth of the largest.
-    whole = np.maximum(sizes, small * sizes.max())
-    parts = tails / np.where(whole > 0, whole, 1.0)
+    references = np.maximum(sizes, small * sizes.max())
+    parts = tails / np.where(references > 0, references, 1.0)
     order = [int(sizes.argmax()), *np.argsort(-parts, kind="stable")[:TAILS].tolist()]
-    return [int(places[one]) for one in dict.fromkeys(order)]
+    return [int(places[number]) for number in dict.fromkeys(order)]
 
 
 class Motion(Protocol):
@@ -157,10 +157,10 @@ def enough_harmonics(first: Level[M], motions: Sequence[M]) -> tuple[HarmonicBal
         # for all.
         level, known = (first, motion) if method == first.method else first.padded(motion, method)
         while known.converged:
-            found = _confirmed(level, known)
-            more = None if found.error <= method.truncation else method.next()
+            estimate = _confirmed(level, known)
+            more = None if estimate.error <= method.truncation else method.next()
             if more is None:
-                largest = found if largest is None or found.rank > largest.rank else largest
+                largest = estimate if largest is None or estimate.rank > largest.rank else largest
                 break
             method = more
             level, known = level.padded(known, method)
@@ -174,15 +174,15 @@ def _confirmed(level: Level[M], motion: M) -> Truncation:
 
     The first few harmonics may change a motion less than those after them.
     """
-    found, more = level.truncation(motion), level.method.next()
+    estimate, more = level.truncation(motion), level.method.next()
     # From 9 harmonics on one change is enough. Below, den Hartog's block with a limit of 0.3 of the force changes by
     # 0.14 % from 3 to 7 harmonics and by 0.44 % from 7 to 15.
-    if level.method.highest >= RELIABLE or more is None or not found.error <= more.truncation:
-        return found
+    if level.method.highest >= RELIABLE or more is None or not estimate.error <= more.truncation:
+        return estimate
     finer, known = level.padded(motion, more)
     if not known.converged:
-        return replace(found, error=np.nan)
-    return max(found, finer.truncation(known), key=lambda one: one.rank)
+        return replace(estimate, error=np.nan)
+    return max(estimate, finer.truncation(known), key=lambda each: each.rank)
 
 
 @dataclass(frozen=True)
@@ -198,7 +198,7 @@ class ForcedLevel:
     @classmethod
     def of(cls, problem: Equations, motions: Sequence[Solution]) -> "ForcedLevel":
         """The level at which errors of small motions are parts of a tenth of the largest one."""
-        sizes = [float(_amplitudes(problem.method, one).max(initial=0.0)) for one in motions]
+        sizes = [float(_amplitudes(problem.method, motion).max(initial=0.0)) for motion in motions]
         return cls(problem, SMALL * max(sizes, default=0.0))
 
     @property
@@ -233,7 +233,6 @@ def carries_mass(problem: Equations, omega: float) -> bool:
 
 
 def _padded(problem: Equations, method: HarmonicBalance, solution: Solution) -> Solution:
-    """Solve with the further harmonics of a problem from a solution with those of a method."""
     begin = in_orders(solution.unknowns, method.orders, problem.method.orders)
     return problem.solve(begin, solution.omega, max(problem.method.first_samples, solution.samples))
 
@@ -260,9 +259,9 @@ def _change(problem: Equations, solution: Solution, afresh: bool) -> tuple[float
     if not better.converged:
         return np.nan, 1.0
     # Of the degree of freedom that moves most: relative errors of small ones say little.
-    own, other = _amplitudes(problem.method, solution), _amplitudes(method, better)
+    coarse, other = _amplitudes(problem.method, solution), _amplitudes(method, better)
     most = int(np.argmax(other))
-    return float(abs(own[most] - other[most])), float(other[most])
+    return float(abs(coarse[most] - other[most])), float(other[most])
 
 
 def _heavy(problem: Equations, omega: float) -> tuple[bool, ...]:
@@ -277,8 +276,8 @@ def _heavy(problem: Equations, omega: float) -> tuple[bool, ...]:
     place = {row: number for number, row in enumerate(lowered.coordinates.rows.tolist())}
     rows = [[place[row] for row in block.rows.ravel().tolist() if row in place] for block in lowered.blocks]
     return tuple(
-        block.kind != ELASTIC and bool(np.any(inertia[own] > np.diag(stiffness)[own]))
-        for block, own in zip(lowered.blocks, rows, strict=True)
+        block.kind != ELASTIC and bool(np.any(inertia[block_rows] > np.diag(stiffness)[block_rows]))
+        for block, block_rows in zip(lowered.blocks, rows, strict=True)
     )
 
 

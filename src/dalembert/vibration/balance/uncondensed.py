@@ -71,16 +71,18 @@ class Uncondensed:
 
         Raises InputError for a structure so large that its interior is kept sparse, and for hysteretic damping.
         """
-        own = self.condensation
+        condensation = self.condensation
         require_viscous(self.lowered.structure, "stability and nonlinear modes")
-        if any(map(issparse, own.inner)):
+        if any(map(issparse, condensation.inner)):
             raise InputError(
                 f"stability and nonlinear modes take dense matrices of all {self.lowered.structure.size} degrees of "
                 "freedom; reduce the structure first (craig_bampton)"
             )
         return tuple(
             np.block([[outer, across], [across.T, np.diag(inner) if inner.ndim == 1 else inner]])
-            for outer, across, inner in zip(own.outer[:3], own.across[:3], own.inner[:3], strict=True)
+            for outer, across, inner in zip(
+                condensation.outer[:3], condensation.across[:3], condensation.inner[:3], strict=True
+            )
         )  # type: ignore[return-value]
 
     def elements(self, linear: np.ndarray, unknowns: np.ndarray, omega: float) -> Local:

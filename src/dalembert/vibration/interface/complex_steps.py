@@ -69,9 +69,9 @@ def _check(
     bases = HeldBases()
 
     def numbers(vector: np.ndarray) -> list[Part]:
-        given = [value if value.imag else value.real for value in vector.tolist()]  # one of them is complex at most
+        arguments = [value if value.imag else value.real for value in vector.tolist()]  # one of them is complex at most
         with bases.call():
-            return list(parts(builder(**parameters.arguments(given))))
+            return list(parts(builder(**parameters.arguments(arguments))))
 
     def place(entry: int) -> str:
         for values, name in numbers(vector):
@@ -106,7 +106,10 @@ def _parts(lowered: Lowered) -> Iterator[Part]:
             lambda entry, names=names: f"{NUMBERS[entry % len(NUMBERS)]!r} of {names[entry // len(NUMBERS)]!r}",
         )
     for block in lowered.laws:
-        yield block.numbers.ravel(), lambda entry, own=block: _number(own, *divmod(entry, own.numbers.shape[1]))
+        yield (
+            block.numbers.ravel(),
+            lambda entry, law_block=block: _number(law_block, *divmod(entry, law_block.numbers.shape[1])),
+        )
 
 
 def _number(block: LawBlock, element: int, number: int) -> str:

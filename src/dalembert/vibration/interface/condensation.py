@@ -73,11 +73,11 @@ class Point:
     def free_motions(self) -> np.ndarray:
         """Mean motions (q, motions) that the stiffness does not resist. Contacts may hold them."""
         if "free motions" not in self.shared:
-            found = np.zeros((self.stiffness.shape[1], 0))
-            if len(self.frequencies) and self.frequencies[0] == 0 and len(found):
+            motions = np.zeros((self.stiffness.shape[1], 0))
+            if len(self.frequencies) and self.frequencies[0] == 0 and len(motions):
                 values, vectors = np.linalg.eigh(np.real(self.stiffness[0]))
-                found = vectors[:, values <= FLOATING * self.stiffest]
-            self.shared["free motions"] = found
+                motions = vectors[:, values <= FLOATING * self.stiffest]
+            self.shared["free motions"] = motions
         return self.shared["free motions"]
 
     @property
@@ -247,8 +247,8 @@ class Condensation:
             return inner
         if right is not None:
             sizes = np.abs(right)
-            held = sizes[:, :, :-1].max(axis=2, initial=0.0) > FLOATING * sizes[:, :, :-1].max(initial=0.0)
-            free = still & ~held & (sizes[:, :, -1] > FLOATING * sizes[:, :, -1].max())
+            resisted = sizes[:, :, :-1].max(axis=2, initial=0.0) > FLOATING * sizes[:, :, :-1].max(initial=0.0)
+            free = still & ~resisted & (sizes[:, :, -1] > FLOATING * sizes[:, :, -1].max())
             if free.any():
                 order, mode = np.argwhere(free)[0]
                 raise _resonance(s[order : order + 1], f", at {moving_names(self.names, np.abs(self.back[:, mode]))},")
@@ -305,15 +305,15 @@ class Condensation:
         """Dynamic stiffness of the matrices that are not sparse, and its derivative by ω: outer, across, inner."""
         entries, places = self._side_by_side
         both = _dynamic(entries, s), self._slope(entries, s)
-        first, second = ([flat[:, own].reshape(len(s), *shape) for own, shape in places] for flat in both)
+        first, second = ([flat[:, span].reshape(len(s), *shape) for span, shape in places] for flat in both)
         return first, second
 
 
 def coupled(damping: np.ndarray) -> bool:
     """Whether damping (modes, modes) couples modes."""
-    own = np.diag(damping)
-    off = np.abs(damping - np.diag(own)).max(initial=0.0)
-    return bool(off > COUPLED * max(np.abs(own).max(initial=0.0), np.finfo(float).tiny))
+    diagonal = np.diag(damping)
+    off = np.abs(damping - np.diag(diagonal)).max(initial=0.0)
+    return bool(off > COUPLED * max(np.abs(diagonal).max(initial=0.0), np.finfo(float).tiny))
 
 
 def norm(array: np.ndarray) -> float:

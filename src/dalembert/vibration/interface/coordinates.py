@@ -45,19 +45,18 @@ def coordinates(rows: Any, first: np.ndarray) -> Coordinates:
     # QR with column pivots chooses the degrees of freedom that the retained rows replace, so that their block is well
     # conditioned.
     pivots = qr(basis, mode="r", pivoting=True)[-1][: len(kept)]
-    others = np.setdiff1d(np.arange(len(columns)), pivots)
+    remaining = np.setdiff1d(np.arange(len(columns)), pivots)
     inverse = solve(basis[:, pivots], np.eye(len(kept)))
     free = np.setdiff1d(np.arange(n), columns[pivots])
     interior = coo_array((np.ones(len(free)), (free, np.arange(len(free)))), shape=(n, len(free)))
     retained = _placed(inverse, columns[pivots], np.arange(len(kept)), (n, len(kept)))
     slaved = _placed(
-        -inverse @ basis[:, others], columns[pivots], np.searchsorted(free, columns[others]), (n, len(free))
+        -inverse @ basis[:, remaining], columns[pivots], np.searchsorted(free, columns[remaining]), (n, len(free))
     )
     return Coordinates(kept, combination, retained, csc_array(interior + slaved))
 
 
 def _placed(block: np.ndarray, rows: np.ndarray, columns: np.ndarray, shape: tuple[int, int]) -> Any:
-    """A sparse array with a dense block in it."""
     result = csc_array(
         (block.ravel(), (np.repeat(rows, len(columns)), np.tile(columns, len(rows)))), shape=shape, dtype=float
     )

@@ -110,12 +110,12 @@ class Lowered:
 
         Laws of the user's are told by some of their values.
         """
-        own = self.structure
+        structure = self.structure
         digest = hashlib.sha256(repr((*more, method)).encode())
-        digest.update(repr((own.dofs.names, self.row_names, self.contacts, self.forces)).encode())
-        optional = [matrix for matrix in (own.damping, own.loss) if matrix is not None]
-        for matrix in (own.mass, own.stiffness, *optional, self.matrix):
-            digest.update(np.asarray(matrix @ np.linspace(0.5, 1.5, own.size)).tobytes())
+        digest.update(repr((structure.dofs.names, self.row_names, self.contacts, self.forces)).encode())
+        optional = [matrix for matrix in (structure.damping, structure.loss) if matrix is not None]
+        for matrix in (structure.mass, structure.stiffness, *optional, self.matrix):
+            digest.update(np.asarray(matrix @ np.linspace(0.5, 1.5, structure.size)).tobytes())
         for block in self.blocks:
             digest.update(repr((block.kind, block.tangents, block.normal)).encode() + block.numbers.tobytes())
         for block in self.laws:
@@ -140,23 +140,23 @@ def lower(system: VibrationSystem) -> Lowered:
         where = f"element {element.name!r}"
         if isinstance(element, FrictionContact):
             normal = [element.normal] if element.normal is not None else []
-            own = [rows.contact(element, direction) for direction in (*element.tangential, *normal)]
+            element_rows = [rows.contact(element, direction) for direction in (*element.tangential, *normal)]
             kind = element.law.kind if isinstance(element.law, Rigid) else ELASTIC
             key = kind, len(element.tangential), bool(normal)
-            for numbers in _numbers(element, own, rows):
-                cells.setdefault(key, []).append((own, len(names), numbers))
+            for numbers in _numbers(element, element_rows, rows):
+                cells.setdefault(key, []).append((element_rows, len(names), numbers))
             names.append(element.name)
         elif isinstance(element, UserElement):
-            own = [rows.between(f"{element.name}.{dof}", dof, None, where) for dof in element.dofs]
-            functions.append((np.array(own), element))
+            element_rows = [rows.between(f"{element.name}.{dof}", dof, None, where) for dof in element.dofs]
+            functions.append((np.array(element_rows), element))
         else:
             single = len(element.ends) == 1
-            own = [
+            element_rows = [
                 rows.between(element.name if single else f"{element.name}.{first}", first, second, where)
                 for first, second in element.ends
             ]
-            key = type(element), element.law, element.events, element.states, len(own), tuple(element.numbers)
-            laws.setdefault(key, []).append((element, own))
+            key = type(element), element.law, element.events, element.states, len(element_rows), tuple(element.numbers)
+            laws.setdefault(key, []).append((element, element_rows))
     for force in system.forces:
         system.structure.dofs.index(force.dof, "a force")
     blocks = tuple(
@@ -165,7 +165,7 @@ def lower(system: VibrationSystem) -> Lowered:
     )
     ruled = tuple(
         LawBlock(
-            entries[0][0], tuple(element.name for element, _ in entries), np.array([own for _, own in entries]),
+            entries[0][0], tuple(element.name for element, _ in entries), np.array([rows_of for _, rows_of in entries]),
             np.array([list(element.numbers.values()) for element, _ in entries]),
         )
         for entries in laws.values()
@@ -224,15 +224,15 @@ class _Rows:
 
 
 def _real(block: Any) -> Any:
-    """A block with the real parts of its numbers."""
     return replace(block, numbers=np.ascontiguousarray(np.real(block.numbers), dtype=float))
 
 
-def _numbers(element: FrictionContact, own: list[int], rows: _Rows) -> list[list]:
-    """Numbers of the cells of a contact."""
+def _numbers(element: FrictionContact, element_rows: list[int], rows: _Rows) -> list[list]:
     law = element.law
     if isinstance(law, Rigid):
-        penalties = [law.penalty if law.penalty is not None else rows.penalty(row) for row in (own[0], own[-1])]
+        penalties = [
+            law.penalty if law.penalty is not None else rows.penalty(row) for row in (element_rows[0], element_rows[-1])
+        ]
         return [[*penalties, law.gap, element.friction, element.preload]]
     normal = law.normal_stiffness if law.normal_stiffness is not None else 0.0
     if isinstance(law, ElasticSlider):

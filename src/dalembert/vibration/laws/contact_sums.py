@@ -155,7 +155,9 @@ class EventSums(_Sums):
         return *self._signals(float), *map(np.empty, shapes)
 
     def _signals(self, dtype: type) -> tuple[np.ndarray, ...]:
-        return tuple(np.empty(own, dtype) for own in ((self.series.samples, 3, 3), (8, self.series.count), (3, 5, 3)))
+        return tuple(
+            np.empty(shape, dtype) for shape in ((self.series.samples, 3, 3), (8, self.series.count), (3, 5, 3))
+        )
 
     def _results(self, displacements: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Room for the forces at samples, the states and the corrections."""
@@ -208,7 +210,7 @@ class PlaneEventSums(EventSums):
 
     def _signals(self, dtype: type) -> tuple[np.ndarray, ...]:
         count = self.series.count
-        return tuple(np.empty(own, dtype) for own in ((3, count), (4, 5, count), (7, 5, 3), (7, 3)))
+        return tuple(np.empty(shape, dtype) for shape in ((3, count), (4, 5, count), (7, 5, 3), (7, 3)))
 
 
 ContactSums = PlainSums | EventSums

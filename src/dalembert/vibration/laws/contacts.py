@@ -169,7 +169,6 @@ class FrictionContact(Checked):
 
 
 def _require_law(where: str, law: object) -> None:
-    """Refuse what is no law of a contact, functions in words of their own."""
     if isinstance(law, Law):
         return
     if callable(law) and not isinstance(law, type):
@@ -180,11 +179,10 @@ def _require_law(where: str, law: object) -> None:
     raise InputError(f"{where}: law is {shown(law)}; expected ElasticSlider(...), Iwan(...) or Rigid(...)")
 
 
-def _directions(where: str, given: object) -> tuple[str, ...]:
-    """Names of directions."""
-    if not isinstance(given, Sequence) or not all(isinstance(one, str) for one in given):
+def _directions(where: str, directions: object) -> tuple[str, ...]:
+    if not isinstance(directions, Sequence) or not all(isinstance(name, str) for name in directions):
         raise InputError(
-            f"{where}: tangential is {shown(given)}; expected names of directions, such as ('x', 'y'). Directions "
+            f"{where}: tangential is {shown(directions)}; expected names of directions, such as ('x', 'y'). Directions "
             "across the axes need a structure in turned coordinates"
         )
-    return tuple(given)
+    return tuple(directions)

@@ -10,10 +10,9 @@ from dalembert.arguments import Checked
 from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.laws.contacts import Number
 from dalembert.vibration.laws.law import Law
-from dalembert.vibration.laws.law_block import LawBlock
+from dalembert.vibration.laws.law_block import LawBlock, LawSums
 from dalembert.vibration.laws.marched_sums import MarchedSums
 from dalembert.vibration.laws.sampled_sums import SampledSums
-from dalembert.vibration.laws.sums import Sums
 
 
 @dataclass(frozen=True)
@@ -71,13 +70,13 @@ class LawElement(Checked):
     @property
     def numbers(self) -> dict[str, Number]:
         """Numbers of the law by their names."""
-        return {one.name: getattr(self, one.name) for one in fields(self) if "unit" in one.metadata}
+        return {part.name: getattr(self, part.name) for part in fields(self) if "unit" in part.metadata}
 
     def closed_stiffness(self, block: LawBlock) -> np.ndarray:
         """Stiffness of each column where the law is closed, N/m, (elements, columns); NaN if it has none."""
         return np.full(block.rows.shape, np.nan)
 
-    def sums(self, block: LawBlock, series: Fourier, events: bool) -> Sums:
+    def sums(self, block: LawBlock, series: Fourier, events: bool) -> LawSums:
         """Fourier coefficients of the forces. A kind may have a faster way, or one that corrects events."""
         if block.states or (events and self.events is not None):
             return MarchedSums(block, series, events and self.events is not None)

@@ -96,13 +96,15 @@ class _LawKernel(Kernel):
     """The kernel of a law; its arguments have the types of :func:`any_law`, whatever their names are."""
 
     def __init__(self, law: Law) -> None:
-        given = cast(FunctionType, law.function)
-        name = given.__name__ if law.packaged else f"{given.__name__}_{digest(given)}"  # others may share their names
-        own = FunctionType(given.__code__, given.__globals__, name, given.__defaults__, given.__closure__)
-        own.__module__, own.__doc__ = law._module, given.__doc__
-        own.__annotations__ = {**dict.fromkeys(inspect.signature(given).parameters, Complexes), "return": None}
+        source = cast(FunctionType, law.function)
+        name = (
+            source.__name__ if law.packaged else f"{source.__name__}_{digest(source)}"
+        )  # others may share their names
+        renamed = FunctionType(source.__code__, source.__globals__, name, source.__defaults__, source.__closure__)
+        renamed.__module__, renamed.__doc__ = law._module, source.__doc__
+        renamed.__annotations__ = {**dict.fromkeys(inspect.signature(source).parameters, Complexes), "return": None}
         self._law = law
-        super().__init__(own)
+        super().__init__(renamed)
 
     @cached_property
     def origin(self) -> Origin | None:

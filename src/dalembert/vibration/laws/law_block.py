@@ -1,13 +1,24 @@
 """Elements of one kind and one law, as arrays."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.laws.law import Law
-from dalembert.vibration.laws.sums import Sums
+
+
+class LawSums(Protocol):
+    """Forces of the elements of a block from their displacements (elements, columns, coefficients) and ω."""
+
+    def forces(self, displacements: np.ndarray, omega: float) -> np.ndarray:
+        """Coefficients of forces, as those of displacements; complex numbers too."""
+        ...
+
+    def with_slopes(self, displacements: np.ndarray, omega: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """The same, Jacobians (elements, columns · coefficients, columns · coefficients), and derivatives by ω."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -38,7 +49,7 @@ class LawBlock:
         """Whether forces depend on more than displacements, which Hill's method does not see."""
         return self.states > 0 or self.element.rated
 
-    def sums(self, series: Fourier, events: bool = True) -> Sums:
+    def sums(self, series: Fourier, events: bool = True) -> LawSums:
         """Fourier coefficients of the forces."""
         return self.element.sums(self, series, events)
 

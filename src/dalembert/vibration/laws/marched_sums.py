@@ -49,18 +49,16 @@ class MarchedSums:
 
     @BEYOND
     def forces(self, displacements: np.ndarray, omega: float) -> np.ndarray:
-        """Coefficients of forces; see :class:`dalembert.vibration.laws.sums.Sums`."""
         runs = self._runs(displacements, omega)
         force = np.array([run.forces([UNPERTURBED], run.periodic()[0][None])[0] for run in runs])
         return force if np.iscomplexobj(displacements) or np.iscomplexobj(self.block.numbers) else np.real(force)
 
     @BEYOND
     def with_slopes(self, displacements: np.ndarray, omega: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Coefficients of forces, Jacobians and derivatives by ω; see :class:`dalembert.vibration.laws.sums.Sums`."""
         require_complex_steps(self.block, self.series, displacements, omega)
         unknowns = displacements[0].size
         results = [run.with_slopes() for run in self._runs(displacements, omega)]
-        force, slopes = (np.array(own) for own in zip(*results, strict=True))
+        force, slopes = (np.array(part) for part in zip(*results, strict=True))
         by_omega = slopes[:, :, unknowns].reshape(displacements.shape)
         return force, slopes[:, :, :unknowns], by_omega if self.block.element.rated else 0.0 * by_omega
 
@@ -80,8 +78,8 @@ class MarchedSums:
         addresses = self.block.law.address, element.events.address if self.events else 0
         return [
             _Run(Called(*addresses, element.event_count if self.events else 0, numbers), self._rule, self.block.states,
-                 own, omega)
-            for numbers, own in zip(self.block.complex_numbers, displacements, strict=True)
+                 coefficients, omega)
+            for numbers, coefficients in zip(self.block.complex_numbers, displacements, strict=True)
         ]  # fmt: skip
 
     @cached_property

@@ -104,12 +104,10 @@ class SampledSums:
     series: Fourier
 
     def forces(self, displacements: np.ndarray, omega: float) -> np.ndarray:
-        """Coefficients of forces; see :class:`dalembert.vibration.laws.sums.Sums`."""
         force = forces_from_rest(self.block, *self._motion(displacements, omega)) @ self.series.analysis.T
         return force if np.iscomplexobj(displacements) or np.iscomplexobj(self.block.numbers) else np.real(force)
 
     def with_slopes(self, displacements: np.ndarray, omega: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Coefficients of forces, Jacobians and derivatives by ω; see :class:`dalembert.vibration.laws.sums.Sums`."""
         require_complex_steps(self.block, self.series, displacements, omega)
         rated, columns, series = self.block.element.rated, displacements.shape[1], self.series
         motion, none = self._motion(displacements, omega), np.zeros((len(displacements), 0))

@@ -12,8 +12,7 @@ from dalembert.vibration.laws.contact_sums import ContactSums, Shape, contact_su
 from dalembert.vibration.laws.contacts import Number
 from dalembert.vibration.laws.element import LawElement
 from dalembert.vibration.laws.law import law
-from dalembert.vibration.laws.law_block import LawBlock
-from dalembert.vibration.laws.sums import Sums
+from dalembert.vibration.laws.law_block import LawBlock, LawSums
 
 
 @law
@@ -42,7 +41,7 @@ class _Stop(LawElement):
         """Stiffness of the stops."""
         return block.numbers[:, :1]
 
-    def sums(self, block: LawBlock, series: Fourier, events: bool) -> Sums:
+    def sums(self, block: LawBlock, series: Fourier, events: bool) -> LawSums:
         """Sums that are corrected where a side begins and ends to touch."""
         return StopSums(block.numbers, np.array(self.sides), series) if events else super().sums(block, series, events)
 

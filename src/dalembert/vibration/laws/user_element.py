@@ -80,15 +80,15 @@ class UserElement(Checked):
     def _forces(self, u: np.ndarray) -> np.ndarray:
         """What the function returns, as an array like the displacements."""
         where = f"element {self.name!r}"
-        given = self.function(u.copy())
-        if isinstance(given, tuple):
+        returned = self.function(u.copy())
+        if isinstance(returned, tuple):
             raise InputError(
-                f"{where}: its function returned {len(given)} values; expected the forces alone. A law with internal "
-                "state cannot be a function, only contacts (FrictionContact) have one"
+                f"{where}: its function returned {len(returned)} values; expected the forces alone. A law with "
+                "internal state cannot be a function, only contacts (FrictionContact) have one"
             )
-        values = np.asarray(given)
+        values = np.asarray(returned)
         if values.shape != u.shape or values.dtype.kind not in "iufc":
-            what = shown(given) if values.ndim == 0 else f"an array of shape {values.shape}"
+            what = shown(returned) if values.ndim == 0 else f"an array of shape {values.shape}"
             raise InputError(
                 f"{where}: its function returned {what} for displacements of shape {u.shape}; expected forces of that "
                 "shape"

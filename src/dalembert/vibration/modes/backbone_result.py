@@ -95,11 +95,11 @@ class Backbone(ConvergedResult):
 
     def summary(self) -> str:
         """A few lines: points, and the ranges of frequency, damping and energy."""
-        found = self.converged
+        converged = self.converged
         lines = [f"mode {self.mode} at {self.extent}"]
-        if found.any():
+        if converged.any():
             ranges = [
-                f"{name} {values[found].min():.6g} to {values[found].max():.6g}{unit}"
+                f"{name} {values[converged].min():.6g} to {values[converged].max():.6g}{unit}"
                 for name, values, unit in (
                     ("amplitudes", self.amplitudes, f" {unit_of(self.dof)}"),
                     ("frequencies", self.frequencies, " Hz"),
@@ -108,7 +108,7 @@ class Backbone(ConvergedResult):
                 )
             ]
             lines.append(", ".join(ranges))
-        if not found.all():
-            lost = ", ".join(f"{value:.6g} {unit_of(self.dof)}" for value in self.amplitudes[~found][:5])
+        if not converged.all():
+            lost = ", ".join(f"{value:.6g} {unit_of(self.dof)}" for value in self.amplitudes[~converged][:5])
             lines.append(f"not found: {lost}")
         return "\n".join([*lines, *map(str, self.findings)])

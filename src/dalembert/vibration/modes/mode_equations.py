@@ -66,12 +66,12 @@ class Plane:
     def from_here(self, motion: FreeMotion) -> np.ndarray:
         """The way from the plane's own motion to another."""
         change = (motion.harmonics - self.at.harmonics).ravel() / self.scale
-        others = [
+        scalars = [
             np.log(motion.omega / self.at.omega),
             (motion.growth - self.at.growth) / self.at.omega,
             np.log(motion.size / self.at.size),
         ]
-        return np.append(change, others)
+        return np.append(change, scalars)
 
     def distance(self, motion: FreeMotion) -> float:
         """Of a motion from the plane."""
@@ -91,8 +91,6 @@ class Plane:
 
 @dataclass(frozen=True)
 class _Trial:
-    """A place in Newton's method."""
-
     motion: FreeMotion
     local: Local
     residual: np.ndarray
@@ -145,15 +143,15 @@ class ModeEquations:
     @cached_property
     def basis(self) -> np.ndarray:
         """Degrees of freedom from the coordinates, (n, n)."""
-        own = self.problem.condensation
-        back = own.back if isinstance(own.back, np.ndarray) else own.back.toarray()
-        return np.hstack([own.retained, back])
+        condensation = self.problem.condensation
+        back = condensation.back if isinstance(condensation.back, np.ndarray) else condensation.back.toarray()
+        return np.hstack([condensation.retained, back])
 
     @cached_property
     def static(self) -> np.ndarray:
         """Static forces on the coordinates, (n, coefficients)."""
-        own = self.problem.condensation
-        loads = np.concatenate([own.outer_loads, own.inner_loads], axis=1)
+        condensation = self.problem.condensation
+        loads = np.concatenate([condensation.outer_loads, condensation.inner_loads], axis=1)
         return Fourier(self.problem.method.orders, 1).coefficients(loads)
 
     def linear(self, mode: int) -> Linear:
@@ -220,21 +218,27 @@ class ModeEquations:
         """Newton's method on a plane across the path, with as many samples as it needs, and at least those given."""
 
         def compute() -> tuple[np.ndarray, np.ndarray]:
-            found = self.newton(guess, plane, samples)
-            how = [found.iterations, found.error, found.converged, found.samples]
-            return _numbers(found), np.array(how, dtype=float)
+            motion = self.newton(guess, plane, samples)
+            how = [motion.iterations, motion.error, motion.converged, motion.samples]
+            return _numbers(motion), np.array(how, dtype=float)
 
         place, how = self._once(compute, _numbers(guess), plane.direction, _numbers(plane.at), [plane.scale, samples])
-        iterations, error, converged, own = how.tolist()
+        iterations, error, converged, count = how.tolist()
         omega, growth, size = place[-3:].tolist()
         harmonics = place[:-3].reshape(guess.harmonics.shape)
-        return FreeMotion(harmonics, omega, growth, size, int(iterations), error, bool(converged), int(own))
+        return FreeMotion(harmonics, omega, growth, size, int(iterations), error, bool(converged), int(count))
 
-    def _once(self, compute: Callable[[], Sequence[np.ndarray]], *asked: np.ndarray | list) -> Sequence[np.ndarray]:
+    def _once(
+        self, compute: Callable[[], Sequence[np.ndarray]], *dependencies: np.ndarray | list
+    ) -> Sequence[np.ndarray]:
         """Return what depends on arrays, from the checkpoint where it is known."""
         if self.problem.checkpoint is None:
             return compute()
-        key = b"nonlinear mode" + self._system + b"".join(np.asarray(own, dtype=float).tobytes() for own in asked)
+        key = (
+            b"nonlinear mode"
+            + self._system
+            + b"".join(np.asarray(array, dtype=float).tobytes() for array in dependencies)
+        )
         return self.problem.checkpoint.once(hashlib.sha256(key).digest(), compute)
 
     @cached_property

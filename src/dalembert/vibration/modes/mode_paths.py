@@ -55,22 +55,22 @@ def from_linear_mode(mode: ModeEquations, linear: Linear, size: float) -> FreeMo
         softer = mode.softer(target, linear.rest)
         if softer is None:
             return None
-        found = (mode if target == 1.0 else softer).at_size(known, size, known.samples)
-        if same_mode(mode, known, found):
-            known, part, step = found, target, 2 * step
+        candidate = (mode if target == 1.0 else softer).at_size(known, size, known.samples)
+        if same_mode(mode, known, candidate):
+            known, part, step = candidate, target, 2 * step
         elif (step := step / 2) < LEAST_PART:
             return None
     return known
 
 
-def same_mode(mode: ModeEquations, known: FreeMotion, found: FreeMotion) -> bool:
+def same_mode(mode: ModeEquations, known: FreeMotion, candidate: FreeMotion) -> bool:
     """Whether a motion is converged, and belongs to the same mode."""
-    if not found.converged:
+    if not candidate.converged:
         return False
-    matrix, mean = mode.system(found.samples).matrices[1], int(mode.problem.method.orders[0] == 0)
-    one, other = (motion.harmonics[:, mean : mean + 2] for motion in (known, found))
+    matrix, mean = mode.system(candidate.samples).matrices[1], int(mode.problem.method.orders[0] == 0)
+    first, other = (motion.harmonics[:, mean : mean + 2] for motion in (known, candidate))
     # MAC of first harmonics, weighted by the mass: 1 for the same shape, 0 for another linear mode.
-    inner = [float(np.sum(left * (matrix @ right))) for left, right in ((one, other), (one, one), (other, other))]
+    inner = [float(np.sum(left * (matrix @ right))) for left, right in ((first, other), (first, first), (other, other))]
     return inner[0] > SAME * np.sqrt(inner[1] * inner[2])
 
 
@@ -93,17 +93,17 @@ def motion_towards(mode: ModeEquations, known: FreeMotion, size: float, rest: np
             continue
         # All harmonics in proportion to the amplitude, about the static position.
         guess = replace(known, harmonics=rest + (known.harmonics - rest) * (way[-1] / known.size))
-        found = mode.at_size(guess, way[-1], known.samples)
-        if same_mode(mode, known, found):
-            known = found
+        candidate = mode.at_size(guess, way[-1], known.samples)
+        if same_mode(mode, known, candidate):
+            known = candidate
             way.pop()
         elif len(way) > mode.problem.method.halvings:
             for motion in islice(motions_along(mode, known, known.size, size, BEHIND), MOST_AROUND):
                 if motion.converged and motion.size == size:
                     return motion
-            return replace(worst or found, size=size, converged=False)
+            return replace(worst or candidate, size=size, converged=False)
         else:
-            worst = worst or found
+            worst = worst or candidate
             # The geometric mean: amplitudes vary by decades.
             way.append(float(np.sqrt(known.size * way[-1])))
     return known

@@ -58,7 +58,6 @@ class Amplitude:
         return synthesis(self.orders, 2 * np.pi * np.arange(PHASES) / PHASES)
 
     def _weights(self) -> np.ndarray:
-        """Weight of each squared coefficient."""
         each = np.array([h for h in self.orders for _ in range(1 if h == 0 else 2)])
         if self.kind == "rms":
             return np.where(each == 0, 1.0, 0.5)
@@ -96,8 +95,8 @@ def observed_column(dofs: Sequence[str], dof: str) -> int:
 
     Raises InputError for a degree of freedom that was not observed.
     """
-    own = [name for name in dofs if name.rpartition(".")[0] == dof]
-    name = own[0] if len(own) == 1 else dof
+    of_node = [name for name in dofs if name.rpartition(".")[0] == dof]
+    name = of_node[0] if len(of_node) == 1 else dof
     if name not in dofs:
         raise InputError(unknown("observed degree of freedom", dof, dofs))
     return dofs.index(name)

@@ -78,9 +78,9 @@ def _around(equations: PathProblem, known: Solution, omega: float) -> Solution |
     """Return the solution at a frequency along the curve from a known one, past folds."""
     if known.omega == omega or not equations.method.halvings:
         return None
-    for found in islice(along(equations, known.omega, omega, known, _behind(known.omega, omega)), MOST_AROUND):
-        if found.solution.converged and found.solution.omega == omega:
-            return found.solution
+    for point in islice(along(equations, known.omega, omega, known, _behind(known.omega, omega)), MOST_AROUND):
+        if point.solution.converged and point.solution.omega == omega:
+            return point.solution
     return None
 
 
@@ -126,14 +126,14 @@ def across(equations: PathProblem, begin: float, end: float, start: Solution | N
     low, high = min(begin, end), max(begin, end)
     before: Solution | None = None
     outside = 0
-    for found in along(equations, begin, end, start, _behind(begin, end)):
-        solution, leaves = found.solution, not low <= found.solution.omega <= high
+    for point in along(equations, begin, end, start, _behind(begin, end)):
+        solution, leaves = point.solution, not low <= point.solution.omega <= high
         # The curve crosses the first frequency: a point on the border ends the part inside, or begins it again.
         if before is not None and leaves != bool(outside) and solution.converged:
             border = equations.solve(*on_border(before, solution, begin), solution.samples)
             yield PathPoint(border, returned=not leaves)
         if not leaves:
-            yield found
+            yield point
         outside = outside + 1 if leaves else 0
         if outside > MOST_AROUND:
             return

@@ -169,8 +169,8 @@ class FrequencyCurve(ConvergedResult):
         kept = np.append(True, np.diff(lengths) > 0)
         spline, place = CubicSpline(lengths[kept], near[kept]), lengths[top - rows.start]
         inner = lengths[top - rows.start - 1], lengths[top - rows.start + 1]
-        found: Any = minimize_scalar(lambda s: -size.of(spline(s)[1:]), bounds=inner, method="bounded")
-        best = spline(found.x if -found.fun > amplitude[top] else place)
+        optimum: Any = minimize_scalar(lambda s: -size.of(spline(s)[1:]), bounds=inner, method="bounded")
+        best = spline(optimum.x if -optimum.fun > amplitude[top] else place)
         return Peak(float(best[0]), float(size.of(best[1:])))
 
     @property
@@ -206,5 +206,5 @@ class FrequencyCurve(ConvergedResult):
         for kind, point in self.markers:
             kinds.setdefault(kind, []).append(f"{self.frequencies[point]:.6g}")
         lines = [f"{kind} at {', '.join(places)} Hz" for kind, places in kinds.items()]
-        asked = int(np.sum(self.stable >= 0))
-        return lines + [f"{np.sum(self.stable == 1)} of {asked} points stable"] * bool(asked)
+        judged = int(np.sum(self.stable >= 0))
+        return lines + [f"{np.sum(self.stable == 1)} of {judged} points stable"] * bool(judged)

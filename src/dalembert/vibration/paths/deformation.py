@@ -16,6 +16,7 @@ from dalembert.vibration.fourier import synthesis
 from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.laws.contacts import FrictionContact
 from dalembert.vibration.paths.curve import FrequencyCurve
+from dalembert.vibration.paths.curve_points import whole_motion
 from dalembert.vibration.storage import Over, VibrationResult
 from dalembert.vibration.system.system import VibrationSystem
 
@@ -102,10 +103,12 @@ def deformation(system: VibrationSystem, curve: FrequencyCurve, point: int | Non
     ((25, 3, 3), 110.0)
     """
     nodes = known_nodes(system.structure, "deformation")
-    found = np.flatnonzero(curve.converged)
+    converged = np.flatnonzero(curve.converged)
     chosen = _largest(curve) if point is None else point
-    if chosen not in found:
-        raise InputError(f"deformation: the point {chosen} was not found; expected one of the {len(found)} that were")
+    if chosen not in converged:
+        raise InputError(
+            f"deformation: the point {chosen} was not found; expected one of the {len(converged)} that were"
+        )
     motion = node_motion(system.structure, _response(system, curve, chosen))
     kept, faces = drawn_nodes(motion, nodes.faces)
     resting = {element.name: element.first for element in system.elements if isinstance(element, FrictionContact)}
@@ -113,7 +116,7 @@ def deformation(system: VibrationSystem, curve: FrequencyCurve, point: int | Non
     rows = [curve.contacts.index(name) for name in placed]
     owners = [row.rpartition(".")[0] for row in curve.coordinates]
     taken = [curve.dissipated(row)[chosen] for row in curve.coordinates]
-    energies = [sum(own for own, owner in zip(taken, owners, strict=True) if owner == one) for one in placed]
+    energies = [sum(part for part, owner in zip(taken, owners, strict=True) if owner == name) for name in placed]
     return Deformation(
         frequency=float(curve.frequencies[chosen]),
         orders=curve.orders,
@@ -145,6 +148,5 @@ def _response(system: VibrationSystem, curve: FrequencyCurve, point: int) -> np.
             f"deformation: the curve has unknowns of shape {unknowns.shape} and {len(curve.contacts)} contacts; the "
             f"system has {balance.shape} and {len(problem.lowered.contacts)}; give the system of the curve"
         )
-    at = problem.condensation.at(2 * np.pi * float(curve.frequencies[point]))
-    retained = balance.series.phasors(unknowns)
-    return balance.series.coefficients(problem.condensation.full(retained, at.interior(retained)))
+    condensed = problem.condensation.at(2 * np.pi * float(curve.frequencies[point]))
+    return whole_motion(problem, condensed, unknowns, int(curve.samples[point]))

@@ -30,8 +30,8 @@ def end_findings(
         reason, how = "stopped", f"The path stops at {where}: no further point was found."
     else:
         reason, how = "no-progress", f"The path stops at {where}: its steps became too short."
-    found = places[converged]
-    farthest = float(found[np.argmax(found * np.sign(end - begin))]) if found.size else begin
+    reached = places[converged]
+    farthest = float(reached[np.argmax(reached * np.sign(end - begin))]) if reached.size else begin
     values = {"reason": reason, "last": last, "farthest": farthest, "end": end}
     message = f"{how} It does not reach {end:.6g} {unit}."
     return (Finding("end-not-reached", "warning", values, message, ADVICE[reason]),)

@@ -98,7 +98,9 @@ class FrequencyResponse:
         if not channels:
             raise InputError("FrequencyResponse: no channels were given; name at least one, such as 'm2 peak'")
         parameters = Parameters.of(parameters)
-        method = (method or HarmonicBalance()).keeping(highest_order(*(one.partition(" ")[2] for one in channels)))
+        method = (method or HarmonicBalance()).keeping(
+            highest_order(*(channel.partition(" ")[2] for channel in channels))
+        )
         check_function("FrequencyResponse", builder, [item.name for item in parameters.declared])
         vars(self).update(
             builder=builder, parameters=parameters, channel_names=channels, frequencies=frequencies,
@@ -123,8 +125,8 @@ class FrequencyResponse:
     @cached_property
     def _fingerprint(self) -> str:
         differences = [self.derivative] * (self.derivative != COMPLEX_STEP)
-        asked = self.parameters.identity, self.channel_names, *differences
-        return lower(self.system(self.parameters.start)).fingerprint(self.method, *asked)
+        settings = self.parameters.identity, self.channel_names, *differences
+        return lower(self.system(self.parameters.start)).fingerprint(self.method, *settings)
 
     def evaluate(self, vectors: np.ndarray) -> Responses:
         """Responses of a batch over all cores; ``vectors`` (batch, parameters), values (batch, samples, channels).
@@ -216,7 +218,7 @@ class FrequencyResponse:
         motions = [restarted(problem, curve, point, "FrequencyResponse") for point in points]
         level = ForcedLevel.of(problem, motions)
         errors = [level.truncation(motion) for motion in motions if motion.converged]
-        return choice_findings(self.balance, max(errors, key=lambda one: one.rank, default=None))
+        return choice_findings(self.balance, max(errors, key=lambda estimate: estimate.rank, default=None))
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the state with the number of harmonics, so that every process computes with the same one."""
@@ -224,10 +226,10 @@ class FrequencyResponse:
 
     def _but(self, **changes: Any) -> "FrequencyResponse":
         """The same model with other frequencies or another method, whose derivatives need no second comparison."""
-        own = copy(self)
-        vars(own).update({"balance": self.balance} | changes, _compared=self._compared)
-        vars(own).pop("_fingerprint", None)
-        return own
+        model = copy(self)
+        vars(model).update({"balance": self.balance} | changes, _compared=self._compared)
+        vars(model).pop("_fingerprint", None)
+        return model
 
     def system(self, vector: np.ndarray) -> VibrationSystem:
         """The system at a parameter vector (parameters,)."""
@@ -264,23 +266,22 @@ class FrequencyResponse:
         if not self._compared.functions:
             motion = problem.balance(solution.samples).displacements(solution.unknowns)
             samples = motion @ problem.balance(solution.samples).series.synthesis.T
-            own = {element.name: samples[rows] for rows, element in problem.lowered.functions}
-            check_laws(self.builder, self.parameters, vector, own)
+            motions = {element.name: samples[rows] for rows, element in problem.lowered.functions}
+            check_laws(self.builder, self.parameters, vector, motions)
             self._compared.functions = True
 
     def _solutions(self, problem: Equations) -> Iterator[Solution]:
         """The solution at each frequency; one after the other, since each holds matrices."""
-        for found in at_frequencies(problem, 2 * np.pi * self.frequencies, None):
-            if not found.solution.converged:
+        for point in at_frequencies(problem, 2 * np.pi * self.frequencies, None):
+            if not point.solution.converged:
                 raise SolveError(
-                    f"at {found.solution.omega / (2 * np.pi):.6g} Hz the harmonics were not found: after "
-                    f"{found.solution.iterations} iterations {found.solution.error:.1e} of the forces are not "
+                    f"at {point.solution.omega / (2 * np.pi):.6g} Hz the harmonics were not found: after "
+                    f"{point.solution.iterations} iterations {point.solution.error:.1e} of the forces are not "
                     "balanced; give more frequencies on the way there, or fewer harmonics"
                 )
-            yield found.solution
+            yield point.solution
 
     def _places(self, lowered: Lowered) -> list[tuple[int, Amplitude]]:
-        """Degree of freedom and amplitude of each channel."""
         parts = [name.partition(" ") for name in self.channel_names]
         return [(lowered.structure.dofs.index(dof), Amplitude(kind, self.balance.orders)) for dof, _, kind in parts]
 
@@ -294,10 +295,10 @@ class FrequencyResponse:
     def _perturbed(self, vector: np.ndarray, column: int, real: Lowered) -> Lowered:
         """The system along one parameter, moved by a complex step of its scale."""
         name = self.parameters.names[column]
-        given: dict[str, complex] = dict(self.parameters.mapping(vector))
-        given[name] = complex(vector[column], STEP * self.parameters.scale[column])
+        arguments: dict[str, complex] = dict(self.parameters.mapping(vector))
+        arguments[name] = complex(vector[column], STEP * self.parameters.scale[column])
         try:
-            perturbed = lower(built(self.builder, given, VibrationSystem))
+            perturbed = lower(built(self.builder, arguments, VibrationSystem))
         except (TypeError, ModelError, np.exceptions.ComplexWarning) as error:
             error = error.__cause__ if isinstance(error, ModelError) else error
             if not isinstance(error, TypeError | np.exceptions.ComplexWarning):

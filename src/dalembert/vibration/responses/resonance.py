@@ -6,9 +6,9 @@ place is bracketed by steps of arc length, so that a peak beside a fold is found
 From one value of the parameter to the next the solution is corrected on a plane across the path.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import Annotated, Any, ClassVar
+from functools import partial
 
 import numpy as np
 
@@ -18,7 +18,6 @@ from dalembert.findings import Finding
 from dalembert.forward import Checkpoint
 from dalembert.forward.builders import check_function
 from dalembert.threads import one_thread
-from dalembert.units import unit_of
 from dalembert.vibration.balance.arc_length import Path, direction_at, zero_between
 from dalembert.vibration.balance.equations import Equations, equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
@@ -30,7 +29,8 @@ from dalembert.vibration.paths.amplitudes import Amplitude, highest_order
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.curve_points import response_of, restarted
 from dalembert.vibration.responses.frequency_response import ARC_LENGTH, frequency_response
-from dalembert.vibration.storage import ConvergedResult, Over, versions
+from dalembert.vibration.responses.resonance_track import ResonanceTrack
+from dalembert.vibration.storage import versions
 from dalembert.vibration.system.requirements import values_of
 from dalembert.vibration.system.system import VibrationSystem
 
@@ -43,75 +43,6 @@ BEYOND = 1.5
 MOST_STEPS = 60
 NARROW = 1e-6
 """Length along the path to which a peak is found."""
-Values = Annotated[np.ndarray, Over(("value",))]
-
-
-@dataclass(frozen=True, eq=False)
-class ResonanceTrack(ConvergedResult):
-    """The peak of a response over a parameter, as :func:`track_resonance` returns it.
-
-    Parameters
-    ----------
-    parameter, unit : str
-    dof, kind : str
-        Degree of freedom, and kind of amplitude, whose peak was followed.
-    values : array, shape (values,)
-        Of the parameter.
-    frequencies : array, shape (values,)
-        Hz; NaN where the peak was not found.
-    amplitudes : array, shape (values,)
-        m.
-    solves : array of int, shape (values,)
-        Points that were balanced on the way.
-    converged : array of bool, shape (values,)
-    provenance : mapping
-        Versions, method, settings.
-    findings : tuple of Finding
-        ``"harmonics-chosen"`` or ``"few-harmonics"`` where the number of harmonics was chosen.
-    """
-
-    FORMAT: ClassVar[str] = "dalembert resonance track 1"
-
-    parameter: str
-    unit: str
-    dof: str
-    kind: str
-    values: Annotated[np.ndarray, Over(("value",), lambda own: own.unit)]
-    frequencies: Annotated[np.ndarray, Over(("value",), "Hz")]
-    amplitudes: Annotated[np.ndarray, Over(("value",), lambda own: unit_of(own.dof))]
-    solves: Values
-    converged: Values
-    provenance: Mapping[str, Any]
-    findings: tuple[Finding, ...] = ()
-
-    def best(self) -> float:
-        """The value with the smallest peak.
-
-        Raises
-        ------
-        InputError
-            Where no peak was found.
-        """
-        if not self.converged.any():
-            raise InputError("no peak was found, so none is the smallest; begin nearer to it, or with a whole curve")
-        return float(self.values[np.nanargmin(self.amplitudes)])
-
-    def summary(self) -> str:
-        """Return some lines: converged peaks, the smallest and the largest, and the number of solutions."""
-        found = self.converged
-        lines = [
-            f"{found.sum()} of {len(self)} peaks found of {self.dof} ({self.kind}), by {self.solves.sum()} solutions"
-        ]
-        if found.any():
-            ends = ("smallest", np.nanargmin(self.amplitudes)), ("largest", np.nanargmax(self.amplitudes))
-            for word, place in ends:
-                peak = f"{self.amplitudes[place]:.6g} {unit_of(self.dof)} at {self.frequencies[place]:.6g} Hz"
-                where = f"{self.parameter} is {self.values[place]:.6g} {self.unit}".rstrip()
-                lines.append(f"{word} {peak}, where {where}")
-        if not found.all():
-            lost = ", ".join(f"{value:.6g}" for value in self.values[~found][:5])
-            lines.append(f"not found where {self.parameter} is {lost} {self.unit}".rstrip())
-        return "\n".join([*lines, *map(str, self.findings)])
 
 
 @takes_checked("values")
@@ -184,46 +115,85 @@ def track_resonance(
     numbers = values_of(values, "track_resonance", parameter)
     method = (method or HarmonicBalance()).keeping(highest_order(kind))
     check_function("track_resonance", builder, [parameter])
-    begin = builder(**{parameter: float(numbers[0])})
-    name = (names := lower(begin).structure.dofs).names[row := names.index(dof)]
+    first = builder(**{parameter: float(numbers[0])})
+    name = (names := lower(first).structure.dofs).names[row := names.index(dof)]
     Amplitude(kind, method.first().orders)  # an unknown kind is refused before a curve is followed
+    posed = _PosedTrack(builder, parameter, unit, numbers, method, name, row, kind, checkpoint)
+    curve, level, spent = _first_curve(posed, first, start)
+    level, peaks, findings = _follow(posed, curve, level)
+    return _conclude(posed, level, peaks, spent, findings)
+
+
+@dataclass(frozen=True)
+class _PosedTrack:
+    """A peak to follow with any number of harmonics."""
+
+    builder: Callable[..., VibrationSystem]
+    parameter: str
+    unit: str
+    values: np.ndarray
+    method: HarmonicBalance
+    dof: str
+    row: int
+    kind: str
+    checkpoint: Checkpoint | None
+
+    def equations(self, value: float, level: HarmonicBalance) -> Equations:
+        return equations(self.builder(**{self.parameter: value}), level, self.checkpoint)
+
+
+def _first_curve(
+    posed: _PosedTrack, system: VibrationSystem, start: tuple[float, float] | FrequencyCurve
+) -> tuple[FrequencyCurve, HarmonicBalance, int]:
+    """Return a curve around the first peak, the method of the first track, and the number of solutions."""
+    method = posed.method
     if isinstance(start, FrequencyCurve):
-        curve, spent = start, 1
-        level = method.keeping(begin.highest_harmonic).at_least(curve.orders[-1]).first()
-    else:
-        options = {"observe": [name], "check": False, "checkpoint": checkpoint}
-        curve = frequency_response(begin, start, method, continuation=ARC_LENGTH, **options)
-        level, spent = replace(method, harmonics=curve.orders[-1]), 1 + len(curve)
-    findings: tuple[Finding, ...] = ()
+        return start, method.keeping(system.highest_harmonic).at_least(start.orders[-1]).first(), 1
+    options = {"observe": [posed.dof], "check": False, "checkpoint": posed.checkpoint}
+    curve = frequency_response(system, start, method, continuation=ARC_LENGTH, **options)
+    return curve, replace(method, harmonics=curve.orders[-1]), 1 + len(curve)
+
+
+def _follow(
+    posed: _PosedTrack, curve: FrequencyCurve, level: HarmonicBalance
+) -> "tuple[HarmonicBalance, list[tuple[_Peak | None, int]], tuple[Finding, ...]]":
+    """Follow the peak, with more and more harmonics where their number is chosen.
+
+    Returns the method, each peak with its number of solutions, and the finding on harmonics.
+    """
     while True:
-        climber = _Climber(row, Amplitude(kind, level.orders))
-
-        def problem(value: float, level: HarmonicBalance = level) -> Equations:
-            return equations(builder(**{parameter: value}), level, checkpoint)
-
-        first = problem(float(numbers[0]))
-        top = restarted(first, curve, _top(curve, name, Amplitude(kind, curve.orders)), "track_resonance")
-        peaks = list(_followed(problem, climber, numbers, _Peak(float(numbers[0]), first, top)))
-        if not method.automatic:
-            break
-        better, error = _enough_harmonics(level, [one for one, _ in peaks if one is not None])
+        problem = partial(posed.equations, level=level)
+        first, value = problem(float(posed.values[0])), float(posed.values[0])
+        top = restarted(first, curve, _top(curve, posed.dof, Amplitude(posed.kind, curve.orders)), "track_resonance")
+        climber = _Climber(posed.row, Amplitude(posed.kind, level.orders))
+        peaks = list(_followed(problem, climber, posed.values, _Peak(value, first, top)))
+        if not posed.method.automatic:
+            return level, peaks, ()
+        better, error = _enough_harmonics(level, [peak for peak, _ in peaks if peak is not None])
         if better.highest == level.highest:
-            findings = choice_findings(level, error)
-            break
+            return level, peaks, choice_findings(level, error)
         level = better
+
+
+def _conclude(
+    posed: _PosedTrack,
+    level: HarmonicBalance,
+    peaks: "list[tuple[_Peak | None, int]]",
+    spent: int,
+    findings: tuple[Finding, ...],
+) -> ResonanceTrack:
     solves = np.array([count for _, count in peaks])
     solves[0] += spent
-    found = [(one.solution.omega / (2 * np.pi), one.amplitude) if one else (np.nan, np.nan) for one, _ in peaks]
     return ResonanceTrack(
-        parameter=parameter,
-        unit=unit,
-        dof=name,
-        kind=kind,
-        values=numbers,
-        frequencies=np.array([frequency for frequency, _ in found]),
-        amplitudes=np.array([amplitude for _, amplitude in found]),
+        parameter=posed.parameter,
+        unit=posed.unit,
+        dof=posed.dof,
+        kind=posed.kind,
+        values=posed.values,
+        frequencies=np.array([peak.solution.omega / (2 * np.pi) if peak else np.nan for peak, _ in peaks]),
+        amplitudes=np.array([peak.amplitude if peak else np.nan for peak, _ in peaks]),
         solves=solves,
-        converged=np.array([one is not None for one, _ in peaks]),
+        converged=np.array([peak is not None for peak, _ in peaks]),
         provenance={**versions(), "method": asdict(level)},
         findings=findings,
     )
@@ -231,18 +201,17 @@ def track_resonance(
 
 def _enough_harmonics(level: HarmonicBalance, peaks: "list[_Peak]") -> tuple[HarmonicBalance, Truncation | None]:
     """Return the method whose truncation errors at the hardest of the peaks are small, and the largest of them."""
-    unknowns = np.stack([one.solution.unknowns for one in peaks]) if peaks else np.zeros((0, 1, 1))
+    unknowns = np.stack([peak.solution.unknowns for peak in peaks]) if peaks else np.zeros((0, 1, 1))
     method, largest = level, None
     for place in hardest(unknowns, np.ones(len(peaks), dtype=bool), 0.0):
-        better, found = enough_harmonics(ForcedLevel(peaks[place].problem, 0.0), [peaks[place].solution])
+        better, error = enough_harmonics(ForcedLevel(peaks[place].problem, 0.0), [peaks[place].solution])
         method = better if better.highest > method.highest else method
-        if found is not None and (largest is None or found.rank > largest.rank):
-            largest = found
+        if error is not None and (largest is None or error.rank > largest.rank):
+            largest = error
     return method, largest
 
 
 def _top(curve: FrequencyCurve, name: str, size: Amplitude) -> int:
-    """Point of a curve with the largest response."""
     sizes = size.of(curve.harmonics(name))
     if not np.any(np.isfinite(sizes)):
         raise InputError("track_resonance: no point of the first curve was found; begin with another window")
@@ -266,24 +235,24 @@ def _followed(
     """Yield the peak at each value, None if not converged, and the number of solutions."""
     known, before = begin, None
     for value in values:
-        way, count, found = [float(value)], 0, None
+        way, count, reached = [float(value)], 0, None
         while way:
-            own = problem(way[-1])
-            corrected, spent = _carried(own, known, before, way[-1])
-            peak, climbed = (None, 0) if corrected is None else climber.climb(own, corrected, known.bend)
+            at_value = problem(way[-1])
+            corrected, spent = _carried(at_value, known, before, way[-1])
+            peak, climbed = (None, 0) if corrected is None else climber.climb(at_value, corrected, known.bend)
             count += spent + climbed
             if peak is not None:
-                found = replace(peak, value=way.pop())
-                before, known = known, found
-            elif len(way) > own.method.halvings or way[-1] == known.value:
-                found = None
+                reached = replace(peak, value=way.pop())
+                before, known = known, reached
+            elif len(way) > at_value.method.halvings or way[-1] == known.value:
+                reached = None
                 break
             else:
                 way.append((known.value + way[-1]) / 2)
-        yield (found if found is not None and found.value == value else None), count
+        yield (reached if reached is not None and reached.value == value else None), count
 
 
-def _carried(own: Equations, known: _Peak, before: _Peak | None, value: float) -> tuple[Solution | None, int]:
+def _carried(problem: Equations, known: _Peak, before: _Peak | None, value: float) -> tuple[Solution | None, int]:
     """Return a solution at another value near a known peak, on a plane across the path, and the number of trials."""
     last, tries = known.solution, [0.0]
     if before is not None and known.value != before.value:
@@ -299,14 +268,13 @@ def _carried(own: Equations, known: _Peak, before: _Peak | None, value: float) -
         # Across the path, not at a frequency: beside a fold the peak's frequency may have no solution at the next
         # value.
         plane = Plane(direction, guess, omega, float(np.linalg.norm(last.unknowns)) or 1.0, width)
-        solution = own.solve(guess, omega, last.samples, plane)
+        solution = problem.solve(guess, omega, last.samples, plane)
         if solution.converged and solution.omega > 0:
             return solution, number + 1
     return None, len(tries)
 
 
 def _upwards(solution: Solution) -> np.ndarray:
-    """The direction of growing frequency."""
     direction = np.zeros(solution.unknowns.size + 1)
     direction[-1] = 1.0
     return direction
@@ -319,58 +287,58 @@ class _Climber:
     row: int
     size: Amplitude
 
-    def climb(self, own: Equations, solution: Solution, bend: float) -> tuple[_Peak | None, int]:
+    def climb(self, problem: Equations, solution: Solution, bend: float) -> tuple[_Peak | None, int]:
         """Return the peak next to a solution, and the number of solutions."""
         width = WIDTH * solution.omega
         direction = direction_at(solution, _upwards(solution), width)
-        rise = self._rise(own, solution, direction, Path(solution, direction, width).size, width)
+        rise = self._rise(problem, solution, direction, Path(solution, direction, width).size, width)
         if rise < 0:
             rise, direction = -rise, -direction
         length = FIRST if np.isnan(bend) else float(np.clip(BEYOND * abs(rise / bend), SHORTEST, LONGEST))
         for count in range(1, MOST_STEPS + 1):
             path = Path(solution, direction, width)
-            ahead, onward = path.step(own, length)
+            ahead, onward = path.step(problem, length)
             if onward is None:
                 length /= 4
                 if length < SHORTEST:
                     return None, count
                 continue
-            beyond = self._rise(own, ahead, onward, path.size, width)
+            beyond = self._rise(problem, ahead, onward, path.size, width)
             # The slope of the amplitude changes its sign within this step: Brent's method narrows it.
             if beyond < 0:
-                peak, spent = self._narrowed(own, path, ahead, (rise, beyond), length)
+                peak, spent = self._narrowed(problem, path, ahead, (rise, beyond), length)
                 return peak, count + spent
             solution, direction, rise = ahead, direction_at(ahead, onward, width), beyond
             length = min(LONGEST, 2 * length)
         return None, MOST_STEPS
 
     def _narrowed(
-        self, own: Equations, path: Path, ahead: Solution, rises: tuple[float, float], length: float
+        self, problem: Equations, path: Path, ahead: Solution, rises: tuple[float, float], length: float
     ) -> tuple[_Peak | None, int]:
         """Return the peak between the ends of a step: a zero of the slope of the amplitude."""
 
         def rise(part: float) -> tuple[Solution, float]:
-            solution, onward = path.step(own, part)
-            value = float("nan") if onward is None else self._rise(own, solution, onward, path.size, path.width)
+            solution, onward = path.step(problem, part)
+            value = float("nan") if onward is None else self._rise(problem, solution, onward, path.size, path.width)
             return solution, value
 
         tried = {0.0: (path.known, rises[0]), length: (ahead, rises[1])}
         solution = zero_between(rise, length, tried, NARROW)
         if solution is None:
             return None, len(tried) - 2
-        amplitude = float(self.size.of(response_of(own, solution)[self.row]))
-        return _Peak(np.nan, own, solution, amplitude, (rises[1] - rises[0]) / length), len(tried) - 2
+        amplitude = float(self.size.of(response_of(problem, solution)[self.row]))
+        return _Peak(np.nan, problem, solution, amplitude, (rises[1] - rises[0]) / length), len(tried) - 2
 
-    def _rise(self, own: Equations, solution: Solution, direction: np.ndarray, size: float, width: float) -> float:
+    def _rise(self, problem: Equations, solution: Solution, direction: np.ndarray, size: float, width: float) -> float:
         """Derivative of the logarithm of the amplitude along the path."""
         # ∇a · (dU, dω)/a with dx_l = -Z_ll⁻¹ Z_lq dU + (∂x_l/∂ω) dω
-        series, point = own.balance(solution.samples).series, solution.point
+        series, point = problem.balance(solution.samples).series, solution.point
         change = series.phasors(direction[:-1].reshape(solution.unknowns.shape) * size)
         retained = series.phasors(solution.unknowns)
-        interior = own.condensation.interior_slope(point, retained) * (direction[-1] * width)
+        interior = problem.condensation.interior_slope(point, retained) * (direction[-1] * width)
         interior = interior - (point.follow @ change[:, :, None])[:, :, 0]
-        motion = response_of(own, solution)[self.row]
-        moved = series.coefficients(own.condensation.full(change, interior))[self.row]
+        motion = response_of(problem, solution)[self.row]
+        moved = series.coefficients(problem.condensation.full(change, interior))[self.row]
         return float(_gradient(self.size, motion) @ moved) / float(self.size.of(motion))
 
 

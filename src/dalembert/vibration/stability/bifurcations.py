@@ -27,39 +27,39 @@ def judged(problem: Equations, path: Iterable[PathPoint], located: bool) -> Iter
     """
     before: tuple[Solution, Exponents] | None = None
     folded, adjacent = False, True
-    for one in path:
-        if one.returned:
+    for point in path:
+        if point.returned:
             before = None
-        if not one.solution.converged:
-            yield one
+        if not point.solution.converged:
+            yield point
             before = None
-        elif one.fold:
+        elif point.fold:
             # An exponent is zero here, up to rounding of either sign.
-            stable = _said(before[1] if before else exponents(problem, one.solution))
-            yield replace(one, stable=stable, marker=FOLD)
+            stable = _said(before[1] if before else exponents(problem, point.solution))
+            yield replace(point, stable=stable, marker=FOLD)
             folded = True
         else:
-            own = exponents(problem, one.solution)
+            current = exponents(problem, point.solution)
             # Between two judged points this one says nothing, and a bifurcation between them cannot be placed.
-            if not own.judged and np.isfinite(own.error):
+            if not current.judged and np.isfinite(current.error):
                 # A change of sign within the error is no bifurcation: points further on show whether there is one.
-                yield replace(one, across_fold=own.across_fold)
+                yield replace(point, across_fold=current.across_fold)
                 adjacent = False
                 continue
             kind = ""
-            if before is not None and before[1].unstable != own.unstable and not folded:
-                kind = _kind(before[1], own)
-                if kind == BRANCH and not _branches(problem, before[0], one.solution):
+            if before is not None and before[1].unstable != current.unstable and not folded:
+                kind = _kind(before[1], current)
+                if kind == BRANCH and not _branches(problem, before[0], point.solution):
                     kind = ""
-                place = _located(problem, before, (one.solution, own)) if located and adjacent and kind else None
+                place = _located(problem, before, (point.solution, current)) if located and adjacent and kind else None
                 if place is not None:
                     # Where an exponent is zero, rounding decides whether it grows.
                     stable = _said(before[1]) if replace(place[1], across_fold=False).judged else NOT_ASKED
-                    marker = _kind(place[1], place[1], _rank(before[1], own))
+                    marker = _kind(place[1], place[1], _rank(before[1], current))
                     yield PathPoint(place[0], stable=stable, marker=marker)
                     kind = ""
-            yield replace(one, stable=_said(own), marker=kind)
-            before, folded, adjacent = (one.solution, own), False, True
+            yield replace(point, stable=_said(current), marker=kind)
+            before, folded, adjacent = (point.solution, current), False, True
 
 
 def fold_findings(frequencies: Sequence[float], folds: np.ndarray, harmonics: int) -> tuple[Finding, ...]:
@@ -68,7 +68,7 @@ def fold_findings(frequencies: Sequence[float], folds: np.ndarray, harmonics: in
     ``frequencies``: of these points, Hz; ``folds`` (folds,): frequencies of the folds, Hz. The steps of a time map move
     a fold a little, which is no finding; ``harmonics``: of the curve.
     """
-    apart = [one for one in frequencies if not np.any(np.abs(folds - one) <= AT_FOLD * one)]
+    apart = [frequency for frequency in frequencies if not np.any(np.abs(folds - frequency) <= AT_FOLD * frequency)]
     if not apart:
         return ()
     low, high = float(min(apart)), float(max(apart))
@@ -80,10 +80,10 @@ def fold_findings(frequencies: Sequence[float], folds: np.ndarray, harmonics: in
     return (Finding("stability-near-fold", "warning", values, message, "Keep more harmonics."),)
 
 
-def _said(own: Exponents) -> int:
-    if not own.judged:
+def _said(result: Exponents) -> int:
+    if not result.judged:
         return NOT_ASKED
-    return UNSTABLE if own.unstable else STABLE
+    return UNSTABLE if result.unstable else STABLE
 
 
 def _rank(before: Exponents, after: Exponents) -> int:
@@ -117,9 +117,9 @@ def _located(
     problem: Equations, before: tuple[Solution, Exponents], after: tuple[Solution, Exponents]
 ) -> tuple[Solution, Exponents] | None:
     """The point between two at which the exponent that changes sides neither grows nor falls."""
-    (first, own), (last, other) = before, after
-    rank = _rank(own, other)
-    if len(own.values) <= rank or len(other.values) <= rank:
+    (first, first_exponents), (last, other) = before, after
+    rank = _rank(first_exponents, other)
+    if len(first_exponents.values) <= rank or len(other.values) <= rank:
         return None
     size = float(np.linalg.norm(last.unknowns - first.unknowns)) or 1.0
     width = abs(last.omega - first.omega) or 1.0
@@ -131,8 +131,8 @@ def _located(
         omega = first.omega + part * (last.omega - first.omega)
         plane = Plane(chord / np.linalg.norm(chord), guess, omega, size, width)
         solution = problem.solve(guess, omega, max(first.samples, last.samples), plane)
-        found = exponents(problem, solution) if solution.converged else Exponents(np.zeros(0))
-        return (solution, found), float(found.values[rank].real) if len(found.values) > rank else float("nan")
+        current = exponents(problem, solution) if solution.converged else Exponents(np.zeros(0))
+        return (solution, current), float(current.values[rank].real) if len(current.values) > rank else float("nan")
 
-    ends = {part: (one, float(one[1].values[rank].real)) for part, one in ((0.0, before), (1.0, after))}
+    ends = {part: (entry, float(entry[1].values[rank].real)) for part, entry in ((0.0, before), (1.0, after))}
     return zero_between(growth, 1.0, ends, PLACED)

@@ -38,11 +38,11 @@ def hill(problem: Equations, solution: Solution) -> np.ndarray:
     orders = problem.method.orders
     # The motion may have odd harmonics only; its disturbances may have any.
     every = Fourier(tuple(range(orders[-1] + 1)), solution.samples)
-    own = problem.balance(solution.samples)
-    linear = own.linear(solution.point.stiffness, solution.point.force, solution.unknowns)
+    balance = problem.balance(solution.samples)
+    linear = balance.linear(solution.point.stiffness, solution.point.force, solution.unknowns)
     system = Uncondensed(problem.lowered, problem.condensation, every, problem.method.events)
     # All harmonics up to the highest: disturbances of a symmetric motion need not be symmetric.
-    linear, unknowns = (in_orders(own, orders, every.orders) for own in (linear, solution.unknowns))
+    linear, unknowns = (in_orders(part, orders, every.orders) for part in (linear, solution.unknowns))
     pencil = _pencil(system, linear, unknowns, solution.omega)
     values, vectors = _eigenvalues(pencil)
     centres = _centres(vectors.reshape(-1, every.count, len(values)), system.matrices[1])

@@ -127,13 +127,13 @@ def _change(values: np.ndarray, finer: np.ndarray) -> float:
     Next to each other in the plane: beside a fold or a crossing the fastest ones of both are not the same exponent.
     """
     pairs = (complex(finer[0]), values), (complex(values[0]), finer)
-    return max(abs(one.real - float(np.real(others)[_nearest(one, others)])) for one, others in pairs)
+    return max(abs(value.real - float(np.real(spectrum)[_nearest(value, spectrum)])) for value, spectrum in pairs)
 
 
-def _nearest(one: complex, others: np.ndarray) -> int:
+def _nearest(value: complex, spectrum: np.ndarray) -> int:
     """Return the number of the nearest exponent, up to copies and conjugates."""
-    turns = np.minimum(abs(np.imag(others) % 1 - one.imag % 1), abs(np.imag(others) % 1 - -one.imag % 1))
-    return int(np.argmin(np.hypot(np.real(others) - one.real, np.minimum(turns, 1 - turns))))
+    turns = np.minimum(abs(np.imag(spectrum) % 1 - value.imag % 1), abs(np.imag(spectrum) % 1 - -value.imag % 1))
+    return int(np.argmin(np.hypot(np.real(spectrum) - value.real, np.minimum(turns, 1 - turns))))
 
 
 def _finer(finer: Equations, problem: Equations, solution: Solution) -> np.ndarray:
@@ -145,7 +145,6 @@ def _finer(finer: Equations, problem: Equations, solution: Solution) -> np.ndarr
 
 
 def _touches(problem: Equations, solution: Solution) -> bool:
-    """Whether a stop acts at some time."""
     stops = [block.rows.ravel() for block in problem.lowered.laws if block.element.switches]
     return bool(stops) and bool(np.any(solution.evaluation.forces[np.concatenate(stops)]))
 

@@ -68,42 +68,44 @@ def monodromy(system: Uncondensed, linear: np.ndarray, unknowns: np.ndarray, ome
     """
     mass = system.matrices[1]
     light = _massless(mass)
-    laws, held = _laws(system, unknowns, omega), _held(system, linear, unknowns, omega)
+    laws, constraints = _laws(system, unknowns, omega), _held(system, linear, unknowns, omega)
     n, samples = len(mass), system.series.samples
     states = 2 * n + laws.memory.shape[2]
-    starts = _changes(laws, held)
+    starts = _changes(laws, constraints)
     lengths = np.diff(np.append(starts, samples))
-    result, chunk = np.eye(states), max(1, MEMORY // (states * (n + len(held.rows))))
-    begins = held.active & ~np.roll(held.active, 1, axis=0)
+    result, chunk = np.eye(states), max(1, MEMORY // (states * (n + len(constraints.rows))))
+    begins = constraints.active & ~np.roll(constraints.active, 1, axis=0)
     for first in range(0, len(starts), chunk):
         steps = starts[first : first + chunk]
-        made = _steps(system, laws, held, light, 2 * np.pi / omega / samples, steps)
-        for t, step, length in zip(steps, made, lengths[first : first + chunk], strict=True):
+        matrices = _steps(system, laws, constraints, light, 2 * np.pi / omega / samples, steps)
+        for t, step, length in zip(steps, matrices, lengths[first : first + chunk], strict=True):
             if begins[t].any():
                 # The impulse acts before the step that begins to hold.
-                result[n : 2 * n] = _stopped(mass, result[n : 2 * n], held.rows[held.active[t]], light)
+                result[n : 2 * n] = _stopped(mass, result[n : 2 * n], constraints.rows[constraints.active[t]], light)
             # Steps between two changes of a law's slopes are equal: powers by squaring.
             result = np.linalg.matrix_power(step, int(length)) @ result
     return result
 
 
-def _changes(laws: Laws, held: Held) -> np.ndarray:
+def _changes(laws: Laws, constraints: Held) -> np.ndarray:
     """Samples from which steps are others than before; between them friction in one direction repeats the same."""
-    samples = len(held.active)
+    samples = len(constraints.active)
     begun = np.zeros(samples, dtype=bool)
     begun[0] = True
     ended = (np.roll(laws.stiffness, 1, axis=0), np.roll(laws.release, 1, axis=0))  # where the step before ended
     ended += (np.roll(laws.ended, 1, axis=0),)
-    own = laws.reaction, laws.memory, laws.following, laws.keeping, laws.damping, laws.turning
-    for values in (*own, *ended, held.active, held.push):
+    step_arrays = laws.reaction, laws.memory, laws.following, laws.keeping, laws.damping, laws.turning
+    for values in (*step_arrays, *ended, constraints.active, constraints.push):
         begun |= np.any((values != np.roll(values, 1, axis=0)).reshape(samples, -1), axis=1)
     return np.flatnonzero(begun)
 
 
-def _steps(system: Uncondensed, laws: Laws, held: Held, light: np.ndarray, h: float, steps: np.ndarray) -> np.ndarray:
+def _steps(
+    system: Uncondensed, laws: Laws, constraints: Held, light: np.ndarray, h: float, steps: np.ndarray
+) -> np.ndarray:
     """Matrices (steps, states, states) from each sample's predecessor to it."""
     stiffness, mass, damping = system.matrices
-    n, q, z, r = len(mass), system.retained, laws.memory.shape[2], len(held.rows)
+    n, q, z, r = len(mass), system.retained, laws.memory.shape[2], len(constraints.rows)
     # Coordinates without mass follow backward differences, as the trapezoidal rule would let their velocities
     # alternate.
     carried = 4 / h**2 * mass + 2 / h * damping
@@ -115,10 +117,10 @@ def _steps(system: Uncondensed, laws: Laws, held: Held, light: np.ndarray, h: fl
     matrix[:, :n, :n] = carried + stiffness
     speeds = np.where(heavy[:q], 2 / h, 1 / h)  # by which velocities change with displacements
     matrix[:, :q, :q] += laws.reaction[steps] + laws.damping[steps] * speeds
-    matrix[:, n:, :q] = np.where(held.active[steps, :, None], held.rows, 0.0)
-    matrix[:, :q, n:] = np.swapaxes(held.push[steps], 1, 2)
+    matrix[:, n:, :q] = np.where(constraints.active[steps, :, None], constraints.rows, 0.0)
+    matrix[:, :q, n:] = np.swapaxes(constraints.push[steps], 1, 2)
     # Rows that do not hold have a unit equation for their multiplier, so that the matrix has one size for all steps.
-    matrix[:, np.arange(n, n + r), np.arange(n, n + r)] = ~held.active[steps]
+    matrix[:, np.arange(n, n + r), np.arange(n, n + r)] = ~constraints.active[steps]
     right[:, :n, :n] = carried - stiffness * heavy[:, None]
     right[:, :q, :q] -= laws.stiffness[steps - 1] * heavy[:q, None]
     right[:, :q, :q] += laws.damping[steps] * speeds
@@ -156,25 +158,24 @@ def _massless(mass: np.ndarray) -> np.ndarray:
 
 def _stopped(mass: np.ndarray, velocity: np.ndarray, rows: np.ndarray, light: np.ndarray) -> np.ndarray:
     """Velocities after the impulses that stop what is held from here on."""
-    whole = np.zeros((len(rows), len(mass)))
-    whole[:, : rows.shape[1]] = rows
+    held_rows = np.zeros((len(rows), len(mass)))
+    held_rows[:, : rows.shape[1]] = rows
     heavy = np.flatnonzero(~light)
-    whole = whole[np.any(whole[:, heavy], axis=1)][:, heavy]
+    held_rows = held_rows[np.any(held_rows[:, heavy], axis=1)][:, heavy]
     # v_+ = v - M⁻¹ Hᵀ (H M⁻¹ Hᵀ)⁻¹ H v, with the rows H that are held
-    back = np.linalg.solve(mass[np.ix_(heavy, heavy)], whole.T)
+    back = np.linalg.solve(mass[np.ix_(heavy, heavy)], held_rows.T)
     result = velocity.copy()
-    result[heavy] -= back @ np.linalg.solve(whole @ back, whole @ velocity[heavy])
+    result[heavy] -= back @ np.linalg.solve(held_rows @ back, held_rows @ velocity[heavy])
     return result
 
 
 def _held(system: Uncondensed, linear: np.ndarray, unknowns: np.ndarray, omega: float) -> Held:
-    """What rigid contacts hold."""
     combination, series = system.lowered.coordinates.combination, system.series
     speed = (combination @ unknowns @ series.derivative.T) @ series.synthesis.T
     rows, active, push = [], [], []
     states = system.elements(linear, unknowns, omega).evaluation.states
-    for block, own in zip(system.lowered.blocks, states, strict=True):
-        for cell, numbers, state in zip(block.rows, block.numbers, own, strict=True):
+    for block, block_states in zip(system.lowered.blocks, states, strict=True):
+        for cell, numbers, state in zip(block.rows, block.numbers, block_states, strict=True):
             if block.kind == ELASTIC:
                 continue
             sliding = speed[cell[: block.tangents]].T
@@ -215,28 +216,32 @@ def _laws(system: Uncondensed, unknowns: np.ndarray, omega: float) -> Laws:
     stiffness, ended = reaction.copy(), damping.copy()
     for block in system.lowered.laws:
         slopes = MarchedSums(block, series, events=False).derivatives(motion[block.rows], omega)
-        for own, rows in zip(slopes, block.rows, strict=True):
+        for element_slopes, rows in zip(slopes, block.rows, strict=True):
             seen, columns = combination[rows], len(rows)
-            by_place, by_speed = (seen.T @ own[:, :columns, first : first + columns] @ seen for first in (0, columns))
+            by_place, by_speed = (
+                seen.T @ element_slopes[:, :columns, first : first + columns] @ seen for first in (0, columns)
+            )
             reaction += by_place
             damping += by_speed
             if block.states:
-                parts.append(_remembered(seen, own))
+                parts.append(_remembered(seen, element_slopes))
             else:
                 stiffness += by_place
                 ended += by_speed
-    for block in (one for one in system.lowered.blocks if one.kind == ELASTIC):
+    for block in (friction_block for friction_block in system.lowered.blocks if friction_block.kind == ELASTIC):
         columns, tangents = block.rows.shape[1], block.tangents
         slopes = MarchedSums(block.ruled, series, events=False).derivatives(motion[block.rows], omega)
-        for own, rows, numbers in zip(slopes, block.rows, block.numbers, strict=True):
+        for element_slopes, rows, numbers in zip(slopes, block.rows, block.numbers, strict=True):
             seen = combination[rows]
-            reaction += seen.T @ own[:, :columns, :columns] @ seen
-            spring = own[:, :columns, :columns].copy()  # its force, whatever the slider did: k (u - z)
+            reaction += seen.T @ element_slopes[:, :columns, :columns] @ seen
+            spring = element_slopes[:, :columns, :columns].copy()  # its force, whatever the slider did: k (u - z)
             spring[:, :tangents] = np.eye(tangents, columns) * numbers[TANGENTIAL]
             stiffness += seen.T @ spring @ seen
             # A slider that sticks at all samples keeps its place: a multiplier of 1 that says nothing, and is left out.
-            if not np.allclose(own[:, columns:, 2 * columns :], np.eye(tangents)):  # else where it rests is given
-                parts.append(_slid(seen, own, numbers[TANGENTIAL]))
+            if not np.allclose(
+                element_slopes[:, columns:, 2 * columns :], np.eye(tangents)
+            ):  # else where it rests is given
+                parts.append(_slid(seen, element_slopes, numbers[TANGENTIAL]))
     ends = np.cumsum([0, *(part.keeping.shape[1] for part in parts)])
     memory, release = np.zeros((2, samples, q, ends[-1]))
     following, turning = np.zeros((2, samples, ends[-1], q))
@@ -248,33 +253,34 @@ def _laws(system: Uncondensed, unknowns: np.ndarray, omega: float) -> Laws:
     return Laws(reaction, memory, following, keeping, stiffness, release, damping, ended, turning)
 
 
-def _slid(seen: np.ndarray, own: np.ndarray, spring: float) -> _Memory:
+def _slid(seen: np.ndarray, slopes: np.ndarray, spring: float) -> _Memory:
     """The place of a slider, which with the displacement says the force of its spring."""
     columns = len(seen)
-    following = own[:, columns:, :columns] @ seen
+    following = slopes[:, columns:, :columns] @ seen
     return _Memory(
-        seen.T @ own[:, :columns, 2 * columns :], following, own[:, columns:, 2 * columns :],
-        np.broadcast_to(-spring * seen[: following.shape[1]].T, (len(own), seen.shape[1], following.shape[1])),
+        seen.T @ slopes[:, :columns, 2 * columns :], following, slopes[:, columns:, 2 * columns :],
+        np.broadcast_to(-spring * seen[: following.shape[1]].T, (len(slopes), seen.shape[1], following.shape[1])),
         np.zeros_like(following),
     )  # fmt: skip
 
 
-def _remembered(seen: np.ndarray, own: np.ndarray) -> _Memory:
+def _remembered(seen: np.ndarray, slopes: np.ndarray) -> _Memory:
     """States of a law and its forces, from which the next step begins; no states that nothing changes."""
     columns = len(seen)
-    unmoved = np.eye(own.shape[1] - columns, own.shape[2], k=2 * columns)
-    moving = columns + np.flatnonzero(np.any(own[:, columns:] != unmoved, axis=(0, 2)))
+    unmoved = np.eye(slopes.shape[1] - columns, slopes.shape[2], k=2 * columns)
+    moving = columns + np.flatnonzero(np.any(slopes[:, columns:] != unmoved, axis=(0, 2)))
     kept = np.concatenate([np.arange(columns), moving])
-    own = own[:, kept][:, :, np.concatenate([np.arange(2 * columns), columns + moving])]
+    slopes = slopes[:, kept][:, :, np.concatenate([np.arange(2 * columns), columns + moving])]
     states = len(moving)
-    keeping = np.zeros((len(own), states + columns, states + columns))
-    after = np.roll(own, -columns, axis=1)  # states, then forces
+    keeping = np.zeros((len(slopes), states + columns, states + columns))
+    after = np.roll(slopes, -columns, axis=1)  # states, then forces
     keeping[:, :, :states] = after[:, :, 2 * columns :]
     unit = np.concatenate([np.zeros((states, columns)), np.eye(columns)])
-    memory = np.zeros((len(own), seen.shape[1], states + columns))
-    memory[:, :, :states] = seen.T @ own[:, :columns, 2 * columns :]
+    memory = np.zeros((len(slopes), seen.shape[1], states + columns))
+    memory[:, :, :states] = seen.T @ slopes[:, :columns, 2 * columns :]
     return _Memory(
         memory,
-        after[:, :, :columns] @ seen, keeping, np.broadcast_to((unit @ seen).T, (len(own), seen.shape[1], len(unit))),
+        after[:, :, :columns] @ seen, keeping,
+        np.broadcast_to((unit @ seen).T, (len(slopes), seen.shape[1], len(unit))),
         after[:, :, columns : 2 * columns] @ seen,
     )  # fmt: skip

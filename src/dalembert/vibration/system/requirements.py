@@ -8,10 +8,7 @@ from dalembert.structure import Structure
 
 
 def require_viscous(structure: Structure, what: str) -> None:
-    """Refuse a structure with hysteretic damping where motions are not periodic of a given frequency.
-
-    ``what``: what is not defined with it, in the plural. Raises InputError.
-    """
+    """Raise InputError for hysteretic damping, with which ``what``, a plural, is not defined."""
     if structure.loss is not None and abs(structure.loss).max() > 0:
         raise InputError(
             f"the structure has hysteretic damping (loss), which is defined for harmonic motions only; {what} are not "
@@ -20,10 +17,7 @@ def require_viscous(structure: Structure, what: str) -> None:
 
 
 def require_force(forces: list, where: str) -> None:
-    """Refuse a system without forces.
-
-    Raises InputError.
-    """
+    """Raise InputError for a system without forces."""
     if not forces:
         raise InputError(
             f"{where}: no force acts on the system, so that it stands still; add a HarmonicForce ('[[model.force]]'), "
@@ -31,25 +25,19 @@ def require_force(forces: list, where: str) -> None:
         )
 
 
-def positive_numbers(given: object, owner: str, what: str, unit: str) -> np.ndarray:
-    """Return positive numbers (count,), two different ones of a tuple.
-
-    Raises InputError.
-    """
-    numbers = np.atleast_1d(numbers_of(given, owner, what))
+def positive_numbers(values: object, owner: str, what: str, unit: str) -> np.ndarray:
+    """Return positive numbers (count,), two different ones of a tuple; else raise InputError."""
+    numbers = np.atleast_1d(numbers_of(values, owner, what))
     if numbers.ndim != 1 or not len(numbers) or not np.all(np.isfinite(numbers) & (numbers > 0)):
-        raise InputError(f"{owner}: the {what} are {given}; expected positive numbers in {unit}")
-    if isinstance(given, tuple) and (len(numbers) != 2 or numbers[0] == numbers[1]):
-        raise InputError(f"{owner}: the ends are {given}; expected two different {what} in {unit}")
+        raise InputError(f"{owner}: the {what} are {values}; expected positive numbers in {unit}")
+    if isinstance(values, tuple) and (len(numbers) != 2 or numbers[0] == numbers[1]):
+        raise InputError(f"{owner}: the ends are {values}; expected two different {what} in {unit}")
     return numbers
 
 
-def values_of(given: object, owner: str, parameter: str) -> np.ndarray:
-    """Return the values (count,) of a parameter that is varied.
-
-    Raises InputError.
-    """
-    values = numbers_of(given, owner, "values")
-    if values.ndim != 1 or not len(values) or not np.all(np.isfinite(values)):
-        raise InputError(f"{owner}: the values of {parameter!r} are {given}; expected one or more numbers")
-    return values
+def values_of(values: object, owner: str, parameter: str) -> np.ndarray:
+    """Return the finite values (count,) of a parameter that is varied; else raise InputError."""
+    numbers = numbers_of(values, owner, "values")
+    if numbers.ndim != 1 or not len(numbers) or not np.all(np.isfinite(numbers)):
+        raise InputError(f"{owner}: the values of {parameter!r} are {values}; expected one or more numbers")
+    return numbers

@@ -139,6 +139,7 @@ def compare_in_time(
     (('m.x',), [[6.841]], [[6.842]])
     """
     method, chosen = method or Newmark(), _chosen(curve, points, frequencies, kind)
+    known = "" if checkpoint is None else _fingerprint(system, curve, method, way, kind)
 
     def run(point: int) -> tuple[np.ndarray, np.ndarray]:
         motion = steady_state(
@@ -147,14 +148,10 @@ def compare_in_time(
         sizes = np.array([motion.amplitude(dof, kind) for dof in curve.dofs])
         return sizes, np.array([motion.periods, motion.residual, motion.converged], dtype=float)
 
-    balance = HarmonicBalance(**curve.provenance["method"])
-    asked = "" if checkpoint is None else lower(system).real.fingerprint(balance, method, way, kind, curve.dofs)
-
     def once(point: int) -> Sequence[np.ndarray]:
         if checkpoint is None:
             return run(point)
-        start = b"".join(own[point].tobytes() for own in (curve.unknowns, curve.frequencies, curve.samples))
-        return checkpoint.once(hashlib.sha256(b"in time" + asked.encode() + start).digest(), lambda: run(point))
+        return checkpoint.once(_key(known, curve, point), lambda: run(point))
 
     sizes, how = zip(*ensemble(once, chosen.tolist()), strict=True)
     periods, residuals, converged = np.array(how).T
@@ -172,25 +169,34 @@ def compare_in_time(
     )
 
 
+def _fingerprint(system: VibrationSystem, curve: FrequencyCurve, method: Newmark, way: str, kind: str) -> str:
+    balance = HarmonicBalance(**curve.provenance["method"])
+    return lower(system).real.fingerprint(balance, method, way, kind, curve.dofs)
+
+
+def _key(fingerprint: str, curve: FrequencyCurve, point: int) -> bytes:
+    start = b"".join(array[point].tobytes() for array in (curve.unknowns, curve.frequencies, curve.samples))
+    return hashlib.sha256(b"in time" + fingerprint.encode() + start).digest()
+
+
 def _chosen(
     curve: FrequencyCurve, points: Sequence[int] | None, frequencies: Sequence[float] | None, kind: str
 ) -> np.ndarray:
-    """Numbers of the points to compare."""
-    found = np.flatnonzero(curve.converged)
-    if not len(found):
+    converged = np.flatnonzero(curve.converged)
+    if not len(converged):
         raise InputError("compare_in_time: no point of the curve was found; see its residuals")
     if points is not None and frequencies is not None:
         raise InputError("compare_in_time: both points and frequencies were given; expected one of them")
     if frequencies is not None:
-        asked = np.asarray(frequencies, dtype=float).reshape(-1, 1)
-        return found[np.abs(curve.frequencies[found] - asked).argmin(axis=1)]
+        targets = np.asarray(frequencies, dtype=float).reshape(-1, 1)
+        return converged[np.abs(curve.frequencies[converged] - targets).argmin(axis=1)]
     if points is None:
-        largest = found[curve.amplitude(curve.dofs[0], kind)[found].argmax()]
-        return np.unique(np.append(largest, found[np.linspace(0, len(found) - 1, SPREAD).round().astype(int)]))
+        largest = converged[curve.amplitude(curve.dofs[0], kind)[converged].argmax()]
+        return np.unique(np.append(largest, converged[np.linspace(0, len(converged) - 1, SPREAD).round().astype(int)]))
     for point in points:
-        if point not in found:
+        if point not in converged:
             raise InputError(
                 f"compare_in_time: there is no point {point} that was found; expected numbers among the "
-                f"{len(found)} found ones, {found[0]} to {found[-1]}"
+                f"{len(converged)} found ones, {converged[0]} to {converged[-1]}"
             )
     return np.asarray(points, dtype=int)

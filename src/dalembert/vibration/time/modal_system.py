@@ -62,9 +62,9 @@ def spectral(structure: Any, omega: float) -> Spectral:
             f"{DENSE}); reduce it with craig_bampton"
         )
     require_viscous(structure, "motions in time")
-    given = (structure.mass, structure.stiffness, structure.damping)
+    matrices = (structure.mass, structure.stiffness, structure.damping)
     mass, stiffness, damping = (
-        np.real(dense(matrix)) for matrix in (*given[:2], given[0] * 0.0 if given[2] is None else given[2])
+        np.real(dense(matrix)) for matrix in (*matrices[:2], matrices[0] * 0.0 if matrices[2] is None else matrices[2])
     )
     try:
         # M + K/ω² is positive definite even where M or K is singular; its modes diagonalise both matrices.
@@ -102,7 +102,9 @@ class InTime:
     def places(self) -> np.ndarray:
         """Row of the lowered system that each column of a cell, and each row of an element, sees: (rows,) of these."""
         cells = [block.rows.ravel() for block in (*self.lowered.blocks, *self.lowered.laws)]
-        return np.concatenate([np.zeros(0, dtype=int), *cells, *(own for own, _ in self.lowered.functions)])
+        return np.concatenate(
+            [np.zeros(0, dtype=int), *cells, *(function_rows for function_rows, _ in self.lowered.functions)]
+        )
 
     @cached_property
     def seen(self) -> np.ndarray:
@@ -112,7 +114,9 @@ class InTime:
     @cached_property
     def forces(self) -> np.ndarray:
         """On the modes at the steps' ends, (steps, modes); those of the last end are those of the period's start."""
-        highest = max((0 if isinstance(one, StaticForce) else one.harmonic for one in self.lowered.forces), default=0)
+        highest = max(
+            (0 if isinstance(force, StaticForce) else force.harmonic for force in self.lowered.forces), default=0
+        )
         series = Fourier(tuple(range(max(highest, 1) + 1)), self.steps)
         # Forces at the ends of steps: sample t + 1 in row t.
         samples = series.synthesis @ (np.real(self.lowered.loads(series)).T @ self.spectral.shapes)
@@ -120,22 +124,23 @@ class InTime:
 
     def arrays(self, scheme: Scheme) -> tuple[Modes, Elements]:
         """Arrays of the structure for a method, and of the elements with matched stiffnesses."""
-        own, seen = self.spectral, self.seen
+        modal, seen = self.spectral, self.seen
         ratio = (1 - scheme.alpha_f) / (1 - scheme.alpha_m)
         by_place, by_velocity = scheme.beta * scheme.step**2 * ratio, scheme.gamma * scheme.step * ratio
         # S = M + g C + b K: its inverse is a diagonal in modes, if damping does not couple them, so that a step costs
         # as much as it has modes and rows.
-        inverse = 1 / (own.mass + by_velocity * own.damping + by_place * own.stiffness)
-        solver = own.coupled
+        inverse = 1 / (modal.mass + by_velocity * modal.damping + by_place * modal.stiffness)
+        solver = modal.coupled
         if len(solver):
-            solver = np.linalg.inv(np.diag(own.mass + by_place * own.stiffness) + by_velocity * own.coupled)
+            solver = np.linalg.inv(np.diag(modal.mass + by_place * modal.stiffness) + by_velocity * modal.coupled)
         pushed = solver @ seen.T if len(solver) else inverse[:, None] * seen.T
         compliance = by_place * (seen @ pushed)
         # Contacts are matched to the compliance behind them: a single stiff contact then needs one iteration, whatever
         # its stiffness is.
         elements, shifts = _matched(self.elements, np.diag(compliance))
         modes = Modes(
-            own.mass, own.damping, own.stiffness, inverse, own.coupled, solver, seen, np.ascontiguousarray(pushed.T),
+            modal.mass, modal.damping, modal.stiffness, inverse, modal.coupled, solver, seen,
+            np.ascontiguousarray(pushed.T),
             np.ascontiguousarray(compliance - np.diag(shifts)), self.forces,
         )  # fmt: skip
         return modes, elements
@@ -146,9 +151,9 @@ class InTime:
         blocks = self.lowered.blocks
         rows, numbers, at = [np.zeros((0, 3), dtype=int)], [np.zeros((0, 5))], 0
         for block in blocks:
-            own = at + np.arange(block.rows.size).reshape(block.rows.shape)
+            block_rows = at + np.arange(block.rows.size).reshape(block.rows.shape)
             at += block.rows.size
-            rows.append(np.pad(own, ((0, 0), (0, 3 - block.rows.shape[1]))))
+            rows.append(np.pad(block_rows, ((0, 0), (0, 3 - block.rows.shape[1]))))
             numbers.append(block.numbers.astype(float))
             if block.kind != ELASTIC:
                 # Rigid contacts become stiff springs; the error falls with the inverse of their stiffness.
@@ -167,27 +172,27 @@ class InTime:
         laws, layout, rows, numbers, number, state = [], [], [], [np.zeros(0)], 0, 0
         for block in self.lowered.laws:
             columns = block.rows.shape[1]
-            for own in block.numbers:
+            for values in block.numbers:
                 laws.append(block.law.address)
-                layout.append([columns, len(own), block.states, number, state])
+                layout.append([columns, len(values), block.states, number, state])
                 rows.append(at + np.arange(columns))
-                numbers.append(own)
-                at, number, state = at + columns, number + len(own), state + block.states
-        widest = max((len(own) for own in rows), default=0)
+                numbers.append(values)
+                at, number, state = at + columns, number + len(values), state + block.states
+        widest = max((len(row) for row in rows), default=0)
         most = max((block.states for block in self.lowered.laws), default=0)
         u, v, force = np.zeros((3, widest), complex)
         return Ruled(
             np.array(laws, dtype=np.int64), np.array(layout, dtype=np.int64).reshape(-1, 5),
-            np.array([np.pad(own, (0, widest - len(own))) for own in rows], dtype=np.int64).reshape(len(rows), widest),
+            np.array([np.pad(row, (0, widest - len(row))) for row in rows], dtype=np.int64).reshape(len(rows), widest),
             np.concatenate(numbers).astype(complex), u, v, np.zeros(most, complex), force,
         )  # fmt: skip
 
     def users(self, failures: list[Exception]) -> Any:
         """The laws of the user's as a C function, a null pointer without any; what they raise is kept."""
         laws, end = [], len(self.places)
-        for own, element in reversed(self.lowered.functions):  # their rows are the last ones
-            laws.insert(0, (np.arange(end - len(own), end), element.law))
-            end -= len(own)
+        for law_rows, element in reversed(self.lowered.functions):  # their rows are the last ones
+            laws.insert(0, (np.arange(end - len(law_rows), end), element.law))
+            end -= len(law_rows)
         return _C_FUNCTION(_trampoline(laws, len(self.places), failures)) if laws else _C_FUNCTION()
 
 
@@ -201,15 +206,15 @@ def _matched(elements: Elements, compliance: np.ndarray) -> tuple[Elements, np.n
     Returns the elements, and the shifts (rows,) :math:`1/\rho - 1/k`; 0 where there is no cell.
     """
     numbers, shifts = elements.numbers.copy(), np.zeros(len(compliance))
-    for own, rows, tangents, normal in zip(numbers, elements.rows, elements.tangents, elements.normal, strict=True):
+    for cell, rows, tangents, normal in zip(numbers, elements.rows, elements.tangents, elements.normal, strict=True):
         # One stiffness for both tangents, as the law has only one: the larger compliance, with which Newton's method
         # converges.
         behind = compliance[rows[:tangents]].max()
         shifts[rows[:tangents]] = behind
-        own[TANGENTIAL] = 1 / (behind + 1 / own[TANGENTIAL])
+        cell[TANGENTIAL] = 1 / (behind + 1 / cell[TANGENTIAL])
         if normal:
             shifts[rows[tangents]] = compliance[rows[tangents]]
-            own[NORMAL] = 1 / (compliance[rows[tangents]] + 1 / own[NORMAL])
+            cell[NORMAL] = 1 / (compliance[rows[tangents]] + 1 / cell[NORMAL])
     return elements._replace(numbers=numbers), shifts
 
 
@@ -219,10 +224,10 @@ def _trampoline(
     def call(place: int, force: int, slopes: int) -> None:
         u, into, matrix = _view(place, rows), _view(force, rows), _view(slopes, rows * rows).reshape(rows, rows)
         try:
-            for own, law in laws:
-                values, changes = law(u[own][:, None])
-                np.add.at(into, own, values[:, 0])
-                np.add.at(matrix, (own[:, None], own[None, :]), changes[:, :, 0])
+            for law_rows, law in laws:
+                values, changes = law(u[law_rows][:, None])
+                np.add.at(into, law_rows, values[:, 0])
+                np.add.at(matrix, (law_rows[:, None], law_rows[None, :]), changes[:, :, 0])
         except Exception as error:  # must not cross the compiled code
             failures.append(error)
             into[:] = np.nan

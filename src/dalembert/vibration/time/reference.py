@@ -103,25 +103,32 @@ def steady_state(
     run = _Run(problem, method, [])
     state = run.rest() if start is None else run.on_curve(system, *start)
     ended = run.long(state, method.periods, method.tolerance) if way == LONG_RUN else run.shot(state)
-    shapes = problem.spectral.shapes[rows]
+    return _periodic_motion(run, rows, float(frequency), ended, {**versions(), "method": asdict(method), "way": way})
+
+
+def _periodic_motion(
+    run: "_Run", rows: np.ndarray, frequency: float, ended: "_Ended", provenance: dict[str, Any]
+) -> PeriodicMotion:
+    """Return the last period of a run, with the motion of some rows of the structure."""
+    problem, lowered, steps = run.problem, run.problem.lowered, run.problem.steps
     # Records are at the ends of steps: rolled by one, the first is the beginning of the period.
-    record = Record(*(np.roll(own, 1, axis=0) for own in ended.record))
-    summed = np.zeros((method.steps_per_period, len(lowered.row_names)))
+    record = Record(*(np.roll(array, 1, axis=0) for array in ended.record))
+    summed = np.zeros((steps, len(lowered.row_names)))
     np.add.at(summed.T, problem.places, record.forces.T)
     return PeriodicMotion(
         dofs=tuple(lowered.structure.dofs.names[row] for row in rows),
         coordinates=lowered.row_names,
         contacts=lowered.contacts,
-        frequency=float(frequency),
-        times=np.arange(method.steps_per_period) / (frequency * method.steps_per_period),
-        displacements=record.modes @ shapes.T,
+        frequency=frequency,
+        times=np.arange(steps) / (frequency * steps),
+        displacements=record.modes @ problem.spectral.shapes[rows].T,
         relative=record.modes @ (lowered.matrix @ problem.spectral.shapes).T,
         forces=summed,
         states=record.states,
         periods=ended.periods,
         residual=ended.change,
-        converged=ended.change <= method.tolerance,
-        provenance={**versions(), "method": asdict(method), "way": way},
+        converged=ended.change <= run.method.tolerance,
+        provenance=provenance,
     )
 
 
@@ -234,7 +241,7 @@ class _Run:
             np.empty((steps, len(modes.mass))), np.empty((steps, rows)), np.empty((steps, rows)),
             np.zeros((steps, len(self.problem.lowered.contacts)), dtype=np.uint8),
         )  # fmt: skip
-        state = State(*(own.copy() for own in state))
+        state = State(*(array.copy() for array in state))
         status, count, change = go_through(
             modes, elements, address(self._users), self._scheme, state, self.problem.omega, most, tolerance, record,
             self._reaction(), room(modes, state),
@@ -262,8 +269,8 @@ class _Run:
             return self._flat(ended.state, scale), ended.change
 
         left = self.method.periods - warm.periods
-        found, periods = shoot(period, self._flat(warm.state, scale), self.method.tolerance, left)
-        last = self.long(self._state(found, scale), 1, self.method.tolerance)
+        closest, periods = shoot(period, self._flat(warm.state, scale), self.method.tolerance, left)
+        last = self.long(self._state(closest, scale), 1, self.method.tolerance)
         return replace(last, periods=warm.periods + periods + 1)
 
     def _scale(self, warm: _Ended) -> np.ndarray:
@@ -276,27 +283,26 @@ class _Run:
         return np.concatenate([modes, np.full(warm.state.sliders.size, widest), np.where(states > 0, states, 1.0)])
 
     def _flat(self, state: State, scale: np.ndarray) -> np.ndarray:
-        return np.concatenate([own.ravel() for own in state]) / scale
+        return np.concatenate([part.ravel() for part in state]) / scale
 
     def _state(self, flat: np.ndarray, scale: np.ndarray) -> State:
         modes, cells = 4 * len(self.problem.spectral.mass), 2 * len(self.problem.elements.tangents)
-        own, sliders, states = np.split(flat * scale, [modes, modes + cells])
-        return State(own.reshape(4, -1), sliders.reshape(-1, 2), states)
+        modal, sliders, states = np.split(flat * scale, [modes, modes + cells])
+        return State(modal.reshape(4, -1), sliders.reshape(-1, 2), states)
 
     def _memory(self) -> tuple[np.ndarray, np.ndarray]:
-        """Sliders and states at rest."""
-        found = self._reaction()
-        return np.zeros_like(found.moved), np.zeros_like(found.next)
+        still = self._reaction()
+        return np.zeros_like(still.moved), np.zeros_like(still.next)
 
     def _balanced(self, place: np.ndarray, velocity: np.ndarray, sliders: np.ndarray, states: np.ndarray) -> State:
         """With the accelerations that the forces at the start of a period ask for."""
-        seen, found = self.problem.seen, self._reaction()
+        seen, response = self.problem.seen, self._reaction()
         instant = Instant(seen @ place, seen @ velocity, 0.0, sliders, states)
-        react(self.problem.elements, address(self._users), instant, found)
+        react(self.problem.elements, address(self._users), instant, response)
         if self.failures:
             raise self.failures[0]
         # M a = f - L^T λ - C v - K x at the start; modes without mass have no acceleration.
-        push = self.problem.forces[-1] - seen.T @ found.force
+        push = self.problem.forces[-1] - seen.T @ response.force
         acceleration = self.problem.spectral.accelerations(push, place, velocity)
         return State(np.stack([place, velocity, acceleration, acceleration]), sliders, states)
 

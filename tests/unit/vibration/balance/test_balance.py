@@ -24,7 +24,7 @@ from dalembert.vibration import (
 from dalembert.vibration.balance import balance as module
 from dalembert.vibration.balance import block_tangent
 from dalembert.vibration.balance.equations import equations
-from dalembert.vibration.balance.rest import at_rest
+from dalembert.vibration.balance.first_guesses import at_rest
 from dalembert.vibration.balance.tangents import BlockTangent, DenseTangent, bordered, orientation
 from dalembert.vibration.fourier import real_blocks
 

@@ -77,14 +77,6 @@ def test_stability_that_is_known_is_not_found_again(system, way: str, tmp_path: 
     assert len(found) == len(set(found)) + 1  # the one that the interruption hit
 
 
-def test_a_curve_written_before_stability_was_kept_is_read(duffings_curve: FrequencyCurve, tmp_path: Path) -> None:
-    before = duffings_curve.to_xarray().drop_vars("stable")
-    before.to_netcdf(tmp_path / "curve.nc", engine="h5netcdf")
-    again = FrequencyCurve.load(tmp_path / "curve.nc")
-    assert set(again.stable) == {-1}
-    assert again.markers == duffings_curve.markers
-
-
 def test_without_asking_only_folds_are_marked() -> None:
     ends = 0.8 / TURN, 1.6 / TURN
     curve = frequency_response(duffing(), ends, METHOD, continuation="arc-length")

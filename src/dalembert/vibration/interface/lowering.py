@@ -96,6 +96,7 @@ class Lowered:
             if isinstance(force, StaticForce):
                 result[row, place] += force.value
             else:
+                # a cos(hτ + φ) = a cos φ cos hτ - a sin φ sin hτ
                 result[row, place] += force.amplitude * np.cos(force.phase)
                 result[row, place + 1] -= force.amplitude * np.sin(force.phase)
         return result
@@ -220,6 +221,8 @@ class _Rows:
                 f"the rigid contact coordinate {self.names[row]!r} lies on a degree of freedom without stiffness; "
                 "give its law Rigid(penalty=...) in N/m"
             )
+        # Both ends in series, each with everything else held: the diagonal of K. It is the stiffness in place of the
+        # structure for the harmonics above the kept ones, and the best penalty.
         return 1 / sum(1 / stiffness for stiffness in stiffnesses)
 
 

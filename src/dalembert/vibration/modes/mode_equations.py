@@ -65,6 +65,7 @@ class Plane:
 
     def from_here(self, motion: FreeMotion) -> np.ndarray:
         """The way from the plane's own motion to another."""
+        # ω and the amplitude by their ratios, ξ in parts of ω: all components are without dimension.
         change = (motion.harmonics - self.at.harmonics).ravel() / self.scale
         scalars = [
             np.log(motion.omega / self.at.omega),
@@ -254,6 +255,7 @@ class ModeEquations:
         while motion.converged and method.samples == AUTOMATIC and motion.samples < MOST_SAMPLES:
             if self._at(self.system(2 * motion.samples), motion, plane).error <= method.sampling:
                 break
+            # More samples where twice as many change the balance by `sampling`, as for forced motions.
             better = self._corrected(motion, plane, 2 * motion.samples)
             motion = replace(better, iterations=motion.iterations + better.iterations)
         return motion
@@ -352,18 +354,23 @@ class ModeEquations:
         extended = damping - motion.growth * mass
         matrix = np.zeros((count + 3, count + 3))
         matrix[:count, :count] = (
+            # ∂L/∂Y = K ⊗ 1 + ω (C - ξ M) ⊗ ∇ + ω² M ⊗ ∇², which rows of Y in their order make a Kronecker product.
             np.kron(stiffness, np.eye(len(turn)))
             + np.kron(extended, motion.omega * turn)
             + np.kron(mass, motion.omega**2 * turn @ turn)
         )
         velocity = motion.harmonics @ turn.T
+        # ∂L/∂log ω = ω ∂L/∂ω, and ∂L/∂ξ = -ω M Y ∇^T in the plane's scale of ξ.
         change = extended @ velocity + 2 * motion.omega * mass @ velocity @ turn.T
         matrix[:count, -3] = motion.omega * change.ravel()
         matrix[:count, -2] = -plane.at.omega * motion.omega * (mass @ velocity).ravel()
         if at.local.weight is not None:
+            # Rigid contacts see the linear part: W on its rows, by Y and by both numbers alike; then B, and what rated
+            # laws add by ω.
             matrix[rows, : count + 2] = at.local.weight @ matrix[rows, : count + 2]
         matrix[rows, rows] += at.local.stiffness
         matrix[rows, -3] += motion.omega * at.local.slope.ravel()
+        # The same scales as those of the residual, the size of the forces not differentiated.
         matrix[:count] /= self._scale(system, motion, at.local)
         first = system.series.mean
         matrix[count : count + 2, :count] = np.kron(self.basis[self.row], np.eye(len(turn))[first : first + 2])

@@ -144,6 +144,7 @@ def motions_along(
             (motion, after), step = turned, CORNER * longest
         if not low <= motion.size <= high and motion.size * direction[-1] > known.size * direction[-1]:
             last = mode.at_size(motion, low if motion.size < low else high, motion.samples)
+            # A path that leaves over its first amplitude at its first frequency has gone back on itself.
             retraced = last.size == begin and abs(last.omega / first.omega - 1) < RETRACED
             yield replace(last, converged=last.converged and not retraced)
             return

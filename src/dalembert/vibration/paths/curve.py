@@ -137,6 +137,7 @@ class FrequencyCurve(ConvergedResult):
         total, size = np.zeros(len(self)), np.zeros(len(self))
         mean = int(self.orders[0] == 0)
         for number, order in enumerate(self.orders[mean:]):
+            # ∮ λ du = π Σ h (Λ_c U_s - Λ_s U_c), where the mean does no work.
             c = mean + 2 * number
             ahead, behind = np.pi * order * force[:, c] * u[:, c + 1], np.pi * order * force[:, c + 1] * u[:, c]
             total, size = total + ahead - behind, size + np.abs(ahead) + np.abs(behind)
@@ -164,6 +165,8 @@ class FrequencyCurve(ConvergedResult):
             return Peak(float(frequency[top]), float(amplitude[top]))
         rows = slice(max(top - 4, 0), top + 5)
         near = np.column_stack([frequency[rows], harmonics[rows]])
+        # A spline over the length of the path in its harmonics, not over frequency: near a fold a curve has several
+        # values.
         lengths = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(harmonics[rows], axis=0), axis=1)))
         lengths = lengths / (lengths[-1] or 1.0)  # as parts of the way: a spline through few points solves for them
         kept = np.append(True, np.diff(lengths) > 0)

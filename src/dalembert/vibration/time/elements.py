@@ -94,6 +94,7 @@ def _cell(elements, c, u, sliders, moved, force, slopes, states):
     for i in range(t + elements.normal[c]):
         d[i] = u[rows[i]]
     for i in range(t):
+        # The trial force, of which the slope of a slip in two directions takes the direction.
         direction[i] = numbers[TANGENTIAL] * (d[i] - sliders[c, i])
     for i in range(2):
         moved[c, i] = sliders[c, i]

@@ -191,6 +191,7 @@ class InTime:
         """The laws of the user's as a C function, a null pointer without any; what they raise is kept."""
         laws, end = [], len(self.places)
         for law_rows, element in reversed(self.lowered.functions):  # their rows are the last ones
+            # Compiled steps call Python through one C function: its rows are the last ones, filled from the end.
             laws.insert(0, (np.arange(end - len(law_rows), end), element.law))
             end -= len(law_rows)
         return _C_FUNCTION(_trampoline(laws, len(self.places), failures)) if laws else _C_FUNCTION()
@@ -210,6 +211,7 @@ def _matched(elements: Elements, compliance: np.ndarray) -> tuple[Elements, np.n
         # One stiffness for both tangents, as the law has only one: the larger compliance, with which Newton's method
         # converges.
         behind = compliance[rows[:tangents]].max()
+        # d = u + (1/rho - 1/k) λ, with 1/rho - 1/k = y.
         shifts[rows[:tangents]] = behind
         cell[TANGENTIAL] = 1 / (behind + 1 / cell[TANGENTIAL])
         if normal:
@@ -228,6 +230,7 @@ def _trampoline(
                 values, changes = law(u[law_rows][:, None])
                 np.add.at(into, law_rows, values[:, 0])
                 np.add.at(matrix, (law_rows[:, None], law_rows[None, :]), changes[:, :, 0])
+        # NaN ends Newton's method of the step; the error is raised behind the compiled code.
         except Exception as error:  # must not cross the compiled code
             failures.append(error)
             into[:] = np.nan

@@ -83,6 +83,8 @@ class PeriodicMotion(VibrationResult):
         highest = (len(self.times) - 1) // 2
         size, samples = Amplitude(kind, tuple(range(highest + 1))), self.motion(dof)
         if kind == "peak":
+            # The trigonometric polynomial through the samples, at 4096 instants: steps are too long to contain the
+            # peak.
             return float(np.abs(np.fft.irfft(np.fft.rfft(samples, norm="forward"), PHASES, norm="forward")).max())
         return float(size.of(_coefficients(samples, highest)))
 
@@ -95,6 +97,7 @@ class PeriodicMotion(VibrationResult):
     def dissipated(self, coordinate: str) -> float:
         """Energy that an element takes from the motion in the period along a coordinate, J: ∮ λ du by trapezia."""
         u, force = self.loop(coordinate)
+        # ∮ λ du by trapezia.
         return float(np.diff(u) @ (force[1:] + force[:-1]) / 2)
 
     def summary(self) -> str:
@@ -115,6 +118,7 @@ def _coefficients(samples: np.ndarray, highest: int) -> np.ndarray:
             f"The motion has {len(samples)} samples of a period, too few for {highest} harmonics. Use at least "
             f"{2 * highest + 1} steps of a period"
         )
+    # X_c - i X_s is twice the coefficient of a real transform, except for the mean.
     phasors = np.fft.rfft(samples, norm="forward")[: highest + 1]
     pairs = np.column_stack([2 * phasors.real, -2 * phasors.imag]).ravel()
     return np.append(phasors[0].real, pairs[2:])

@@ -227,6 +227,7 @@ class _Run:
         (sliders, states), seen = self._memory(), np.asarray(self.problem.lowered.matrix @ x)[self.problem.places]
         places = np.ascontiguousarray(waves @ seen.T)
         speeds = np.ascontiguousarray(self.problem.omega * waves @ Fourier(curve.orders, steps).derivative @ seen.T)
+        # Sliders and states are not in the curve: its motion is gone through until they return.
         settle(self.problem.elements, address(self._users), places, speeds, sliders, states, self._reaction())
         # Displacements and velocities at the end of the period, where a step begins, in modes.
         places = np.stack([x @ waves[-1], self.problem.omega * (x @ rates)], axis=1)
@@ -303,6 +304,7 @@ class _Run:
             raise self.failures[0]
         # M a = f - L^T λ - C v - K x at the start; modes without mass have no acceleration.
         push = self.problem.forces[-1] - seen.T @ response.force
+        # Auxiliary accelerations begin as the real ones.
         acceleration = self.problem.spectral.accelerations(push, place, velocity)
         return State(np.stack([place, velocity, acceleration, acceleration]), sliders, states)
 

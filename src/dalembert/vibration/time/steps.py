@@ -158,6 +158,7 @@ def _balance(modes, elements, users, instant, reaction, room):
         size = size_of(residual)
         if not np.isfinite(size):
             return False
+        # 0 marks an inverse that was never made.
         if size > 0.1 * before or room.inverse[0, 0] == 0.0:
             _linearise(modes.compliance, reaction.slopes, room.matrix)
             invert(room.matrix, room.inverse)
@@ -205,6 +206,7 @@ def _step(modes, elements, users, scheme, state, t, reaction, room):
         # u_0 = L (x_1 + b a_1), and Newton's method for d + (b L S⁻¹ Lᵀ - 1/rho + 1/k) lambda(d) = u_0
         for i in range(len(q)):
             pull[i] = q[i] + b * a[i]
+        # u_0 = L (x_1 + b a_1) with the acceleration that the elements do not see yet.
         apply(room.gemv, modes.seen, pull, room.start)
         apply(room.gemv, modes.compliance, reaction.force, room.u)
         for i in range(len(room.u)):

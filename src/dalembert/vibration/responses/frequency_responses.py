@@ -114,7 +114,7 @@ def frequency_responses(
 
 def _followed(
     follow: "_Follow", values: list[float], workers: int | None, executor: Executor, checkpoint: Checkpoint | None
-) -> Generator[CurveOrError]:
+) -> Generator[CurveOrError, None, None]:
     """Yield the curve at each value: from the checkpoint, or as it is followed on a core or a worker."""
     stopped = Event()
 

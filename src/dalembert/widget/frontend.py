@@ -14,7 +14,7 @@ from dalembert.multibody import Trajectory
 from dalembert.parameters import Parameter
 from dalembert.report.digits import shown
 from dalembert.report.player import BROWSER, LOOK, Film, film_of
-from dalembert.report.sections.motion.mechanism import measured
+from dalembert.report.sections.motion.trajectory import measured
 from dalembert.widget.sliders import Source
 
 MOST = 200

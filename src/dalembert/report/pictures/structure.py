@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from scipy.sparse import issparse
 
-from dalembert.report.charts.frequency.body import edges
+from dalembert.report.charts.frequency.shapes import edges
 from dalembert.report.look import LIGHT
 from dalembert.report.pictures.canvas import COLOURS, INK, SIZE, Canvas, between, moved
 from dalembert.report.pictures.projection import Projection

@@ -20,7 +20,7 @@ Positions = dict[str, np.ndarray]
 
 def measured_positions(study: "Study", axes: Sequence[str]) -> Positions:
     """Return positions of the points of which all coordinates are measured; none of data that cannot be read."""
-    from dalembert.report.sections.motion.mechanism import measured
+    from dalembert.report.sections.motion.trajectory import measured
 
     tables = study.file.experiments or ([] if study.file.data is None else [study.file.data])
     found: dict[str, list[np.ndarray]] = {}

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dalembert.report.charts.frequency.body import edges, triangles
+from dalembert.report.charts.frequency.shapes import edges, triangles
 from dalembert.report.charts.motion.outlines import unfolded
 from dalembert.report.pictures.canvas import COLOURS, INK
 from dalembert.report.pictures.mechanism import turns

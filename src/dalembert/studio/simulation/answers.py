@@ -197,7 +197,7 @@ def _motion(own: Part, values: Mapping[str, float]) -> "tuple[np.ndarray | None,
 
 
 def _film(own: Part, trajectory: "Trajectory", rows: np.ndarray) -> Film:
-    from dalembert.report.sections.motion.mechanism import measured
+    from dalembert.report.sections.motion.trajectory import measured
 
     whole = trajectory.drawing()
     drawing: Drawing = replace(

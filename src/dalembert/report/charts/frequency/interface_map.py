@@ -3,9 +3,8 @@
 import numpy as np
 import plotly.graph_objects as go
 
-from dalembert.report.charts.frequency.body import edges
 from dalembert.report.charts.frequency.contacts import COLOURS, STATES, shares
-from dalembert.report.charts.frequency.deformation import SECONDS
+from dalembert.report.charts.frequency.shapes import SECONDS, edges
 from dalembert.report.charts.motion.film import Film, slowness
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.prefixes import prefixed

@@ -1,4 +1,4 @@
-"""Responses beside the data they were fitted to, with what is left over below."""
+"""Responses of a fit beside the data, and the gaps of multiple shooting."""
 
 from collections.abc import Sequence
 from typing import Any, Protocol
@@ -7,13 +7,43 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.data import Measurements
+from dalembert.inverse import Fit
 from dalembert.report.charts.bounds.bands import dressed, selected
-from dalembert.report.charts.drawing import colour_of, draw, stacked
-from dalembert.report.look import plain
+from dalembert.report.charts.drawing import colour_of, draw, positive, stacked
+from dalembert.report.charts.identification.search import winner
+from dalembert.report.look import LIGHT, plain, themed
+from dalembert.report.quantities import common, labelled, quantity
 from dalembert.report.thin import thinned
 
-FEW = 200
-"""Samples up to which each is drawn as a circle of its own."""
+FEW = 500
+"""Samples up to which each is drawn as a circle."""
+
+
+def measured(data: Measurements, *, title: str = "") -> go.Figure:
+    """Every channel over the data's coordinate.
+
+    Parameters
+    ----------
+    data : Measurements
+    title : str
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    figure, along = go.Figure(), data.coordinate
+    mode = "markers" if len(along.values) <= FEW else "lines"
+    for place, name in enumerate(data.channels):
+        taken = data.taken[:, place]
+        x, y = thinned(along.values[taken], data.values[taken, place])
+        style = {"marker": {"color": colour_of(place), "size": 5}, "line_color": colour_of(place)}
+        figure.add_scatter(x=x, y=y, mode=mode, name=plain(name), **style)
+    label = common(map(quantity, data.channels), "")
+    return themed(figure, title, x=labelled(along.name, along.unit), y=label, hovermode="x unified")
+
+
+FEW_FITTED = 200
+"""Samples of a fit up to which each is drawn as a circle."""
 
 
 class Compared(Protocol):
@@ -71,7 +101,7 @@ def residual_line(fit: Compared, column: int) -> tuple[np.ndarray, np.ndarray]:
 def _channel(figure: go.Figure, fit: Compared, column: int, colour: str) -> None:
     at, name = fit.data.coordinate.values, plain(fit.data.channels[column])
     taken = np.flatnonzero(fit.data.taken[:, column])
-    few = len(taken) <= FEW
+    few = len(taken) <= FEW_FITTED
     dots = {"size": 7, "symbol": "circle-open"} if few else {"size": 3, "opacity": 0.4}
     x, y = thinned(at[taken], fit.data.values[taken, column])
     style = {"mode": "markers", "marker": {"color": colour, **dots}, "legendgroup": name}
@@ -84,3 +114,29 @@ def _channel(figure: go.Figure, fit: Compared, column: int, colour: str) -> None
         line: Any = {"color": colour, "width": 1, "dash": "dot"}
         for bound in (-2 * fit.data.deviations[column], 2 * fit.data.deviations[column]):
             figure.add_hline(y=bound, row=2, col=1, line=line)  # pyright: ignore[reportArgumentType]
+
+
+def gaps(fit: Fit, *, title: str = "Gaps between segments") -> go.Figure:
+    """Largest gap and misfit of the best start after each step in segments, over the steps.
+
+    Parameters
+    ----------
+    fit : Fit
+        Of multiple shooting.
+    title : str
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    steps = [step for step in fit.history if step.start == winner(fit) and step.gap is not None]
+    number = np.arange(1, len(steps) + 1)
+    figure = stacked(1, 1, spacing=0.08)
+    for row, name, key, colour in (
+        (1, "largest gap", "gap", LIGHT.series[0]),
+        (2, "misfit", "best", LIGHT.series[1]),
+    ):
+        values = positive(np.array([getattr(step, key) for step in steps], dtype=float))
+        draw(figure, number, values, name, colour, 1.5, row=row, mode="lines+markers", marker_size=5)
+    y = [{"title": label, "type": "log"} for label in ("gap (part of the range)", "misfit")]
+    return themed(figure, title, 480, x="step in segments", y=y)

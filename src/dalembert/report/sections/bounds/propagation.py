@@ -1,19 +1,19 @@
-"""Bounds of the response over a box of parameters."""
+"""Bounds of the response over a box of parameters, by one method or by several."""
 
 import numpy as np
 
 from dalembert.report import charts
 from dalembert.report.asked import Asked
+from dalembert.report.charts.bounds.methods import reference
 from dalembert.report.digits import counted, shown
 from dalembert.report.headline import Headline
 from dalembert.report.look import plain
 from dalembert.report.quantities import by_quantity, labelled, unit
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Listed, Plot, Section
-from dalembert.report.sections.box import box_table
-from dalembert.report.sections.samples import samples
-from dalembert.report.table import Cell, Table, cells, noted
-from dalembert.uncertainty import Propagation
+from dalembert.report.section import Listed, Plot, Row, Section
+from dalembert.report.sections.shared_tables import box_table, samples
+from dalembert.report.table import Cell, Table, cell, cells, noted
+from dalembert.uncertainty import Comparison, Propagation
 
 MEANING = {
     "inner bound": "Runs of the model within the box reach both sides of the band; the true one may be wider",
@@ -76,3 +76,34 @@ def at_corners(result: Propagation) -> np.ndarray | None:
     near = 1e-6 * (result.box.upper - result.box.lower)
     on_end = (at <= result.box.lower + near) | (at >= result.box.upper - near)
     return on_end.all(axis=-1).mean(axis=(0, 1))
+
+
+@sections_of(Comparison)
+def comparison(result: Comparison, asked: Asked) -> list[Section]:
+    """Methods, and the bounds of the one that the others are measured by."""
+    known = reference(result)
+    facts = {
+        "methods": counted(len(result.results) + len(result.refused)),
+        "reference": known.method,
+        "its runs": counted(known.runs),
+        "runs altogether": counted(sum(one.runs for one in result.results)),
+    }
+    headline = Headline.of("Methods compared", result.success, ("compared", "incomplete"), result.status, facts)
+    against = "Further down is closer to the reference, further left is cheaper."
+    where = f"Largest distance of any bound from that of {result.reference}, sample by sample; none in a gap."
+    plots = [Plot("methods", charts.methods(result), against), Plot("differences", charts.differences(result), where)]
+    return [headline, Section("Methods", (_table(result), Row(plots))), bounds(known)]
+
+
+def _table(result: Comparison) -> Table:
+    """What each method found, how far from the reference, and what it cost."""
+    known = reference(result)
+    rows = []
+    for row, one in zip(result.rows, result.results, strict=True):
+        errors = (np.nan, np.nan) if one is known else (row.largest, row.rms)
+        note = "the reference" if one is known else "" if one.success else one.status
+        cost = (row.runs, cell(row.seconds, digits=3), cell(note, mark=not one.success))
+        rows.append((row.method, row.kind, row.width, *cells(errors, 3), *cost))
+    rows += [(method, "none", *[np.nan] * 5, cell(reason, mark=True)) for method, reason in result.refused]
+    names = ("method", "kind", "mean width", "largest error", "rms error", "runs", "time (s)", "note")
+    return Table.of_rows("methods", "Methods on the same box; errors are distances from the reference", names, rows)

@@ -4,7 +4,7 @@ import numpy as np
 
 from dalembert.report import charts
 from dalembert.report.asked import Asked
-from dalembert.report.charts.frequency.deformation import magnified
+from dalembert.report.charts.frequency.shapes import magnified
 from dalembert.report.digits import counted, percent, shown
 from dalembert.report.headline import Headline
 from dalembert.report.registry import sections_of

@@ -1,18 +1,18 @@
-"""A response over frequency beside integration in time."""
+"""Periodic motions by integration in time, alone and compared with a response over frequency."""
 
 import numpy as np
 
 from dalembert.report import charts
 from dalembert.report.asked import Asked
-from dalembert.report.charts.frequency.time_comparison import compared_dofs
+from dalembert.report.charts.frequency.time_domain import compared_dofs
 from dalembert.report.digits import counted, percent, shown
 from dalembert.report.headline import Headline
 from dalembert.report.quantities import labelled
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Fold, Plot, Section
+from dalembert.report.section import Fold, Plot, Row, Section
 from dalembert.report.table import Table, cells, noted, unless
 from dalembert.units import unit_of
-from dalembert.vibration import FrequencyCurve, TimeComparison
+from dalembert.vibration import FrequencyCurve, PeriodicMotion, TimeComparison
 
 HEADING = "Comparison with time integration"
 
@@ -67,3 +67,24 @@ def _table(compared: TimeComparison) -> Table:
         "note": unless(np.tile(compared.converged, len(dofs)), "not periodic yet"),
     }
     return noted(Table.of("in-time", "Harmonic balance and time integration", columns))
+
+
+@sections_of(PeriodicMotion)
+def period(motion: PeriodicMotion, asked: Asked) -> list[Section]:
+    """The last period."""
+    plots = [Plot("periodic-motion", charts.periodic_motion(motion), "The last period of the integration.")]
+    if motion.coordinates:
+        how = "The area of a loop is the energy taken in a period."
+        plots.append(Plot("loops-in-time", charts.loops_in_time(motion), how))
+    return [_headline(motion), Section("Periodic motion", (plots[0], Row(plots[1:])))]
+
+
+def _headline(motion: PeriodicMotion) -> Headline:
+    status = "The motion repeats itself." if motion.converged else "The motion does not repeat itself yet."
+    facts = {
+        "frequency": f"{shown(motion.frequency)} Hz",
+        "periods": counted(motion.periods),
+        "change over the last one": shown(motion.residual, digits=2),
+        "steps of a period": counted(len(motion.times)),
+    }
+    return Headline.of("Periodic motion", motion.converged, ("periodic", "not periodic"), status, facts)

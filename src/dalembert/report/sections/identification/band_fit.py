@@ -7,17 +7,15 @@ import numpy as np
 from dalembert.inverse import BandFit
 from dalembert.report import charts
 from dalembert.report.asked import Asked
-from dalembert.report.charts.identification.residual_bands import reproduced
+from dalembert.report.charts.identification.intervals import reproduced
 from dalembert.report.digits import counted, interval, shown
 from dalembert.report.headline import Headline, few
 from dalembert.report.look import plain
 from dalembert.report.quantities import by_quantity, labelled, unit
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Plot, Section
-from dalembert.report.sections.identification.identifiability import identifiability
-from dalembert.report.sections.identification.search import search
-from dalembert.report.sections.identification.verdict import identified
-from dalembert.report.sections.samples import samples
+from dalembert.report.sections.identification.search import identifiability, identified, search
+from dalembert.report.sections.shared_tables import samples
 from dalembert.report.table import Table, cell, cells, marks, noted
 
 NONE = 1e-6

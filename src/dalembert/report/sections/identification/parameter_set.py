@@ -10,7 +10,7 @@ from dalembert.report.digits import counted, interval, shown
 from dalembert.report.headline import Headline, few
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Plot, Row, Section
-from dalembert.report.sections.box import box_table
+from dalembert.report.sections.shared_tables import box_table
 
 BOXES = (
     ("outer", "Outer box: all consistent parameters lie in it"),

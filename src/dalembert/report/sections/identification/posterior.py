@@ -11,7 +11,7 @@ from dalembert.report.look import plain
 from dalembert.report.quantities import by_quantity
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Plot, Row, Section
-from dalembert.report.sections.identification.profiles import profiled
+from dalembert.report.sections.identification.assessment import profiled
 from dalembert.report.table import Table, cell, cells
 
 MARGINAL = (

@@ -1,16 +1,164 @@
-"""A motion in time: the mechanism, and its diagnostics."""
+"""A motion: the mechanism, its outputs, and how well it was computed."""
+
+from collections.abc import Mapping, Sequence
 
 import numpy as np
+import plotly.graph_objects as go
 
-from dalembert.multibody import Trajectory
+from dalembert.data import Measurements
+from dalembert.forward import Coordinate
+from dalembert.multibody import Drawing, Trajectory
+from dalembert.report import charts
 from dalembert.report.asked import Asked
+from dalembert.report.charts.motion.diagnostics import LEVELS
 from dalembert.report.digits import counted, percent, shown
 from dalembert.report.headline import Headline
+from dalembert.report.look import plain
+from dalembert.report.quantities import by_quantity
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Section
-from dalembert.report.sections.motion.diagnostics import diagnostics, largest
-from dalembert.report.sections.motion.mechanism import mechanisms
-from dalembert.report.sections.motion.outputs import asked_channels, outputs
+from dalembert.report.section import Block, Plot, Row, Section, numbered
+from dalembert.report.sections.shared_tables import samples
+from dalembert.report.table import Table, cells
+
+HEADING = "Mechanism"
+MOST_PATHS = 3
+
+
+def mechanisms(
+    moving: Mapping[str, Trajectory], points: tuple[str, ...], data: Mapping[str, Measurements] | None = None
+) -> list[Section]:
+    """The section on the mechanism in motion, with the measurements of each experiment; none without a motion."""
+    if not moving:
+        return []
+    data = data or {}
+    plots = [_film(place, name, one, points, data.get(name)) for place, name, one in numbered("mechanism", moving)]
+    left_out = [] if "" in moving else [name for name in data if name and name not in moving]
+    return [Section(HEADING, (*plots, f"Not drawn: {', '.join(left_out)}." if left_out else ""))]
+
+
+def _film(
+    place: str, experiment: str, trajectory: Trajectory, points: tuple[str, ...], data: Measurements | None
+) -> Plot:
+    """The mechanism with the paths of points, of the measured ones if none are named, and measured positions."""
+    drawing = trajectory.drawing()
+    axes = _axes(drawing)
+    crosses = {} if data is None else measured(data.channels, data.values, axes)
+    known = set(trajectory.channel_names)
+    followed = points or tuple(point for point in crosses if _channels(point, axes) <= known)
+    title = plain(experiment) or HEADING
+    figure = charts.mechanism(drawing, paths=paths(trajectory, drawing, followed), measured=crosses, title=title)
+    turned = " Drag to turn, scroll to zoom." if len(axes) == 3 else ""
+    return Plot(place, figure, f"Drawn to scale; faint outlines are poses along the motion.{turned}")
+
+
+def paths(trajectory: Trajectory, drawing: Drawing, points: tuple[str, ...]) -> dict[str, np.ndarray]:
+    """Paths (samples, 2 or 3) of the points given by name; of the free ends of bodies, or else of joints, if none is.
+
+    In space the end of a body is its last point.
+    """
+    axes = _axes(drawing)
+    if points:
+        return {point: np.asarray(trajectory.channels([f"{point}.{axis}" for axis in axes])) for point in points}
+    held = list(drawing.joints.values())
+    last = {body.name: body.point_names[-1] for body in trajectory.system.bodies} if len(axes) == 3 else {}
+    ends = {
+        f"{name}.{last[name]}" if name in last else f"{name}'s end": line[:, -1]
+        for name, line in drawing.lines.items()
+        if not any(np.allclose(line[:, -1], joint, atol=1e-6 * _size(drawing)) for joint in held)
+    }
+    moving = {name: joint for name, joint in (ends or drawing.joints).items() if np.ptp(joint, axis=0).max() > 0}
+    return dict(list(moving.items())[-MOST_PATHS:])
+
+
+def measured(channels: Sequence[str], values: np.ndarray, axes: str = "xy") -> dict[str, np.ndarray]:
+    """Positions (samples, 2 or 3) of the points of which all coordinates are among the channels."""
+    channels = list(channels)
+    return {
+        point: values[:, [channels.index(f"{point}.{axis}") for axis in axes]]
+        for point in dict.fromkeys(channel.rpartition(".")[0] for channel in channels)
+        if _channels(point, axes) <= set(channels)
+    }
+
+
+def _axes(drawing: Drawing) -> str:
+    """Axes of the positions: those of the plane or of space."""
+    return "xyz"[: next(iter([*drawing.lines.values(), *drawing.joints.values()])).shape[-1]]
+
+
+def _channels(point: str, axes: str) -> set[str]:
+    return {f"{point}.{axis}" for axis in axes}
+
+
+def _size(drawing: Drawing) -> float:
+    across = len(_axes(drawing))
+    return max((float(np.ptp(line.reshape(-1, across), axis=0).max()) for line in drawing.lines.values()), default=1.0)
+
+
+def diagnostics(trajectories: Mapping[str, Trajectory]) -> Section:
+    """Energy balance, constraint violations and Newton iterations, of each experiment's motion."""
+    blocks: list[Block] = []
+    for place, experiment, one in numbered("", trajectories):
+        drawn = (
+            ("energies", charts.energies(one), "Below, what the energy balance leaves over."),
+            ("violations", charts.violations(one), "Largest violation of any constraint."),
+            ("newton", charts.newton(one), "A rise shows where the motion is hard to follow."),
+        )
+        plots = [Plot(f"{name}{place}", _named(experiment, figure), how) for name, figure, how in drawn]
+        blocks += [plots[0], Row(plots[1:])]
+    return Section("Diagnostics of the simulation", (*blocks, _table(trajectories)))
+
+
+def _table(trajectories: Mapping[str, Trajectory]) -> Table:
+    rows = {experiment: [cells(row, 3) for row in _rows(one)] for experiment, one in trajectories.items()}
+    return Table.of_experiments("diagnostics", "Diagnostics", ("quantity", "value", "unit"), rows)
+
+
+def _named(experiment: str, figure: go.Figure) -> go.Figure:
+    """A figure whose title says the experiment first, if there are several."""
+    title = figure.layout.title.text  # pyright: ignore[reportAttributeAccessIssue]
+    return figure.update_layout(title_text=f"{plain(experiment)}: {title}") if experiment else figure
+
+
+def _rows(trajectory: Trajectory) -> list[tuple[str, float, str]]:
+    """Quantities, values and units."""
+    counts = np.asarray(trajectory.newton_iterations)
+    return [
+        ("largest energy balance", largest(trajectory.energies, "balance"), "J"),
+        *(
+            (f"largest violation, {level}", largest(trajectory.violations, level), label.partition("(")[2][:-1])
+            for level, label in LEVELS.items()
+        ),
+        ("steps", len(counts), ""),
+        ("Newton iterations a step, mean", float(counts.mean()) if len(counts) else float("nan"), ""),
+        ("Newton iterations a step, most", int(counts.max(initial=0)), ""),
+    ]
+
+
+def largest(series: Mapping[str, np.ndarray], key: str) -> float:
+    """Largest magnitude in one of several series, NaN if it is not there."""
+    return float(np.nanmax(np.abs(series[key]), initial=0.0)) if key in series else float("nan")
+
+
+OUTPUTS_HEADING = "Outputs over time"
+
+
+def outputs(trajectory: Trajectory, channels: Sequence[str]) -> list[Section]:
+    """A figure for each quantity, and all samples for download; nothing where no channel is asked for."""
+    if not channels:
+        return []
+    plots = [
+        Plot(f"outputs-{place}", charts.outputs(trajectory, group, title=", ".join(map(plain, group))))
+        for place, group in enumerate(by_quantity(channels), start=1)
+    ]
+    along = Coordinate("time", "s", np.asarray(trajectory.times))
+    download = samples("outputs", along, channels, {"": trajectory.channels(channels)}, "Download all samples as CSV")
+    return [Section(OUTPUTS_HEADING, (*plots, download))]
+
+
+def asked_channels(trajectory: Trajectory, channels: Sequence[str], points: Sequence[str]) -> tuple[str, ...]:
+    """The channels that are asked for, then the coordinates of the points, each once."""
+    coordinates = [f"{point}.{axis}" for point in points for axis in trajectory.system.AXES]
+    return tuple(dict.fromkeys((*channels, *coordinates)))
 
 
 @sections_of(Trajectory)

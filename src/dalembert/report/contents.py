@@ -6,8 +6,8 @@ from typing import Any
 
 import plotly.graph_objects as go
 
-from dalembert.report.asked import Asked, asked
 from dalembert.report.headline import Headline, fixed_facts
+from dalembert.report.options import ReportOptions, report_options
 from dalembert.report.registry import registered_sections
 from dalembert.report.section import Block, Section, Source
 from dalembert.report.table import Cell, Table
@@ -53,7 +53,7 @@ def _flat(facts: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]
             yield f"{above}{key}", value
 
 
-def contents(result: object, wanted: Asked) -> tuple[Headline, *tuple[Section, ...]]:
+def contents(result: object, options: ReportOptions) -> tuple[Headline, *tuple[Section, ...]]:
     """Sections of a report in reading order.
 
     Raises
@@ -61,18 +61,18 @@ def contents(result: object, wanted: Asked) -> tuple[Headline, *tuple[Section, .
     InputError
         For a result that no sections are registered for, and for what no section shows.
     """
-    first, *others = registered_sections(result, wanted)
-    wanted.refuse_others()
+    first, *others = registered_sections(result, options)
+    options.refuse_others()
     if not isinstance(first, Headline):
         first, others = Headline(title=type(result).__name__), [first, *others]
     headline = replace(
         first,
-        title=wanted.title or first.title,
-        notes=wanted.notes,
+        title=options.title or first.title,
+        notes=options.notes,
         facts={**first.facts, **fixed_facts(result)},
-        findings=(*wanted.findings, *getattr(result, "findings", ())),
+        findings=(*options.findings, *getattr(result, "findings", ())),
     )
-    return headline, *others, *wanted.sections, *provenance(getattr(result, "provenance", {}), wanted.study)
+    return headline, *others, *options.sections, *provenance(getattr(result, "provenance", {}), options.study)
 
 
 def figures(result: object, *beside: object, **options: Any) -> dict[str, go.Figure]:
@@ -100,4 +100,8 @@ def figures(result: object, *beside: object, **options: Any) -> dict[str, go.Fig
     InputError
         For a result that is none of these.
     """
-    return {plot.name: plot.figure for section in contents(result, asked(beside, **options)) for plot in section.plots}
+    return {
+        plot.name: plot.figure
+        for section in contents(result, report_options(beside, **options))
+        for plot in section.plots
+    }

@@ -15,9 +15,9 @@ from plotly.offline import get_plotlyjs
 
 from dalembert import __version__
 from dalembert.files import write_text
-from dalembert.report.asked import asked
 from dalembert.report.contents import contents
 from dalembert.report.look import DARK, FONT, LIGHT, exchanged, template
+from dalembert.report.options import report_options
 from dalembert.report.section import SAFE
 
 
@@ -63,7 +63,7 @@ def report(
         For a result that no sections are registered for, and for what no section shows.
     """
     paragraphs = notes.strip().split("\n\n") if isinstance(notes, str) else notes
-    sections = contents(result, asked(beside, notes=[text for text in paragraphs if text], **options))
+    sections = contents(result, report_options(beside, notes=[text for text in paragraphs if text], **options))
     templates = environment()
     scripts = [Markup(get_plotlyjs()), Markup(_packaged("page.js"))]
     page = templates.get_template("page.html").render(

@@ -7,10 +7,10 @@ from pkgutil import iter_modules
 from typing import Any, TypeVar
 
 from dalembert.errors import InputError
-from dalembert.report.asked import Asked
+from dalembert.report.options import ReportOptions
 from dalembert.report.section import Section
 
-Sections = Callable[[Any, Asked], list[Section]]
+Sections = Callable[[Any, ReportOptions], list[Section]]
 Function = TypeVar("Function", bound=Sections)
 SUBJECTS = {
     "inverse": "identification",
@@ -36,7 +36,7 @@ def sections_of(kind: type | str) -> Callable[[Function], Function]:
     Returns
     -------
     decorator
-        Of a function ``(result, asked) -> list of Section``.
+        Of a function ``(result, options) -> list of Section``.
 
     Examples
     --------
@@ -46,7 +46,7 @@ def sections_of(kind: type | str) -> Callable[[Function], Function]:
     ... class Weather:
     ...     rain: float
     >>> @sections_of(Weather)
-    ... def weather(result, asked):
+    ... def weather(result, options):
     ...     return [Part("Weather", (f"{result.rain} mm of rain.",))]
     """
 
@@ -59,7 +59,7 @@ def sections_of(kind: type | str) -> Callable[[Function], Function]:
     return registered
 
 
-def registered_sections(result: object, asked: Asked) -> list[Section]:
+def registered_sections(result: object, options: ReportOptions) -> list[Section]:
     """Sections of a result.
 
     Raises
@@ -72,7 +72,7 @@ def registered_sections(result: object, asked: Asked) -> list[Section]:
         if package == "dalembert" and module in SUBJECTS:
             _import_sections(SUBJECTS[module])
         if (function := _SECTIONS.get(_full_name(kind))) is not None:
-            return function(result, asked)
+            return function(result, options)
     raise InputError(
         f"report: a {type(result).__name__} was given; expected a result, such as identify(), simulate() or "
         "propagate() return. For a class of your own, register its sections first by dalembert.report.sections_of"

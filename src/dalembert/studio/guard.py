@@ -22,11 +22,11 @@ Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 
 @dataclass(frozen=True)
 class Guard:
-    """Lets through what may be asked, pages and sockets alike.
+    """Lets through what may be requested, pages and sockets alike.
 
     A page of another site cannot reach the studio through its user's browser: the host and the origin that the browser
     names must be the studio's own (a name that was made to point here is refused, too). Beyond this machine a token is
-    asked for as well, once in the address, then as a cookie.
+    needed as well, once in the address, then as a cookie.
 
     Parameters
     ----------
@@ -42,9 +42,9 @@ class Guard:
         if scope["type"] not in ("http", "websocket"):
             await self.app(scope, receive, send)
             return
-        asked = HTTPConnection(scope)
-        answer = self._refusal(asked)
-        if answer is None and self.token and self._given(asked) and scope["type"] == "http":
+        request = HTTPConnection(scope)
+        answer = self._refusal(request)
+        if answer is None and self.token and self._given(request) and scope["type"] == "http":
             cookie = f"{COOKIE}={self.token}; HttpOnly; SameSite=Strict; Path=/"
             path = "/" + quote(scope["path"].lstrip("/"))  # with two slashes it would be another site
             answer = PlainTextResponse("", 303, {"location": path, "set-cookie": cookie})
@@ -52,9 +52,9 @@ class Guard:
             answer = WebSocketClose(1008)
         await (answer or self.app)(scope, receive, send)
 
-    def _refusal(self, asked: HTTPConnection) -> Response | None:
-        """Answer to what may not be asked."""
-        headers = asked.headers
+    def _refusal(self, request: HTTPConnection) -> Response | None:
+        """Answer to what may not be requested."""
+        headers = request.headers
         host = headers.get("host", "")
         if not self.token and host.rpartition(":")[0] not in LOCAL and host not in LOCAL:
             return PlainTextResponse(
@@ -66,14 +66,14 @@ class Guard:
         length = headers.get("content-length", "0")
         if not length.isdigit() or int(length) > MOST_BYTES:
             return PlainTextResponse(f"The file is too large: a request may have {MOST_BYTES} bytes.", 413)
-        if self.token and not self._given(asked) and not self._is_token(asked.cookies.get(COOKIE, "")):
+        if self.token and not self._given(request) and not self._is_token(request.cookies.get(COOKIE, "")):
             opened = "Open the address that 'dalembert studio' printed when it started: it has the token in it."
             return PlainTextResponse(opened, 401)
         return None
 
-    def _given(self, asked: HTTPConnection) -> bool:
+    def _given(self, request: HTTPConnection) -> bool:
         """Whether the address has the token."""
-        return self._is_token(asked.query_params.get("token", ""))
+        return self._is_token(request.query_params.get("token", ""))
 
     def _is_token(self, given: str) -> bool:
         return secrets.compare_digest(given.encode(), self.token.encode())

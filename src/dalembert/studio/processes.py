@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from multiprocessing.context import ForkServerContext, SpawnContext
 
-READY = "dalembert.studio.ready"
+READY = "dalembert.studio.preloaded"
 """What is imported ahead."""
 
 

@@ -13,7 +13,7 @@ import pytest
 import dalembert
 from dalembert.inverse import Identifiability
 from dalembert.report import report
-from dalembert.report.asked import Asked
+from dalembert.report.options import ReportOptions
 from pages import read_page
 from report_cases import CASES
 
@@ -100,7 +100,7 @@ def _told(case: Any, folder: Path) -> tuple[str, set[str]]:
     if isinstance(result, str | Identifiability):
         return str(result), set()
     summaries = [getattr(one, "summary", "") for one in (result, *options.values())]
-    named = {name: value for name, value in options.items() if name in {one.name for one in fields(Asked)}}
+    named = {name: value for name, value in options.items() if name in {one.name for one in fields(ReportOptions)}}
     beside = [value for name, value in options.items() if name not in named]
     page = read_page(report(result, folder / "report.html", *beside, **named))
     tables = [value for tag, entries in page.tags if tag == "a" and (value := entries.get("download"))]

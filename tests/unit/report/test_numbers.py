@@ -3,7 +3,7 @@ import pytest
 
 from dalembert.report.digits import counted, shown, with_deviation
 from dalembert.report.quantities import by_quantity, quantity
-from dalembert.report.thin import thin
+from dalembert.report.thinning import thin
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@ import numpy as np
 
 import dalembert as da
 from dalembert.report import figures
-from dalembert.report.asked import Asked
+from dalembert.report.options import ReportOptions
 from dalembert.report.registry import registered_sections
 from dalembert.study import load, run_study
 
@@ -48,7 +48,7 @@ def test_a_motion_is_drawn_over_time_at_the_points_and_with_the_channels():
 
 
 def test_all_samples_can_be_downloaded():
-    sections = registered_sections(_motion(), Asked(points=("rod.end",)))
+    sections = registered_sections(_motion(), ReportOptions(points=("rod.end",)))
     section = next(one for one in sections if getattr(one, "heading", "") == "Outputs over time")
     head, first, *_ = section.blocks[-1].table.csv.splitlines()
     assert (head, first) == ("time (s),rod.end.x,rod.end.y", "0.0,0.8,0.0")

@@ -9,12 +9,12 @@ import plotly.graph_objects as go
 
 from dalembert.multibody import Trajectory
 from dalembert.multibody.system import Mechanism
-from dalembert.report.asked import Asked
 from dalembert.report.charts.motion.diagnostics import energies
 from dalembert.report.charts.motion.mechanism import mechanism
 from dalembert.report.contents import contents
 from dalembert.report.notebook.figure import figure_svg
 from dalembert.report.notebook.page import Summary
+from dalembert.report.options import ReportOptions
 from dalembert.report.pictures import picture
 from dalembert.report.sections.motion.trajectory import motion_headline
 from dalembert.structure import Structure
@@ -41,7 +41,7 @@ def shown_in_notebook(result: Any) -> Summary | None:
     InputError
         For a type that no sections are registered for.
     """
-    headline, *sections = contents(result, Asked())
+    headline, *sections = contents(result, ReportOptions())
     drawn = (plot.figure for section in sections for plot in section.plots if plot.name not in NOT_FIRST)
     figure = next(filter(None, map(figure_svg, drawn)), None)
     findings = [

@@ -13,7 +13,7 @@ from dalembert.data.problems import outliers, problems
 from dalembert.data.text_layout import AUTO, is_number
 from dalembert.errors import DalembertError, InputError
 from dalembert.findings import Finding
-from dalembert.report.thin import thinned
+from dalembert.report.thinning import thinned
 from dalembert.studio.data.choices import Choices, Key, guessed, table_of
 from dalembert.studio.editor.reading import study_of
 from dalembert.studio.worker import Kept

@@ -1,1 +1,1 @@
-"""Panels of a study's page, one file each: ``show(draft, room)`` builds a panel that follows the draft."""
+"""Panels of a study's page, one file each: ``show(draft, services)`` builds a panel that follows the draft."""

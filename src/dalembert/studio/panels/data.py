@@ -10,13 +10,12 @@ from dalembert.studio.code_text import code_text
 from dalembert.studio.data.choices import Choices
 from dalembert.studio.data.columns import ColumnTable
 from dalembert.studio.data.examined import Examined
-from dalembert.studio.data.figure import columns_figure
 from dalembert.studio.data.guide import DataGuide
-from dalembert.studio.data.picker import ChannelPicker
+from dalembert.studio.data.picker import ChannelPicker, columns_figure
 from dalembert.studio.editor.draft import Draft
 from dalembert.studio.frame import button, complaints
-from dalembert.studio.latest import Latest
-from dalembert.studio.room import Room
+from dalembert.studio.pacing import Latest
+from dalembert.studio.page_services import PageServices
 from dalembert.studio.runs.figures import CONFIG, bare
 from dalembert.studio.uploads import upload
 
@@ -28,17 +27,17 @@ LOOKS = {"error": ("error", "negative"), "warning": ("warning", "warning"), "not
 """Icon and colour by severity."""
 
 
-def show(draft: Draft, room: Room) -> None:
+def show(draft: Draft, services: PageServices) -> None:
     """Build the panel."""
-    DataPanel(draft, room)
+    DataPanel(draft, services)
 
 
 class DataPanel:
     """The elements of the panel, and how they follow the choices."""
 
-    def __init__(self, draft: Draft, room: Room) -> None:
-        self.draft, self.room = draft, room
-        self.guide = DataGuide(draft, room.worker)
+    def __init__(self, draft: Draft, services: PageServices) -> None:
+        self.draft, self.services = draft, services
+        self.guide = DataGuide(draft, services.worker)
         self._quiet = False
         self._listed: list[tuple[str, str, str]] = []
         self._redraw = Latest(self._look)
@@ -48,7 +47,7 @@ class DataPanel:
             self._busy.props('aria-label="Reading the file"').set_visibility(False)
             self._error = ui.label("").classes("text-negative").props("role=alert")
             with ui.column().classes("w-full gap-3") as self._chosen:
-                self._columns = ColumnTable(self._choose, ChannelPicker(draft, room).pick)
+                self._columns = ColumnTable(self._choose, ChannelPicker(draft, services).pick)
                 self._build_options()
                 self._problems = ui.column().classes("w-full gap-2").props('role=status aria-label="Problems"')
                 self._build_write()
@@ -225,7 +224,7 @@ class DataPanel:
     async def _uploaded(self, event: events.UploadEventArguments) -> None:
         with complaints("place file"):
             placed = await run.io_bound(
-                self.room.workspace.put, self.draft.name, event.file.name, await event.file.read()
+                self.services.workspace.put, self.draft.name, event.file.name, await event.file.read()
             )
             if placed is not None:  # or the studio is ending
                 ui.notify(f"{placed.name} lies beside the study now.", type="positive")

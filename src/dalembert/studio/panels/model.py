@@ -11,11 +11,11 @@ from dalembert.studio.editor.lines import Place
 from dalembert.studio.editor.model_kind import model_elsewhere
 from dalembert.studio.editor.reading import Mistake, study_of
 from dalembert.studio.frame import icon_button
-from dalembert.studio.latest import Latest
 from dalembert.studio.model.parts import parts_at, place_of
 from dalembert.studio.model.picture import Picture, Reader, model_picture
 from dalembert.studio.model.viewer import Viewer
-from dalembert.studio.room import Room
+from dalembert.studio.pacing import Latest
+from dalembert.studio.page_services import PageServices
 from dalembert.studio.worker import Worker, WorkerError
 
 TAB = "model", "Model", "precision_manufacturing"
@@ -26,9 +26,9 @@ LAST = "The text has mistakes. The drawing shows the last valid text."
 NONE = "The text has mistakes. The drawing appears when they are corrected."
 
 
-def show(draft: Draft, room: Room) -> None:
+def show(draft: Draft, services: PageServices) -> None:
     """Build the panel."""
-    ModelPanel(draft, room.worker, draft.path)
+    ModelPanel(draft, services.worker, draft.path)
 
 
 class ModelPanel:

@@ -1,6 +1,8 @@
-"""One parameter with its slider, its number, what can be done with its value, and how strongly it acts."""
+"""One parameter on the page: its slider, its field, and their numbers."""
 
+import math
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from html import escape
 
 from nicegui import events, ui
@@ -9,8 +11,88 @@ from dalembert.errors import InputError
 from dalembert.parameters import Parameter
 from dalembert.report.charts.drawing import colour_of
 from dalembert.studio.editor.entries import DIGITS
-from dalembert.studio.editor.typed_number import typed_number
-from dalembert.studio.travel import STEPS, Travel
+from dalembert.units import is_quantity, si
+
+STEPS = 1000
+"""Positions of a slider, less one."""
+
+
+@dataclass(frozen=True)
+class SliderScale:
+    """Positions of a slider, from 0 to :data:`STEPS`, and values of a parameter.
+
+    Parameters
+    ----------
+    item : Parameter
+
+    Examples
+    --------
+    >>> angle, modulus = SliderScale(Parameter("angle", 0.6, 1.0)), SliderScale(Parameter("E", 1e6, 1e9))
+    >>> angle.value(500), modulus.value(500), modulus.position(1e8)
+    (0.8, 31622800.0, 667)
+    """
+
+    item: Parameter
+
+    def value(self, position: float) -> float:
+        """Value at a position, with as many digits as tell neighbouring positions apart."""
+        lower, upper, share = self.item.lower, self.item.upper, min(max(position / STEPS, 0.0), 1.0)
+        if share in (0.0, 1.0):
+            return upper if share else lower
+        if self._logarithmic:
+            return float(f"{lower * (upper / lower) ** share:.6g}")
+        decimals = 1 - math.floor(math.log10((upper - lower) / STEPS))
+        return round(lower + share * (upper - lower), decimals)
+
+    def position(self, value: float) -> int:
+        """The position that is nearest to a value."""
+        lower, upper = self.item.lower, self.item.upper
+        if self._logarithmic:
+            return round(STEPS * math.log(value / lower) / math.log(upper / lower))
+        return round(STEPS * (value - lower) / (upper - lower))
+
+    @property
+    def _logarithmic(self) -> bool:
+        return self.item.logarithmic and self.item.lower > 0
+
+
+_MINUS = "\N{MINUS SIGN}"
+
+
+def typed_number(text: str | None, unit: str = "", size: float = 1.0) -> float:
+    """Return the number of a text in SI units.
+
+    Parameters
+    ----------
+    text : str, optional
+    unit : str
+        Of the field, for a text without one.
+    size : float
+        Of that unit in SI units.
+
+    Raises
+    ------
+    InputError
+        If the text is not a number, or has the unit of another quantity.
+
+    Examples
+    --------
+    >>> typed_number("-2,5", "mm", 1e-3), typed_number("400 mN/m", "N/m"), typed_number("3")
+    (-0.0025, 0.4, 3.0)
+    >>> typed_number("1,234.5")
+    Traceback (most recent call last):
+    dalembert.errors.InputError: Enter a number with one decimal point or comma, and no other separators
+    """
+    written = (text or "").strip().replace(_MINUS, "-")
+    if written.count(",") + written.count(".") > 1:
+        raise InputError("Enter a number with one decimal point or comma, and no other separators")
+    written = written.replace(",", ".")
+    try:
+        return si(written, unit or None) * size if is_quantity(written) else si(written, "") * size
+    except InputError:
+        example = f"2.5, or 2.5 {unit} with its unit" if unit else "2.5"
+        raise InputError(f"{text!r} is not a number in this unit. Enter a number such as {example}") from None
+
 
 THROTTLE = 0.02  # s between two values of a slider that is dragged
 SHOWN = 4
@@ -69,7 +151,7 @@ class ParameterRow:
         kept: Mapping[str, Callable[[], object]],
         unit: tuple[str, float],
     ) -> None:
-        self.item, self.unit, self._travel, self._chosen, self._value = item, unit, Travel(item), chosen, value
+        self.item, self.unit, self._scale, self._chosen, self._value = item, unit, SliderScale(item), chosen, value
         with ui.element("div").classes("parameter-row").props(f'role=group aria-label="{escape(item.name)}"'):
             ui.label(item.name).classes("font-bold break-words")
             self._build_way()
@@ -90,7 +172,7 @@ class ParameterRow:
     def settle(self) -> None:
         """Bring the slider to its value."""
         text = f"{self._text} {self.unit[0]}".rstrip()
-        self._way.place(self._travel.position(self._value), text)
+        self._way.place(self._scale.position(self._value), text)
 
     def show_effects(self, channels: tuple[str, ...], effects: list[float], largest: float) -> None:
         """Show bars for the channels that the parameter acts on, relative to the largest effect of all parameters."""
@@ -114,7 +196,7 @@ class ParameterRow:
         self._number.on("blur", self._tidy)
 
     def _moved(self, event: events.GenericEventArguments) -> None:
-        value = self._travel.value(float(event.args))
+        value = self._scale.value(float(event.args))
         if value != self._value:
             self._value = value
             self._number.set_value(self._text)

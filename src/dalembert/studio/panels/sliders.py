@@ -12,8 +12,8 @@ from dalembert.parameters import Parameter
 from dalembert.studio.editor.chosen_values import unit_in, use_as_start, use_as_value
 from dalembert.studio.editor.draft import Draft
 from dalembert.studio.frame import button, complaints
+from dalembert.studio.page_services import PageServices
 from dalembert.studio.panels.parameter_row import LOOKS, ParameterRow
-from dalembert.studio.room import Room
 from dalembert.studio.runs.figures import CONFIG
 from dalembert.studio.simulation.answers import Influences, Simulated, Source, influences, simulated
 from dalembert.studio.simulation.player import Player
@@ -29,10 +29,10 @@ MANY = 16
 FIRST = 4
 
 
-def show(draft: Draft, room: Room) -> None:
+def show(draft: Draft, services: PageServices) -> None:
     """Build the panel."""
     ui.add_css(LOOKS)
-    Sliders(draft, room)
+    Sliders(draft, services)
 
 
 class Sliders:
@@ -41,11 +41,11 @@ class Sliders:
     Parameters
     ----------
     draft : Draft
-    room : Room
+    services : PageServices
     """
 
-    def __init__(self, draft: Draft, room: Room) -> None:
-        self._draft, self._room = draft, room
+    def __init__(self, draft: Draft, services: PageServices) -> None:
+        self._draft, self._services = draft, services
         self._rows: dict[str, ParameterRow] = {}
         self._built: object = None
         self._plots: list[ui.plotly] = []
@@ -69,7 +69,7 @@ class Sliders:
             with self._busy:
                 ui.spinner(size="sm")
                 ui.label("Computing …").props("role=status")
-                button("Stop", self._room.worker.interrupt, icon="stop", colour="negative").props("dense")
+                button("Stop", self._services.worker.interrupt, icon="stop", colour="negative").props("dense")
         self._problem = ui.label("").classes("text-negative break-words").props("role=alert")
         self._parameters = ui.column().classes("w-full gap-3")
         self._scene = ui.element("div").classes("w-full border rounded p-1")
@@ -186,7 +186,7 @@ class Sliders:
             background_tasks.create(self._simulate())
 
     async def _simulate(self) -> None:
-        draft, worker, name = self._draft, self._room.worker, self._choice.value
+        draft, worker, name = self._draft, self._services.worker, self._choice.value
         assert draft.study is not None
         received, source = time.time(), Source.of(draft.study, draft.path, draft.text)
         worker.drop("influences")
@@ -209,7 +209,7 @@ class Sliders:
     async def _weigh(self, source: Source, name: str, values: dict[str, float]) -> None:
         """Show how strongly the parameters act at the values."""
         try:
-            found = await self._room.worker.ask("influences", influences, source, name, values)
+            found = await self._services.worker.ask("influences", influences, source, name, values)
         except WorkerError:  # what is wrong was said by the simulation, or there are no derivatives
             found = Influences((), {})
         if found is None:

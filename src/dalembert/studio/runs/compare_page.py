@@ -25,15 +25,15 @@ def compare_page(workspace: Workspace, names: list[str]) -> None:
         except InputError as error:
             code_text(str(error)).props("role=alert")
             return
-        asked = urlencode({"run": [folder.path.name for folder in folders]}, doseq=True)
+        query = urlencode({"run": [folder.path.name for folder in folders]}, doseq=True)
         with ui.row().classes("gap-4 items-center"):
             for folder in folders:
                 ui.link(folder.path.name, f"/run/{quote(folder.path.name)}").classes("break-all")
         with ui.row().classes("gap-4 items-center"):
             ui.label("Download:")
-            ui.link("Page to share (HTML)", f"{ADDRESS}?{asked}").props('download="comparison.html"')
-            ui.link("Values (CSV)", f"{ADDRESS}.csv?{asked}").props('download="comparison.csv"')
-        page = ui.element("iframe").props(f'src="{ADDRESS}?{asked}" title="Runs compared"')
+            ui.link("Page to share (HTML)", f"{ADDRESS}?{query}").props('download="comparison.html"')
+            ui.link("Values (CSV)", f"{ADDRESS}.csv?{query}").props('download="comparison.csv"')
+        page = ui.element("iframe").props(f'src="{ADDRESS}?{query}" title="Runs compared"')
         page.props('sandbox="allow-scripts allow-downloads allow-popups"')
         page.classes("w-full border rounded").style("height: 85vh")
 

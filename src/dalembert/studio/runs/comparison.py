@@ -12,13 +12,13 @@ import plotly.graph_objects as go
 
 from dalembert.errors import DalembertError, InputError
 from dalembert.report import sections_of
-from dalembert.report.asked import Asked
 from dalembert.report.headline import Headline
 from dalembert.report.look import LIGHT, plain, themed
+from dalembert.report.options import ReportOptions
 from dalembert.report.quantities import labelled, unit
 from dalembert.report.section import Block, Plot, Section, Source
 from dalembert.report.table import Cell, Table, cell
-from dalembert.report.thin import thinned
+from dalembert.report.thinning import thinned
 from dalembert.studio.runs.differences import as_text, differences
 from dalembert.studio.runs.run_list import row
 from dalembert.studio.runs.run_units import PLAIN, Unit, in_unit, run_units
@@ -85,7 +85,7 @@ class RunComparison:
 
 
 @sections_of(RunComparison)
-def _sections(comparison: RunComparison, asked: Asked) -> list[Section]:
+def _sections(comparison: RunComparison, options: ReportOptions) -> list[Section]:
     title = f"{len(comparison.folders)} runs compared"
     headline = Headline(title=title, verdict="compared", status=", ".join(comparison.names))
     return [

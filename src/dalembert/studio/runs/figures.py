@@ -101,7 +101,7 @@ def plot(figure: go.Figure) -> "ui.plotly":
 
 
 def bare(figure: go.Figure) -> dict[str, Any]:
-    """The figure as a page takes it, which fits it to its place: see :mod:`dalembert.studio.corrections`."""
+    """The figure as a page takes it, which fits it to its place: see :mod:`dalembert.studio.frame`."""
     return figure.to_plotly_json() | {"config": CONFIG}
 
 

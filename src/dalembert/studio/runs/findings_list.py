@@ -52,6 +52,6 @@ def _show(finding: dict, offered: list[tuple[int, Change]], run: str) -> None:
     texts = (str(finding.get(key, "")) for key in ("message", "advice"))
     with finding_row(str(finding.get("severity", "note")), *texts), ui.row().classes("gap-2"):
         for number, change in offered:
-            asked = urlencode({"code": change.code, "number": number})
-            go = partial(ui.navigate.to, f"/continue/{quote(run)}?{asked}")
+            query = urlencode({"code": change.code, "number": number})
+            go = partial(ui.navigate.to, f"/continue/{quote(run)}?{query}")
             ui.button(change.label, on_click=go, icon="edit_note").props("outline dense no-caps").classes("px-2")

@@ -13,15 +13,13 @@ from nicegui import run, ui
 from dalembert.errors import InputError
 from dalembert.studio.frame import STATES, badge, button, complaints, frame, report_of
 from dalembert.studio.jobs import Jobs, pause, stop
-from dalembert.studio.runs.again import run_again
+from dalembert.studio.pacing import Throttle
 from dalembert.studio.runs.figures import bare, convergence, followed, on_any_page, plot, wandering
 from dalembert.studio.runs.findings_list import findings_list
 from dalembert.studio.runs.fit_so_far import fit_so_far
-from dalembert.studio.runs.last_runs import study_of
-from dalembert.studio.runs.live import Live
-from dalembert.studio.runs.remaining import planned_simulations
+from dalembert.studio.runs.live import Live, planned_simulations
 from dalembert.studio.runs.run_units import run_units, values_of, values_text
-from dalembert.studio.sparing import Sparing
+from dalembert.studio.runs.study_runs import run_again, study_of
 from dalembert.studio.worker import Kept, Worker, WorkerError
 from dalembert.studio.workspace import Workspace
 from dalembert.study.run.folder import FINISHED, INPUT, KILLED, RESUMABLE, RUNNING, RunFolder
@@ -64,7 +62,7 @@ class _Page:
 
     def __init__(self, workspace: Workspace, folder: RunFolder, jobs: Jobs, watcher: Worker) -> None:
         self.workspace, self.folder, self.jobs, self.watcher = workspace, folder, jobs, watcher
-        self.drawing, self.computing = Sparing(), Sparing()
+        self.drawing, self.computing = Throttle(), Throttle()
         self.live = Live(folder.events)
         self.state, self.complaint, self.shown = "", "", 0
         self.drawn: dict[str, object] = {}

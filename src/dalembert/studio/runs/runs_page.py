@@ -10,11 +10,11 @@ from nicegui import run, ui
 from dalembert.errors import DalembertError, unchanged
 from dalembert.studio.frame import button, complaints, frame
 from dalembert.studio.jobs import Jobs
-from dalembert.studio.runs.again import run_again
 from dalembert.studio.runs.run_changes import Deleted, delete, empty_trash, rename, restore, trashed
 from dalembert.studio.runs.run_grid import RunGrid
 from dalembert.studio.runs.run_list import Row, RunList
 from dalembert.studio.runs.run_note import Note, read_note, tags_of, write_note
+from dalembert.studio.runs.study_runs import run_again
 from dalembert.studio.workspace import Workspace
 from dalembert.study.run.folder import RESUMABLE
 

@@ -10,7 +10,7 @@ import plotly.graph_objects as go
 from dalembert.report.charts.drawing import colour_of, draw
 from dalembert.report.look import plain, themed
 from dalembert.report.quantities import by_quantity, common, labelled, quantity
-from dalembert.report.thin import thinned
+from dalembert.report.thinning import thinned
 from dalembert.studio.simulation.parts import Part
 
 HEIGHT = 320

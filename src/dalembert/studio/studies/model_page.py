@@ -11,9 +11,8 @@ from dalembert.studio.editor.draft import Draft
 from dalembert.studio.editor.model_reading import model_reading, study_with_model
 from dalembert.studio.editor.text_editor import TextEditor
 from dalembert.studio.frame import complaints, frame
+from dalembert.studio.layout import splitter, tabs
 from dalembert.studio.panels import forms, model
-from dalembert.studio.panels.tabs import tabs
-from dalembert.studio.splitter import splitter
 from dalembert.studio.studies.checking import Checking
 from dalembert.studio.studies.text_head import text_head
 from dalembert.studio.worker import Worker

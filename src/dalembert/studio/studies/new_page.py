@@ -1,13 +1,55 @@
-"""The page to begin a study: from a template, or from a file."""
+"""The page of a new study, and templates as cards."""
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
+from urllib.parse import quote
 
 from nicegui import events, ui
 
-from dalembert.studio.frame import complaints, frame
-from dalembert.studio.studies.template_cards import begin, template_cards
+from dalembert.files import write_text
+from dalembert.studio.frame import button, complaints, frame
 from dalembert.studio.uploads import upload
 from dalembert.studio.workspace import Workspace, as_text
+from dalembert.study.template import Template, templates
+
+
+def template_cards(
+    workspace: Workspace, name: Callable[[], str], shown: Callable[[Template], bool] = lambda one: True
+) -> None:
+    """A card for each template, with a button that begins a study from it.
+
+    Parameters
+    ----------
+    workspace : Workspace
+    name : callable
+        Returns the name of the study; the template's, with a number if it is taken, if empty.
+    shown : callable
+        Says whether a template is shown.
+    """
+    with ui.element("div").classes("grid grid-cols-1 sm:grid-cols-2 lg:grid-cols-3 gap-4 w-full").props("role=list"):
+        for one in filter(shown, templates().values()):
+            with ui.column().classes("border rounded p-3 gap-2 min-w-0").props("role=listitem"):
+                picture = ui.element("img").props(f'src="/picture-of-template/{one.name}" alt="" loading=lazy')
+                picture.props("width=360 height=225").classes("w-full h-40 object-contain")
+                button(one.title, partial(_begin, workspace, one, name), icon="add").classes("w-full")
+                ui.label(one.description).classes("text-sm break-words")
+
+
+def begin(workspace: Workspace, name: str, text: str, beside: dict[str, str]) -> None:
+    """Make a study with the files beside it, and go to its page."""
+    with complaints("begin study"):
+        study = workspace.create(name, text, partial(_write, beside))
+        ui.navigate.to(f"/study/{quote(study)}")
+
+
+def _write(contents: dict[str, str], folder: Path) -> None:
+    for file, content in contents.items():
+        write_text(folder / file, content)
+
+
+def _begin(workspace: Workspace, template: Template, name: Callable[[], str]) -> None:
+    begin(workspace, name() or workspace.free(template.name), template.text, template.beside)
 
 
 def new_page(workspace: Workspace) -> None:

@@ -5,8 +5,8 @@ from urllib.parse import quote
 from nicegui import run, ui
 
 from dalembert.studio.frame import badge, button, frame
+from dalembert.studio.studies.new_page import template_cards
 from dalembert.studio.studies.study_list import Entry, StudyFolder, has_words, study_folders
-from dalembert.studio.studies.template_cards import template_cards
 from dalembert.studio.workspace import Workspace
 from dalembert.study.template import Template, templates
 

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from dalembert.studio.runs.last_runs import LastRun, last_runs
+from dalembert.studio.runs.study_runs import LastRun, last_runs
 from dalembert.studio.studies.documents import document_of, name_in
 from dalembert.studio.workspace import Workspace
 from dalembert.study.schema_file import task_names

@@ -13,10 +13,9 @@ from dalembert.studio.editor.model_kind import model_file
 from dalembert.studio.editor.text_editor import TextEditor
 from dalembert.studio.frame import button, complaints, frame
 from dalembert.studio.jobs import Jobs
+from dalembert.studio.layout import splitter, tabs
+from dalembert.studio.page_services import PageServices
 from dalembert.studio.panels import data, forms, model, sliders
-from dalembert.studio.panels.tabs import tabs
-from dalembert.studio.room import Room
-from dalembert.studio.splitter import splitter
 from dalembert.studio.studies.checking import Checking
 from dalembert.studio.studies.model_page import model_address
 from dalembert.studio.studies.text_head import save_text, text_head
@@ -42,23 +41,23 @@ def study_page(workspace: Workspace, jobs: Jobs, name: str) -> None:
         with frame("No such study" if path is None else name.removesuffix("/study")):
             code_text(str(error)).props("role=alert")
         return
-    room = Room(workspace, jobs, Worker())
-    room.worker.start()
-    ui.context.client.on_delete(room.worker.stop)
+    services = PageServices(workspace, jobs, Worker())
+    services.worker.start()
+    ui.context.client.on_delete(services.worker.stop)
     with frame(name.removesuffix("/study"), wide=True):
         head = ui.column().classes("w-full gap-1")
         with splitter("Width of the text") as (left, right):
             with left:
                 editor = TextEditor(draft)
             with right:
-                tabs([(name, title, icon, partial(show, draft, room)) for name, title, icon, show in PANELS])
+                tabs([(name, title, icon, partial(show, draft, services)) for name, title, icon, show in PANELS])
         with head:
-            _head(draft, room, editor, Checking(draft, room.worker))
+            _head(draft, services, editor, Checking(draft, services.worker))
 
 
-def _head(draft: Draft, room: Room, editor: TextEditor, checking: Checking) -> None:
+def _head(draft: Draft, services: PageServices, editor: TextEditor, checking: Checking) -> None:
     """Build the buttons, what the study does, and its mistakes."""
-    text_head(draft, editor, partial(_run_button, draft, room, checking), complaints()(partial(_copy, draft)))
+    text_head(draft, editor, partial(_run_button, draft, services, checking), complaints()(partial(_copy, draft)))
     way = ui.link("", model_address(draft.name)).classes("break-all")
 
     def show_way() -> None:
@@ -70,9 +69,9 @@ def _head(draft: Draft, room: Room, editor: TextEditor, checking: Checking) -> N
     show_way()
 
 
-def _run_button(draft: Draft, room: Room, checking: Checking) -> None:
+def _run_button(draft: Draft, services: PageServices, checking: Checking) -> None:
     """Build the button that runs the study, while it has no mistakes."""
-    start = button("Run", lambda: _start(draft, room, checking), icon="play_arrow")
+    start = button("Run", lambda: _start(draft, services, checking), icon="play_arrow")
     draft.follow("mistakes", lambda: start.set_enabled(draft.study is not None))
 
 
@@ -83,7 +82,7 @@ def _copy(draft: Draft) -> None:
     ui.navigate.to(f"/study/{quote(copy.parent.name)}/{quote(copy.stem)}")
 
 
-async def _start(draft: Draft, room: Room, checking: Checking) -> None:
+async def _start(draft: Draft, services: PageServices, checking: Checking) -> None:
     """Save, run in a process of its own, and go to the run's page."""
     if draft.reading.text != draft.text:
         await checking.check()
@@ -91,7 +90,7 @@ async def _start(draft: Draft, room: Room, checking: Checking) -> None:
         save_text(draft)
         if draft.study is not None:
             name = draft.study.name if draft.path.stem != "study" else draft.path.parent.name
-            folder = room.workspace.new_run(name)
+            folder = services.workspace.new_run(name)
             folder.parent.mkdir(exist_ok=True)
-            room.jobs.start(draft.path, folder)
+            services.jobs.start(draft.path, folder)
             ui.navigate.to(f"/run/{quote(folder.name)}")

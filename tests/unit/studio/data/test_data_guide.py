@@ -9,8 +9,8 @@ import pytest
 
 from dalembert.errors import InputError
 from dalembert.studio.data.columns import uses
-from dalembert.studio.data.figure import columns_figure, drawn_columns
 from dalembert.studio.data.guide import DataGuide
+from dalembert.studio.data.picker import columns_figure, drawn_columns
 from dalembert.studio.editor.draft import Draft
 from dalembert.studio.editor.reading import reading
 from dalembert.studio.worker import Kept

@@ -4,8 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from dalembert.studio.runs.live import Live
-from dalembert.studio.runs.remaining import Remaining
+from dalembert.studio.runs.live import Live, Remaining
 
 STEP = {"event": "iteration", "start": 0, "best": 1.0, "values": [1.0], "samples": 9}
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from dalembert.studio.runs.last_runs import LastRun, last_runs, study_of
+from dalembert.studio.runs.study_runs import LastRun, last_runs, study_of
 from dalembert.studio.studies.study_list import study_folders
 from dalembert.studio.workspace import Workspace
 from dalembert.study.run.folder import RunFolder

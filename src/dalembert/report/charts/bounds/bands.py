@@ -12,7 +12,7 @@ from dalembert.inverse import Prediction
 from dalembert.report.charts.drawing import colour_of, draw, stacked
 from dalembert.report.look import faint, plain, themed
 from dalembert.report.quantities import common, labelled, quantity
-from dalembert.report.thin import thin, thinned
+from dalembert.report.thinning import thin, thinned
 
 Channels = Bands | Measurements | Prediction
 

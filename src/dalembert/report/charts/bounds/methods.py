@@ -7,7 +7,7 @@ from dalembert.report.charts.drawing import colour_of, draw, logarithmic, positi
 from dalembert.report.charts.identification.responses import FEW
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.quantities import labelled
-from dalembert.report.thin import thinned
+from dalembert.report.thinning import thinned
 from dalembert.uncertainty import Comparison, Propagation
 
 KINDS = {

@@ -10,7 +10,7 @@ from dalembert.report.digits import shown
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.prefixes import prefixed
 from dalembert.report.quantities import labelled, size_label
-from dalembert.report.thin import thinned
+from dalembert.report.thinning import thinned
 from dalembert.units import unit_of
 from dalembert.vibration import CurveFamily, ResonanceTrack
 

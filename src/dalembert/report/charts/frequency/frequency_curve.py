@@ -13,7 +13,7 @@ from dalembert.report.focus import marked, movers, unstable
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.prefixes import prefixed
 from dalembert.report.quantities import labelled, size_label
-from dalembert.report.thin import thinned
+from dalembert.report.thinning import thinned
 from dalembert.units import unit_of
 from dalembert.vibration import Backbone, FrequencyCurve
 

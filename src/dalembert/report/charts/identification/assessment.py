@@ -14,7 +14,7 @@ from dalembert.report.charts.identification.responses import FEW
 from dalembert.report.digits import interval, shown
 from dalembert.report.look import LIGHT, faint, plain, themed
 from dalembert.report.quantities import labelled
-from dalembert.report.thin import thinned
+from dalembert.report.thinning import thinned
 
 
 def prediction(result: Prediction, channels: Sequence[str] | None = None, *, title: str = "Prediction") -> go.Figure:

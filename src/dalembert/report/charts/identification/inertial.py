@@ -6,7 +6,7 @@ import plotly.graph_objects as go
 from dalembert.inverse.inertial import ExcitingTrajectory
 from dalembert.report.charts.drawing import colour_of, draw, stacked
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.thin import thinned
+from dalembert.report.thinning import thinned
 
 SAMPLES = 401
 

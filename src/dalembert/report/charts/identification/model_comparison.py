@@ -6,7 +6,7 @@ import plotly.graph_objects as go
 from dalembert.inverse import ModelComparison
 from dalembert.report.charts.drawing import colour_of
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.thin import thinned
+from dalembert.report.thinning import thinned
 
 
 def model_differences(found: ModelComparison, *, title: str = "Predictive densities of the models") -> go.Figure:

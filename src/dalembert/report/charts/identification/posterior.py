@@ -14,7 +14,7 @@ from dalembert.report.charts.identification.responses import FEW
 from dalembert.report.digits import with_deviation
 from dalembert.report.look import LIGHT, faint, plain, themed
 from dalembert.report.quantities import labelled
-from dalembert.report.thin import thinned
+from dalembert.report.thinning import thinned
 
 BINS = 40
 MOST_PAIRS = 5

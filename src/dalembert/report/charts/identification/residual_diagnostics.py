@@ -11,7 +11,7 @@ from dalembert.inverse import ResidualDiagnostics, SeriesResiduals
 from dalembert.report.charts.drawing import colour_of
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.quantities import labelled
-from dalembert.report.thin import thinned
+from dalembert.report.thinning import thinned
 
 MOST_SERIES = 12
 """Channels that are drawn, those that the tests doubt most."""

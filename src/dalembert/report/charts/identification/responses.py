@@ -13,7 +13,7 @@ from dalembert.report.charts.drawing import colour_of, draw, positive, stacked
 from dalembert.report.charts.identification.search import winner
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.quantities import common, labelled, quantity
-from dalembert.report.thin import thinned
+from dalembert.report.thinning import thinned
 
 FEW = 500
 """Samples up to which each is drawn as a circle."""

@@ -6,7 +6,7 @@ import plotly.graph_objects as go
 from dalembert.inverse import BandFit, Fit
 from dalembert.report.charts.drawing import draw, logarithmic, positive
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.thin import thin
+from dalembert.report.thinning import thin
 
 
 def convergence(fit: Fit | BandFit, *, title: str = "Convergence") -> go.Figure:

@@ -6,7 +6,7 @@ import plotly.graph_objects as go
 from dalembert.multibody import Trajectory, WorkPrecision
 from dalembert.report.charts.drawing import colour_of, draw, logarithmic, positive, stacked
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.thin import largest_of_stretches, thinned
+from dalembert.report.thinning import largest_of_stretches, thinned
 
 ENERGIES = {
     "kinetic": ("kinetic", LIGHT.series[0]),

@@ -10,7 +10,7 @@ from dalembert.multibody import Trajectory
 from dalembert.report.charts.drawing import colour_of, draw, stacked
 from dalembert.report.look import plain, themed
 from dalembert.report.quantities import common, derivative, labelled, quantity
-from dalembert.report.thin import thinned
+from dalembert.report.thinning import thinned
 
 
 def outputs(trajectory: Trajectory, channels: Sequence[str], *, title: str = "Outputs over time") -> go.Figure:

@@ -3,11 +3,11 @@
 import numpy as np
 
 from dalembert.report import charts
-from dalembert.report.asked import Asked
 from dalembert.report.charts.bounds.methods import reference
 from dalembert.report.digits import counted, shown
 from dalembert.report.headline import Headline
 from dalembert.report.look import plain
+from dalembert.report.options import ReportOptions
 from dalembert.report.quantities import by_quantity, labelled, unit
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Listed, Plot, Row, Section
@@ -24,7 +24,7 @@ MEANING = {
 
 
 @sections_of(Propagation)
-def propagation(result: Propagation, asked: Asked) -> list[Section]:
+def propagation(result: Propagation, options: ReportOptions) -> list[Section]:
     """Bounds by one method."""
     error = result.error
     facts = {
@@ -79,7 +79,7 @@ def at_corners(result: Propagation) -> np.ndarray | None:
 
 
 @sections_of(Comparison)
-def comparison(result: Comparison, asked: Asked) -> list[Section]:
+def comparison(result: Comparison, options: ReportOptions) -> list[Section]:
     """Methods, and the bounds of the one that the others are measured by."""
     known = reference(result)
     facts = {

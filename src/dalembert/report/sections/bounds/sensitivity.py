@@ -3,9 +3,9 @@
 import numpy as np
 
 from dalembert.report import charts
-from dalembert.report.asked import Asked
 from dalembert.report.digits import counted
 from dalembert.report.headline import Headline
+from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Download, Fold, Plot, Row, Section
 from dalembert.report.sections.shared_tables import box_table, samples
@@ -14,7 +14,7 @@ from dalembert.uncertainty import Screening, SensitivityIndices
 
 
 @sections_of(SensitivityIndices)
-def sensitivity_indices(told: SensitivityIndices, asked: Asked) -> list[Section]:
+def sensitivity_indices(told: SensitivityIndices, options: ReportOptions) -> list[Section]:
     """Indices of whole channels, then over the samples, then the distributions."""
     facts = {
         "parameters": counted(len(told.box.names)),
@@ -76,7 +76,7 @@ def _download(told: SensitivityIndices) -> Download:
 
 
 @sections_of(Screening)
-def screening(told: Screening, asked: Asked) -> list[Section]:
+def screening(told: Screening, options: ReportOptions) -> list[Section]:
     """Effects on whole channels, the largest first, then the distributions."""
     facts = {
         "parameters": counted(len(told.box.names)),

@@ -3,9 +3,9 @@
 import numpy as np
 
 from dalembert.report import charts
-from dalembert.report.asked import Asked
 from dalembert.report.digits import counted, percent, shown
 from dalembert.report.headline import Headline
+from dalembert.report.options import ReportOptions
 from dalembert.report.quantities import labelled
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Fold, Plot, Section
@@ -18,7 +18,7 @@ STEADY = 1e-3
 
 
 @sections_of(Backbone)
-def backbone(mode: Backbone, asked: Asked) -> list[Section]:
+def backbone(mode: Backbone, options: ReportOptions) -> list[Section]:
     """The mode alone."""
     found, facts = np.asarray(mode.converged), {}
     if found.any():

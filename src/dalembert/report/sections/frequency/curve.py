@@ -5,13 +5,13 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from dalembert.report import charts
-from dalembert.report.asked import Asked
 from dalembert.report.charts.frequency.contacts import shares
 from dalembert.report.charts.frequency.frequency_curve import by_order
 from dalembert.report.digits import counted, percent, shown
 from dalembert.report.focus import Look, dissipation_of, marked, movers, of_contacts, of_springs, unstable
 from dalembert.report.headline import Headline
 from dalembert.report.look import plain
+from dalembert.report.options import ReportOptions
 from dalembert.report.prefixes import in_words
 from dalembert.report.quantities import labelled, size_label
 from dalembert.report.registry import sections_of
@@ -254,18 +254,18 @@ def _most(values: np.ndarray, found: np.ndarray) -> float:
 
 
 @sections_of(FrequencyCurve)
-def frequency_curve(curve: FrequencyCurve, asked: Asked) -> list[Section]:
+def frequency_curve(curve: FrequencyCurve, options: ReportOptions) -> list[Section]:
     """The response, its contacts and harmonics, and what was computed beside it."""
-    look = Look.of(curve, asked.dofs, asked.amplitude) if curve.converged.any() else None
+    look = Look.of(curve, options.dofs, options.amplitude) if curve.converged.any() else None
     sections: list[Section] = [_headline(curve, look)]
     if look is not None:
-        sections.append(forced_response(look, asked.one(Backbone)))
+        sections.append(forced_response(look, options.first(Backbone)))
         sections += [friction(look)] if curve.coordinates else []
         sections.append(harmonics(look))
-    return [*sections, *beside(asked, curve), balance(curve)]
+    return [*sections, *beside(options, curve), balance(curve)]
 
 
-def beside(asked: Asked, curve: FrequencyCurve | None = None) -> list[Section]:
+def beside(options: ReportOptions, curve: FrequencyCurve | None = None) -> list[Section]:
     """Sections of what was computed beside a response."""
     sections = {
         Deformation: deformed,
@@ -273,7 +273,7 @@ def beside(asked: Asked, curve: FrequencyCurve | None = None) -> list[Section]:
         TimeComparison: lambda compared: in_time(compared, curve),
         ReductionErrors: reduced,
     }
-    found = {kind: asked.one(kind) for kind in sections}
+    found = {kind: options.first(kind) for kind in sections}
     return [section(found[kind]) for kind, section in sections.items() if found[kind] is not None]
 
 

@@ -3,17 +3,17 @@
 import numpy as np
 
 from dalembert.report import charts
-from dalembert.report.asked import Asked
 from dalembert.report.charts.frequency.shapes import magnified
 from dalembert.report.digits import counted, percent, shown
 from dalembert.report.headline import Headline
+from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Block, Plot, Section
 from dalembert.vibration import Deformation
 
 
 @sections_of(Deformation)
-def deformation(shape: Deformation, asked: Asked) -> list[Section]:
+def deformation(shape: Deformation, options: ReportOptions) -> list[Section]:
     """The deformed shape."""
     contacts = {"contacts": counted(len(shape.contacts))} if shape.contacts else {}
     headline = Headline(

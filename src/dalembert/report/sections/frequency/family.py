@@ -3,11 +3,11 @@
 import numpy as np
 
 from dalembert.report import charts
-from dalembert.report.asked import Asked
 from dalembert.report.charts.frequency.curve_family import value_text
 from dalembert.report.digits import counted, percent, shown
 from dalembert.report.focus import Look, family_dofs
 from dalembert.report.headline import Headline
+from dalembert.report.options import ReportOptions
 from dalembert.report.prefixes import in_words
 from dalembert.report.quantities import labelled
 from dalembert.report.registry import sections_of
@@ -19,9 +19,9 @@ from dalembert.vibration import CurveFamily, ResonanceTrack
 
 
 @sections_of(CurveFamily)
-def curve_family(family: CurveFamily, asked: Asked) -> list[Section]:
+def curve_family(family: CurveFamily, options: ReportOptions) -> list[Section]:
     """Curves for several values of a parameter, and what was computed beside the best."""
-    dofs, kind = tuple(asked.dofs or family_dofs(family, asked.amplitude)), asked.amplitude
+    dofs, kind = tuple(options.dofs or family_dofs(family, options.amplitude)), options.amplitude
     facts, own = {"values": counted(len(family.values))}, []
     if dofs:
         best = _best(family, dofs[0], kind)
@@ -33,7 +33,7 @@ def curve_family(family: CurveFamily, asked: Asked) -> list[Section]:
             own.append(friction(Look.of(curve, dofs[:1], kind), lead))
     title, verdicts = f"Forced response over {family.parameter}", ("computed", "incomplete")
     headline = Headline.of(title, family.success, verdicts, f"{family.status}.", facts)
-    return [headline, *own, *beside(asked)]
+    return [headline, *own, *beside(options)]
 
 
 def _best(family: CurveFamily, dof: str, kind: str) -> int:
@@ -99,7 +99,7 @@ def _table(family: CurveFamily, place: int, dof: str, kind: str) -> Table:
 
 
 @sections_of(ResonanceTrack)
-def resonance_track(track: ResonanceTrack, asked: Asked) -> list[Section]:
+def resonance_track(track: ResonanceTrack, options: ReportOptions) -> list[Section]:
     """Height and frequency of the peak over the parameter."""
     columns = {
         labelled(track.parameter, track.unit): track.values,

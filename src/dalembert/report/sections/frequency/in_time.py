@@ -3,10 +3,10 @@
 import numpy as np
 
 from dalembert.report import charts
-from dalembert.report.asked import Asked
 from dalembert.report.charts.frequency.time_domain import compared_dofs
 from dalembert.report.digits import counted, percent, shown
 from dalembert.report.headline import Headline
+from dalembert.report.options import ReportOptions
 from dalembert.report.quantities import labelled
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Fold, Plot, Row, Section
@@ -18,7 +18,7 @@ HEADING = "Comparison with time integration"
 
 
 @sections_of(TimeComparison)
-def time_comparison(compared: TimeComparison, asked: Asked) -> list[Section]:
+def time_comparison(compared: TimeComparison, options: ReportOptions) -> list[Section]:
     """The comparison alone."""
     found = np.asarray(compared.converged)
     most = float(np.nanmax(np.abs(compared.differences[found]), initial=0.0))
@@ -70,7 +70,7 @@ def _table(compared: TimeComparison) -> Table:
 
 
 @sections_of(PeriodicMotion)
-def period(motion: PeriodicMotion, asked: Asked) -> list[Section]:
+def period(motion: PeriodicMotion, options: ReportOptions) -> list[Section]:
     """The last period."""
     plots = [Plot("periodic-motion", charts.periodic_motion(motion), "The last period of the integration.")]
     if motion.coordinates:

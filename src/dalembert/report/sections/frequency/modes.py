@@ -3,10 +3,10 @@
 import numpy as np
 
 from dalembert.report import charts
-from dalembert.report.asked import Asked
 from dalembert.report.charts.frequency.shapes import MOST
 from dalembert.report.digits import counted, percent, shown
 from dalembert.report.headline import MOST_VALUES, Headline
+from dalembert.report.options import ReportOptions
 from dalembert.report.quantities import labelled
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Fold, Plot, Section
@@ -15,7 +15,7 @@ from dalembert.structure import Campbell, ModeShapes, ReductionErrors
 
 
 @sections_of(ModeShapes)
-def mode_shapes(modes: ModeShapes, asked: Asked) -> list[Section]:
+def mode_shapes(modes: ModeShapes, options: ReportOptions) -> list[Section]:
     """The modes."""
     numbers = range(1, len(modes.frequencies) + 1)
     how = "The slider goes through the modes; thin lines: at rest; dark: nodal lines."
@@ -33,7 +33,7 @@ def mode_shapes(modes: ModeShapes, asked: Asked) -> list[Section]:
 
 
 @sections_of(Campbell)
-def campbell(diagram: Campbell, asked: Asked) -> list[Section]:
+def campbell(diagram: Campbell, options: ReportOptions) -> list[Section]:
     """The Campbell diagram, critical speeds, and frequencies at each speed."""
     facts = {
         "speeds": counted(len(diagram.speeds)),
@@ -75,7 +75,7 @@ def _frequencies(diagram: Campbell) -> Table:
 
 
 @sections_of(ReductionErrors)
-def reduction_errors(errors: ReductionErrors, asked: Asked) -> list[Section]:
+def reduction_errors(errors: ReductionErrors, options: ReportOptions) -> list[Section]:
     """The errors of frequencies and shapes."""
     headline = Headline(
         title="Reduction",

@@ -6,10 +6,10 @@ import numpy as np
 
 from dalembert.inverse import Designs, Prediction, Profiles
 from dalembert.report import charts
-from dalembert.report.asked import Asked
 from dalembert.report.digits import counted, interval, shown
 from dalembert.report.headline import Headline, few
 from dalembert.report.look import plain
+from dalembert.report.options import ReportOptions
 from dalembert.report.quantities import by_quantity, labelled
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Fold, Listed, Plot, Row, Section, numbered
@@ -17,7 +17,7 @@ from dalembert.report.table import Table, cell, cells, marks
 
 
 @sections_of(Profiles)
-def profiles(told: Profiles, asked: Asked) -> list[Section]:
+def profiles(told: Profiles, options: ReportOptions) -> list[Section]:
     """The profiles alone."""
     items = {item.name: item for item in told.parameters}
     ends = [interval(curve.lower, curve.upper) for curve in told.curves]
@@ -59,7 +59,7 @@ def _table(told: Profiles) -> Table:
 
 
 @sections_of(Prediction)
-def prediction(told: Prediction, asked: Asked) -> list[Section]:
+def prediction(told: Prediction, options: ReportOptions) -> list[Section]:
     """The prediction alone."""
     facts = {"level": f"{100 * told.level:g} %", "channels": counted(len(told.channels))}
     verdicts = ("predicted", "not bounded")
@@ -91,7 +91,7 @@ def _prediction_table(predictions: Mapping[str, Prediction]) -> Table:
 
 
 @sections_of(Designs)
-def designs(told: Designs, asked: Asked) -> list[Section]:
+def designs(told: Designs, options: ReportOptions) -> list[Section]:
     """The designs, the best first."""
     facts = {
         "best sensors": ", ".join(told.sensors[0]),

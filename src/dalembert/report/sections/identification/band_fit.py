@@ -6,11 +6,11 @@ import numpy as np
 
 from dalembert.inverse import BandFit
 from dalembert.report import charts
-from dalembert.report.asked import Asked
 from dalembert.report.charts.identification.intervals import reproduced
 from dalembert.report.digits import counted, interval, shown
 from dalembert.report.headline import Headline, few
 from dalembert.report.look import plain
+from dalembert.report.options import ReportOptions
 from dalembert.report.quantities import by_quantity, labelled, unit
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Plot, Section
@@ -23,9 +23,9 @@ NONE = 1e-6
 
 
 @sections_of(BandFit)
-def band_fit(fit: BandFit, asked: Asked) -> list[Section]:
+def band_fit(fit: BandFit, options: ReportOptions) -> list[Section]:
     """Intervals, the bands, and the search."""
-    return [_headline(fit), _intervals(fit, asked.truth), _bands(fit), *search(fit), identifiability(fit)]
+    return [_headline(fit), _intervals(fit, options.truth), _bands(fit), *search(fit), identifiability(fit)]
 
 
 def _headline(fit: BandFit) -> Headline:

@@ -8,10 +8,10 @@ from dalembert.inverse import Fit, Population, Prediction, Profiles
 from dalembert.multibody import Trajectory
 from dalembert.parameters import Parameter
 from dalembert.report import charts
-from dalembert.report.asked import Asked
 from dalembert.report.charts.identification.parameters import on_bound
 from dalembert.report.digits import counted, shown, with_deviation
 from dalembert.report.headline import Headline, few
+from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Listed, Plot, Section
 from dalembert.report.sections.identification.assessment import predicted, profiled
@@ -94,17 +94,17 @@ def _halves(fit: Fit) -> list[Table]:
 
 
 @sections_of(Fit)
-def fit(result: Fit, asked: Asked) -> list[Section]:
+def fit(result: Fit, options: ReportOptions) -> list[Section]:
     """Estimates, the response against the data, the residuals, the motion, the search, and what is known beyond."""
-    moving, profiles, predictions = asked.each(Trajectory), asked.one(Profiles), asked.each(Prediction)
-    population = asked.one(Population)
+    moving, profiles, predictions = options.each(Trajectory), options.first(Profiles), options.each(Prediction)
+    population = options.first(Population)
     data = {"": result.data, **{item.name: item.data for item in result.experiments}}
     return [
         _headline(result),
         estimates(result),
         experiments(result) if result.experiments else compared(result),
         *residuals(result),
-        *mechanisms(moving, asked.points, data),
+        *mechanisms(moving, options.points, data),
         *search(result),
         *([] if result.nodes is None else [shooting(result, result.nodes)]),
         identifiability(result),

@@ -13,9 +13,9 @@ from dalembert.inverse.inertial import (
     TorquePrediction,
 )
 from dalembert.report import charts
-from dalembert.report.asked import Asked
 from dalembert.report.digits import counted, shown
 from dalembert.report.headline import Headline
+from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Fold, Plot, Section
 from dalembert.report.table import Table, cell, cells
@@ -23,7 +23,7 @@ from dalembert.units import inertial_unit
 
 
 @sections_of(ConsistentInertias)
-def consistent(found: ConsistentInertias, asked: Asked) -> list[Section]:
+def consistent(found: ConsistentInertias, options: ReportOptions) -> list[Section]:
     """Links, other parameters, base parameters and noise."""
     count, few = 10 * len(found.links), found.deviations
     links = {
@@ -63,9 +63,9 @@ def consistent(found: ConsistentInertias, asked: Asked) -> list[Section]:
 
 
 @sections_of(TorquePrediction)
-def torque_prediction(found: TorquePrediction, asked: Asked) -> list[Section]:
+def torque_prediction(found: TorquePrediction, options: ReportOptions) -> list[Section]:
     """Sections of the inertias, with the torques of the fitted motion, and of the unseen one."""
-    headline, *others = consistent(found.inertias, asked)
+    headline, *others = consistent(found.inertias, options)
     assert isinstance(headline, Headline)
     records = [("fitted", found.times, found.measured, found.predicted)]
     if len(found.unseen_times):
@@ -98,7 +98,7 @@ def _prediction(found: TorquePrediction, name: str) -> list[Table]:
 
 
 @sections_of(BaseEstimate)
-def base_estimate(found: BaseEstimate, asked: Asked) -> list[Section]:
+def base_estimate(found: BaseEstimate, options: ReportOptions) -> list[Section]:
     """Base parameters and noise."""
     success = not any(one.severity == "error" for one in found.outcome)
     facts = {"base parameters": counted(found.base.rank), "joints": counted(len(found.joints))}
@@ -107,7 +107,7 @@ def base_estimate(found: BaseEstimate, asked: Asked) -> list[Section]:
 
 
 @sections_of(BaseParameters)
-def base_parameters(found: BaseParameters, asked: Asked) -> list[Section]:
+def base_parameters(found: BaseParameters, options: ReportOptions) -> list[Section]:
     """Combinations in words."""
     facts = {"rank": f"{found.rank} of {len(found.names)}", "condition number": shown(found.condition, digits=4)}
     headline = Headline.of("Base parameters", True, ("computed", ""), "", facts)
@@ -116,7 +116,7 @@ def base_parameters(found: BaseParameters, asked: Asked) -> list[Section]:
 
 
 @sections_of(ExcitingTrajectory)
-def exciting(found: ExcitingTrajectory, asked: Asked) -> list[Section]:
+def exciting(found: ExcitingTrajectory, options: ReportOptions) -> list[Section]:
     """The motion, and the largest velocities and accelerations with their limits."""
     _, velocities, accelerations = found.motion.motion(np.linspace(0.0, found.motion.period, 1001))
     table = {
@@ -139,7 +139,7 @@ def exciting(found: ExcitingTrajectory, asked: Asked) -> list[Section]:
 
 
 @sections_of(Recovery)
-def recovery(found: Recovery, asked: Asked) -> list[Section]:
+def recovery(found: Recovery, options: ReportOptions) -> list[Section]:
     """Coverage of each base parameter."""
     shares = {
         "base parameter": found.base,

@@ -8,9 +8,9 @@ from dalembert.inverse import CrossValidation, ModelComparison
 from dalembert.inverse.comparison.conclusions import alike
 from dalembert.inverse.comparison.left_out import WAYS
 from dalembert.report import charts
-from dalembert.report.asked import Asked
 from dalembert.report.digits import counted, shown
 from dalembert.report.headline import Headline
+from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Listed, Plot, Row, Section
 from dalembert.report.sections.identification.response import compared_simply
@@ -20,7 +20,7 @@ HOW = "Lines are predicted by the fits without each group, circles are data; bel
 
 
 @sections_of(CrossValidation)
-def cross_validation(found: CrossValidation, asked: Asked) -> list[Section]:
+def cross_validation(found: CrossValidation, options: ReportOptions) -> list[Section]:
     """The errors and values of each group, and the predictions of a single record."""
     facts = {
         "groups": counted(len(found.log_densities)),
@@ -49,14 +49,12 @@ def _doubts(found: CrossValidation) -> Iterator[str]:
         )
 
 
-DIFFERENCES_HOW = (
-    "Differences to the best model, with two standard deviations. A difference below 4 means nothing."
-)
+DIFFERENCES_HOW = "Differences to the best model, with two standard deviations. A difference below 4 means nothing."
 WHERE = "The sum over the groups in the order of the data. A step is a part of the data that a model predicts worse."
 
 
 @sections_of(ModelComparison)
-def model_comparison(found: ModelComparison, asked: Asked) -> list[Section]:
+def model_comparison(found: ModelComparison, options: ReportOptions) -> list[Section]:
     """The ranking, and its section."""
     facts = {"best": found.models[0], "models": counted(len(found.models)), "values": counted(found.values)}
     verdict = "equal models" if alike(found)[1] else "ranked"

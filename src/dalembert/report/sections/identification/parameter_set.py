@@ -4,10 +4,10 @@ import numpy as np
 
 from dalembert.inverse import ParameterSet
 from dalembert.report import charts
-from dalembert.report.asked import Asked
 from dalembert.report.charts.identification.paving import planes
 from dalembert.report.digits import counted, interval, shown
 from dalembert.report.headline import Headline, few
+from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Plot, Row, Section
 from dalembert.report.sections.shared_tables import box_table
@@ -19,13 +19,13 @@ BOXES = (
 
 
 @sections_of(ParameterSet)
-def parameter_set(found: ParameterSet, asked: Asked) -> list[Section]:
+def parameter_set(found: ParameterSet, options: ReportOptions) -> list[Section]:
     """Outer and inner box, and the paving in the planes of the parameters."""
     boxes = [(getattr(found, name), caption, f"{name}-box") for name, caption in BOXES]
     tables = [box_table(*box, units=found.parameters.units(box[0].names)) for box in boxes if box[0] is not None]
     caption = "Every point of a consistent box explains all data within their errors; an undecided box may hold some."
     plots = [
-        Plot(f"paving-{place}", charts.paving(found, plane, truth=asked.truth), caption)
+        Plot(f"paving-{place}", charts.paving(found, plane, truth=options.truth), caption)
         for place, plane in enumerate(planes(found.parameters.names), start=1)
     ]
     return [_headline(found), Section("Consistent set", (*tables, Row(plots)))]

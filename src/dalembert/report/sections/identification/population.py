@@ -4,9 +4,9 @@ from collections.abc import Iterable
 
 from dalembert.inverse import Population
 from dalembert.report import charts
-from dalembert.report.asked import Asked
 from dalembert.report.digits import counted, interval, shown
 from dalembert.report.headline import MOST_VALUES, Headline
+from dalembert.report.options import ReportOptions
 from dalembert.report.quantities import labelled
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Fold, Listed, Plot, Row, Section
@@ -14,7 +14,7 @@ from dalembert.report.table import Table, cell, cells
 
 
 @sections_of(Population)
-def population(told: Population, asked: Asked) -> list[Section]:
+def population(told: Population, options: ReportOptions) -> list[Section]:
     """Means and spreads, then the specimens."""
     named = [labelled(name, unit) for name, unit in zip(told.names, told.units, strict=True)]
     texts = [f"{shown(float(m))}, spread {shown(float(s))}" for m, s in zip(told.mean, told.spread, strict=True)]

@@ -4,10 +4,10 @@ import numpy as np
 
 from dalembert.inverse import Posterior, Profiles
 from dalembert.report import charts
-from dalembert.report.asked import Asked
 from dalembert.report.digits import counted, interval, with_deviation
 from dalembert.report.headline import Headline, few, fixed_facts
 from dalembert.report.look import plain
+from dalembert.report.options import ReportOptions
 from dalembert.report.quantities import by_quantity
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Plot, Row, Section
@@ -25,9 +25,9 @@ BAND = "The band contains a new measurement with 95 %. Below, the data less the 
 
 
 @sections_of(Posterior)
-def posterior(told: Posterior, asked: Asked) -> list[Section]:
+def posterior(told: Posterior, options: ReportOptions) -> list[Section]:
     """Headline, parameters with their marginals, pairs, traces and the predictive bands."""
-    profiles = asked.one(Profiles)
+    profiles = options.first(Profiles)
     chains, draws, _ = told.draws.shape
     texts = [with_deviation(float(m), float(d)) for m, d in zip(told.mean, told.deviations, strict=True)]
     facts = {

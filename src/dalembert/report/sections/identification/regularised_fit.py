@@ -4,9 +4,9 @@ import numpy as np
 
 from dalembert.inverse import RegularisedFit
 from dalembert.report import charts
-from dalembert.report.asked import Asked
 from dalembert.report.digits import counted, shown
 from dalembert.report.headline import Headline
+from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Download, Plot, Row, Section
 from dalembert.report.sections.identification.response import compared_simply
@@ -14,7 +14,7 @@ from dalembert.report.table import Table, cells
 
 
 @sections_of(RegularisedFit)
-def regularised_fit(fit: RegularisedFit, asked: Asked) -> list[Section]:
+def regularised_fit(fit: RegularisedFit, options: ReportOptions) -> list[Section]:
     """The parameters, the L-curve, and the response."""
     facts = {
         "parameters": counted(len(fit.names)),

@@ -98,6 +98,6 @@ def _starts(fit: Fit | BandFit) -> Table:
 def grew(fit: Fit | BandFit) -> bool:
     """Whether the horizon of the first start grew: more was simulated than the one linearised run of a first step."""
     facts = fit.provenance
-    asked = facts.get("horizon") == "growing" and facts.get("method", {}).get("name") in LEAST_SQUARES
+    grows = facts.get("horizon") == "growing" and facts.get("method", {}).get("name") in LEAST_SQUARES
     first = next((step.simulations for step in fit.history if step.start == 0), 0)
-    return asked and getattr(fit, "nodes", None) is None and first > 1 + len(fit.parameters)
+    return grows and getattr(fit, "nodes", None) is None and first > 1 + len(fit.parameters)

@@ -3,8 +3,8 @@
 from typing import Any
 
 from dalembert.report import charts
-from dalembert.report.asked import Asked
 from dalembert.report.headline import MOST_VALUES, Headline
+from dalembert.report.options import ReportOptions
 from dalembert.report.quantities import labelled
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Fold, Plot, Row, Section
@@ -12,7 +12,7 @@ from dalembert.report.table import Table
 
 
 @sections_of("dalembert.study.tasks.sweep.Sweep")
-def sweep(result: Any, asked: Asked) -> list[Section]:
+def sweep(result: Any, options: ReportOptions) -> list[Section]:
     """A figure and a table for each parameter."""
     names = ", ".join(curve.parameter for curve in result.curves)
     status = f"Responses at {result.at}, one parameter varied at a time: {names}. {result.status}"

@@ -9,11 +9,11 @@ from dalembert.data import Measurements
 from dalembert.forward import Coordinate
 from dalembert.multibody import Drawing, Trajectory
 from dalembert.report import charts
-from dalembert.report.asked import Asked
 from dalembert.report.charts.motion.diagnostics import LEVELS
 from dalembert.report.digits import counted, percent, shown
 from dalembert.report.headline import Headline
 from dalembert.report.look import plain
+from dalembert.report.options import ReportOptions
 from dalembert.report.quantities import by_quantity
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Block, Plot, Row, Section, numbered
@@ -143,7 +143,7 @@ OUTPUTS_HEADING = "Outputs over time"
 
 
 def outputs(trajectory: Trajectory, channels: Sequence[str]) -> list[Section]:
-    """A figure for each quantity, and all samples for download; nothing where no channel is asked for."""
+    """A figure for each quantity, and all samples for download; nothing where no channel is chosen."""
     if not channels:
         return []
     plots = [
@@ -155,20 +155,20 @@ def outputs(trajectory: Trajectory, channels: Sequence[str]) -> list[Section]:
     return [Section(OUTPUTS_HEADING, (*plots, download))]
 
 
-def asked_channels(trajectory: Trajectory, channels: Sequence[str], points: Sequence[str]) -> tuple[str, ...]:
-    """The channels that are asked for, then the coordinates of the points, each once."""
+def chosen_channels(trajectory: Trajectory, channels: Sequence[str], points: Sequence[str]) -> tuple[str, ...]:
+    """The chosen channels, then the coordinates of the points, each once."""
     coordinates = [f"{point}.{axis}" for point in points for axis in trajectory.system.AXES]
     return tuple(dict.fromkeys((*channels, *coordinates)))
 
 
 @sections_of(Trajectory)
-def trajectory(result: Trajectory, asked: Asked) -> list[Section]:
-    """The mechanism in motion, the asked channels over time, and the diagnostics."""
+def trajectory(result: Trajectory, options: ReportOptions) -> list[Section]:
+    """The mechanism in motion, the chosen channels over time, and the diagnostics."""
     moving = {"": result}
-    channels = asked_channels(result, asked.channels, asked.points)
+    channels = chosen_channels(result, options.channels, options.points)
     return [
         motion_headline(result),
-        *mechanisms(moving, asked.points),
+        *mechanisms(moving, options.points),
         *outputs(result, channels),
         diagnostics(moving),
     ]

@@ -4,9 +4,9 @@ import numpy as np
 
 from dalembert.multibody import WorkPrecision
 from dalembert.report import charts
-from dalembert.report.asked import Asked
 from dalembert.report.digits import counted, shown
 from dalembert.report.headline import Headline
+from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Plot, Section
 from dalembert.report.table import Table, cells, marks
@@ -17,7 +17,7 @@ VIOLATIONS = {"|Φ|": "position", "|Φ̇|": "velocity", "|Φ̈|": "acceleration"
 
 
 @sections_of(WorkPrecision)
-def work_precision(found: WorkPrecision, asked: Asked) -> list[Section]:
+def work_precision(found: WorkPrecision, options: ReportOptions) -> list[Section]:
     """Error, run time and constraint violations of each integrator with each of its settings."""
     fastest = {f"fastest to {error:.0e}": row.method for error in ERRORS if (row := found.fastest(error))}
     facts = {

@@ -8,7 +8,7 @@ from dalembert.studio.workspace import Workspace
 
 
 @dataclass(frozen=True)
-class Room:
+class PageServices:
     """Where the page of a study lives.
 
     Parameters

@@ -1,4 +1,4 @@
-"""What a report is asked to show with a result."""
+"""The options of a report: what it shows with a result."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
@@ -12,8 +12,8 @@ Kind = TypeVar("Kind")
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What a report is asked to show with a result.
+class ReportOptions:
+    """The options of a report: what it shows with a result.
 
     Parameters
     ----------
@@ -47,24 +47,27 @@ class Asked:
     def each(self, kind: type[Kind]) -> dict[str, Kind]:
         """Results of a kind by the names of their experiments; by no name where there is only one.
 
-        >>> Asked((3, {"warm": 1.0, "cold": 2.0})).each(int), Asked((3, {"warm": 1.0, "cold": 2.0})).each(float)
+        >>> options = ReportOptions((3, {"warm": 1.0, "cold": 2.0}))
+        >>> options.each(int), options.each(float)
         ({'': 3}, {'warm': 1.0, 'cold': 2.0})
         """
-        found: dict[str, Kind] = {}
-        for one in self.beside:
-            given = one if isinstance(one, Mapping) else {"": one}
-            found.update({name: value for name, value in given.items() if isinstance(value, kind)})
-        self.taken.extend(found.values())
-        return found
+        results = {
+            name: value
+            for item in self.beside
+            for name, value in (item if isinstance(item, Mapping) else {"": item}).items()
+            if isinstance(value, kind)
+        }
+        self.taken.extend(results.values())
+        return results
 
-    def one(self, kind: type[Kind]) -> Kind | None:
+    def first(self, kind: type[Kind]) -> Kind | None:
         """The first result of a kind; None if there is none."""
         return next(iter(self.each(kind).values()), None)
 
     @property
     def sections(self) -> list[Section]:
-        """Sections of the user's."""
-        return [one for one in self.beside if isinstance(one, Section)]
+        """The user's sections."""
+        return [item for item in self.beside if isinstance(item, Section)]
 
     def refuse_others(self) -> None:
         """Refuse what no section has taken.
@@ -74,28 +77,28 @@ class Asked:
         InputError
             For anything else than results that a section has taken, and sections.
         """
-        for one in self.beside:
-            for value in one.values() if isinstance(one, Mapping) else [one]:
-                if not isinstance(value, Section) and not any(value is other for other in self.taken):
+        for item in self.beside:
+            for value in item.values() if isinstance(item, Mapping) else [item]:
+                if not isinstance(value, Section) and not any(value is shown_result for shown_result in self.taken):
                     raise InputError(
-                        f"report: {shown(one)} was given beside the result; expected a trajectory, profiles, a "
+                        f"report: {shown(item)} was given beside the result; expected a trajectory, profiles, a "
                         "population, a prediction, a comparison in time, a backbone, a deformation, reduction errors, "
                         "or a section"
                     )
 
 
-def asked(beside: tuple[Any, ...], **options: Any) -> Asked:
-    """What is asked for, from the arguments of :func:`dalembert.report.report`.
+def report_options(beside: tuple[Any, ...], **options: Any) -> ReportOptions:
+    """Return the options from the arguments of :func:`dalembert.report.report`.
 
     Raises
     ------
     InputError
         For an unknown option.
     """
-    known = {one.name for one in fields(Asked) if one.init} - {"beside"}
+    known = {item.name for item in fields(ReportOptions) if item.init} - {"beside"}
     for name in options:
         if name not in known:
             raise InputError(unknown("option", name, sorted(known), "report"))
     lists = {name: tuple(options[name]) for name in ("points", "channels", "dofs") if name in options}
-    given = tuple(one for one in beside if one is not None)
-    return Asked(given, **{**options, **lists, "truth": options.get("truth") or {}})
+    results = tuple(item for item in beside if item is not None)
+    return ReportOptions(results, **{**options, **lists, "truth": options.get("truth") or {}})

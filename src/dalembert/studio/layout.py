@@ -1,6 +1,6 @@
-"""Two parts of a page side by side, below each other on narrow screens, whose border a mouse and keys can move."""
+"""The parts of a page: beside each other, and as tabs."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
 from nicegui import ui
@@ -25,3 +25,18 @@ def splitter(label: str) -> Iterator[tuple[Slot, Slot]]:
         grip.on("keydown.right", lambda: move(STEP))
     element.on_value_change(lambda: grip.props(f"aria-valuenow={element.value:.0f}"))
     yield element.before, element.after
+
+
+Panel = tuple[str, str, str, Callable[[], object]]
+"""Name, title and icon of a panel, and the function that builds it."""
+
+
+def tabs(panels: Sequence[Panel]) -> None:
+    """Build the panels; the first one is open."""
+    with ui.tabs().props("dense no-caps inline-label align=left outside-arrows mobile-arrows").classes("w-full") as bar:
+        for name, title, icon, _ in panels:
+            ui.tab(name, title, icon)
+    with ui.tab_panels(bar, value=panels[0][0], animated=False).classes("w-full grow bg-transparent"):
+        for name, _, _, show in panels:
+            with ui.tab_panel(name).style("padding: 4px 0"):
+                show()

@@ -1,7 +1,10 @@
-"""Work that is only worth doing for the newest state."""
+"""Work that is repeated: for the newest state alone, or in a part of the time."""
 
 import asyncio
-from collections.abc import Awaitable, Callable
+import time
+from collections.abc import Awaitable, Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 
 from nicegui import background_tasks
 
@@ -41,3 +44,35 @@ class Latest:
                     await self._work()
         finally:
             self._busy = False
+
+
+@dataclass
+class Throttle:
+    """Repeated work that takes at most a part of the time.
+
+    Parameters
+    ----------
+    part : float
+        Of the time.
+    clock : function
+        Time in seconds.
+    """
+
+    part: float = 0.05
+    clock: Callable[[], float] = time.monotonic
+    _next: float = 0.0
+
+    @property
+    def is_due(self) -> bool:
+        """Whether the work may be done again."""
+        return self.clock() >= self._next
+
+    @contextmanager
+    def work(self) -> Iterator[None]:
+        """A block that does the work."""
+        began = self.clock()
+        try:
+            yield
+        finally:
+            ended = self.clock()
+            self._next = ended + (ended - began) * (1 / self.part - 1)

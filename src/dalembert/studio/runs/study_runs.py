@@ -1,9 +1,11 @@
-"""The last run of each study, and the study of a run."""
+"""Runs of studies: the last run of each, the study of a run, and its repetition."""
 
 import json
 from dataclasses import dataclass
 from pathlib import Path
 
+from dalembert.studio.jobs import Jobs
+from dalembert.studio.runs.run_list import study_name
 from dalembert.studio.studies.documents import name_in
 from dalembert.studio.workspace import Workspace
 from dalembert.study.run.folder import RunFolder
@@ -60,3 +62,11 @@ def study_of(workspace: Workspace, folder: RunFolder) -> str | None:
 def _last(folder: RunFolder) -> LastRun:
     state = folder.state()
     return LastRun(folder.path.name, str(state["state"]), since(state))
+
+
+def run_again(workspace: Workspace, jobs: Jobs, name: str) -> str:
+    """Start the study of a run again; return the name of the new run."""
+    old = workspace.run(name)
+    folder = workspace.new_run(study_name(old, old.state()) or name)
+    jobs.rerun(old.path, folder)
+    return folder.name

@@ -1056,7 +1056,7 @@ CASES: dict[str, Case] = {
     ),
     "methods of which one gives up": Case(
         lambda: da.compare(WAVE, {"rate": (1.0, 20.0)}, [Chebyshev(Tensor(4))]),
-        ("Not successful: ", "gave no bounds:"),
+        ("Not successful: ", "The table of methods has the reasons."),
     ),
     # ── multiple shooting ───────────────────────────────────────────────────────────────────────────────────────────
     "segments of data of unknown noise": Case(

@@ -8,21 +8,31 @@ from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from dalembert.contents import Contents
+from dalembert.digits import shown
 from dalembert.errors import DataError
 from dalembert.files import read_dataset, write_contents
 from dalembert.findings import Finding
 from dalembert.notebook_display import Displayed
 from dalembert.parameters import Parameter
+from dalembert.quantities import labelled
 from dalembert.stored_fields import Source, Store, restore, store
+from dalembert.tables import Table
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
 
 class Result(Displayed):
-    """A result that can be written to a file, drawn, and reported."""
+    """A result that can be written to a file, drawn, and reported.
+
+    A class of results defines :meth:`facts` and :meth:`tables`. The summary, reports, notebooks and pages show them.
+    """
 
     FORMAT: ClassVar[str]
+    TITLE: ClassVar[str] = ""
+    """Heading of its report."""
+    VERDICTS: ClassVar[tuple[str, str]] = ("computed", "incomplete")
+    """A word for success, and one for the opposite."""
     findings: tuple[Finding, ...] = ()
     """What the method concludes about the result."""
 
@@ -35,6 +45,31 @@ class Result(Displayed):
     def doubts(self) -> tuple[Finding, ...]:
         """Reasons to doubt the result: its findings that are more than notes."""
         return tuple(finding for finding in self.conclusions if finding.doubtful)
+
+    @property
+    def verdict(self) -> str:
+        """Whether the result is a success, in a word or two."""
+        return self.VERDICTS[0 if getattr(self, "success", True) else 1]
+
+    def facts(self) -> dict[str, str]:
+        """Return the few numbers that matter, as texts by what they are."""
+        return {}
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the tables of the result, the most important first."""
+        return ()
+
+    def summary(self) -> str:
+        """Return tables, facts, status and findings as text."""
+        tables, facts = self.tables(), {**self.facts(), **fixed_facts(self)}
+        lines: list[str] = []
+        for table in tables:
+            lines += [*([table.caption] if len(tables) > 1 else []), *table.lines(), ""]
+        if facts:
+            lines += [*fact_lines(max(map(len, facts)) + 1, **facts), ""]
+        status = getattr(self, "status", "")
+        findings = [str(finding) for finding in self.findings if str(finding) not in status]
+        return "\n".join([*lines, *filter(None, (status, *findings))])
 
     def contents(self) -> Contents:
         """Everything as labelled arrays, with units as attributes, by the types of the fields."""
@@ -111,6 +146,11 @@ def fixed_of(result: Any) -> tuple[Parameter, ...]:
     """Parameters of a result that were fixed by equal bounds."""
     held = getattr(getattr(result, "parameters", None), "fixed", ())
     return getattr(result, "fixed", held)
+
+
+def fixed_facts(result: Any) -> dict[str, str]:
+    """Values of the parameters that were fixed by equal bounds, as texts by their names."""
+    return {f"{labelled(item.name, item.unit)}, fixed": shown(float(item.lower)) for item in fixed_of(result)}
 
 
 def fixed_lines(result: Any, width: int = 12) -> list[str]:

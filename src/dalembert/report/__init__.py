@@ -8,8 +8,8 @@ _NAMES = {
     "page": "report",
     "registry": "sections_of",
     "section": "Part",
-    "table": "Table cell",
 }
 _HOMES = {name: f"{__name__}.{module}" for module, names in _NAMES.items() for name in names.split()}
+_HOMES |= dict.fromkeys(("Table", "cell"), "dalembert.tables")
 _MODULES = ("charts",)
 __getattr__, __dir__ = lazy_names(__name__, _HOMES, _MODULES)

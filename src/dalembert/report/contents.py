@@ -6,11 +6,12 @@ from typing import Any
 
 import plotly.graph_objects as go
 
-from dalembert.report.headline import Headline, fixed_facts
+from dalembert.report.headline import Headline
 from dalembert.report.options import ReportOptions, report_options
 from dalembert.report.registry import registered_sections
 from dalembert.report.section import Block, Section, Source
-from dalembert.report.table import Cell, Table
+from dalembert.results import fixed_facts
+from dalembert.tables import Cell, Table
 
 LONGEST = 200
 """Characters of a value that a page shows."""

@@ -1,17 +1,12 @@
 """The first lines of a report: what was done, whether it worked, and what came out."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from dalembert.findings import Finding
-from dalembert.parameters import Parameter
-from dalembert.report.digits import shown
-from dalembert.report.quantities import labelled
 from dalembert.report.section import Section
-from dalembert.results import fixed_of
-
-MOST_VALUES = 4
+from dalembert.results import Result
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,12 +43,8 @@ class Headline(Section):
         return "bad" if not self.success else "doubtful" if self.doubts or self.doubtful else "good"
 
 
-def fixed_facts(result: object) -> dict[str, str]:
-    """Values of the parameters that were fixed by equal bounds."""
-    return {f"{labelled(item.name, item.unit)}, fixed": shown(float(item.lower)) for item in fixed_of(result)}
-
-
-def few(parameters: Iterable[Parameter], texts: Iterable[str]) -> dict[str, str]:
-    """The values of parameters as facts, unless there are many."""
-    facts = {labelled(item.name, item.unit): text for item, text in zip(parameters, texts, strict=True)}
-    return facts if len(facts) <= MOST_VALUES else {}
+def headline_of(result: Result, **changes: Any) -> Headline:
+    """Return the headline of a result: its title, verdict, status and facts, with changes."""
+    content = {"title": result.TITLE, "verdict": result.verdict, "facts": result.facts()}
+    content |= {"success": getattr(result, "success", True), "status": getattr(result, "status", "")}
+    return Headline(**content | changes)

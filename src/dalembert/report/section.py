@@ -6,16 +6,21 @@ from functools import cached_property
 from html import unescape
 from typing import Any, ClassVar, TypeVar
 
+import numpy as np
 import plotly.graph_objects as go
 from jinja2 import Environment
 from markupsafe import Markup
 from plotly.io import to_json
 
-from dalembert.report.table import Table
+from dalembert.forward import Coordinate
+from dalembert.quantities import labelled
+from dalembert.tables import Table
 
 SAFE = str.maketrans({"<": "\\u003c", ">": "\\u003e", "&": "\\u0026"})
 """Characters that could end a script element, as JSON may write them."""
 
+MOST_ROWS = 5000
+"""Numbers of a series up to which a page holds them."""
 
 Shown = TypeVar("Shown")
 
@@ -164,3 +169,18 @@ def numbered(name: str, given: Mapping[str, Shown]) -> Iterator[tuple[str, str, 
     """
     for number, (experiment, one) in enumerate(given.items(), start=1):
         yield f"{name}-{number}" if experiment else name, experiment, one
+
+
+def samples(
+    name: str, along: Coordinate, channels: Sequence[str], series: Mapping[str, np.ndarray], words: str
+) -> Download:
+    """Download of series (samples, channels), each with its word; of nothing where they are too many for a page."""
+    if max(values.size for values in series.values()) > MOST_ROWS:
+        return Download(None, words)
+    columns = {labelled(along.name, along.unit): along.values}
+    columns |= {
+        f"{channel} {word}".rstrip(): values[:, column]
+        for column, channel in enumerate(channels)
+        for word, values in series.items()
+    }
+    return Download(Table.of(name, "", columns), words)

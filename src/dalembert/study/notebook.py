@@ -1,9 +1,9 @@
 """What a notebook shows of a study."""
 
+from dalembert.digits import shown
 from dalembert.parameters import Parameter
-from dalembert.report.digits import shown
+from dalembert.quantities import labelled
 from dalembert.report.notebook import Summary
-from dalembert.report.quantities import labelled
 from dalembert.study.picture import picture_or_message
 from dalembert.study.run.runner import plan
 from dalembert.study.tables.study import Study

@@ -9,10 +9,12 @@ import numpy as np
 
 from dalembert.arguments import takes_checked
 from dalembert.contents import Contents
+from dalembert.digits import counted
 from dalembert.errors import ClusterError, DalembertError, InputError, StorageError
 from dalembert.findings import Finding, stored_findings
 from dalembert.forward import Executor, ForwardModel, on_cluster, takes_executor
-from dalembert.results import EndedResult, stored_settings, text_table
+from dalembert.results import EndedResult, stored_settings
+from dalembert.tables import Table, cell, cells
 from dalembert.uncertainty.events import OnEvent
 from dalembert.uncertainty.method import Method
 from dalembert.uncertainty.methods import label, method_of
@@ -53,6 +55,8 @@ class Comparison(EndedResult):
     """
 
     FORMAT: ClassVar[str] = "dalembert comparison 1"
+    TITLE: ClassVar[str] = "Methods compared"
+    VERDICTS: ClassVar[tuple[str, str]] = ("compared", "incomplete")
 
     results: tuple[Propagation, ...]
     reference: str
@@ -61,13 +65,12 @@ class Comparison(EndedResult):
     @property
     def rows(self) -> tuple[Row, ...]:
         """A row a method, in the order of ``results``."""
-        known = next(result for result in self.results if result.method == self.reference)
+        reference = self.reference_result
         rows = []
-        for own in self.results:
-            apart = np.abs([own.lower - known.lower, own.upper - known.upper])
-            rms = float(np.sqrt(np.mean(apart**2)))
-            width = float(own.width.mean())
-            rows.append(Row(own.method, own.kind, width, float(apart.max()), rms, own.runs, own.seconds, own.success))
+        for result in self.results:
+            apart = np.abs([result.lower - reference.lower, result.upper - reference.upper])
+            sizes = float(result.width.mean()), float(apart.max()), float(np.sqrt(np.mean(apart**2)))
+            rows.append(Row(result.method, result.kind, *sizes, result.runs, result.seconds, result.success))
         return tuple(rows)
 
     @property
@@ -86,24 +89,36 @@ class Comparison(EndedResult):
         message = f"Bounds of one response over one box. The error is the distance to {self.reference}."
         return (Finding("methods-compared", "note", {"reference": self.reference}, message),)
 
+    @property
+    def reference_result(self) -> Propagation:
+        """The result that the others are compared with."""
+        return next(result for result in self.results if result.method == self.reference)
+
+    def facts(self) -> dict[str, str]:
+        return {
+            "methods": counted(len(self.results) + len(self.refused)),
+            "reference": self.reference,
+            "its runs": counted(self.reference_result.runs),
+            "runs altogether": counted(sum(result.runs for result in self.results)),
+        }
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the bounds of each method: their width, their distance from the reference, and their cost."""
+        rows = []
+        for row, result in zip(self.rows, self.results, strict=True):
+            is_reference = row.method == self.reference
+            errors = (np.nan, np.nan) if is_reference else (row.largest, row.rms)
+            note = "the reference" if is_reference else "" if result.success else result.status
+            cost = (row.runs, cell(row.seconds, digits=3), cell(note, mark=not result.success))
+            rows.append((row.method, row.kind, row.width, *cells(errors, 3), *cost))
+        rows += [(method, "none", *[np.nan] * 5, cell(reason, mark=True)) for method, reason in self.refused]
+        names = ("method", "kind", "mean width", "largest error", "rms error", "runs", "time (s)", "note")
+        caption = "Methods on the same box; errors are distances from the reference"
+        return (Table.of_rows("methods", caption, names, rows),)
+
     def summary(self) -> str:
-        """The methods as a text table."""
-        head = ("method", "kind", "mean width", "largest error", "rms error", "runs", "seconds")
-        rows = [
-            (
-                row.method,
-                row.kind,
-                f"{row.width:.6g}",
-                "reference" if row.method == self.reference else f"{row.largest:.2e}",
-                "" if row.method == self.reference else f"{row.rms:.2e}",
-                str(row.runs),
-                f"{row.seconds:.2f}",
-            )
-            for row in self.rows
-        ]
-        notes = [f"{own.method}: {own.status}" for own in self.results]
-        notes += [f"{method} gave no bounds: {reason}" for method, reason in self.refused]
-        return "\n".join([*text_table([head, *rows]), "", *notes])
+        """Return the methods as a table, then the status of each."""
+        return "\n".join([super().summary(), *(f"{result.method}: {result.status}" for result in self.results)])
 
     def contents(self) -> Contents:
         """All results as arrays over the dimension ``method``; what a method does not know is NaN."""

@@ -7,11 +7,15 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 
 from dalembert.data import Bands
+from dalembert.digits import counted, shown
 from dalembert.findings import Finding
 from dalembert.forward.stored_coordinate import StoredCoordinate
 from dalembert.parameters import Parameter
-from dalembert.results import EndedResult, fact_lines, fixed_lines, text_table
+from dalembert.quantities import labelled, unit
+from dalembert.results import EndedResult
 from dalembert.stored_fields import Labels, OptionalTable, Over, StoredBox, Table
+from dalembert.tables import Cell, box_table, cells, noted
+from dalembert.tables import Table as ResultTable
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +62,8 @@ class Propagation(Bands, EndedResult):
     """
 
     FORMAT: ClassVar[str] = "dalembert propagation 1"
+    TITLE: ClassVar[str] = "Bounds of the response"
+    VERDICTS: ClassVar[tuple[str, str]] = ("bounded", "not bounded")
 
     coordinate: StoredCoordinate
     channels: Annotated[tuple[str, ...], Labels("channel")]
@@ -80,24 +86,44 @@ class Propagation(Bands, EndedResult):
     fixed: tuple[Parameter, ...] = ()
     parameter_units: tuple[str, ...] = ()
 
-    def summary(self) -> str:
-        """Return a table of channels with their widths and one of intervals, then kind, effort and findings."""
-        widths = [("channel", "unit", "largest width", "mean width", "estimated error")]
-        for column, name in enumerate(self.channels):
-            width = self.width[:, column]
-            error = "unknown" if self.error is None else f"{self.error[:, column].max():.2g}"
-            widths.append((name, self.units[column], f"{width.max():.5g}", f"{width.mean():.5g}", error))
-        box = [("parameter", "lower", "upper"), *((n, f"{i.lower:.7g}", f"{i.upper:.7g}") for n, i in self.box.items())]
-        facts = [
-            *fact_lines(
-                8,
-                method=self.method,
-                kind=self.kind,
-                runs=f"{self.runs}" + (f", {len(self.failures)} failed" if self.failures else ""),
-                seconds=f"{self.seconds:.2f}",
-            ),
-            *fixed_lines(self, width=8),
-        ]
-        return "\n".join(
-            [*text_table(widths), "", *text_table(box), "", *facts, "", self.status, *map(str, self.findings)]
-        )
+    def facts(self) -> dict[str, str]:
+        error = self.error
+        return {
+            "method": self.method,
+            "the bounds are": self.kind,
+            "largest estimated error": "unknown" if error is None else shown(float(error.max()), digits=2),
+            "runs of the model": counted(self.runs),
+            "time": f"{shown(self.seconds, digits=3)} s",
+        }
+
+    def tables(self) -> tuple[ResultTable, ...]:
+        """Return the intervals of the parameters, and the widths of the bands."""
+        width, along, corners = self.upper - self.lower, self.coordinate, self._at_corners()
+        errors = ["unknown"] * len(self.channels) if self.error is None else self.error.max(axis=0)
+        columns = {
+            "channel": self.channels,
+            "largest width": width.max(axis=0),
+            labelled(f"at {along.name}", along.unit): along.values[width.argmax(axis=0)],
+            "mean width": [column.mean() for column in width.T],
+            "estimated error": cells(errors, 2),
+        }
+        if corners is not None:
+            columns["taken at corners of the box"] = [Cell(float(part), f"{100 * part:.0f} %") for part in corners]
+        columns["unit"] = [unit(channel, known) for channel, known in zip(self.channels, self.units, strict=True)]
+        box = box_table(self.box, "Intervals of the parameters", units=self.parameter_units)
+        return box, noted(ResultTable.of("widths", "Widths", columns))
+
+    def _at_corners(self) -> np.ndarray | None:
+        """Share of each channel's bounds that are taken at a corner of the box, (channels,)."""
+        if self.at_lower is None or self.at_upper is None:
+            return None
+        at = np.stack([self.at_lower, self.at_upper])
+        near = 1e-6 * (self.box.upper - self.box.lower)
+        on_end = (at <= self.box.lower + near) | (at >= self.box.upper - near)
+        return on_end.all(axis=-1).mean(axis=(0, 1))
+
+    @classmethod
+    def upgrade(cls, arrays: dict[str, Any], settings: dict[str, Any]) -> None:
+        super().upgrade(arrays, settings)
+        if settings["kind"] == "enclosure":
+            settings["kind"] = "enclosure of the surrogate"

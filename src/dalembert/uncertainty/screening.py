@@ -6,10 +6,12 @@ from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
+from dalembert.digits import counted
 from dalembert.findings import Finding
 from dalembert.forward.stored_coordinate import StoredCoordinate
-from dalembert.results import Result, fact_lines, text_table
+from dalembert.results import Result
 from dalembert.stored_fields import Labels, Over, StoredBox
+from dalembert.tables import Table, box_table, cell, cells
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +51,8 @@ class Screening(Result):
     """
 
     FORMAT: ClassVar[str] = "dalembert screening 1"
+    TITLE: ClassVar[str] = "Screening of parameters"
+    VERDICTS: ClassVar[tuple[str, str]] = ("ranked", "ranked")
 
     coordinate: StoredCoordinate
     channels: Annotated[tuple[str, ...], Labels("channel")]
@@ -83,15 +87,30 @@ class Screening(Result):
         order = np.argsort(-self.whole_effects[self.channels.index(channel)], kind="stable")
         return tuple(self.box.names[k] for k in order)
 
-    def summary(self) -> str:
-        """Return a table of the effects on whole channels, the largest first, then the effort."""
-        rows = [("channel", "parameter", "mean absolute effect", "± standard error", "spread", "unit")]
-        for c, channel in enumerate(self.channels):
-            for place, name in enumerate(self.ranking(channel)):
-                p = self.box.names.index(name)
-                effect, error = f"{self.whole_effects[c, p]:.4g}", f"{self.errors[c, p]:.2g}"
-                rows.append(
-                    ("" if place else channel, name, effect, error, f"{self.whole_spread[c, p]:.3g}", self.units[c])
-                )
-        facts = fact_lines(runs=self.runs)
-        return "\n".join([*text_table(rows), "", *facts, *map(str, self.findings)])
+    def facts(self) -> dict[str, str]:
+        return {
+            "parameters": counted(len(self.box.names)),
+            "trajectories": counted(self.trajectories),
+            "simulations": counted(self.runs),
+        }
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the effects on whole channels, the largest first, and the parameters."""
+        order = np.argsort(-self.whole_effects, axis=1, kind="stable")
+        rows = [(channel, int(parameter)) for channel, ranked in enumerate(order) for parameter in ranked]
+        at = tuple(np.array(rows).T)
+        columns = {
+            "channel": [self.channels[channel] for channel, _ in rows],
+            "parameter": [self.box.names[parameter] for _, parameter in rows],
+            "mean absolute effect": [cell(float(self.whole_effects[pair]), digits=4) for pair in rows],
+            "standard error": cells(self.errors[at], 2),
+            "spread": cells(self.whole_spread[at], 3),
+            "unit": [self.units[channel] for channel, _ in rows],
+        }
+        caption = "Effects on whole channels, over the whole intervals"
+        return Table.of("effects-of-parameters", caption, columns), box_table(
+            self.box,
+            "Intervals and distributions of the parameters",
+            units=self.parameter_units,
+            distribution=self.distributions,
+        )

@@ -6,10 +6,13 @@ from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
+from dalembert.digits import counted
 from dalembert.findings import Finding
 from dalembert.forward.stored_coordinate import StoredCoordinate
-from dalembert.results import Result, fact_lines, text_table
+from dalembert.results import Result
 from dalembert.stored_fields import Labels, Over, StoredBox, Table
+from dalembert.tables import Table as ResultTable
+from dalembert.tables import box_table, cell, cells
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +49,8 @@ class SensitivityIndices(Result):
     """
 
     FORMAT: ClassVar[str] = "dalembert sensitivity indices 1"
+    TITLE: ClassVar[str] = "Global sensitivity"
+    VERDICTS: ClassVar[tuple[str, str]] = ("estimated", "estimated")
 
     coordinate: StoredCoordinate
     channels: Annotated[tuple[str, ...], Labels("channel")]
@@ -77,13 +82,26 @@ class SensitivityIndices(Result):
         worst = float(np.nan_to_num(self.uncertainty).max())
         return f"The indices of whole channels are uncertain by at most {worst:.1g}, from {self.runs} simulations."
 
-    def summary(self) -> str:
-        """Return a table of the indices of whole channels, then the effort."""
-        rows = [("channel", "parameter", "first-order index", "total index", "± at most")]
-        for c, channel in enumerate(self.channels):
-            for p, name in enumerate(self.box.names):
-                indices = f"{self.whole_first[c, p]:.4f}", f"{self.whole_total[c, p]:.4f}"
-                rows.append((channel if p == 0 else "", name, *indices, f"{self.uncertainty[c]:.1g}"))
-        return "\n".join(
-            [*text_table(rows), "", *fact_lines(runs=self.runs, checks=self.checks), *map(str, self.findings)]
+    def facts(self) -> dict[str, str]:
+        return {
+            "parameters": counted(len(self.box.names)),
+            "simulations": counted(self.runs),
+            "random checks": counted(self.checks),
+        }
+
+    def tables(self) -> tuple[ResultTable, ...]:
+        """Return the indices of whole channels, and the parameters."""
+        columns = {
+            "channel": [channel for channel in self.channels for _ in self.box.names],
+            "parameter": [name for _ in self.channels for name in self.box.names],
+            "first-order index": [cell(float(value), digits=4) for value in self.whole_first.ravel()],
+            "total index": [cell(float(value), digits=4) for value in self.whole_total.ravel()],
+            "± at most": cells(self.uncertainty.repeat(len(self.box.names)), 2),
+        }
+        indices = ResultTable.of("sobol-indices", "Parts of the variance of whole channels", columns)
+        return indices, box_table(
+            self.box,
+            "Intervals and distributions of the parameters",
+            units=self.parameter_units,
+            distribution=self.distributions,
         )

@@ -12,7 +12,7 @@ from dalembert.errors import InputError
 from dalembert.findings import Finding
 from dalembert.inverse import Identifiability
 from dalembert.report import figures, report
-from dalembert.report.table import Table, cell
+from dalembert.tables import Table, cell
 from pages import Page, read_page
 from refusals import refused
 from stand_ins import fit, motion, sweep

@@ -45,7 +45,8 @@ def test_a_method_that_gives_no_bounds_is_told_and_the_others_stay():
     ((method, reason),) = comparison.refused
     assert method.startswith("chebyshev (scheme=TotalDegree(order=2")
     assert reason.startswith("the surrogate of order 2 is wrong by about")
-    assert f"{method} gave no bounds: {reason}" in comparison.summary()
+    line = next(line for line in comparison.summary().splitlines() if line.startswith(method))
+    assert line.endswith(reason)
 
 
 def test_a_reference_that_gives_no_bounds_is_an_error():
@@ -82,6 +83,7 @@ def test_wrong_intervals_are_told_before_anything_runs():
 def test_the_summary_is_a_table_with_a_note_a_method():
     lines = compare(HILL, BOX, ["vertex"], reference="scan").summary().splitlines()
     assert lines[0].split("  ")[0] == "method"
-    assert lines[2].split()[:6] == ["vertex", "inner", "bound", "1", "1.00e+00", "5.00e-01"]
-    assert lines[3].split()[:5] == ["scan", "inner", "bound", "1.5", "reference"]
-    assert lines[5].startswith("vertex: The bounds are the extremes over the corners of the box.")
+    assert lines[2].split()[:6] == ["vertex", "inner", "bound", "1", "1", "0.5"]
+    assert lines[3].split()[:4] == ["scan", "inner", "bound", "1.5"]
+    assert lines[3].endswith("the reference")
+    assert "vertex: The bounds are the extremes over the corners of the box." in "\n".join(lines)

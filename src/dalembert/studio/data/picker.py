@@ -6,9 +6,9 @@ from functools import partial
 import plotly.graph_objects as go
 from nicegui import ui
 
+from dalembert.quantities import labelled
 from dalembert.report.charts.drawing import colour_of, draw, stacked
 from dalembert.report.look import plain, themed
-from dalembert.report.quantities import labelled
 from dalembert.studio.data.examined import Curve, Examined
 from dalembert.studio.editor.draft import Draft
 from dalembert.studio.model.picture import model_picture

@@ -11,19 +11,19 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.errors import DalembertError, InputError
+from dalembert.quantities import labelled, unit
 from dalembert.report import sections_of
 from dalembert.report.headline import Headline
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.options import ReportOptions
-from dalembert.report.quantities import labelled, unit
 from dalembert.report.section import Block, Plot, Section, Source
-from dalembert.report.table import Cell, Table, cell
 from dalembert.report.thinning import thinned
 from dalembert.studio.runs.differences import as_text, differences
 from dalembert.studio.runs.run_list import row
 from dalembert.studio.runs.run_units import PLAIN, Unit, in_unit, run_units
 from dalembert.study.run.compare_runs import fit_or_posterior
 from dalembert.study.run.folder import RunFolder
+from dalembert.tables import Cell, Table, cell
 
 MOST_FIGURES = 24
 """Channels that are drawn, the first ones."""

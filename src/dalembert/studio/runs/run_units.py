@@ -5,7 +5,7 @@ import tomllib
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from dalembert.report.quantities import unit
+from dalembert.quantities import unit
 from dalembert.studio.editor.chosen_values import unit_in
 from dalembert.studio.editor.entries import table_at
 from dalembert.study.run.folder import RunFolder

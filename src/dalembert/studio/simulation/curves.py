@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.quantities import by_quantity, common, labelled, quantity
 from dalembert.report.charts.drawing import colour_of, draw
 from dalembert.report.look import plain, themed
-from dalembert.report.quantities import by_quantity, common, labelled, quantity
 from dalembert.report.thinning import thinned
 from dalembert.studio.simulation.parts import Part
 

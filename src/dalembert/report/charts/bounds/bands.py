@@ -9,9 +9,9 @@ import plotly.graph_objects as go
 from dalembert.data import Bands, Measurements
 from dalembert.errors import InputError, unknown
 from dalembert.inverse import Prediction
+from dalembert.quantities import common, labelled, quantity
 from dalembert.report.charts.drawing import colour_of, draw, stacked
 from dalembert.report.look import faint, plain, themed
-from dalembert.report.quantities import common, labelled, quantity
 from dalembert.report.thinning import thin, thinned
 
 Channels = Bands | Measurements | Prediction

@@ -3,12 +3,12 @@
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.quantities import labelled
 from dalembert.report.charts.drawing import colour_of, draw, logarithmic, positive
 from dalembert.report.charts.identification.responses import FEW
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.quantities import labelled
 from dalembert.report.thinning import thinned
-from dalembert.uncertainty import Comparison, Propagation
+from dalembert.uncertainty import Comparison
 
 KINDS = {
     "inner bound": (LIGHT.series[0], "circle"),
@@ -63,7 +63,7 @@ def differences(comparison: Comparison, *, title: str = "Distance from the refer
     -------
     plotly.graph_objects.Figure
     """
-    figure, known = go.Figure(), reference(comparison)
+    figure, known = go.Figure(), comparison.reference_result
     along = known.coordinate
     for place, one in enumerate(one for one in comparison.results if one is not known):
         apart = positive(np.maximum(np.abs(one.lower - known.lower), np.abs(one.upper - known.upper)).max(axis=1))
@@ -72,8 +72,3 @@ def differences(comparison: Comparison, *, title: str = "Distance from the refer
         draw(figure, x, y, plain(one.method), colour_of(place), 1.5, mode=mode, marker_size=4)
     y = {"title": "distance", **logarithmic(figure)}
     return themed(figure, title, 400, x=labelled(along.name, along.unit), y=y, showlegend=True)
-
-
-def reference(comparison: Comparison) -> Propagation:
-    """The result that the others are measured by."""
-    return next(one for one in comparison.results if one.method == comparison.reference)

@@ -3,10 +3,10 @@
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.digits import prefixed
+from dalembert.quantities import labelled
 from dalembert.report.charts.drawing import HOVER, draw, logarithmic, stacked
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.prefixes import prefixed
-from dalembert.report.quantities import labelled
 from dalembert.units import unit_of
 from dalembert.vibration import Backbone
 

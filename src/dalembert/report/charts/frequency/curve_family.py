@@ -5,11 +5,10 @@ from typing import Any
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.digits import prefixed, shown
+from dalembert.quantities import labelled, size_label
 from dalembert.report.charts.drawing import HOVER, draw, logarithmic, positive, stacked
-from dalembert.report.digits import shown
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.prefixes import prefixed
-from dalembert.report.quantities import labelled, size_label
 from dalembert.report.thinning import thinned
 from dalembert.units import unit_of
 from dalembert.vibration import CurveFamily, ResonanceTrack

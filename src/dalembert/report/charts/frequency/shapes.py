@@ -5,11 +5,10 @@ from typing import Any
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.digits import prefixed, shown
+from dalembert.quantities import labelled
 from dalembert.report.charts.motion.film import Film, slowness
-from dalembert.report.digits import shown
 from dalembert.report.look import LIGHT, themed
-from dalembert.report.prefixes import prefixed
-from dalembert.report.quantities import labelled
 from dalembert.structure import ModeShapes
 from dalembert.vibration import Deformation
 

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.digits import shown
 from dalembert.inverse import Fit
 from dalembert.parameters import Parameters
 from dalembert.report.charts.drawing import draw
-from dalembert.report.digits import shown
 from dalembert.report.look import LIGHT, plain, themed
 
 BETWEEN = {"showgrid": False, "tickvals": [0, 0.5, 1], "ticktext": ["lower", "middle", "upper"]}

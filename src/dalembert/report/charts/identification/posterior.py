@@ -6,14 +6,14 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from dalembert.digits import with_deviation
 from dalembert.errors import InputError, unknown
 from dalembert.inverse import Posterior, Profiles
+from dalembert.quantities import labelled
 from dalembert.report.charts.bounds.bands import dressed, fill_band, selected
 from dalembert.report.charts.drawing import colour_of, draw, stacked
 from dalembert.report.charts.identification.responses import FEW
-from dalembert.report.digits import with_deviation
 from dalembert.report.look import LIGHT, faint, plain, themed
-from dalembert.report.quantities import labelled
 from dalembert.report.thinning import thinned
 
 BINS = 40

@@ -8,9 +8,9 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from dalembert.inverse import ResidualDiagnostics, SeriesResiduals
+from dalembert.quantities import labelled
 from dalembert.report.charts.drawing import colour_of
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.quantities import labelled
 from dalembert.report.thinning import thinned
 
 MOST_SERIES = 12

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from dalembert.report.digits import shown
+from dalembert.digits import shown
 from dalembert.report.look import LIGHT
 
 

@@ -7,9 +7,9 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.multibody import Trajectory
+from dalembert.quantities import common, derivative, labelled, quantity
 from dalembert.report.charts.drawing import colour_of, draw, stacked
 from dalembert.report.look import plain, themed
-from dalembert.report.quantities import common, derivative, labelled, quantity
 from dalembert.report.thinning import thinned
 
 

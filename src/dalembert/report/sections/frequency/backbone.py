@@ -2,14 +2,14 @@
 
 import numpy as np
 
+from dalembert.digits import counted, percent, shown
+from dalembert.quantities import labelled
 from dalembert.report import charts
-from dalembert.report.digits import counted, percent, shown
 from dalembert.report.headline import Headline
 from dalembert.report.options import ReportOptions
-from dalembert.report.quantities import labelled
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Fold, Plot, Section
-from dalembert.report.table import Table, cells, noted, unless
+from dalembert.tables import Table, cells, noted, unless
 from dalembert.units import unit_of
 from dalembert.vibration import Backbone
 

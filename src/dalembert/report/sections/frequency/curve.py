@@ -4,24 +4,23 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
+from dalembert.digits import counted, in_words, percent, shown
+from dalembert.quantities import labelled, size_label
 from dalembert.report import charts
 from dalembert.report.charts.frequency.contacts import shares
 from dalembert.report.charts.frequency.frequency_curve import by_order
-from dalembert.report.digits import counted, percent, shown
 from dalembert.report.focus import Look, dissipation_of, marked, movers, of_contacts, of_springs, unstable
 from dalembert.report.headline import Headline
 from dalembert.report.look import plain
 from dalembert.report.options import ReportOptions
-from dalembert.report.prefixes import in_words
-from dalembert.report.quantities import labelled, size_label
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Block, Fold, Plot, Row, Section
 from dalembert.report.sections.frequency.backbone import nonlinear_mode
 from dalembert.report.sections.frequency.deformation import deformed
 from dalembert.report.sections.frequency.in_time import in_time
 from dalembert.report.sections.frequency.modes import reduced
-from dalembert.report.table import Cell, Table, cells
 from dalembert.structure import ReductionErrors
+from dalembert.tables import Cell, Table, cells
 from dalembert.units import unit_of
 from dalembert.vibration import Backbone, Deformation, FrequencyCurve, TimeComparison
 

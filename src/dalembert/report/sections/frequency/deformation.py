@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from dalembert.digits import counted, percent, shown
 from dalembert.report import charts
 from dalembert.report.charts.frequency.shapes import magnified
-from dalembert.report.digits import counted, percent, shown
 from dalembert.report.headline import Headline
 from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of

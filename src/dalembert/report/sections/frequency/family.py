@@ -2,18 +2,17 @@
 
 import numpy as np
 
+from dalembert.digits import counted, in_words, percent, shown
+from dalembert.quantities import labelled
 from dalembert.report import charts
 from dalembert.report.charts.frequency.curve_family import value_text
-from dalembert.report.digits import counted, percent, shown
 from dalembert.report.focus import Look, family_dofs
 from dalembert.report.headline import Headline
 from dalembert.report.options import ReportOptions
-from dalembert.report.prefixes import in_words
-from dalembert.report.quantities import labelled
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Fold, Plot, Row, Section
 from dalembert.report.sections.frequency.curve import beside, friction
-from dalembert.report.table import Table, cells, marks, noted, unless
+from dalembert.tables import Table, cells, marks, noted, unless
 from dalembert.units import unit_of
 from dalembert.vibration import CurveFamily, ResonanceTrack
 

@@ -2,16 +2,16 @@
 
 import numpy as np
 
+from dalembert.digits import counted, percent, shown
+from dalembert.quantities import labelled
 from dalembert.report import charts
 from dalembert.report.charts.frequency.shapes import MOST
-from dalembert.report.digits import counted, percent, shown
-from dalembert.report.headline import MOST_VALUES, Headline
+from dalembert.report.headline import Headline
 from dalembert.report.options import ReportOptions
-from dalembert.report.quantities import labelled
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Fold, Plot, Section
-from dalembert.report.table import Table, cells
 from dalembert.structure import Campbell, ModeShapes, ReductionErrors
+from dalembert.tables import MOST_FACTS, Table, cells
 
 
 @sections_of(ModeShapes)
@@ -21,7 +21,7 @@ def mode_shapes(modes: ModeShapes, options: ReportOptions) -> list[Section]:
     how = "The slider goes through the modes; thin lines: at rest; dark: nodal lines."
     if len(numbers) > MOST:
         how += f" Drawn are the first {MOST}."
-    lowest = zip(numbers, modes.frequencies[:MOST_VALUES], strict=False)
+    lowest = zip(numbers, modes.frequencies[:MOST_FACTS], strict=False)
     headline = Headline(
         title="Modes",
         verdict="computed",

@@ -4,16 +4,16 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from dalembert.digits import counted, interval, shown
 from dalembert.inverse import Designs, Prediction, Profiles
+from dalembert.quantities import by_quantity, labelled
 from dalembert.report import charts
-from dalembert.report.digits import counted, interval, shown
-from dalembert.report.headline import Headline, few
+from dalembert.report.headline import Headline
 from dalembert.report.look import plain
 from dalembert.report.options import ReportOptions
-from dalembert.report.quantities import by_quantity, labelled
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Fold, Listed, Plot, Row, Section, numbered
-from dalembert.report.table import Table, cell, cells, marks
+from dalembert.tables import Table, cell, cells, few_values, marks
 
 
 @sections_of(Profiles)
@@ -22,7 +22,7 @@ def profiles(told: Profiles, options: ReportOptions) -> list[Section]:
     items = {item.name: item for item in told.parameters}
     ends = [interval(curve.lower, curve.upper) for curve in told.curves]
     facts = {
-        **few([items[curve.name] for curve in told.curves], ends),
+        **few_values([items[curve.name] for curve in told.curves], ends),
         "level": f"{100 * told.level:g} %",
         "simulations": counted(told.simulations),
     }

@@ -4,19 +4,18 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from dalembert.digits import counted, interval, shown
 from dalembert.inverse import BandFit
+from dalembert.quantities import by_quantity, labelled, unit
 from dalembert.report import charts
 from dalembert.report.charts.identification.intervals import reproduced
-from dalembert.report.digits import counted, interval, shown
-from dalembert.report.headline import Headline, few
+from dalembert.report.headline import Headline
 from dalembert.report.look import plain
 from dalembert.report.options import ReportOptions
-from dalembert.report.quantities import by_quantity, labelled, unit
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Plot, Section
+from dalembert.report.section import Plot, Section, samples
 from dalembert.report.sections.identification.search import identifiability, identified, search
-from dalembert.report.sections.shared_tables import samples
-from dalembert.report.table import Table, cell, cells, marks, noted
+from dalembert.tables import Table, cell, cells, few_values, marks, noted
 
 NONE = 1e-6
 """Radii below this part of the way between the search bounds are none."""
@@ -31,7 +30,7 @@ def band_fit(fit: BandFit, options: ReportOptions) -> list[Section]:
 def _headline(fit: BandFit) -> Headline:
     checked = fit.checked_fitness
     facts = {
-        **few(fit.parameters, map(interval, fit.box.lower, fit.box.upper)),
+        **few_values(fit.parameters, map(interval, fit.box.lower, fit.box.upper)),
         "misfit": shown(fit.fitness, digits=3),
         **({} if checked is None else {"misfit by true runs": shown(checked, digits=3)}),
         "simulations": counted(fit.simulations),

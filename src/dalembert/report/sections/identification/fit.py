@@ -4,13 +4,13 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from dalembert.digits import counted, shown, with_deviation
 from dalembert.inverse import Fit, Population, Prediction, Profiles
 from dalembert.multibody import Trajectory
 from dalembert.parameters import Parameter
 from dalembert.report import charts
 from dalembert.report.charts.identification.parameters import on_bound
-from dalembert.report.digits import counted, shown, with_deviation
-from dalembert.report.headline import Headline, few
+from dalembert.report.headline import Headline
 from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Listed, Plot, Section
@@ -19,7 +19,7 @@ from dalembert.report.sections.identification.population import varied
 from dalembert.report.sections.identification.response import compared, experiments, residuals
 from dalembert.report.sections.identification.search import identifiability, identified, search, shooting
 from dalembert.report.sections.motion.trajectory import diagnostics, mechanisms
-from dalembert.report.table import Cell, Table, cell, cells, noted
+from dalembert.tables import Cell, Table, cell, cells, few_values, noted
 
 
 def estimates(fit: Fit) -> Section:
@@ -118,7 +118,7 @@ def fit(result: Fit, options: ReportOptions) -> list[Section]:
 def _headline(result: Fit) -> Headline:
     converged = sum(start.success for start in result.starts)
     facts = {
-        **few(result.parameters, map(with_deviation, result.values, result.deviations)),
+        **few_values(result.parameters, map(with_deviation, result.values, result.deviations)),
         "misfit": shown(result.fitness, digits=3),
         "simulations": counted(result.simulations),
     }

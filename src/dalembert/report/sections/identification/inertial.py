@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from dalembert.digits import counted, shown
 from dalembert.inverse.inertial import (
     BaseEstimate,
     BaseParameters,
@@ -13,12 +14,11 @@ from dalembert.inverse.inertial import (
     TorquePrediction,
 )
 from dalembert.report import charts
-from dalembert.report.digits import counted, shown
 from dalembert.report.headline import Headline
 from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Fold, Plot, Section
-from dalembert.report.table import Table, cell, cells
+from dalembert.tables import Table, cell, cells
 from dalembert.units import inertial_unit
 
 

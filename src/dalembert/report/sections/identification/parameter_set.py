@@ -2,15 +2,15 @@
 
 import numpy as np
 
+from dalembert.digits import counted, interval, shown
 from dalembert.inverse import ParameterSet
 from dalembert.report import charts
 from dalembert.report.charts.identification.paving import planes
-from dalembert.report.digits import counted, interval, shown
-from dalembert.report.headline import Headline, few
+from dalembert.report.headline import Headline
 from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Plot, Row, Section
-from dalembert.report.sections.shared_tables import box_table
+from dalembert.tables import box_table, few_values
 
 BOXES = (
     ("outer", "Outer box: all consistent parameters lie in it"),
@@ -42,7 +42,7 @@ def _headline(found: ParameterSet) -> Headline:
         success=found.success and box is not None,
         status=found.status,
         facts={
-            **(few(found.parameters, ends) if ends else {}),
+            **(few_values(found.parameters, ends) if ends else {}),
             "part of what was searched": f"{least} to {most} %",
             "boxes": counted(len(found.inside) + len(found.boundary)),
             "runs of the model": counted(found.runs),

@@ -2,15 +2,15 @@
 
 from collections.abc import Iterable
 
+from dalembert.digits import counted, interval, shown
 from dalembert.inverse import Population
+from dalembert.quantities import labelled
 from dalembert.report import charts
-from dalembert.report.digits import counted, interval, shown
-from dalembert.report.headline import MOST_VALUES, Headline
+from dalembert.report.headline import Headline
 from dalembert.report.options import ReportOptions
-from dalembert.report.quantities import labelled
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Fold, Listed, Plot, Row, Section
-from dalembert.report.table import Table, cell, cells
+from dalembert.tables import MOST_FACTS, Table, cell, cells
 
 
 @sections_of(Population)
@@ -19,7 +19,7 @@ def population(told: Population, options: ReportOptions) -> list[Section]:
     named = [labelled(name, unit) for name, unit in zip(told.names, told.units, strict=True)]
     texts = [f"{shown(float(m))}, spread {shown(float(s))}" for m, s in zip(told.mean, told.spread, strict=True)]
     facts = {
-        **(dict(zip(named, texts, strict=True)) if len(named) <= MOST_VALUES else {}),
+        **(dict(zip(named, texts, strict=True)) if len(named) <= MOST_FACTS else {}),
         "specimens": counted(len(told.specimens)),
     }
     headline = Headline(title="Several specimens", verdict="estimated", facts=facts, findings=told.findings)

@@ -2,17 +2,18 @@
 
 import numpy as np
 
+from dalembert.digits import counted, interval, with_deviation
 from dalembert.inverse import Posterior, Profiles
+from dalembert.quantities import by_quantity
 from dalembert.report import charts
-from dalembert.report.digits import counted, interval, with_deviation
-from dalembert.report.headline import Headline, few, fixed_facts
+from dalembert.report.headline import Headline
 from dalembert.report.look import plain
 from dalembert.report.options import ReportOptions
-from dalembert.report.quantities import by_quantity
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Plot, Row, Section
 from dalembert.report.sections.identification.assessment import profiled
-from dalembert.report.table import Table, cell, cells
+from dalembert.results import fixed_facts
+from dalembert.tables import Table, cell, cells, few_values
 
 MARGINAL = (
     "Bars are the draws, between dotted lines 95 % of them. Dashed is the normal distribution of the linearised "
@@ -31,7 +32,7 @@ def posterior(told: Posterior, options: ReportOptions) -> list[Section]:
     chains, draws, _ = told.draws.shape
     texts = [with_deviation(float(m), float(d)) for m, d in zip(told.mean, told.deviations, strict=True)]
     facts = {
-        **few(told.parameters, texts),
+        **few_values(told.parameters, texts),
         **fixed_facts(told),
         "draws": f"{counted(chains)} chains × {counted(draws)}",
         "sampler": told.sampler,

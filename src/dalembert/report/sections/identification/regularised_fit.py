@@ -2,15 +2,15 @@
 
 import numpy as np
 
+from dalembert.digits import counted, shown
 from dalembert.inverse import RegularisedFit
 from dalembert.report import charts
-from dalembert.report.digits import counted, shown
 from dalembert.report.headline import Headline
 from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Download, Plot, Row, Section
 from dalembert.report.sections.identification.response import compared_simply
-from dalembert.report.table import Table, cells
+from dalembert.tables import Table, cells
 
 
 @sections_of(RegularisedFit)

@@ -2,13 +2,13 @@
 
 from typing import Any
 
+from dalembert.quantities import labelled
 from dalembert.report import charts
-from dalembert.report.headline import MOST_VALUES, Headline
+from dalembert.report.headline import Headline
 from dalembert.report.options import ReportOptions
-from dalembert.report.quantities import labelled
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Fold, Plot, Row, Section
-from dalembert.report.table import Table
+from dalembert.tables import MOST_FACTS, Table
 
 
 @sections_of("dalembert.study.tasks.sweep.Sweep")
@@ -16,7 +16,7 @@ def sweep(result: Any, options: ReportOptions) -> list[Section]:
     """A figure and a table for each parameter."""
     names = ", ".join(curve.parameter for curve in result.curves)
     status = f"Responses at {result.at}, one parameter varied at a time: {names}. {result.status}"
-    facts = {f"values of {curve.parameter}": str(len(curve.values)) for curve in result.curves[:MOST_VALUES]}
+    facts = {f"values of {curve.parameter}": str(len(curve.values)) for curve in result.curves[:MOST_FACTS]}
     headline = Headline.of("Parameter sweep", result.success, ("swept", "incomplete"), status, facts)
     places = list(enumerate(result.curves, start=1))
     how = ["" if curve.sensitivities is None else "Below, its slope." for curve in result.curves]

@@ -6,19 +6,18 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.data import Measurements
+from dalembert.digits import counted, percent, shown
 from dalembert.forward import Coordinate
 from dalembert.multibody import Drawing, Trajectory
+from dalembert.quantities import by_quantity
 from dalembert.report import charts
 from dalembert.report.charts.motion.diagnostics import LEVELS
-from dalembert.report.digits import counted, percent, shown
 from dalembert.report.headline import Headline
 from dalembert.report.look import plain
 from dalembert.report.options import ReportOptions
-from dalembert.report.quantities import by_quantity
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Block, Plot, Row, Section, numbered
-from dalembert.report.sections.shared_tables import samples
-from dalembert.report.table import Table, cells
+from dalembert.report.section import Block, Plot, Row, Section, numbered, samples
+from dalembert.tables import Table, cells
 
 HEADING = "Mechanism"
 MOST_PATHS = 3

@@ -2,14 +2,14 @@
 
 import numpy as np
 
+from dalembert.digits import counted, shown
 from dalembert.multibody import WorkPrecision
 from dalembert.report import charts
-from dalembert.report.digits import counted, shown
 from dalembert.report.headline import Headline
 from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Plot, Section
-from dalembert.report.table import Table, cells, marks
+from dalembert.tables import Table, cells, marks
 
 ERRORS = (1e-4, 1e-8)
 """Errors that the fastest integrator is named for."""

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from dalembert.report.digits import counted, shown, with_deviation
-from dalembert.report.quantities import by_quantity, quantity
+from dalembert.digits import counted, shown, with_deviation
+from dalembert.quantities import by_quantity, quantity
 from dalembert.report.thinning import thin
 
 

@@ -1,4 +1,4 @@
-"""Tables of a report: text for people, full numbers in the CSV that can be downloaded."""
+"""Tables of results: text for people, full numbers in the CSV that can be downloaded."""
 
 import base64
 import csv
@@ -9,7 +9,13 @@ from typing import ClassVar
 
 import numpy as np
 
-from dalembert.report.digits import counted, shown
+from dalembert.digits import counted, shown
+from dalembert.intervals import Box
+from dalembert.parameters import Parameter
+from dalembert.quantities import labelled
+
+MOST_FACTS = 4
+"""Parameters up to which the value of each is a fact of its own; more are in a table alone."""
 
 
 @dataclass(frozen=True)
@@ -74,6 +80,20 @@ class Table:
         writer.writerows([_safe(entry.value) for entry in row] for row in self.rows)
         return buffer.getvalue()
 
+    def lines(self, most: int = 20) -> list[str]:
+        """Return the table as text for a terminal, of at most ``most`` rows.
+
+        >>> print(*Table.of("masses", "Masses", {"body": ["rod"], "mass (kg)": [0.25]}).lines(), sep="\\n")
+        body  mass (kg)
+        ───────────────
+        rod   0.25
+        """
+        texts = [tuple(self.columns), *(tuple(entry.text for entry in row) for row in self.rows[:most])]
+        widths = [max(map(len, column)) for column in zip(*texts, strict=True)]
+        lines = ["  ".join(map(str.ljust, row, widths)).rstrip() for row in texts]
+        more = [f"and {len(self.rows) - most} more"] if len(self.rows) > most else []
+        return [lines[0], "─" * (sum(widths) + 2 * (len(widths) - 1)), *lines[1:], *more]
+
     @property
     def link(self) -> str:
         """Address that holds the CSV in itself."""
@@ -119,6 +139,21 @@ def marks(texts: Iterable[str]) -> list[Cell]:
 def unless(done: Iterable[bool], text: str) -> list[Cell]:
     """Notes on what is not done."""
     return marks("" if one else text for one in done)
+
+
+def few_values(parameters: Iterable[Parameter], texts: Iterable[str]) -> dict[str, str]:
+    """Return the values of parameters as facts; none if there are many."""
+    facts = {labelled(item.name, item.unit): text for item, text in zip(parameters, texts, strict=True)}
+    return facts if len(facts) <= MOST_FACTS else {}
+
+
+def box_table(box: Box, caption: str, name: str = "box", *, units: Sequence[str] = (), **more: Sequence[str]) -> Table:
+    """Return ends, middle and radius of each interval of a box, the units that are known, and more columns."""
+    middle, radius = (box.lower + box.upper) / 2, (box.upper - box.lower) / 2
+    columns = {"parameter": box.names, "lower": box.lower, "upper": box.upper, "middle": middle, "radius": radius}
+    if any(units):
+        columns["unit"] = units
+    return Table.of(name, caption, {**columns, **more})
 
 
 def _safe(value: object) -> object:

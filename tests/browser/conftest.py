@@ -1,15 +1,30 @@
-"""A real browser: Debian's Chromium, headless, driven by Playwright."""
+"""A real browser: the installed Chromium or Chrome, or Playwright's own, headless, driven by Playwright."""
 
 import os
 import shutil
 from collections.abc import Iterator
+from importlib import import_module
+from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser, Playwright, sync_playwright
 
 from browser.visitor import Visitor
 
-NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
+NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
+FOLDERS = ("/usr/bin", "/usr/local/bin", "/snap/bin", "/opt/google/chrome")
+"""Where browsers are installed, which the search path need not contain."""
+APPLICATION = "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome"
+MISSING = (
+    "No Chromium is installed. Install it: 'apt install chromium', or 'playwright install chromium' for Playwright's "
+    "own. Or name the program in the environment variable CHROMIUM."
+)
+
+CI = bool(os.environ.get("CI"))
+"""Where a machine tests every change, missing programs and packages must not hide failures: they fail the tests."""
+if CI:
+    for package in ("anywidget", "axe_playwright_python"):
+        import_module(package)
 
 
 @pytest.fixture(scope="module")
@@ -18,13 +33,23 @@ def browser() -> Iterator[Browser]:
 
     Playwright runs an event loop in this thread, in which other tests could not start theirs: it ends with the module.
     """
-    program = os.environ.get("CHROMIUM") or next(filter(None, map(shutil.which, NAMES)), None)
-    if program is None:
-        pytest.skip("Chromium is not installed. Install it, or name the program in CHROMIUM.")
     with sync_playwright() as playwright:
+        program = _program(playwright)
+        if program is None:
+            (pytest.fail if CI else pytest.skip)(MISSING)
         running = playwright.chromium.launch(executable_path=program)
         yield running
         running.close()
+
+
+def _program(playwright: Playwright) -> str | None:
+    """Path of the browser; None if there is none."""
+    if named := os.environ.get("CHROMIUM"):
+        return named
+    places = [APPLICATION, playwright.chromium.executable_path]
+    search = os.pathsep.join([os.environ.get("PATH", ""), *FOLDERS])
+    installed = (shutil.which(name, path=search) for name in NAMES)
+    return next(filter(None, installed), None) or next((place for place in places if Path(place).is_file()), None)
 
 
 @pytest.fixture

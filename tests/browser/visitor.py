@@ -1,4 +1,4 @@
-"""Pages in Debian's Chromium, driven by Playwright, and what they wrote, threw and requested."""
+"""Pages in Chromium, driven by Playwright, and what they wrote, threw and requested."""
 
 import time
 from pathlib import Path

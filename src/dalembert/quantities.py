@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import TypeVar
 
+from dalembert.tables import labelled
 from dalembert.units import unit_of
 
 Label = TypeVar("Label")
@@ -87,11 +88,6 @@ def _known(channel: str, unit: str) -> tuple[str, str]:
     if size:
         return size_label(size["kind"]), unit_of(size["dof"])
     return QUANTITIES.get(channel.rpartition(".")[2], ("response", unit))
-
-
-def labelled(name: str, unit: str) -> str:
-    """Name with its unit in brackets, where it has one."""
-    return f"{name} ({unit})" if unit else name
 
 
 def common(labels: Iterable[Label], otherwise: Label) -> Label:

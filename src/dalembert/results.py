@@ -8,15 +8,13 @@ from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from dalembert.contents import Contents
-from dalembert.digits import shown
 from dalembert.errors import DataError
 from dalembert.files import read_dataset, write_contents
 from dalembert.findings import Finding
 from dalembert.notebook_display import Displayed
 from dalembert.parameters import Parameter
-from dalembert.quantities import labelled
 from dalembert.stored_fields import Source, Store, restore, store
-from dalembert.tables import Table
+from dalembert.tables import Table, labelled, shown
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -13,8 +13,7 @@ from markupsafe import Markup
 from plotly.io import to_json
 
 from dalembert.forward import Coordinate
-from dalembert.quantities import labelled
-from dalembert.tables import Table
+from dalembert.tables import Table, labelled
 
 SAFE = str.maketrans({"<": "\\u003c", ">": "\\u003e", "&": "\\u0026"})
 """Characters that could end a script element, as JSON may write them."""

@@ -1,12 +1,11 @@
 """What a notebook shows of a study."""
 
-from dalembert.digits import shown
 from dalembert.parameters import Parameter
-from dalembert.quantities import labelled
 from dalembert.report.notebook import Summary
 from dalembert.study.picture import picture_or_message
 from dalembert.study.run.runner import plan
 from dalembert.study.tables.study import Study
+from dalembert.tables import labelled, shown
 
 
 def html_of(study: Study) -> str:

@@ -9,12 +9,11 @@ import numpy as np
 
 from dalembert.arguments import takes_checked
 from dalembert.contents import Contents
-from dalembert.digits import counted
 from dalembert.errors import ClusterError, DalembertError, InputError, StorageError
 from dalembert.findings import Finding, stored_findings
 from dalembert.forward import Executor, ForwardModel, on_cluster, takes_executor
 from dalembert.results import EndedResult, stored_settings
-from dalembert.tables import Table, cell, cells
+from dalembert.tables import Table, cell, cells, counted
 from dalembert.uncertainty.events import OnEvent
 from dalembert.uncertainty.method import Method
 from dalembert.uncertainty.methods import label, method_of

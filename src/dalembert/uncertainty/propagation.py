@@ -7,14 +7,13 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 
 from dalembert.data import Bands
-from dalembert.digits import counted, shown
 from dalembert.findings import Finding
 from dalembert.forward.stored_coordinate import StoredCoordinate
 from dalembert.parameters import Parameter
-from dalembert.quantities import labelled, unit
+from dalembert.quantities import unit
 from dalembert.results import EndedResult
 from dalembert.stored_fields import Labels, OptionalTable, Over, StoredBox, Table
-from dalembert.tables import Cell, box_table, cells, noted
+from dalembert.tables import Cell, box_table, cells, counted, labelled, noted, shown
 from dalembert.tables import Table as ResultTable
 
 

@@ -6,12 +6,11 @@ from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
-from dalembert.digits import counted
 from dalembert.findings import Finding
 from dalembert.forward.stored_coordinate import StoredCoordinate
 from dalembert.results import Result
 from dalembert.stored_fields import Labels, Over, StoredBox
-from dalembert.tables import Table, box_table, cell, cells
+from dalembert.tables import Table, box_table, cell, cells, counted
 
 
 @dataclass(frozen=True, eq=False)

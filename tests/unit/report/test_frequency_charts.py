@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from dalembert.data import Measurements
-from dalembert.digits import prefixed
 from dalembert.errors import InputError
 from dalembert.forward import Coordinate
 from dalembert.inverse import identify
@@ -14,6 +13,7 @@ from dalembert.report import charts, figures, report
 from dalembert.report.charts.frequency.contacts import COLOURS, STATES
 from dalembert.report.focus import Look, movers
 from dalembert.structure import Campbell, ReductionErrors, eigenmodes, mode_shapes
+from dalembert.tables import prefixed
 from dalembert.uncertainty import Vertex, propagate
 from dalembert.vibration import (
     FrequencyResponse,

@@ -5,10 +5,10 @@ import json
 import numpy as np
 import pytest
 
-from dalembert.digits import shown
 from dalembert.errors import InputError
 from dalembert.forward import Channel, Coordinate, PythonModel
 from dalembert.intervals import Box, Interval
+from dalembert.tables import shown
 from dalembert.uncertainty import Began, Ended, MonteCarlo, Ran, Taylor, as_record, methods_by_name, propagate
 from dalembert.uncertainty.methods import label, method_of
 from small_models import DECAY, LINE, TIMES

@@ -6,7 +6,6 @@ from functools import partial
 import plotly.graph_objects as go
 from nicegui import ui
 
-from dalembert.quantities import labelled
 from dalembert.report.charts.drawing import colour_of, draw, stacked
 from dalembert.report.look import plain, themed
 from dalembert.studio.data.examined import Curve, Examined
@@ -16,6 +15,7 @@ from dalembert.studio.model.viewer import Viewer
 from dalembert.studio.page_services import PageServices
 from dalembert.studio.runs.figures import on_any_page
 from dalembert.studio.worker import WorkerError
+from dalembert.tables import labelled
 
 MOST = 12
 """Columns that are drawn; those that are used come first."""

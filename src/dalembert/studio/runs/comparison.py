@@ -11,7 +11,7 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.errors import DalembertError, InputError
-from dalembert.quantities import labelled, unit
+from dalembert.quantities import unit
 from dalembert.report import sections_of
 from dalembert.report.headline import Headline
 from dalembert.report.look import LIGHT, plain, themed
@@ -23,7 +23,7 @@ from dalembert.studio.runs.run_list import row
 from dalembert.studio.runs.run_units import PLAIN, Unit, in_unit, run_units
 from dalembert.study.run.compare_runs import fit_or_posterior
 from dalembert.study.run.folder import RunFolder
-from dalembert.tables import Cell, Table, cell
+from dalembert.tables import Cell, Table, cell, labelled
 
 MOST_FIGURES = 24
 """Channels that are drawn, the first ones."""

@@ -7,9 +7,9 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
-from dalembert.quantities import labelled
 from dalembert.report.charts.drawing import logarithmic, positive
 from dalembert.report.look import LIGHT, plain, themed
+from dalembert.tables import labelled
 
 if TYPE_CHECKING:
     from nicegui import ui

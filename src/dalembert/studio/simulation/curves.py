@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 import plotly.graph_objects as go
 
-from dalembert.quantities import by_quantity, common, labelled, quantity
+from dalembert.quantities import by_quantity, common, quantity
 from dalembert.report.charts.drawing import colour_of, draw
 from dalembert.report.look import plain, themed
 from dalembert.report.thinning import thinned
 from dalembert.studio.simulation.parts import Part
+from dalembert.tables import labelled
 
 HEIGHT = 320
 

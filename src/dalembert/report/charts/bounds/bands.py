@@ -9,10 +9,11 @@ import plotly.graph_objects as go
 from dalembert.data import Bands, Measurements
 from dalembert.errors import InputError, unknown
 from dalembert.inverse import Prediction
-from dalembert.quantities import common, labelled, quantity
+from dalembert.quantities import common, quantity
 from dalembert.report.charts.drawing import colour_of, draw, stacked
 from dalembert.report.look import faint, plain, themed
 from dalembert.report.thinning import thin, thinned
+from dalembert.tables import labelled
 
 Channels = Bands | Measurements | Prediction
 

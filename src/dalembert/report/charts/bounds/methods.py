@@ -3,11 +3,11 @@
 import numpy as np
 import plotly.graph_objects as go
 
-from dalembert.quantities import labelled
 from dalembert.report.charts.drawing import colour_of, draw, logarithmic, positive
 from dalembert.report.charts.identification.responses import FEW
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.thinning import thinned
+from dalembert.tables import labelled
 from dalembert.uncertainty import Comparison
 
 KINDS = {

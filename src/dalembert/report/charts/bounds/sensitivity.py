@@ -3,9 +3,9 @@
 import numpy as np
 import plotly.graph_objects as go
 
-from dalembert.quantities import labelled
 from dalembert.report.charts.drawing import colour_of, draw, stacked
 from dalembert.report.look import LIGHT, plain, themed
+from dalembert.tables import labelled
 from dalembert.uncertainty import Screening, SensitivityIndices
 
 

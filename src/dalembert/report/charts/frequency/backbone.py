@@ -3,10 +3,9 @@
 import numpy as np
 import plotly.graph_objects as go
 
-from dalembert.digits import prefixed
-from dalembert.quantities import labelled
 from dalembert.report.charts.drawing import HOVER, draw, logarithmic, stacked
 from dalembert.report.look import LIGHT, plain, themed
+from dalembert.tables import labelled, prefixed
 from dalembert.units import unit_of
 from dalembert.vibration import Backbone
 

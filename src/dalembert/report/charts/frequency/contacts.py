@@ -5,11 +5,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import plotly.graph_objects as go
 
-from dalembert.digits import prefixed
-from dalembert.quantities import labelled
 from dalembert.report.charts.drawing import colour_of, draw
 from dalembert.report.focus import dissipation_of, foremost, of_contacts
 from dalembert.report.look import LIGHT, plain, themed
+from dalembert.tables import labelled, prefixed
 from dalembert.vibration import FrequencyCurve
 
 STATES = ("separated", "stuck", "slipping")

@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 import plotly.graph_objects as go
 
-from dalembert.digits import prefixed, shown
-from dalembert.quantities import labelled, size_label
+from dalembert.quantities import size_label
 from dalembert.report.charts.drawing import HOVER, draw, logarithmic, positive, stacked
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.thinning import thinned
+from dalembert.tables import labelled, prefixed, shown
 from dalembert.units import unit_of
 from dalembert.vibration import CurveFamily, ResonanceTrack
 

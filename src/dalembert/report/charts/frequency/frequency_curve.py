@@ -7,13 +7,13 @@ import numpy as np
 import plotly.graph_objects as go
 from scipy.ndimage import binary_dilation
 
-from dalembert.digits import prefixed
-from dalembert.quantities import labelled, size_label
+from dalembert.quantities import size_label
 from dalembert.report.charts.drawing import HOVER, colour_of, draw, logarithmic, positive, stacked
 from dalembert.report.charts.frequency.backbone import backbone_line
 from dalembert.report.focus import marked, movers, unstable
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.thinning import thinned
+from dalembert.tables import labelled, prefixed
 from dalembert.units import unit_of
 from dalembert.vibration import Backbone, FrequencyCurve
 

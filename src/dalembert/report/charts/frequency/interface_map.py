@@ -3,11 +3,11 @@
 import numpy as np
 import plotly.graph_objects as go
 
-from dalembert.digits import prefixed
 from dalembert.report.charts.frequency.contacts import COLOURS, STATES, shares
 from dalembert.report.charts.frequency.shapes import SECONDS, edges
 from dalembert.report.charts.motion.film import Film, slowness
 from dalembert.report.look import LIGHT, plain, themed
+from dalembert.tables import prefixed
 from dalembert.vibration import Deformation
 
 FRAMES = 32

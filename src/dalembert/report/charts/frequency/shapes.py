@@ -5,11 +5,10 @@ from typing import Any
 import numpy as np
 import plotly.graph_objects as go
 
-from dalembert.digits import prefixed, shown
-from dalembert.quantities import labelled
 from dalembert.report.charts.motion.film import Film, slowness
 from dalembert.report.look import LIGHT, themed
 from dalembert.structure import ModeShapes
+from dalembert.tables import labelled, prefixed, shown
 from dalembert.vibration import Deformation
 
 SHARP = 0.8

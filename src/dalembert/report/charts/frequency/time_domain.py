@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 import plotly.graph_objects as go
 
-from dalembert.digits import prefixed
-from dalembert.quantities import labelled, size_label
+from dalembert.quantities import size_label
 from dalembert.report.charts.drawing import HOVER, colour_of, draw
 from dalembert.report.charts.frequency.contacts import PHASE, draw_loops
 from dalembert.report.focus import foremost
 from dalembert.report.look import plain, themed
+from dalembert.tables import labelled, prefixed
 from dalembert.units import unit_of
 from dalembert.vibration import FrequencyCurve, PeriodicMotion, TimeComparison
 

@@ -5,16 +5,15 @@ from collections.abc import Sequence
 import numpy as np
 import plotly.graph_objects as go
 
-from dalembert.digits import interval, shown
 from dalembert.errors import InputError, unknown
 from dalembert.inverse import Designs, Prediction, Profiles
-from dalembert.quantities import labelled
 from dalembert.report.charts.bounds.bands import draw_line, dressed, fill_band, selected
 from dalembert.report.charts.drawing import colour_of, draw, logarithmic, positive, stacked
 from dalembert.report.charts.identification.identifiability import labelled_points
 from dalembert.report.charts.identification.responses import FEW
 from dalembert.report.look import LIGHT, faint, plain, themed
 from dalembert.report.thinning import thinned
+from dalembert.tables import interval, labelled, shown
 
 
 def prediction(result: Prediction, channels: Sequence[str] | None = None, *, title: str = "Prediction") -> go.Figure:

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 import plotly.graph_objects as go
 
-from dalembert.digits import shown
 from dalembert.inverse import BandFit, Fit
 from dalembert.report.charts.drawing import logarithmic, positive
 from dalembert.report.look import LIGHT, plain, themed
+from dalembert.tables import shown
 
 MOST_TEXTS = 12
 

@@ -5,12 +5,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import plotly.graph_objects as go
 
-from dalembert.digits import interval, shown
 from dalembert.inverse import BandFit
 from dalembert.report.charts.bounds.bands import draw_band, draw_line, dressed, selected
 from dalembert.report.charts.drawing import colour_of, draw, stacked
 from dalembert.report.charts.identification.parameters import BETWEEN, side_of, tracks
 from dalembert.report.look import LIGHT, plain, themed
+from dalembert.tables import interval, shown
 
 
 def intervals(

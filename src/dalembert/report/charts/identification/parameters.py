@@ -5,11 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 import plotly.graph_objects as go
 
-from dalembert.digits import shown
 from dalembert.inverse import Fit
 from dalembert.parameters import Parameters
 from dalembert.report.charts.drawing import draw
 from dalembert.report.look import LIGHT, plain, themed
+from dalembert.tables import shown
 
 BETWEEN = {"showgrid": False, "tickvals": [0, 0.5, 1], "ticktext": ["lower", "middle", "upper"]}
 """Axis of the way between the bounds."""

@@ -9,9 +9,9 @@ import plotly.graph_objects as go
 
 from dalembert.errors import InputError, unknown
 from dalembert.inverse import ParameterSet
-from dalembert.quantities import labelled
 from dalembert.report.charts.drawing import draw
 from dalembert.report.look import LIGHT, faint, plain, themed
+from dalembert.tables import labelled
 
 MARGIN = 0.08
 MOST_PLANES = 6

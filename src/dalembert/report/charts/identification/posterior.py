@@ -6,15 +6,14 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
-from dalembert.digits import with_deviation
 from dalembert.errors import InputError, unknown
 from dalembert.inverse import Posterior, Profiles
-from dalembert.quantities import labelled
 from dalembert.report.charts.bounds.bands import dressed, fill_band, selected
 from dalembert.report.charts.drawing import colour_of, draw, stacked
 from dalembert.report.charts.identification.responses import FEW
 from dalembert.report.look import LIGHT, faint, plain, themed
 from dalembert.report.thinning import thinned
+from dalembert.tables import labelled, with_deviation
 
 BINS = 40
 MOST_PAIRS = 5

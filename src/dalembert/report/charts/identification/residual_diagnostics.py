@@ -8,10 +8,10 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from dalembert.inverse import ResidualDiagnostics, SeriesResiduals
-from dalembert.quantities import labelled
 from dalembert.report.charts.drawing import colour_of
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.thinning import thinned
+from dalembert.tables import labelled
 
 MOST_SERIES = 12
 """Channels that are drawn, those that the tests doubt most."""

@@ -8,12 +8,13 @@ import plotly.graph_objects as go
 
 from dalembert.data import Measurements
 from dalembert.inverse import Fit
-from dalembert.quantities import common, labelled, quantity
+from dalembert.quantities import common, quantity
 from dalembert.report.charts.bounds.bands import dressed, selected
 from dalembert.report.charts.drawing import colour_of, draw, positive, stacked
 from dalembert.report.charts.identification.search import winner
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.thinning import thinned
+from dalembert.tables import labelled
 
 FEW = 500
 """Samples up to which each is drawn as a circle."""

@@ -4,8 +4,8 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.inverse import Population
-from dalembert.quantities import labelled
 from dalembert.report.look import LIGHT, plain, themed
+from dalembert.tables import labelled
 
 
 def specimens(told: Population, name: str, *, title: str = "") -> go.Figure:

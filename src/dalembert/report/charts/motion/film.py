@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from dalembert.digits import shown
 from dalembert.report.look import LIGHT
+from dalembert.tables import shown
 
 
 @dataclass(frozen=True)

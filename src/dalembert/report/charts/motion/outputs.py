@@ -7,10 +7,11 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.multibody import Trajectory
-from dalembert.quantities import common, derivative, labelled, quantity
+from dalembert.quantities import common, derivative, quantity
 from dalembert.report.charts.drawing import colour_of, draw, stacked
 from dalembert.report.look import plain, themed
 from dalembert.report.thinning import thinned
+from dalembert.tables import labelled
 
 
 def outputs(trajectory: Trajectory, channels: Sequence[str], *, title: str = "Outputs over time") -> go.Figure:

@@ -2,14 +2,12 @@
 
 import numpy as np
 
-from dalembert.digits import counted, percent, shown
-from dalembert.quantities import labelled
 from dalembert.report import charts
 from dalembert.report.headline import Headline
 from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Fold, Plot, Section
-from dalembert.tables import Table, cells, noted, unless
+from dalembert.tables import Table, cells, counted, labelled, noted, percent, shown, unless
 from dalembert.units import unit_of
 from dalembert.vibration import Backbone
 

@@ -4,8 +4,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from dalembert.digits import counted, in_words, percent, shown
-from dalembert.quantities import labelled, size_label
+from dalembert.quantities import size_label
 from dalembert.report import charts
 from dalembert.report.charts.frequency.contacts import shares
 from dalembert.report.charts.frequency.frequency_curve import by_order
@@ -20,7 +19,7 @@ from dalembert.report.sections.frequency.deformation import deformed
 from dalembert.report.sections.frequency.in_time import in_time
 from dalembert.report.sections.frequency.modes import reduced
 from dalembert.structure import ReductionErrors
-from dalembert.tables import Cell, Table, cells
+from dalembert.tables import Cell, Table, cells, counted, in_words, labelled, percent, shown
 from dalembert.units import unit_of
 from dalembert.vibration import Backbone, Deformation, FrequencyCurve, TimeComparison
 

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from dalembert.digits import counted, percent, shown
 from dalembert.report import charts
 from dalembert.report.charts.frequency.shapes import magnified
 from dalembert.report.headline import Headline
 from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Block, Plot, Section
+from dalembert.tables import counted, percent, shown
 from dalembert.vibration import Deformation
 
 

@@ -2,8 +2,6 @@
 
 import numpy as np
 
-from dalembert.digits import counted, in_words, percent, shown
-from dalembert.quantities import labelled
 from dalembert.report import charts
 from dalembert.report.charts.frequency.curve_family import value_text
 from dalembert.report.focus import Look, family_dofs
@@ -12,7 +10,7 @@ from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Fold, Plot, Row, Section
 from dalembert.report.sections.frequency.curve import beside, friction
-from dalembert.tables import Table, cells, marks, noted, unless
+from dalembert.tables import Table, cells, counted, in_words, labelled, marks, noted, percent, shown, unless
 from dalembert.units import unit_of
 from dalembert.vibration import CurveFamily, ResonanceTrack
 

@@ -2,8 +2,6 @@
 
 import numpy as np
 
-from dalembert.digits import counted, percent, shown
-from dalembert.quantities import labelled
 from dalembert.report import charts
 from dalembert.report.charts.frequency.shapes import MOST
 from dalembert.report.headline import Headline
@@ -11,7 +9,7 @@ from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Fold, Plot, Section
 from dalembert.structure import Campbell, ModeShapes, ReductionErrors
-from dalembert.tables import MOST_FACTS, Table, cells
+from dalembert.tables import MOST_FACTS, Table, cells, counted, labelled, percent, shown
 
 
 @sections_of(ModeShapes)

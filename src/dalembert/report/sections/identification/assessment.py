@@ -4,16 +4,15 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from dalembert.digits import counted, interval, shown
 from dalembert.inverse import Designs, Prediction, Profiles
-from dalembert.quantities import by_quantity, labelled
+from dalembert.quantities import by_quantity
 from dalembert.report import charts
 from dalembert.report.headline import Headline
 from dalembert.report.look import plain
 from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Fold, Listed, Plot, Row, Section, numbered
-from dalembert.tables import Table, cell, cells, few_values, marks
+from dalembert.tables import Table, cell, cells, counted, few_values, interval, labelled, marks, shown
 
 
 @sections_of(Profiles)

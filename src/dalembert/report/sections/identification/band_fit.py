@@ -4,9 +4,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from dalembert.digits import counted, interval, shown
 from dalembert.inverse import BandFit
-from dalembert.quantities import by_quantity, labelled, unit
+from dalembert.quantities import by_quantity, unit
 from dalembert.report import charts
 from dalembert.report.charts.identification.intervals import reproduced
 from dalembert.report.headline import Headline
@@ -15,7 +14,7 @@ from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Plot, Section, samples
 from dalembert.report.sections.identification.search import identifiability, identified, search
-from dalembert.tables import Table, cell, cells, few_values, marks, noted
+from dalembert.tables import Table, cell, cells, counted, few_values, interval, labelled, marks, noted, shown
 
 NONE = 1e-6
 """Radii below this part of the way between the search bounds are none."""

@@ -4,7 +4,6 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from dalembert.digits import counted, shown, with_deviation
 from dalembert.inverse import Fit, Population, Prediction, Profiles
 from dalembert.multibody import Trajectory
 from dalembert.parameters import Parameter
@@ -19,7 +18,7 @@ from dalembert.report.sections.identification.population import varied
 from dalembert.report.sections.identification.response import compared, experiments, residuals
 from dalembert.report.sections.identification.search import identifiability, identified, search, shooting
 from dalembert.report.sections.motion.trajectory import diagnostics, mechanisms
-from dalembert.tables import Cell, Table, cell, cells, few_values, noted
+from dalembert.tables import Cell, Table, cell, cells, counted, few_values, noted, shown, with_deviation
 
 
 def estimates(fit: Fit) -> Section:

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from dalembert.digits import counted, shown
 from dalembert.inverse.inertial import (
     BaseEstimate,
     BaseParameters,
@@ -18,7 +17,7 @@ from dalembert.report.headline import Headline
 from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Fold, Plot, Section
-from dalembert.tables import Table, cell, cells
+from dalembert.tables import Table, cell, cells, counted, shown
 from dalembert.units import inertial_unit
 
 

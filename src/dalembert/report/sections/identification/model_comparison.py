@@ -4,7 +4,6 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from dalembert.digits import counted, shown
 from dalembert.inverse import CrossValidation, ModelComparison
 from dalembert.inverse.comparison.conclusions import alike
 from dalembert.inverse.comparison.left_out import WAYS
@@ -14,7 +13,7 @@ from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Listed, Plot, Row, Section
 from dalembert.report.sections.identification.response import compared_simply
-from dalembert.tables import Cell, Table, cell, cells
+from dalembert.tables import Cell, Table, cell, cells, counted, shown
 
 HOW = "Lines are predicted by the fits without each group, circles are data; below, predicted minus measured."
 

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from dalembert.digits import counted, interval, shown
 from dalembert.inverse import ParameterSet
 from dalembert.report import charts
 from dalembert.report.charts.identification.paving import planes
@@ -10,7 +9,7 @@ from dalembert.report.headline import Headline
 from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Plot, Row, Section
-from dalembert.tables import box_table, few_values
+from dalembert.tables import box_table, counted, few_values, interval, shown
 
 BOXES = (
     ("outer", "Outer box: all consistent parameters lie in it"),

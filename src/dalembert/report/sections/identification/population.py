@@ -2,15 +2,13 @@
 
 from collections.abc import Iterable
 
-from dalembert.digits import counted, interval, shown
 from dalembert.inverse import Population
-from dalembert.quantities import labelled
 from dalembert.report import charts
 from dalembert.report.headline import Headline
 from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Fold, Listed, Plot, Row, Section
-from dalembert.tables import MOST_FACTS, Table, cell, cells
+from dalembert.tables import MOST_FACTS, Table, cell, cells, counted, interval, labelled, shown
 
 
 @sections_of(Population)

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from dalembert.digits import counted, interval, with_deviation
 from dalembert.inverse import Posterior, Profiles
 from dalembert.quantities import by_quantity
 from dalembert.report import charts
@@ -13,7 +12,7 @@ from dalembert.report.registry import sections_of
 from dalembert.report.section import Plot, Row, Section
 from dalembert.report.sections.identification.assessment import profiled
 from dalembert.results import fixed_facts
-from dalembert.tables import Table, cell, cells, few_values
+from dalembert.tables import Table, cell, cells, counted, few_values, interval, with_deviation
 
 MARGINAL = (
     "Bars are the draws, between dotted lines 95 % of them. Dashed is the normal distribution of the linearised "

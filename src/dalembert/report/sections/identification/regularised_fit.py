@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from dalembert.digits import counted, shown
 from dalembert.inverse import RegularisedFit
 from dalembert.report import charts
 from dalembert.report.headline import Headline
@@ -10,7 +9,7 @@ from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Download, Plot, Row, Section
 from dalembert.report.sections.identification.response import compared_simply
-from dalembert.tables import Table, cells
+from dalembert.tables import Table, cells, counted, shown
 
 
 @sections_of(RegularisedFit)

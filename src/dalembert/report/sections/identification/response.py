@@ -6,12 +6,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from dalembert.inverse import CrossValidation, ExperimentFit, Fit, RegularisedFit, ResidualDiagnostics, SeriesResiduals
-from dalembert.quantities import by_quantity, labelled, unit
+from dalembert.quantities import by_quantity, unit
 from dalembert.report import charts
 from dalembert.report.charts.identification.residual_diagnostics import VISIBLE, doubted
 from dalembert.report.look import LIGHT, plain
 from dalembert.report.section import Block, Download, Fold, Plot, Section, samples
-from dalembert.tables import Cell, Table, cell, cells, noted
+from dalembert.tables import Cell, Table, cell, cells, labelled, noted
 
 HOW = "Lines are computed with the identified values, circles are data; below, computed minus measured."
 LEAVES = "At the dashed line the residuals leave the noise: from there on the model does not follow the data."

@@ -5,14 +5,13 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from dalembert.inverse import BandFit, Fit, Nodes
-from dalembert.quantities import labelled
 from dalembert.report import charts
 from dalembert.report.charts.identification.identifiability import unknowns
 from dalembert.report.charts.identification.regularisation import accounts
 from dalembert.report.charts.identification.search import ranked
 from dalembert.report.headline import Headline
 from dalembert.report.section import Fold, Listed, Plot, Row, Section
-from dalembert.tables import Table, cells, unless
+from dalembert.tables import Table, cells, labelled, unless
 
 
 def identified(fit: Fit | BandFit, title: str, facts: Mapping[str, str]) -> Headline:

@@ -2,13 +2,12 @@
 
 from typing import Any
 
-from dalembert.quantities import labelled
 from dalembert.report import charts
 from dalembert.report.headline import Headline
 from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Fold, Plot, Row, Section
-from dalembert.tables import MOST_FACTS, Table
+from dalembert.tables import MOST_FACTS, Table, labelled
 
 
 @sections_of("dalembert.study.tasks.sweep.Sweep")

@@ -6,7 +6,6 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.data import Measurements
-from dalembert.digits import counted, percent, shown
 from dalembert.forward import Coordinate
 from dalembert.multibody import Drawing, Trajectory
 from dalembert.quantities import by_quantity
@@ -17,7 +16,7 @@ from dalembert.report.look import plain
 from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Block, Plot, Row, Section, numbered, samples
-from dalembert.tables import Table, cells
+from dalembert.tables import Table, cells, counted, percent, shown
 
 HEADING = "Mechanism"
 MOST_PATHS = 3

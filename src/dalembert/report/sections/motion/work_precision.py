@@ -2,14 +2,13 @@
 
 import numpy as np
 
-from dalembert.digits import counted, shown
 from dalembert.multibody import WorkPrecision
 from dalembert.report import charts
 from dalembert.report.headline import Headline
 from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Plot, Section
-from dalembert.tables import Table, cells, marks
+from dalembert.tables import Table, cells, counted, marks, shown
 
 ERRORS = (1e-4, 1e-8)
 """Errors that the fastest integrator is named for."""

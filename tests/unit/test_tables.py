@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from dalembert.digits import counted, shown, with_deviation
 from dalembert.quantities import by_quantity, quantity
 from dalembert.report.thinning import thin
+from dalembert.tables import counted, shown, with_deviation
 
 
 @pytest.mark.parametrize(

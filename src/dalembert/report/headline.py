@@ -45,6 +45,6 @@ class Headline(Section):
 
 def headline_of(result: Result, **changes: Any) -> Headline:
     """Return the headline of a result: its title, verdict, status and facts, with changes."""
-    content = {"title": result.TITLE, "verdict": result.verdict, "facts": result.facts()}
+    content: dict[str, Any] = {"title": result.TITLE, "verdict": result.verdict, "facts": result.facts()}
     content |= {"success": getattr(result, "success", True), "status": getattr(result, "status", "")}
     return Headline(**content | changes)

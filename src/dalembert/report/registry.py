@@ -7,8 +7,10 @@ from pkgutil import iter_modules
 from typing import Any, TypeVar
 
 from dalembert.errors import InputError
+from dalembert.report.headline import headline_of
 from dalembert.report.options import ReportOptions
 from dalembert.report.section import Section
+from dalembert.results import Result
 
 Sections = Callable[[Any, ReportOptions], list[Section]]
 Function = TypeVar("Function", bound=Sections)
@@ -60,7 +62,7 @@ def sections_of(kind: type | str) -> Callable[[Function], Function]:
 
 
 def registered_sections(result: object, options: ReportOptions) -> list[Section]:
-    """Sections of a result.
+    """Return the sections of a result: the registered ones, or its facts and tables.
 
     Raises
     ------
@@ -73,6 +75,8 @@ def registered_sections(result: object, options: ReportOptions) -> list[Section]
             _import_sections(SUBJECTS[module])
         if (function := _SECTIONS.get(_full_name(kind))) is not None:
             return function(result, options)
+    if isinstance(result, Result) and (tables := result.tables()):
+        return [headline_of(result), Section("Result", tables)]
     raise InputError(
         f"report: a {type(result).__name__} was given; expected a result, such as identify(), simulate() or "
         "propagate() return. For a class of your own, register its sections first by dalembert.report.sections_of"

@@ -103,9 +103,9 @@ class Comparison(EndedResult):
 
     def tables(self) -> tuple[Table, ...]:
         """Return the bounds of each method: their width, their distance from the reference, and their cost."""
-        rows = []
+        rows, reference = [], self.reference_result
         for row, result in zip(self.rows, self.results, strict=True):
-            is_reference = row.method == self.reference
+            is_reference = result is reference
             errors = (np.nan, np.nan) if is_reference else (row.largest, row.rms)
             note = "the reference" if is_reference else "" if result.success else result.status
             cost = (row.runs, cell(row.seconds, digits=3), cell(note, mark=not result.success))

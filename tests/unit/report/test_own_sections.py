@@ -10,6 +10,7 @@ from inline_snapshot import snapshot
 from dalembert.errors import InputError
 from dalembert.findings import Finding
 from dalembert.report import Part, Table, cell, figures, report, sections_of
+from dalembert.results import Result
 from pages import read_page
 from refusals import refused
 from stand_ins import fit, motion
@@ -74,3 +75,38 @@ def test_what_no_section_shows_is_refused(tmp_path: Path) -> None:
     with refused(InputError, snapshot("report: unknown option 'tittle'; did you mean 'title'?")):
         report(fit(), tmp_path / "a.html", tittle="Pendulum")
     assert not list(tmp_path.iterdir())
+
+
+class Rain(Result):
+    """A result that defines its facts and tables alone."""
+
+    FORMAT = "rain 1"
+    TITLE = "Rain"
+    VERDICTS = ("measured", "not measured")
+    status = "It rained on one day of two."
+
+    def facts(self) -> dict[str, str]:
+        return {"days": "2"}
+
+    def tables(self) -> tuple[Table, ...]:
+        return (Table.of("days", "Rain of the days", {"day": ["Monday", "Tuesday"], "rain (mm)": [0.0, 3.5]}),)
+
+
+def test_a_result_with_facts_and_tables_has_a_report_a_summary_and_a_picture_in_notebooks(tmp_path: Path) -> None:
+    page = read_page(report(Rain(), tmp_path / "rain.html"))
+    assert page.table("days") == [["day", "rain (mm)"], ["Monday", "0.0"], ["Tuesday", "3.5"]]
+    for text in ("Rain", "measured", "It rained on one day of two.", "days", "Rain of the days"):
+        assert text in page.text
+    assert Rain().summary() == snapshot("""\
+day      rain (mm)
+──────────────────
+Monday   0
+Tuesday  3.5
+
+days  2
+
+It rained on one day of two.\
+""")
+    shown = Rain()._repr_html_()
+    assert shown is not None
+    assert "It rained on one day of two." in shown

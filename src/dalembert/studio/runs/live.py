@@ -9,8 +9,7 @@ from pathlib import Path
 
 from dalembert.study.run.events import OF_THE_RUN, Event, event_of
 from dalembert.study.run.folder import RunFolder
-from dalembert.study.run.progress import Told
-from dalembert.study.run.progress import duration_text
+from dalembert.study.run.progress import Told, duration_text
 
 WINDOW = 200
 """Events that the speed is taken from."""

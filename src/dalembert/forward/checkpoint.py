@@ -18,21 +18,18 @@ import numpy as np
 from dalembert.errors import unwritable
 from dalembert.files import set_aside
 
-EVERY = 0.5
-"""Seconds between two times at which what came is written to the disk for good."""
-
+EVERY = 0.5  # seconds between two times at which what came is written to the disk for good
 Arrays = tuple[np.ndarray, ...]
-
 _COLUMNS = "key, shapes, content, seconds, digest"
 _TABLE = (
     "CREATE TABLE IF NOT EXISTS results (key BLOB PRIMARY KEY, shapes BLOB, content BLOB, seconds REAL, digest BLOB)"
 )
 _INSERT = "INSERT OR REPLACE INTO results VALUES (?, ?, ?, ?, ?)"
+# What SQLite says where the file itself is right; of anything else the file is the cause.
 _NO_STORAGE = (
     sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_PERM, sqlite3.SQLITE_BUSY,
     sqlite3.SQLITE_LOCKED, sqlite3.SQLITE_NOMEM, sqlite3.SQLITE_INTERRUPT, sqlite3.SQLITE_READONLY,
 )  # fmt: skip
-"""What SQLite says where the file itself is right; of anything else the file is the cause."""
 
 
 class Result(NamedTuple):

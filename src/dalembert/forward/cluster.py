@@ -20,13 +20,10 @@ from dalembert.versions import difference, versions
 if TYPE_CHECKING:
     from distributed import Client, Future
 
-RETRIES = 5
-"""Times that work is begun again where its worker is lost."""
+RETRIES = 5  # times that work is begun again where its worker is lost
+# Topic of the scheduler's log by which workers say that they have other versions of packages than their sender.
 OTHERS = "dalembert-versions"
-"""Topic of the scheduler's log by which workers say that they have other versions of packages than their sender."""
-WAIT = 10.0
-"""Seconds until a cluster that does not answer is given up."""
-
+WAIT = 10.0  # seconds until a cluster that does not answer is given up
 Executor: TypeAlias = "str | Client | None"
 """Where ensembles are computed: at the address of a scheduler, by a client of Dask's, or in this process."""
 

@@ -16,8 +16,7 @@ import numpy as np
 from dalembert.errors import InputError
 from dalembert.parameters import Parameters
 
-STEP = 1e-30
-"""Imaginary step, in scales of the parameter; terms of second order vanish below the rounding of the first."""
+STEP = 1e-30  # imaginary step, in scales of the parameter; terms of second order vanish below the rounding of the first
 DIFFERENCE = 1e-5  # step of the differences, in scales
 _SAFETY = 2.0  # factor of the differences' error, which is six times what Taylor's series expects
 _AGREES = 1e-6  # relative

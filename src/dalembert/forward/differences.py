@@ -7,8 +7,8 @@ from dalembert.forward.model import ForwardModel
 
 COMPLEX_STEP = "complex-step"
 DERIVATIVES = (COMPLEX_STEP, "central-differences")
+# Step in scales, at which truncation and rounding have about the same size.
 RELATIVE_STEP = np.finfo(float).eps ** (1 / 3)
-"""Step in scales, at which truncation and rounding have about the same size."""
 
 
 def central_differences(model: ForwardModel, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

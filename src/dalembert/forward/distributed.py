@@ -19,14 +19,11 @@ from dalembert.forward.wrapped import Wrapped
 if TYPE_CHECKING:
     from distributed import Client
 
-PARTS = 4
-"""Parts of a batch a thread of the cluster: enough that few wait at the end, and each worth its message."""
-
+PARTS = 4  # parts of a batch a thread of the cluster: enough that few wait at the end, and each worth its message
+# What was asked of a model: the name of its method, how many samples it has, and the parameter vector.
 Key: TypeAlias = tuple[str, int, bytes]
-"""What was asked of a model: the name of its method, how many samples it has, and the parameter vector."""
-
+# Values and failure, or response and jacobian, or why there is none, by what was asked.
 Answers: TypeAlias = "dict[Key, tuple[Any, ...] | DalembertError]"
-"""Values and failure, or response and jacobian, or why there is none, by what was asked."""
 
 
 @dataclass(frozen=True)

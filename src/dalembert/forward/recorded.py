@@ -15,8 +15,7 @@ from dalembert.forward.complex_steps import check_derivatives
 from dalembert.forward.responses import Responses
 from dalembert.forward.wrapped import Wrapped
 
-TOGETHER = 64
-"""Vectors of a batch that are computed between two records."""
+TOGETHER = 64  # vectors of a batch that are computed between two records
 
 
 @dataclass(frozen=True)

@@ -18,15 +18,10 @@ from dalembert.forward.responses import Responses
 from dalembert.forward.wrapped import starting
 from dalembert.parameters import Parameter, Parameters
 
-START = "start time"
-"""Parameter of the time stamp at which the motion begins."""
-
+START = "start time"  # parameter of the time stamp at which the motion begins
+# What a sensor may have, and what it is for a perfect one.
 QUANTITIES = {"delay": 0.0, "lag": 0.0, "gain": 1.0, "offset": 0.0}
-"""What a sensor may have, and what it is for a perfect one."""
-
-DEGREE = 5
-"""Of the splines between the samples of the model."""
-
+DEGREE = 5  # of the splines between the samples of the model
 Bounds = tuple[float, float] | Parameter
 
 

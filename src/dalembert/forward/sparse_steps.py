@@ -11,12 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csc_array, csr_array
 
+# Derivative of all numbers (numbers,) along a direction (parameters,), exact.
 Along = Callable[[np.ndarray], np.ndarray]
-"""Derivative of all numbers (numbers,) along a direction (parameters,), exact."""
-
-FEW = 6
-"""Parameters up to which each is moved alone."""
-
+FEW = 6  # parameters up to which each is moved alone
 _STRIDES = 1, 2, 4  # of the first groups: neighbours, as coefficients of a spline, often move the same number
 _RANDOM = 40  # random groups after these, while they cost less than all parameters; then the Jacobian is dense
 _ROUNDING = 1e-13  # of a derivative along a direction, relative to its terms

@@ -8,15 +8,11 @@ from dalembert.optimize.stopping import PROGRESS, SMOOTH
 from dalembert.optimize.sum_of_squares import SumOfSquares
 from dalembert.optimize.tikhonov import UNSEEN
 
-UNIFORM = 1 / np.sqrt(12)
-"""Standard deviation of a uniform distribution, relative to its width."""
-
-CREEPING = 0.1
-"""Part of the foreseen fall of the sum of squares below which a step creeps."""
-
+UNIFORM = 1 / np.sqrt(12)  # standard deviation of a uniform distribution, relative to its width
+CREEPING = 0.1  # part of the foreseen fall of the sum of squares below which a step creeps
+# Falls of the sum of squares, relative to the square of an error, to the variance of white residuals, and to that of
+# others, which is too large where they are no noise, up to which these explain the falls.
 BIASED, WHITE, OTHER = 4.0, 4.0, 1.0
-"""Falls of the sum of squares, relative to the square of an error, to the variance of white residuals, and to that of
-others, which is too large where they are no noise, up to which these explain the falls."""
 
 
 @dataclass(frozen=True, eq=False)

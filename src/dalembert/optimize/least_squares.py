@@ -12,15 +12,11 @@ from dalembert.optimize.stopping import SMOOTH, WINDOW, Stopped, Stopping
 from dalembert.optimize.sum_of_squares import SquaresMinimiser, SumOfSquares
 from dalembert.optimize.valley import follow_valley
 
-LEAST_GAIN = 1e-14
-"""Fraction of the sum of squares. A step that gains less ends a descent, whatever is foreseen."""
-
+LEAST_GAIN = 1e-14  # fraction of the sum of squares. A step that gains less ends a descent, whatever is foreseen.
+# Fraction of the sum of squares. With this ``gain`` a descent is one of many, of which the best continues: progress
+# is judged sooner. With a larger one it only leads to another descent, and one step that gains less ends it.
 COARSE = 1e-3
-"""Fraction of the sum of squares. With this ``gain`` a descent is one of many, of which the best continues: progress is
-judged sooner. With a larger one it only leads to another descent, and one step that gains less ends it."""
-
-TRIALS = 100
-"""Residuals at most, for each parameter and one more. Descents without progress stop long before."""
+TRIALS = 100  # residuals at most, for each parameter and one more. Descents without progress stop long before.
 
 
 @dataclass(frozen=True)

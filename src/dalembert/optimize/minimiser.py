@@ -23,11 +23,9 @@ GRADIENT = ("CG", "BFGS", "Newton-CG", "L-BFGS-B", "TNC", "SLSQP", "trust-constr
 GLOBAL = ("differential_evolution", "dual_annealing", "basinhopping", "shgo", "direct")
 BATCHED = "differential_evolution"
 NAMES = (*BOUNDED, *UNBOUNDED, *GLOBAL)
-OWN = {"func", "bounds", "rng", "x0", "args", "callback"}
-"""Arguments of global minimisers that are no options."""
-
+OWN = {"func", "bounds", "rng", "x0", "args", "callback"}  # arguments of global minimisers that are no options
+# How much worse than the worst a failed sample is told to be: SciPy interpolates, which no infinity survives.
 FAILED = 10.0
-"""How much worse than the worst a failed sample is told to be: SciPy interpolates, which no infinity survives."""
 
 
 @dataclass(frozen=True)

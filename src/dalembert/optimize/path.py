@@ -9,11 +9,8 @@ from dalembert.optimize.minimum import Minimum, Progress
 from dalembert.optimize.stopping import Stopped, Stopping
 from dalembert.optimize.sum_of_squares import SumOfSquares
 
-ROUNDING = 1e-14
-"""Columns of the jacobian below this part of the largest are rounding."""
-
-LARGEST = 1e150
-"""A sample with larger residuals has failed: their squares overflow."""
+ROUNDING = 1e-14  # columns of the jacobian below this part of the largest are rounding
+LARGEST = 1e150  # a sample with larger residuals has failed: their squares overflow
 
 
 class Creeps(Exception):

@@ -10,8 +10,7 @@ from dalembert.optimize.minimum import Minimum
 from dalembert.optimize.path import Creeps, Path
 from dalembert.optimize.stopping import SMOOTH, Stopped, Stopping
 
-HALVINGS = 10
-"""Times that a step is halved at most."""
+HALVINGS = 10  # times that a step is halved at most
 
 
 def settle(path: Path, at: Creeps, stopping: Stopping, shortest: float) -> Minimum:

@@ -6,22 +6,15 @@ import numpy as np
 
 from dalembert.optimize.linear_model import LinearModel
 
-WINDOW = 20
-"""Trial points after which progress is judged, at least."""
-
-PROGRESS = 0.02
-"""Least progress over a window: a fall of the sum of squares by this fraction."""
-
+WINDOW = 20  # trial points after which progress is judged, at least
+PROGRESS = 0.02  # least progress over a window: a fall of the sum of squares by this fraction
+# Fraction of the sum of squares. A minimum where the linear model foresees a smaller fall is reached, up to the
+# roughness of the residuals.
 ROUGH = 1e-4
-"""Fraction of the sum of squares. A minimum where the linear model foresees a smaller fall is reached, up to the
-roughness of the residuals."""
-
-FAR = 1e-3
-"""Length of a foreseen step, in units of the parameters, that roughness hardly feigns."""
-
+FAR = 1e-3  # length of a foreseen step, in units of the parameters, that roughness hardly feigns
+# Fraction of the sum of squares. Where the linear model foresees a larger fall although the parameters move no more,
+# the residuals are rough.
 SMOOTH = 1e-8
-"""Fraction of the sum of squares. Where the linear model foresees a larger fall although the parameters move no more,
-the residuals are rough."""
 
 
 class Stopped(Exception):

@@ -12,8 +12,7 @@ from dalembert.arguments import Checked
 from dalembert.intervals import corners
 from dalembert.optimize.minimum import Minimum, OnIteration
 
-Residual: TypeAlias = Callable[[np.ndarray], np.ndarray]
-"""Residuals (values,) at a point (parameters,)."""
+Residual: TypeAlias = Callable[[np.ndarray], np.ndarray]  # residuals (values,) at a point (parameters,)
 
 
 class Disturbance(Protocol):

@@ -53,8 +53,7 @@ class SwarmState:
         return float(np.min(self.own_fitness))
 
 
-MOST_PARTICLES = 1_000_000
-"""A swarm of 1e9 would take the memory of the machine before it computes anything."""
+MOST_PARTICLES = 1_000_000  # a swarm of 1e9 would take the memory of the machine before it computes anything
 
 
 @dataclass(frozen=True)

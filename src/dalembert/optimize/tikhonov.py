@@ -8,14 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+# Weights go down to this fraction of the largest singular value; a smaller singular value is zero to a simulation.
 UNSEEN = 1e-10
-"""Weights go down to this fraction of the largest singular value; a smaller singular value is zero to a simulation."""
-
-DEARER = 1.4
-"""ϱ of cross-validation: what each unknown costs, in values."""
-
-PER_DECADE = 12
-"""Weights looked at a decade."""
+DEARER = 1.4  # ϱ of cross-validation: what each unknown costs, in values
+PER_DECADE = 12  # weights looked at a decade
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,17 +8,10 @@ from dalembert.optimize.linear_model import LinearModel
 from dalembert.optimize.path import Path
 from dalembert.optimize.stopping import Stopping
 
-AHEAD = 0.1
-"""Part of a step at which residuals are computed to see how the valley bends."""
-
-BENT = 0.75
-"""Largest correction ‖a‖, relative to the step's ‖v‖/2, that a step may have."""
-
-HARDER, EASIER = 3.0, 5.0
-"""Factors of the squared damping after a rejected and after an accepted step."""
-
-DAMPING, LEAST = 1e-3, 1e-16
-"""Squared damping at first and at least, relative to the squared largest singular value."""
+AHEAD = 0.1  # part of a step at which residuals are computed to see how the valley bends
+BENT = 0.75  # largest correction ‖a‖, relative to the step's ‖v‖/2, that a step may have
+HARDER, EASIER = 3.0, 5.0  # factors of the squared damping after a rejected and after an accepted step
+DAMPING, LEAST = 1e-3, 1e-16  # squared damping at first and at least, relative to the squared largest singular value
 
 
 def follow_valley(path: Path, start: np.ndarray, stopping: Stopping, shortest: float) -> NoReturn:

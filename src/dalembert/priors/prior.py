@@ -11,8 +11,7 @@ from numpy.typing import ArrayLike
 from dalembert.arguments import is_real
 from dalembert.errors import InputError, shown
 
-LEAST = 1e-9
-"""Probability of a prior between the bounds of its parameter, below which the two contradict each other."""
+LEAST = 1e-9  # probability of a prior between the bounds of its parameter, below which the two contradict each other
 
 
 @dataclass(frozen=True)

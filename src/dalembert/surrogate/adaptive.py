@@ -14,14 +14,11 @@ from dalembert.surrogate.held_out import SHARE, HeldOut
 from dalembert.surrogate.runs import Runs
 from dalembert.surrogate.scheme import Fitted
 
+# Where less than this part of the error of the held-out runs is expected, its terms are looked for elsewhere.
 UNSEEN = 0.1
-"""Where less than this part of the error of the held-out runs is expected, its terms are looked for elsewhere."""
-RECHECK = 1.05
-"""Growth of the number of terms after which the decay of the coefficients is looked at again."""
-AGREED = 3
-"""Times that the decay must agree once it did not: by chance the last terms of a kink are small now and then."""
-KEPT = 6
-"""Arrays of a number for each run and output that are kept: runs, surpluses, candidates and their copies."""
+RECHECK = 1.05  # growth of the number of terms after which the decay of the coefficients is looked at again
+AGREED = 3  # times that the decay must agree once it did not: by chance the last terms of a kink are small now and then
+KEPT = 6  # arrays of a number for each run and output that are kept: runs, surpluses, candidates and their copies
 BASES = ("sparse", "total-degree", "tensor")
 
 

@@ -14,12 +14,9 @@ from dalembert.errors import InputError
 from dalembert.surrogate.polynomial import ChebyshevPolynomial
 from dalembert.surrogate.scan import transformed
 
-MOST_COEFFICIENTS = 100_000
-"""Largest Bernstein form of one output; 3^10 is below."""
-CHUNK = 4_000_000
-"""Coefficients kept at once: of a batch of boxes, and of the parts of a single one."""
-DEPTH = 60
-"""Most halvings of a box."""
+MOST_COEFFICIENTS = 100_000  # largest Bernstein form of one output; 3^10 is below
+CHUNK = 4_000_000  # coefficients kept at once: of a batch of boxes, and of the parts of a single one
+DEPTH = 60  # most halvings of a box
 
 
 def enclosures(

@@ -11,8 +11,7 @@ from dalembert.surrogate import scan
 from dalembert.surrogate.polynomial import ChebyshevPolynomial
 
 METHODS = ("optimise", "scan", "bernstein")
-CHUNK = 2_000_000
-"""Values of a scan kept at once: a part of a batch is scanned and refined before the next one."""
+CHUNK = 2_000_000  # values of a scan kept at once: a part of a batch is scanned and refined before the next one
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,25 +2,19 @@
 
 import numpy as np
 
+# Ratio above which coefficients do not decay: what is left out is then taken as ten times the last of them.
 SLOWEST = 0.9
-"""Ratio above which coefficients do not decay: what is left out is then taken as ten times the last of them."""
-
-SHORT = 6
-"""Degrees below which no power of the decay is computed."""
+SHORT = 6  # degrees below which no power of the decay is computed
+# Powers of the degree up to which coefficients decay as those of a function that is not smooth. At least the first,
+# at most the second, and between them the order divided by the third: smooth functions reach high orders with large
+# powers only, and the power of a kink scatters.
 SMOOTH, SMOOTHEST, EACH_POWER = 5.0, 9.0, 3.2
-"""Powers of the degree up to which coefficients decay as those of a function that is not smooth.
-
-At least the first, at most the second, and between them the order divided by the third: smooth functions reach high
-orders with large powers only, and the power of a kink scatters.
-"""
+# Misfit of a geometric series, as a part of that of a power of the degree, below which the decay is geometric.
 GEOMETRIC = 0.5
-"""Misfit of a geometric series, as a part of that of a power of the degree, below which the decay is geometric."""
-STEEPEST = 2.0
-"""Largest power that such a decay is continued with."""
+STEEPEST = 2.0  # largest power that such a decay is continued with
+# Factor on what such coefficients would add: they oscillate, and interpolation adds an error of the same size.
 CAUTION = 3.0
-"""Factor on what such coefficients would add: they oscillate, and interpolation adds an error of the same size."""
-FLATTEST = 0.1
-"""Smallest p − 1 in the sum of a power series."""
+FLATTEST = 0.1  # smallest p − 1 in the sum of a power series
 
 
 def by_total_degree(exponents: np.ndarray, coefficients: np.ndarray) -> list[np.ndarray]:

@@ -9,8 +9,7 @@ from dalembert.kernels.words import Integers, Reals, Reals2, Reals3, Reals4
 from dalembert.surrogate.polynomial import Rows
 
 ITERATIONS, DAMPINGS = 60, 40
-CONVERGED = 1e-15
-"""A step that promises less than this part of the sum of |coefficients| is not taken."""
+CONVERGED = 1e-15  # a step that promises less than this part of the sum of |coefficients| is not taken
 
 
 class Room(NamedTuple):

@@ -5,10 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import KDTree
 
-PLACES = 1024
-"""Random places at which an empty box is looked for."""
-KEPT, ROUNDS = 16, 30
-"""Places that are moved to where the empty box is larger, and how often."""
+PLACES = 1024  # random places at which an empty box is looked for
+KEPT, ROUNDS = 16, 30  # places that are moved to where the empty box is larger, and how often
 
 
 @dataclass(frozen=True)

@@ -6,11 +6,9 @@ from dalembert.surrogate.leja import hierarchical, leja
 from dalembert.surrogate.powers_of_two import powers_of_two
 
 Term = tuple[int, ...]
-
+# Part of a surplus that is expected two degrees on, where the one between them is smaller: symmetry makes zeros.
 SKIPPED = 0.3
-"""Part of a surplus that is expected two degrees on, where the one between them is smaller: symmetry makes zeros."""
-TOGETHER = 0.2
-"""Terms whose expected size is at least this part of the largest one are run in one batch."""
+TOGETHER = 0.2  # terms whose expected size is at least this part of the largest one are run in one batch
 
 
 class Growth:

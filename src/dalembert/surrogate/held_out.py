@@ -11,10 +11,8 @@ from dalembert.surrogate.growth import Growth
 from dalembert.surrogate.leja import hierarchical_at
 from dalembert.surrogate.runs import Runs, failed
 
-SHARE = 0.2
-"""Part of the largest error that held-out runs show: they are few, and do not lie where it is."""
-FEWEST, EACH = 10, 2
-"""Held-out runs in all and for each direction, the larger number counts, where none is given."""
+SHARE = 0.2  # part of the largest error that held-out runs show: they are few, and do not lie where it is
+FEWEST, EACH = 10, 2  # held-out runs in all and for each direction, the larger number counts, where none is given
 
 
 @dataclass(eq=False)

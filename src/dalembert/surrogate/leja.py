@@ -6,10 +6,8 @@ import numpy as np
 
 from dalembert.surrogate.basis import chebyshev, roots
 
-SMALLEST = 16
-"""Points that are computed at once at first; then twice as many."""
-EXACT = 60
-"""Newton steps, kept in an interval that shrinks, that reach rounding from any start."""
+SMALLEST = 16  # points that are computed at once at first; then twice as many
+EXACT = 60  # Newton steps, kept in an interval that shrinks, that reach rounding from any start
 
 
 def leja(number: int) -> np.ndarray:

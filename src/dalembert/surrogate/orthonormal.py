@@ -11,10 +11,9 @@ from scipy.linalg import solve_triangular
 from dalembert.surrogate.basis import products
 from dalembert.surrogate.polynomial import ChebyshevPolynomial
 
+# From a degree to nodes in [−1, 1] and weights of sum 1 that integrate squares of polynomials of that degree.
 Rule = Callable[[int], tuple[np.ndarray, np.ndarray]]
-"""From a degree to nodes in [−1, 1] and weights of sum 1 that integrate squares of polynomials of that degree."""
-LARGEST = 2e7
-"""Numbers of a table of basis polynomials that is held at once."""
+LARGEST = 2e7  # numbers of a table of basis polynomials that is held at once
 
 
 def uniform(degree: int) -> tuple[np.ndarray, np.ndarray]:

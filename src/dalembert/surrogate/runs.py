@@ -7,8 +7,8 @@ import numpy as np
 from dalembert.errors import InputError, SolveError
 from dalembert.intervals import placed
 
+# Points (n, d) to outputs (n, outputs); a row of NaN marks a run that failed.
 Function = Callable[[np.ndarray], np.ndarray]
-"""Points (n, d) to outputs (n, outputs); a row of NaN marks a run that failed."""
 
 
 class Runs:

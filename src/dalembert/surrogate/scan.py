@@ -8,12 +8,11 @@ import scipy
 from dalembert.surrogate.basis import chebyshev, products
 from dalembert.surrogate.polynomial import ChebyshevPolynomial
 
+# Points of the largest grid: more directions are scanned at as many points spread over box and sides.
 MOST_POINTS = 20_000
-"""Points of the largest grid: more directions are scanned at as many points spread over box and sides."""
-FEWEST = 9
-"""Points in each of up to three directions at low degrees, so that no valley beside another is overlooked."""
+FEWEST = 9  # points in each of up to three directions at low degrees, so that no valley beside another is overlooked
+# Largest table of coefficients, absent terms as zeros, for which grids are evaluated direction by direction.
 DENSE = 1_000_000
-"""Largest table of coefficients, absent terms as zeros, for which grids are evaluated direction by direction."""
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,8 @@ from dalembert.surrogate.orthonormal import OrthonormalExpansion, Rule, orthonor
 from dalembert.surrogate.powers_of_two import powers_of_two
 from dalembert.surrogate.surrogate import Surrogate
 
-NOTHING = 1e-12
-"""A standard deviation that is rounding, over the mean."""
-SURE = 3.0
-"""Standard errors of the means over checks that the ends of the indices include."""
+NOTHING = 1e-12  # a standard deviation that is rounding, over the mean
+SURE = 3.0  # standard errors of the means over checks that the ends of the indices include
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,8 +13,7 @@ from dalembert.surrogate.held_out import HeldOut
 from dalembert.surrogate.runs import Runs
 from dalembert.surrogate.scheme import Fitted
 
-MOST_RUNS = 1_000_000
-"""Largest number of runs that a tensor is made from."""
+MOST_RUNS = 1_000_000  # largest number of runs that a tensor is made from
 
 
 @dataclass(frozen=True)

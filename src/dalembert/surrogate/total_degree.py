@@ -14,8 +14,8 @@ from dalembert.surrogate.held_out import HeldOut
 from dalembert.surrogate.runs import Runs, failed
 from dalembert.surrogate.scheme import Fitted
 
+# Points of the root grid among which those of the runs are chosen, a run: of a larger grid, a random part.
 MOST_CANDIDATES = 20
-"""Points of the root grid among which those of the runs are chosen, a run: of a larger grid, a random part."""
 
 
 @dataclass(frozen=True)

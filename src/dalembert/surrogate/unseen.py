@@ -9,8 +9,8 @@ from dalembert.surrogate.gaps import Gaps, gaps
 from dalembert.surrogate.powers_of_two import powers_of_two
 from dalembert.surrogate.surrogate import Surrogate
 
+# Part of the scale below which an output does not count for the lengths over which the response varies.
 SIGNIFICANT = 0.1
-"""Part of the scale below which an output does not count for the lengths over which the response varies."""
 FEATURE = "bump, pit or step"
 
 

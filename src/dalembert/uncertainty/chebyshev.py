@@ -14,21 +14,16 @@ from dalembert.surrogate.unseen import unseen
 from dalembert.uncertainty.method import MethodBounds
 from dalembert.uncertainty.runs import Runs
 
+# Points of the scan that the optimisation of the polynomial begins with, and most in one direction.
 SCANNED, MOST_EACH = 10_000, 257
-"""Points of the scan that the optimisation of the polynomial begins with, and most in one direction."""
-
-STARTS = 5
-"""Valleys of the scan that are followed to their bottom."""
-
-USUAL = 0.01
-"""Tolerance of the adaptive scheme as a part of that of the polynomial."""
-
+STARTS = 5  # valleys of the scan that are followed to their bottom
+USUAL = 0.01  # tolerance of the adaptive scheme as a part of that of the polynomial
+# How far bounds of each kind hold.
 RELIABILITY = {
     "optimise": "right within its estimated error",
     "scan": "right within its estimated error but for peaks between the points of the scan",
     "bernstein": "an enclosure of the surrogate, widened by its estimated error",
 }
-"""How far bounds of each kind hold."""
 
 
 @dataclass(frozen=True)

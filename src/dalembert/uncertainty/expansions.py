@@ -7,17 +7,10 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial import KDTree
 
-SWEEPS = 40
-"""Passes over the coordinates when an expansion is maximised."""
-
-UNSEEN = 1e-10
-"""Part of the largest spread of the neighbours below which a direction has none."""
-
-CLOSE = 0.02
-"""Distance of neighbours below which they say little about the error of an expansion."""
-
-CHUNK = 2_000_000
-"""Numbers in the largest array of Hessians at once."""
+SWEEPS = 40  # passes over the coordinates when an expansion is maximised
+UNSEEN = 1e-10  # part of the largest spread of the neighbours below which a direction has none
+CLOSE = 0.02  # distance of neighbours below which they say little about the error of an expansion
+CHUNK = 2_000_000  # numbers in the largest array of Hessians at once
 
 
 @dataclass(frozen=True, eq=False)

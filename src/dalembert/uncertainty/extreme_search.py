@@ -10,17 +10,10 @@ from dalembert.uncertainty.expansions import Expansions, expand, maxima
 from dalembert.uncertainty.method import Extremes
 from dalembert.uncertainty.runs import Runs
 
-COVERED = 0.8
-"""Part of an output's expected gain that a point proposed for another output must bring to serve it too."""
-
-SAME = 1e-7
-"""Coordinates closer than this are the same point."""
-
-HALVINGS = 20
-"""Of a step that ends nearest to a run that failed, before it is given up."""
-
-MOST = 256
-"""Proposals weighed against each other in one round, those with the largest gains."""
+COVERED = 0.8  # part of an output's expected gain that a point proposed for another output must bring to serve it too
+SAME = 1e-7  # coordinates closer than this are the same point
+HALVINGS = 20  # of a step that ends nearest to a run that failed, before it is given up
+MOST = 256  # proposals weighed against each other in one round, those with the largest gains
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,11 +18,9 @@ from dalembert.surrogate.orthonormal import Rule, uniform
 from dalembert.uncertainty.propagate import box_of
 from dalembert.uncertainty.tails import lost_variance
 
-TAIL = 1e-5
-"""Probability that is cut off at an end of a distribution that is not bounded there."""
+TAIL = 1e-5  # probability that is cut off at an end of a distribution that is not bounded there
+# Parts of equal probability in which a density is integrated, and nodes in each, beside half the degree.
 PANELS, NODES = 10, 24
-"""Parts of equal probability in which a density is integrated, and nodes in each, beside half the degree."""
-
 Distributions = Box | Mapping[str, Interval | tuple[float, float] | float | Prior | CorrelatedNormal]
 
 

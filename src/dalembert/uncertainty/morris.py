@@ -15,8 +15,7 @@ from dalembert.uncertainty.screening import Screening
 from dalembert.uncertainty.sobol import failed_runs
 
 NAME = "screen"
-SMALL = 0.05
-"""Part of the largest effect on a channel below which a parameter may be fixed."""
+SMALL = 0.05  # part of the largest effect on a channel below which a parameter may be fixed
 
 
 @takes_executor

@@ -17,8 +17,7 @@ from dalembert.uncertainty.method import Extremes, MethodBounds
 from dalembert.uncertainty.runs import Runs
 from dalembert.uncertainty.unknown_error import share_of, unknown_error
 
-BATCH = 128
-"""Runs between two events; enough to keep many cores busy."""
+BATCH = 128  # runs between two events; enough to keep many cores busy
 _NARROW = "They are too narrow, because few points lie near the corners of the box."
 _FEWER = "Use 'optimise' or 'chebyshev', which need fewer runs."
 

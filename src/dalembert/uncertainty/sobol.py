@@ -18,12 +18,10 @@ from dalembert.uncertainty.runs import Runs
 from dalembert.uncertainty.sensitivity_indices import SensitivityIndices
 
 NAME = "global_sensitivity"
-FEWEST, SHARE, MOST = 30, 0.1, 1000
-"""Checks at least, as a part of the runs of the surrogate, and at most."""
+FEWEST, SHARE, MOST = 30, 0.1, 1000  # checks at least, as a part of the runs of the surrogate, and at most
+# Tolerance of the surrogate, as a part of that of the indices: the root of a part of the variance is as exact.
 USUAL = 0.05
-"""Tolerance of the surrogate, as a part of that of the indices: the root of a part of the variance is as exact."""
-NEGLIGIBLE = 0.01
-"""Total index below which a parameter may be fixed."""
+NEGLIGIBLE = 0.01  # total index below which a parameter may be fixed
 
 
 @takes_executor

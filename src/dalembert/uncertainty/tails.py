@@ -5,8 +5,8 @@ from numpy.polynomial.legendre import leggauss
 
 from dalembert.priors import Prior
 
+# Nodes in each part of an integral, and parts between the median and an end, each twice as wide as the one before.
 NODES, HALVINGS = 16, 60
-"""Nodes in each part of an integral, and parts between the median and an end, each twice as wide as the one before."""
 
 
 def lost_variance(prior: Prior, inner: tuple[float, float], outer: tuple[float, float]) -> float:

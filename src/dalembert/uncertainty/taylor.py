@@ -11,8 +11,7 @@ from dalembert.uncertainty.method import MethodBounds
 from dalembert.uncertainty.runs import Runs
 from dalembert.uncertainty.unknown_error import share_of
 
-CURVED = 0.1
-"""Difference at the corners, as a part of the width, from which it is a reason to doubt."""
+CURVED = 0.1  # difference at the corners, as a part of the width, from which it is a reason to doubt
 
 
 @dataclass(frozen=True)

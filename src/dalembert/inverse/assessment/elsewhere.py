@@ -11,14 +11,9 @@ from dalembert.inverse.least_squares.descent import Memo
 from dalembert.inverse.problem.problem import Problem
 from dalembert.inverse.starts.neighbours import dips
 
-SCANNED = 25
-"""Values of the parameter that are simulated across its bounds."""
-
-OTHERS = 2
-"""Points of the other parameters that are tried with each value, beside the identified one."""
-
-MOST = 3
-"""Dips of the scan that are descended into, the lowest ones."""
+SCANNED = 25  # values of the parameter that are simulated across its bounds
+OTHERS = 2  # points of the other parameters that are tried with each value, beside the identified one
+MOST = 3  # dips of the scan that are descended into, the lowest ones
 
 
 def elsewhere(

@@ -15,8 +15,8 @@ from dalembert.inverse.noise.catalogue import noise_model
 from dalembert.inverse.noise.deviations import KnownNoise
 from dalembert.inverse.noise.noise_model import Extent, NoiseModel
 
+# Noise of channels with known parameters: of all, by name, or as a fit has estimated it.
 Planned = NoiseModel | str | Mapping[str, NoiseModel | str] | EstimatedNoise
-"""Noise of channels with known parameters: of all, by name, or as a fit has estimated it."""
 
 
 @dataclass(frozen=True, eq=False)

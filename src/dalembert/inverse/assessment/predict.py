@@ -16,11 +16,9 @@ from dalembert.inverse.experiments.experiment import Experiment
 from dalembert.inverse.fit.fit import Fit, check_level
 from dalembert.inverse.least_squares.estimate import UNSEEN
 
-EXCESSIVE = 0.001
-"""Probability of noise as large as the residuals, below which their given deviation is too small."""
-
+EXCESSIVE = 0.001  # probability of noise as large as the residuals, below which their given deviation is too small
+# Findings of the fit that concern its predictions, too.
 INHERITED = ("correlated-residuals", "systematic-residuals", "model-misfit")
-"""Findings of the fit that concern its predictions, too."""
 
 
 @takes_checked("level")

@@ -14,8 +14,7 @@ from dalembert.inverse.fit.stored_data import StoredMeasured
 from dalembert.results import EndedResult, text_table
 from dalembert.stored_fields import Labels, OptionalTable, Over, Table
 
-FLAT = 1e-9
-"""Range of a response, as a part of its size, below which a band has no width relative to it."""
+FLAT = 1e-9  # range of a response, as a part of its size, below which a band has no width relative to it
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,8 +25,7 @@ from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import Linearisation, Problem, pose
 from dalembert.optimize import LeastSquares
 
-POINTS = 12
-"""Values of a parameter on each side of the identified one, at most, if not given."""
+POINTS = 12  # values of a parameter on each side of the identified one, at most, if not given
 
 
 @takes_executor

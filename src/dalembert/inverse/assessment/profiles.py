@@ -11,11 +11,8 @@ from dalembert.findings import Finding
 from dalembert.results import EndedResult, fixed_lines, text_table
 from dalembert.stored_fields import Over, Source, Store, StoredParameters
 
-ASYMMETRIC = 1.5
-"""Ratio of an interval's two sides from which its standard deviation does not describe it."""
-
-BETTER = 0.01
-"""Variances of the noise by which a point must explain the data better for the fit to be no minimum."""
+ASYMMETRIC = 1.5  # ratio of an interval's two sides from which its standard deviation does not describe it
+BETTER = 0.01  # variances of the noise by which a point must explain the data better for the fit to be no minimum
 
 
 @dataclass(frozen=True, eq=False)

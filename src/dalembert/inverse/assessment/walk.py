@@ -12,20 +12,11 @@ from dalembert.inverse.least_squares.descent import Memo
 from dalembert.inverse.problem.problem import Linearisation, Problem
 from dalembert.optimize import LeastSquares
 
-STEP = 0.25
-"""Growth of √excess from value to value, in parts of its threshold."""
-
-BEYOND = 1.15
-"""√excess, in parts of its threshold, at which a walk has gone far enough."""
-
-EXACT = 1e-6
-"""Accuracy of an interval's end, in parts of its distance from the identified value."""
-
-HALVINGS = 4
-"""Of a step that ends where the model fails, before the walk ends."""
-
-LONGEST = 1 / 8
-"""Longest step, as a part of the search box's width."""
+STEP = 0.25  # growth of √excess from value to value, in parts of its threshold
+BEYOND = 1.15  # √excess, in parts of its threshold, at which a walk has gone far enough
+EXACT = 1e-6  # accuracy of an interval's end, in parts of its distance from the identified value
+HALVINGS = 4  # of a step that ends where the model fails, before the walk ends
+LONGEST = 1 / 8  # longest step, as a part of the search box's width
 
 
 @dataclass(frozen=True)

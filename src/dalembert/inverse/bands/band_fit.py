@@ -16,9 +16,7 @@ from dalembert.parameters import Parameter
 from dalembert.results import EndedResult, fact_lines, fixed_lines, text_table
 from dalembert.stored_fields import Labels, OptionalTable, Over, StoredBox, StoredParameters, Table
 
-ZERO = 1e-6
-"""Lengths below this part of the bounds' width are zero."""
-
+ZERO = 1e-6  # lengths below this part of the bounds' width are zero
 ADVICE = "Identify it as a number without a radius, or give bands of a quantity that depends more on it."
 
 

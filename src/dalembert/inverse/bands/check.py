@@ -8,8 +8,7 @@ from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.candidate import Candidate
 from dalembert.surrogate import ChebyshevPolynomial
 
-LOSS = 1e-6
-"""A bound may be checked at a point where the surrogate is this part of its range away from it."""
+LOSS = 1e-6  # a bound may be checked at a point where the surrogate is this part of its range away from it
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,17 +8,10 @@ from dalembert.inverse.bands.candidate import Candidate
 from dalembert.surrogate import ChebyshevPolynomial
 from dalembert.surrogate.basis import chebyshev, products, terms_of, total_degree
 
-AROUND = 0.5
-"""Runs count that are no farther from the box than this part of its radius."""
-
-THIN = 0.02
-"""Nor than this part of the polynomial's box; in directions narrower than that a correction is constant."""
-
-HIGHEST = 2
-"""Largest total degree of a correction."""
-
-TAKEN = 10.0
-"""Weight of runs where the surrogate takes its bounds."""
+AROUND = 0.5  # runs count that are no farther from the box than this part of its radius
+THIN = 0.02  # nor than this part of the polynomial's box; in directions narrower than that a correction is constant
+HIGHEST = 2  # largest total degree of a correction
+TAKEN = 10.0  # weight of runs where the surrogate takes its bounds
 
 
 def corrected(

@@ -8,8 +8,7 @@ from dalembert.latin_hypercube import latin_hypercube
 from dalembert.optimize import LeastSquares, Minimum, Progress
 from dalembert.surrogate import ChebyshevPolynomial, bounds
 
-APART = 0.1
-"""Chosen starts keep this part of the widths of the unknowns' bounds from each other."""
+APART = 0.1  # chosen starts keep this part of the widths of the unknowns' bounds from each other
 
 
 def descend(problem: BandProblem, polynomial: ChebyshevPolynomial, method: LeastSquares, x: np.ndarray) -> Minimum:

@@ -20,26 +20,13 @@ from dalembert.surrogate import Adaptive, Surrogate
 from dalembert.surrogate.held_out import SHARE
 from dalembert.surrogate.scheme import Scheme
 
-SCREENED = 100
-"""Boxes bounded on the surrogate to choose starts from, an unknown."""
-
-ENOUGH = 1e-7
-"""Checks end when surrogate and true runs agree to this part of a channel's range."""
-
-NEGLIGIBLE = 0.1
-"""Or when they agree to this part of the difference between given and reproduced bands."""
-
-COARSE = 1e-4
-"""A surrogate that is wrong by more than this part of a channel's range is made anew around the answer."""
-
-MOST_STARTS = 32
-"""Most descents until the best end is reached twice; they make no runs of the model."""
-
-SAME = 1e-3
-"""Ends of descents are the same within this part of the unknowns' widths."""
-
-MARGIN = (0.5, 0.02)
-"""How far around: parts of the answer's radius and of the search box's width."""
+SCREENED = 100  # boxes bounded on the surrogate to choose starts from, an unknown
+ENOUGH = 1e-7  # checks end when surrogate and true runs agree to this part of a channel's range
+NEGLIGIBLE = 0.1  # or when they agree to this part of the difference between given and reproduced bands
+COARSE = 1e-4  # a surrogate that is wrong by more than this part of a channel's range is made anew around the answer
+MOST_STARTS = 32  # most descents until the best end is reached twice; they make no runs of the model
+SAME = 1e-3  # ends of descents are the same within this part of the unknowns' widths
+MARGIN = (0.5, 0.02)  # how far around: parts of the answer's radius and of the search box's width
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,9 @@ from dalembert.optimize import ImprovedParticleSwarm, ParticleSwarm, Progress
 from dalembert.surrogate import ChebyshevPolynomial, TotalDegree, bounds
 from dalembert.surrogate.basis import chebyshev, products, total_degree
 
+# Sides of the answer narrower than twice this part of the parameters' bounds are widened to that for its last
+# surrogate, so that it has slopes there.
 WIDENED = 1e-3
-"""Sides of the answer narrower than twice this part of the parameters' bounds are widened to that for its last
-surrogate, so that it has slopes there."""
 
 
 @dataclass(frozen=True)

@@ -12,17 +12,12 @@ from dalembert.inverse.fit.outcome import converged, failed_simulations
 from dalembert.inverse.problem.matching import place
 from dalembert.inverse.problem.noise import quantum, random_residuals
 
-SMALL = 1e-2
-"""Misfit, as a part of the bands' mean width, from which bands are said to be explained badly."""
-
+SMALL = 1e-2  # misfit, as a part of the bands' mean width, from which bands are said to be explained badly
+# Rms difference of reproduced and given bands, as part of their mean width, from which the box is not to be used.
 CLEAR = 5e-2
-"""Rms difference of reproduced and given bands, as part of their mean width, from which the box is not to be used."""
-
-CHANCE = 1e-3
-"""Probability with which normal noise would make some bound stand out."""
-
+CHANCE = 1e-3  # probability with which normal noise would make some bound stand out
+# Autocorrelation of noise, in its deviations, beyond which the bands are inconsistent: noise has it once in 10,000.
 CORRELATED = 4.0
-"""Autocorrelation of noise, in its deviations, beyond which the bands are inconsistent: noise has it once in 10,000."""
 
 
 def outcome(problem: BandProblem, found: BandSolution) -> Iterator[Finding]:

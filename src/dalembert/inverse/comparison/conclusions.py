@@ -9,14 +9,9 @@ from dalembert.errors import counted, listed
 from dalembert.findings import Finding
 from dalembert.inverse.comparison.model_comparison import ModelComparison
 
-SMALL = 4.0
-"""Difference of elpd up to which its standard deviation is not reliable, and the models predict alike."""
-
-CLEAR = 2.0
-"""Difference of elpd in standard deviations from which one model predicts better."""
-
-FEW = 10
-"""Fewest groups with which the standard deviation of a difference is reliable."""
+SMALL = 4.0  # difference of elpd up to which its standard deviation is not reliable, and the models predict alike
+CLEAR = 2.0  # difference of elpd in standard deviations from which one model predicts better
+FEW = 10  # fewest groups with which the standard deviation of a difference is reliable
 
 
 def comparison_findings(

@@ -20,11 +20,8 @@ from dalembert.inverse.problem.prior import prior_residual, prior_slopes
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
-STEP = 1e-2
-"""Step of differences by noise parameters, in their standard deviations."""
-
-FAR = 1.0
-"""Largest move of a noise parameter, in its standard deviations, that follows from second derivatives."""
+STEP = 1e-2  # step of differences by noise parameters, in their standard deviations
+FAR = 1.0  # largest move of a noise parameter, in its standard deviations, that follows from second derivatives
 
 
 @dataclass(frozen=True, eq=False)

@@ -188,8 +188,7 @@ def predicted_density(again: Fit, fit: Fit, rows: np.ndarray) -> float:
     return logs + log_density(square, len(rows), squares / freedom, float(freedom))
 
 
-Compared = Fit | CrossValidation
-"""What models are compared by."""
+Compared = Fit | CrossValidation  # what models are compared by
 
 
 def fits_of(models: Mapping[str, Compared]) -> dict[str, Fit]:

@@ -12,11 +12,9 @@ from dalembert.inverse.comparison.left_out import WAYS
 from dalembert.inverse.posterior.packages import package
 from dalembert.inverse.posterior.posterior import Posterior
 
-RELIABLE = 0.7
-"""Shape of the Pareto distribution up to which importance sampling is reliable (Vehtari et al. 2024)."""
-
+RELIABLE = 0.7  # shape of the Pareto distribution up to which importance sampling is reliable (Vehtari et al. 2024).
+# Code of the finding on residuals that the noise model of a posterior does not explain.
 CORRELATED = "correlated-residuals"
-"""Code of the finding on residuals that the noise model of a posterior does not explain."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,14 +8,11 @@ from dalembert.inverse.experiments.blocks import USUAL, blocks_of_records
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.likelihood.estimated_noise import EstimatedNoise
 
+# What is left out together, in words.
 WAYS = {"values": "single values", "blocks": "blocks of neighbouring samples", "experiments": "experiments"}
-"""What is left out together, in words."""
-
+# Length of a block in correlation times of the residuals, so that blocks are nearly independent.
 CORRELATION_TIMES = 4.0
-"""Length of a block in correlation times of the residuals, so that blocks are nearly independent."""
-
-FEWEST = 5
-"""Fewest blocks of a record."""
+FEWEST = 5  # fewest blocks of a record
 
 
 def groups(fit: Fit, leave_out: str, blocks: int | None = None) -> np.ndarray:

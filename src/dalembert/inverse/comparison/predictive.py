@@ -10,8 +10,7 @@ from dalembert.inverse.least_squares.estimate import UNSEEN
 from dalembert.inverse.misfit.residuals import off_bounds
 from dalembert.inverse.problem.prior import prior_slopes
 
-LEAST = 1e-12
-"""1 − leverage below which a value is not predicted by the others."""
+LEAST = 1e-12  # 1 − leverage below which a value is not predicted by the others
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,17 +16,11 @@ from dalembert.inverse.inertial.stacked import checked_deviations, checked_regre
 from dalembert.results import EndedResult, fact_lines, text_table
 from dalembert.stored_fields import Labels, Over
 
-ITERATIONS = 100
-"""Most iterations of the weights."""
-
-SETTLED = 1e-8
-"""Relative change of the standard deviations at which the weights are converged."""
-
-LONGEST = 60
-"""Characters of a combination in a table; :attr:`BaseParameters.words` has all."""
-
+ITERATIONS = 100  # most iterations of the weights
+SETTLED = 1e-8  # relative change of the standard deviations at which the weights are converged
+LONGEST = 60  # characters of a combination in a table; :attr:`BaseParameters.words` has all
+# Lag-1 autocorrelation, in standard deviations of that of white noise, from which residuals are correlated.
 CORRELATED = 4.0
-"""Lag-1 autocorrelation, in standard deviations of that of white noise, from which residuals are correlated."""
 
 
 @dataclass(frozen=True, eq=False)

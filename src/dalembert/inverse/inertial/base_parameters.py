@@ -13,20 +13,12 @@ from dalembert.inverse.inertial.stacked import checked_regressor
 from dalembert.results import Result, fact_lines, text_table
 from dalembert.stored_fields import Labels, Over
 
+# Size of a column, relative to the largest, and of a pivot, relative to the first, that are rounding errors.
 ROUNDING = 1e-10
-"""Size of a column, relative to the largest, and of a pivot, relative to the first, that are rounding errors."""
-
-GAP = 10.0
-"""Ratio of the last independent to the first dependent pivot below which the rank is not clear."""
-
-ILL = 100.0
-"""Condition number of the scaled columns above which a motion excites the parameters badly."""
-
-TIE = 1e-9
-"""Relative preference of a column to the next one, so that equal columns have a certain order."""
-
-SAFETY = 3.0
-"""How many times the noise a pivot must exceed."""
+GAP = 10.0  # ratio of the last independent to the first dependent pivot below which the rank is not clear
+ILL = 100.0  # condition number of the scaled columns above which a motion excites the parameters badly
+TIE = 1e-9  # relative preference of a column to the next one, so that equal columns have a certain order
+SAFETY = 3.0  # how many times the noise a pivot must exceed
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,28 +16,15 @@ from dalembert.inverse.inertial.log_cholesky import log_cholesky, log_cholesky_j
 from dalembert.inverse.inertial.pseudo_inertia import bregman_distances, smallest_eigenvalues
 from dalembert.inverse.inertial.stacked import checked_regressor, checked_torques
 
-LEAST = 1e-2
-"""Smallest eigenvalue relative to the prior of a projected start."""
-
+LEAST = 1e-2  # smallest eigenvalue relative to the prior of a projected start
+# Half the squared Newton decrement below which the point is stationary: the objective would fall by no more. Rounding
+# errors of the residuals may be larger where the torques are nearly exact, see :func:`_settled`.
 DECREMENT = 1e-8
-"""Half the squared Newton decrement below which the point is stationary: the objective would fall by no more.
-
-Rounding errors of the residuals may be larger where the torques are nearly exact, see :func:`_settled`."""
-
-EDGE = 1e-4
-"""Smallest eigenvalue relative to the prior below which a link is nearly one that cannot exist."""
-
-NEAR = 1e-7
-"""The same, below which whole steps are taken while it falls."""
-
-STEPS = 100
-"""Most Newton steps."""
-
-DECADES = 10
-"""Largest factor of the regularisation, as a power of ten, where a path of problems begins."""
-
-SHORTEST = 1e-10
-"""Smallest part of a Newton step."""
+EDGE = 1e-4  # smallest eigenvalue relative to the prior below which a link is nearly one that cannot exist
+NEAR = 1e-7  # the same, below which whole steps are taken while it falls
+STEPS = 100  # most Newton steps
+DECADES = 10  # largest factor of the regularisation, as a power of ten, where a path of problems begins
+SHORTEST = 1e-10  # smallest part of a Newton step
 
 
 def identify_inertias(

@@ -15,9 +15,7 @@ import numpy as np
 from dalembert.inverse.inertial.log_cholesky import of_ordered, parameters_of_factor, upper_factor
 from dalembert.inverse.inertial.pseudo_inertia import bregman_distances, smallest_eigenvalues
 
-LEAST = 1e-12
-"""Smallest eigenvalue relative to the prior that rounding errors do not hide."""
-
+LEAST = 1e-12  # smallest eigenvalue relative to the prior that rounding errors do not hide
 _ROWS, _COLUMNS = np.triu_indices(4)
 _DIAGONAL = _ROWS == _COLUMNS
 

@@ -17,11 +17,9 @@ from dalembert.stored_fields import Labels, Over
 
 Regressor = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 CRITERIA = {"D": "mean log standard deviation", "condition": "log condition number"}
-SAMPLES = 8
-"""Samples per harmonic where the criterion is computed."""
-
+SAMPLES = 8  # samples per harmonic where the criterion is computed
+# Steps of the search: the first one, and that at which it starts again from another random motion.
 FIRST, SMALLEST = 0.3, 1e-3
-"""Steps of the search: the first one, and that at which it starts again from another random motion."""
 
 
 @dataclass(frozen=True, eq=False)

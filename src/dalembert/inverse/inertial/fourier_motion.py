@@ -8,8 +8,7 @@ import numpy as np
 from dalembert.errors import InputError
 from dalembert.stored_fields import Over
 
-FINE = 40
-"""Samples per harmonic where the limits are checked."""
+FINE = 40  # samples per harmonic where the limits are checked
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,9 +14,7 @@ import numpy as np
 
 from dalembert.inverse.inertial.pseudo_inertia import inertial_parameters, pseudo_inertia
 
-ORDER = (1, 2, 3, 0)
-"""Rows of the pseudo-inertia in the order x, y, z, 1."""
-
+ORDER = (1, 2, 3, 0)  # rows of the pseudo-inertia in the order x, y, z, 1
 _BACK = (3, 0, 1, 2)
 _ROWS, _COLUMNS = (0, 1, 2, 0, 1, 0, 0, 1, 2), (0, 1, 2, 1, 2, 2, 3, 3, 3)
 

@@ -6,17 +6,11 @@ import numpy as np
 
 from dalembert.errors import InputError
 
-ORDER = 4
-"""Of the Butterworth filter, which runs forward and back."""
-
+ORDER = 4  # of the Butterworth filter, which runs forward and back
+# Periods of the cutoff frequency that are dropped at each end; the filter's transient falls to 1e-3 there.
 PERIODS = 3.0
-"""Periods of the cutoff frequency that are dropped at each end; the filter's transient falls to 1e-3 there."""
-
-EVEN = 1e-3
-"""Relative difference of two steps of time up to which samples are even."""
-
-DEGREE = 7
-"""Of the splines whose derivatives are velocities and accelerations."""
+EVEN = 1e-3  # relative difference of two steps of time up to which samples are even
+DEGREE = 7  # of the splines whose derivatives are velocities and accelerations
 
 
 @dataclass(frozen=True, eq=False)

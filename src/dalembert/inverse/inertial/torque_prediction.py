@@ -12,8 +12,7 @@ from dalembert.inverse.inertial.consistent_estimate import ConsistentInertias
 from dalembert.results import EndedResult, fact_lines, text_table
 from dalembert.stored_fields import Over
 
-CERTAIN = 1e-3
-"""Probability of noise alone above which a prediction is as exact as the noise."""
+CERTAIN = 1e-3  # probability of noise alone above which a prediction is as exact as the noise
 
 
 @dataclass(frozen=True, eq=False)

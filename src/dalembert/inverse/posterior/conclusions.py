@@ -14,21 +14,15 @@ from dalembert.inverse.problem.prior import ALONE
 from dalembert.inverse.problem.prior_conflicts import prior_conflicts
 from dalembert.parameters import Parameter, Parameters
 
-CLOSE = 0.02
-"""Distance to a bound, relative to that of the bounds, that counts as at the bound."""
-
-PILED = 0.1
-"""Part of the draws at a bound from which the bound decides; for a flat posterior it is 0.02."""
-
-
+CLOSE = 0.02  # distance to a bound, relative to that of the bounds, that counts as at the bound
+PILED = 0.1  # part of the draws at a bound from which the bound decides; for a flat posterior it is 0.02
+# What to do about findings of a fit that concern the draws, where it differs from that of the fit.
 ADVICE = {
     "correlated-residuals": "The draws take the noise for independent, so that their intervals are too narrow. Give "
     "noise='autoregressive', or correct the model.",
 }
-"""What to do about findings of a fit that concern the draws, where it differs from that of the fit."""
-
+# Findings that correlated noise may explain.
 OF_INDEPENDENT_NOISE = {"correlated-residuals", "systematic-residuals", "model-misfit"}
-"""Findings that correlated noise may explain."""
 
 
 def inherited(fit: Fit | None, likelihood: Likelihood, *, usual: bool) -> Iterator[Finding]:

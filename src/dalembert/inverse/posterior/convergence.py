@@ -10,11 +10,8 @@ from dalembert.findings import Finding
 from dalembert.inverse.posterior.packages import package
 
 LARGEST_R_HAT = 1.01
-LEAST_DRAWS = 400
-"""Effective sample size; both limits are those of Vehtari and others, Bayesian Analysis 16 (2021)."""
-
-FEWEST = 4
-"""Draws of a chain below which R-hat is not defined."""
+LEAST_DRAWS = 400  # effective sample size; both limits are those of Vehtari and others, Bayesian Analysis 16 (2021)
+FEWEST = 4  # draws of a chain below which R-hat is not defined
 
 
 @dataclass(frozen=True, eq=False)

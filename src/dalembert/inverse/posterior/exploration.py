@@ -12,8 +12,8 @@ from dalembert.latin_hypercube import latin_hypercube
 from dalembert.parameters import Parameters
 from dalembert.priors import CorrelatedNormal
 
+# Neighbours on each side, for each parameter, that a point must exceed to be a local maximum of the points.
 NEIGHBOURS = 2
-"""Neighbours on each side, for each parameter, that a point must exceed to be a local maximum of the points."""
 
 
 def over_prior(parameters: Parameters, count: int, seed: int) -> np.ndarray:

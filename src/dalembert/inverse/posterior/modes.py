@@ -16,26 +16,15 @@ from dalembert.inverse.problem.problem import Problem
 from dalembert.inverse.problem.search_coordinates import SearchCoordinates
 from dalembert.optimize import LeastSquares
 
-LEAST_SHARE = 0.01
-"""Part of the probability below which a mode is left out: it moves no interval that is shown."""
-
+LEAST_SHARE = 0.01  # part of the probability below which a mode is left out: it moves no interval that is shown
+# Most searches for further modes; a search without gradients costs hundreds of simulations.
 CLIMBS, CLIMBS_WITHOUT_GRADIENTS = 8, 3
-"""Most searches for further modes; a search without gradients costs hundreds of simulations."""
-
-LOWEST = 30.0
-"""Log density below that of the best mode at which a climb by least squares is left."""
-
-NEAR = 2.0
-"""Distance from a mode, in its standard deviations, up to which the end of a climb counts as this mode."""
-
-DIP = 2.0
-"""Fall of the log density between two ends, below the lower one, from which they are two modes."""
-
-BETWEEN = 9
-"""Points at which the density between two ends is computed."""
-
+LOWEST = 30.0  # log density below that of the best mode at which a climb by least squares is left
+NEAR = 2.0  # distance from a mode, in its standard deviations, up to which the end of a climb counts as this mode
+DIP = 2.0  # fall of the log density between two ends, below the lower one, from which they are two modes
+BETWEEN = 9  # points at which the density between two ends is computed
+# Draws for each point of the prior at which the search of modes looks, and the fewest and most points.
 EXPLORED, FEWEST, MOST = 20, 32, 400
-"""Draws for each point of the prior at which the search of modes looks, and the fewest and most points."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,9 +17,7 @@ from dalembert.stored_fields import Labels, Over, Source, Store, StoredParameter
 if TYPE_CHECKING:
     from arviz import InferenceData
 
-SEPARATE = "separate-modes"
-"""Code of the finding on modes that no chain connects."""
-
+SEPARATE = "separate-modes"  # code of the finding on modes that no chain connects
 _OF_DRAWS = ("chain", "draw")
 
 

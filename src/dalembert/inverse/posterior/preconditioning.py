@@ -11,24 +11,14 @@ from dalembert.inverse.posterior.target import Target
 from dalembert.inverse.problem.prior import prior_slopes
 from dalembert.parameters import Parameters
 
-FAR = 1e3
-"""Largest change of a target's value that its search takes for finite."""
-
-SEARCHES = 12
-"""Most searches of the mode."""
-
-REACH, NEAR = 8.0, 1.0
-"""Reach of a search in standard deviations, and how near to its start the last one ends."""
-
-LOCAL = 2.0
-"""Reach of a local search in standard deviations: a longer step may leave a narrow mode."""
-
+FAR = 1e3  # largest change of a target's value that its search takes for finite
+SEARCHES = 12  # most searches of the mode
+REACH, NEAR = 8.0, 1.0  # reach of a search in standard deviations, and how near to its start the last one ends
+LOCAL = 2.0  # reach of a local search in standard deviations: a longer step may leave a narrow mode
+# Fall of the log density at one standard deviation from which a local search takes the deviation for too large, and
+# how often it is halved at most.
 FALL, HALVINGS = 2.0, 20
-"""Fall of the log density at one standard deviation from which a local search takes the deviation for too large, and
-how often it is halved at most."""
-
-STEP = 0.05
-"""Step of second differences in coordinates without bounds, for models without a jacobian."""
+STEP = 0.05  # step of second differences in coordinates without bounds, for models without a jacobian
 
 
 @dataclass(frozen=True, eq=False)

@@ -42,15 +42,9 @@ from dalembert.parameters import Parameter, Parameters
 from dalembert.priors import AnyPrior, LogUniform
 from dalembert.surrogate.scheme import Scheme
 
-MOST_VALUES = 2e7
-"""Log-likelihoods of single values that are kept: 160 MB."""
-
-REPLICAS = 400
-"""Draws whose responses with simulated noise are kept."""
-
-TOGETHER = 256
-"""Draws of which log-likelihoods are computed at once."""
-
+MOST_VALUES = 2e7  # log-likelihoods of single values that are kept: 160 MB
+REPLICAS = 400  # draws whose responses with simulated noise are kept
+TOGETHER = 256  # draws of which log-likelihoods are computed at once
 SAMPLERS = "dalembert.inverse.posterior.samplers"
 
 

@@ -13,9 +13,7 @@ from dalembert.inverse.problem.surrogates import surrogate_of
 from dalembert.surrogate import Surrogate
 from dalembert.surrogate.scheme import Scheme
 
-WIDTH = 6.0
-"""Half width of the box in linear standard deviations, where the bounds are not closer."""
-
+WIDTH = 6.0  # half width of the box in linear standard deviations, where the bounds are not closer
 OUTSIDE = "outside the box of the surrogate"
 
 

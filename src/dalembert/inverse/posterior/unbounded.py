@@ -8,8 +8,8 @@ from scipy.special import expit, logit
 
 from dalembert.parameters import Parameters
 
+# Distance of a start from the bounds, as a part of their distance: at a bound the coordinate is infinite.
 NEAREST = 1e-3
-"""Distance of a start from the bounds, as a part of their distance: at a bound the coordinate is infinite."""
 
 
 @dataclass(frozen=True)

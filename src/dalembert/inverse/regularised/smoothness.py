@@ -8,8 +8,8 @@ from scipy.linalg import cho_factor, cho_solve, null_space
 
 from dalembert.optimize.tikhonov import Regularised
 
+# Singular value, relative to the largest one, below which data do not determine a combination of parameters.
 BLIND = 1e-8
-"""Singular value, relative to the largest one, below which data do not determine a combination of parameters."""
 
 
 def differences(places: np.ndarray, count: int, order: int) -> np.ndarray:

@@ -24,11 +24,10 @@ from dalembert.inverse.sets.parameter_set import ParameterSet
 from dalembert.surrogate import Adaptive
 from dalembert.surrogate.scheme import Scheme
 
+# Resolution by the number of parameters, if none is given; a sixteenth for more.
 RESOLUTIONS = {1: 1 / 256, 2: 1 / 64, 3: 1 / 32}
-"""Resolution by the number of parameters, if none is given; a sixteenth for more."""
-
+# Order of the usual surrogates: enclosures of higher orders take long, and a smaller box needs a lower order.
 MOST_ORDER = 64
-"""Order of the usual surrogates: enclosures of higher orders take long, and a smaller box needs a lower order."""
 
 
 @takes_executor

@@ -2,11 +2,8 @@
 
 import numpy as np
 
-SEEDS = 8
-"""Boxes of the union from which one is grown."""
-
-GROWTHS = 10_000
-"""Most steps of one growth."""
+SEEDS = 8  # boxes of the union from which one is grown
+GROWTHS = 10_000  # most steps of one growth
 
 
 def inner_box(boxes: np.ndarray) -> np.ndarray | None:

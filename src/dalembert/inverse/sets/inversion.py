@@ -14,20 +14,11 @@ from dalembert.inverse.sets.paving import Limits, Paving, pave
 from dalembert.surrogate import Surrogate
 from dalembert.surrogate.scheme import Scheme
 
-COARSE = 1 / 16
-"""Resolution of the pavings that only look for a smaller box around the set."""
-
-ZOOMS = 8
-"""Most surrogates, each on the box that the one before leaves."""
-
-SHRINKS = 0.7
-"""Another one is made where a side of that box shrinks below this part."""
-
-SLACK = 1e-9
-"""Part of the paving's extent by which a point may lie outside of a box for rounding."""
-
-CORNERS = 6
-"""Parameters up to which all corners of a box are checked by runs of the model."""
+COARSE = 1 / 16  # resolution of the pavings that only look for a smaller box around the set
+ZOOMS = 8  # most surrogates, each on the box that the one before leaves
+SHRINKS = 0.7  # another one is made where a side of that box shrinks below this part
+SLACK = 1e-9  # part of the paving's extent by which a point may lie outside of a box for rounding
+CORNERS = 6  # parameters up to which all corners of a box are checked by runs of the model
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,9 +11,7 @@ from dalembert.inverse.problem.matching import place
 from dalembert.inverse.sets.inversion import Nearest
 from dalembert.inverse.sets.paving import Paving
 
-NOTICED = 0.1
-"""Part of the data's error from which that of the surrogate is mentioned."""
-
+NOTICED = 0.1  # part of the data's error from which that of the surrogate is mentioned
 TIGHTER = "Use a scheme with a smaller tolerance."
 
 

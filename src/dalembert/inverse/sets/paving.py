@@ -8,8 +8,7 @@ import numpy as np
 from dalembert.data.record import TURN
 from dalembert.surrogate import ChebyshevPolynomial, bounds
 
-AS_THEY_ARE = 1e9
-"""A gap that no Bernstein coefficients leave, so that boxes are halved by the paving alone."""
+AS_THEY_ARE = 1e9  # a gap that no Bernstein coefficients leave, so that boxes are halved by the paving alone
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,12 +17,9 @@ from dalembert.inverse.specimens.new_specimen import new_specimen
 from dalembert.inverse.specimens.population import Population
 from dalembert.inverse.specimens.restricted_likelihood import Likelihood, SpreadForm, most_likely, profiled
 
-FEW = 6
-"""Specimens from which a spread is known to about a third of itself, 1/√(2 (m − 1))."""
-NOTHING = 1e-6
-"""A spread that is rounding, over the deviation of the specimens' values."""
-WIDEST = 100.0
-"""Largest upper end of a spread that is looked for, over the deviation of the specimens' values."""
+FEW = 6  # specimens from which a spread is known to about a third of itself, 1/√(2 (m − 1))
+NOTHING = 1e-6  # a spread that is rounding, over the deviation of the specimens' values
+WIDEST = 100.0  # largest upper end of a spread that is looked for, over the deviation of the specimens' values
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,10 +15,9 @@ from scipy.special import ndtr
 
 from dalembert.inverse.specimens.restricted_likelihood import Likelihood
 
+# Spreads of the quadrature, 0 to 100, over the deviation of the specimens' values.
 SPREADS = np.sinh(np.linspace(0.0, 5.3, 241))
-"""Spreads of the quadrature, 0 to 100, over the deviation of the specimens' values."""
-FARTHEST = 1e4
-"""End of the search for a quantile, over the same."""
+FARTHEST = 1e4  # end of the search for a quantile, over the same
 
 
 def new_specimen(values: np.ndarray, variances: np.ndarray, level: float) -> tuple[float, float]:

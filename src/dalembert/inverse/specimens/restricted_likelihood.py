@@ -14,8 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize
 
-STEP = 1e-30
-"""Of the complex step."""
+STEP = 1e-30  # of the complex step
 
 
 @dataclass(frozen=True, eq=False)

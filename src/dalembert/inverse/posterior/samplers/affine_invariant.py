@@ -12,8 +12,7 @@ from dalembert.inverse.posterior.modes import Modes
 from dalembert.inverse.posterior.packages import package
 from dalembert.inverse.posterior.samplers.sampler import Chains, Length, OnDraws, Sampler, moved
 
-TRIES = 20
-"""Times that walkers whose start cannot be simulated get another one."""
+TRIES = 20  # times that walkers whose start cannot be simulated get another one
 
 
 @dataclass(frozen=True)

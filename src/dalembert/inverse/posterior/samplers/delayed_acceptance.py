@@ -17,20 +17,12 @@ from dalembert.inverse.posterior.target import Target
 from dalembert.surrogate import Adaptive
 from dalembert.surrogate.scheme import Scheme
 
-PILOT = 32
-"""Draws of the surrogate's posterior that test it."""
-
+PILOT = 32  # draws of the surrogate's posterior that test it
+# Largest standard deviation of the surrogate's error in the log density; half of the proposals are then accepted.
 LIMIT = 1.0
-"""Largest standard deviation of the surrogate's error in the log density; half of the proposals are then accepted."""
-
-BURN = 20
-"""Decisions of the model in each chain before the first draw that is kept."""
-
-WANTED = 0.3
-"""Acceptance of the random walk on the surrogate to which its step is adapted."""
-
-EDGE = 0.02
-"""Distance to a side of the surrogate's box, relative to its width, within which the box cuts the posterior."""
+BURN = 20  # decisions of the model in each chain before the first draw that is kept
+WANTED = 0.3  # acceptance of the random walk on the surrogate to which its step is adapted
+EDGE = 0.02  # distance to a side of the surrogate's box, relative to its width, within which the box cuts the posterior
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from dalembert.inverse.posterior.target import Target
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import Problem
 
+# What is kept of nutpie's statistics.
 STATISTICS = {
     "diverging": bool,
     "maxdepth_reached": bool,
@@ -29,7 +30,6 @@ STATISTICS = {
     "mean_tree_accept": float,
     "step_size": float,
 }
-"""What is kept of nutpie's statistics."""
 
 
 @dataclass(frozen=True)

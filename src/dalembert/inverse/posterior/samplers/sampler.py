@@ -12,8 +12,8 @@ from dalembert.findings import Finding
 from dalembert.inverse.posterior.modes import Modes
 from dalembert.inverse.posterior.target import Target
 
+# Called with the number of draws that were added, of all chains and in the warm-up too, and of those in the end.
 OnDraws: TypeAlias = Callable[[int, int], None]
-"""Called with the number of draws that were added, of all chains and in the warm-up too, and of those in the end."""
 
 
 @dataclass(frozen=True)

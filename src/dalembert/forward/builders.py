@@ -12,12 +12,7 @@ Built = TypeVar("Built")
 
 
 def check_function(owner: str, function: Any, names: Sequence[str]) -> None:
-    """Raise unless a model's function can be called with these parameters by name.
-
-    Raises
-    ------
-    InputError
-    """
+    """Raise unless a model's function can be called with these parameters by name."""
     if not callable(function):
         raise InputError(f"{owner}: {shown(function)} was given as the model's function; expected a function")
     error = call_error(function, **dict.fromkeys(names))
@@ -40,15 +35,7 @@ def call_error(function: Callable[..., Any], *positions: Any, **names: Any) -> T
 
 
 def built(builder: Callable[..., Any], arguments: Mapping[str, Any], kind: type[Built]) -> Built:
-    """The system that a builder makes of arguments by name.
-
-    Raises
-    ------
-    InputError
-        Where it returns something else.
-    ModelError
-        Where it raises an error that is none of the package's, with its file and line.
-    """
+    """The system that a builder makes of arguments by name."""
     try:
         system = builder(**arguments)
     except DalembertError:

@@ -210,13 +210,7 @@ class Checkpoint:
             return self._file.execute(text, values).fetchone() if values else None
 
     def _replace(self, error: sqlite3.Error | None) -> None:
-        """Set a damaged file aside, and begin a new one with the results that can be read.
-
-        Raises
-        ------
-        StorageError
-            Where the error is not that of a damaged file.
-        """
+        """Set a damaged file aside, and begin a new one with the results that can be read."""
         if error is not None and not self._is_damage(error):
             raise unwritable(self.path, error) from None
         with suppress(sqlite3.Error, AttributeError):

@@ -87,13 +87,7 @@ def _warn_of(worker: Mapping[str, str]) -> None:
 
 
 def packed(thing: Any) -> bytes:
-    """A model or a function as it is sent to a cluster; ``pickle.loads`` makes it anew.
-
-    Raises
-    ------
-    InputError
-        Where it holds what cannot leave this process.
-    """
+    """A model or a function as it is sent to a cluster; ``pickle.loads`` makes it anew."""
     import cloudpickle
 
     try:
@@ -107,13 +101,7 @@ def packed(thing: Any) -> bytes:
 
 
 def sent(client: "Client", thing: Any) -> "Future":
-    """A model or a function on the cluster; a worker that comes later, or in place of a lost one, gets it too.
-
-    Raises
-    ------
-    InputError
-        Where it holds what cannot leave this process.
-    """
+    """A model or a function on the cluster; a worker that comes later, or in place of a lost one, gets it too."""
     # Each time under a name of its own: one that is asked for again while the scheduler lets go of it may never come.
     return client.submit(_received, packed(thing), Sender(), pure=False)
 
@@ -127,13 +115,7 @@ class Sender:
 
     @contextmanager
     def alike(self) -> Iterator[None]:
-        """A block on a worker that computes as the sender does; the scheduler's log says if it has other packages.
-
-        Raises
-        ------
-        ClusterError
-            If the worker has another dalembert.
-        """
+        """A block on a worker that computes as the sender does; the scheduler's log says if it has other packages."""
         own = versions()
         _refuse_other(own, self.versions)
         if own != self.versions:
@@ -158,13 +140,7 @@ def _received(content: bytes, sender: Sender) -> Any:
 
 
 def worker_versions(client: "Client") -> list[dict[str, str]]:
-    """Return the different versions that the workers of a cluster have.
-
-    Raises
-    ------
-    ClusterError
-        If a worker has another dalembert.
-    """
+    """Return the different versions that the workers of a cluster have."""
     answers: Any = client.run(versions, on_error="return")
     found: list[dict[str, str]] = []
     for answer in answers.values():

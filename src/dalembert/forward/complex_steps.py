@@ -245,7 +245,6 @@ def check_steps(
 
     Parameters
     ----------
-    parameters : Parameters
     vector : array (parameters,)
         Where they are compared; moved inside the bounds, so that the differences stay there.
     numbers : callable
@@ -255,11 +254,6 @@ def check_steps(
     thorough : bool
         Whether parameters are compared one by one, and rounding to few decimals is sought too, which needs wider
         differences. If not, first all parameters are compared at once.
-
-    Raises
-    ------
-    InputError
-        It names the parameter and the entry.
     """
     _refuse_imaginary(numbers(vector), place)
     margin = np.minimum(DIFFERENCE * parameters.scale, (parameters.upper - parameters.lower) / 4)

@@ -12,13 +12,7 @@ RELATIVE_STEP = np.finfo(float).eps ** (1 / 3)
 
 
 def central_differences(model: ForwardModel, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Response (samples, channels) and its derivative (samples, channels, parameters), by one batch.
-
-    Raises
-    ------
-    SolveError
-        Where a sample fails.
-    """
+    """Response (samples, channels) and its derivative (samples, channels, parameters), by one batch."""
     steps = RELATIVE_STEP * model.parameters.scale
     moved = np.diag(steps)
     responses = model.evaluate(np.concatenate([vector[None], vector + moved, vector - moved]))

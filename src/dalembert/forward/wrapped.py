@@ -18,12 +18,7 @@ from dalembert.parameters import Parameters
 
 @dataclass(frozen=True)
 class Wrapped:
-    """A forward model that hands everything on to another one.
-
-    Parameters
-    ----------
-    model : ForwardModel
-    """
+    """A forward model that hands everything on to another one."""
 
     model: ForwardModel
 

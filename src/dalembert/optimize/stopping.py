@@ -47,13 +47,7 @@ class Stopping:
     _trials: list[tuple[float, float]] = field(default_factory=list)
 
     def at(self, residual: np.ndarray, slopes: np.ndarray, down: np.ndarray, up: np.ndarray) -> None:
-        """Judge an accepted point by its linear model, the arguments of :class:`LinearModel`.
-
-        Raises
-        ------
-        Stopped
-            If the descent has converged.
-        """
+        """Judge an accepted point by its linear model, the arguments of :class:`LinearModel`."""
         size = np.linalg.norm(slopes, axis=0)
         size[size == 0] = 1.0
         # Its triangular factor has the same steps and falls, and is decomposed sooner.
@@ -68,13 +62,7 @@ class Stopping:
             raise Stopped("converged: the sum of squares falls no more")
 
     def tried(self, least: float) -> None:
-        """Judge the progress after a trial point; ``least`` is the smallest sum of squares so far.
-
-        Raises
-        ------
-        Stopped
-            If neither the sum of squares nor what the linear model foresees fell during the last trial points.
-        """
+        """Judge the progress after a trial point; ``least`` is the smallest sum of squares so far."""
         self._trials.append((least, self.foreseen))
         if len(self._trials) <= self.window:
             return

@@ -27,10 +27,6 @@ def follow_valley(path: Path, start: np.ndarray, stopping: Stopping, shortest: f
 
     Source: M. K. Transtrum, J. P. Sethna, Improvements to the Levenberg-Marquardt algorithm for nonlinear least-squares
     minimization, arXiv:1201.5885 (2012).
-
-    Raises
-    ------
-    Stopped
     """
     low, high, unit = path.problem.low, path.problem.high, path.problem.unit
     x, r = start, path.residual_at(start)

@@ -26,18 +26,12 @@ def enclosures(
 
     Parameters
     ----------
-    polynomial : ChebyshevPolynomial
     low, high : array, shape (boxes, d)
     gap : float
         Halves boxes until no bound is further from a value of the polynomial than this part of the sum of its
         |coefficients| without the constant one; infinite for the first coefficients as they are. Ends before that where
         rounding hides the rest, after ``DEPTH`` halvings, or when the open parts of a box fill ``CHUNK``, as those of a
         valley that is flat in several directions may: bounds are then guaranteed all the same, and wider.
-
-    Raises
-    ------
-    InputError
-        For a gap that is not positive, or so many directions and degrees that the Bernstein form is too large.
 
     Notes
     -----

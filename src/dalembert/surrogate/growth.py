@@ -16,7 +16,6 @@ class Growth:
 
     Parameters
     ----------
-    directions : int
     basis : str
         As in :class:`dalembert.surrogate.Adaptive`.
     """

@@ -55,11 +55,6 @@ def held_out_runs(runs: Runs, number: int | None, seed: int) -> HeldOut:
     """Make the held-out runs: ``number`` of them, or by the directions if it is None.
 
     They form a Latin hypercube in arccos η, so that they are denser near the sides, where surrogates are worst.
-
-    Raises
-    ------
-    InputError
-        For a negative number.
     """
     if number is None:
         number = max(FEWEST, EACH * runs.directions)

@@ -55,7 +55,6 @@ def orthonormal(polynomial: ChebyshevPolynomial, rules: Sequence[Rule] = ()) -> 
 
     Parameters
     ----------
-    polynomial : ChebyshevPolynomial
     rules : sequence of Rule, of length d
         Of the distribution of each input; uniform if not given.
     """

@@ -16,7 +16,6 @@ class Runs:
 
     Parameters
     ----------
-    function : Function
     lower, upper : array, shape (d,)
     on_runs : callable, optional
         Called with the number of runs so far, after each batch.
@@ -81,13 +80,7 @@ class Runs:
         return values
 
     def complete(self, eta: np.ndarray, kind: str) -> np.ndarray:
-        """Outputs (n, outputs) at coordinates (n, f) for a surrogate of a kind that needs all of them.
-
-        Raises
-        ------
-        SolveError
-            For a run that failed.
-        """
+        """Outputs (n, outputs) at coordinates (n, f) for a surrogate of a kind that needs all of them."""
         values = self(eta)
         lost = failed(values)
         if lost.any():

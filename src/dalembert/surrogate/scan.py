@@ -74,7 +74,6 @@ def transformed(polynomial: ChebyshevPolynomial, bases: list[np.ndarray]) -> np.
 
     Parameters
     ----------
-    polynomial : ChebyshevPolynomial
     bases : list of d arrays, shape (boxes, n_k, degrees_k + 1)
         What each Chebyshev polynomial of a direction is in the new basis.
     """

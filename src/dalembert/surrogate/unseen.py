@@ -22,7 +22,6 @@ def unseen(surrogate: Surrogate, names: Sequence[str]) -> Finding:
 
     Parameters
     ----------
-    surrogate : Surrogate
     names : sequence of str, of length d
         Of the directions.
     """

@@ -59,7 +59,6 @@ class ExtremeSearch:
 
     Parameters
     ----------
-    runs : Runs
     tolerance : float
         Gains smaller than this part of the widest band of a channel are not looked for.
     radius : float

@@ -78,17 +78,11 @@ def inputs_of(model: ForwardModel, given: Distributions | None, method: str) -> 
 
     Parameters
     ----------
-    model : ForwardModel
     given : Box or mapping, optional
         Of each parameter an interval, within which it is uniform, or a distribution, which the bounds of the parameter
         truncate. If not given, the priors of the parameters; without prior a parameter is uniform between its bounds.
     method : str
         Named in errors.
-
-    Raises
-    ------
-    InputError
-        For a parameter that is missing, and for correlated ones.
     """
     items = {item.name: item for item in model.parameters}
     if given is None:

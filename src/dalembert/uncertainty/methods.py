@@ -17,11 +17,6 @@ def methods_by_name() -> dict[str, type[Method]]:
 def method_of(given: Method | str) -> Method:
     """A method itself, or the one of that name with its usual settings.
 
-    Raises
-    ------
-    InputError
-        For an unknown name, with the nearest ones, and for what is no method.
-
     Examples
     --------
     >>> method_of("scan")

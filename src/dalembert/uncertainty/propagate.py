@@ -102,13 +102,7 @@ def propagate(
 
 
 def box_of(model: ForwardModel, intervals: Intervals) -> Box:
-    """The box of a model's parameters, in the model's order.
-
-    Raises
-    ------
-    InputError
-        For a parameter without an interval, and for an interval of no parameter.
-    """
+    """The box of a model's parameters, in the model's order."""
     model.parameters.check_some("propagate")
     given, names = Box.of(intervals), model.parameters.names
     for name, interval in given.items():

@@ -16,12 +16,10 @@ class Runs:
 
     Parameters
     ----------
-    model : ForwardModel
     box : Box
         An interval for each parameter, in the model's order.
     method : str
         In whose name events are told.
-    on_event : callable, optional
     most : int, optional
         Runs that the method will make, where it knows.
     """
@@ -63,13 +61,7 @@ class Runs:
         self._ran(runs)
 
     def linearised(self, point: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-        """Response (samples, channels) and jacobian (samples, channels, parameters) at a point; None if it failed.
-
-        Raises
-        ------
-        InputError
-            For a model that cannot be differentiated at all.
-        """
+        """Response (samples, channels) and jacobian (samples, channels, parameters) at a point; None if it failed."""
         try:
             response, jacobian = self.model.linearise(point)
             if not (np.all(np.isfinite(response)) and np.all(np.isfinite(jacobian))):

@@ -177,11 +177,6 @@ def _of_tails(inputs: Inputs, whole: SobolIndices, names: tuple[str, ...], toler
     -----
     The part m of the variance of an input, to whose share S it is proportional, changes an index by at most
     S (1 − S) m / (1 − m (1 − S)), as that of a linear model.
-
-    Raises
-    ------
-    SolveError
-        If that is more than the tolerance.
     """
     lost, share = np.array(inputs.lost)[:, None], np.nan_to_num(np.clip(whole.total, 0.0, 1.0))
     each = share * (1 - share) * lost / np.maximum(1 - lost * (1 - share), np.finfo(float).tiny)

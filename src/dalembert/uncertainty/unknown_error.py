@@ -15,13 +15,11 @@ def unknown_error(runs: Runs, points: np.ndarray, reason: str, values: Mapping[s
 
     Parameters
     ----------
-    runs : Runs
     points : array, shape (n, parameters)
     reason : str
         What the method knows instead, in a sentence.
     values : mapping
         Its numbers.
-    advice : str
     """
     message, gaps = f"The error of the bounds is unknown. {reason}", {}
     if len(runs.free):

@@ -25,14 +25,12 @@ class PlannedChannels:
 
     Parameters
     ----------
-    names : tuple of str
     columns : array of int, shape (channels,)
         Their places in the model.
     deviations : array, shape (channels,)
         Known standard deviations; NaN where they are not given.
     noises : tuple of (NoiseModel, mapping)
         The noise of each channel, and the values of its parameters.
-    along : Coordinate
     """
 
     names: tuple[str, ...]
@@ -46,11 +44,6 @@ class PlannedChannels:
 
         The deviations are root mean squares over the samples. Sensitivities are those of the model, with the response
         (samples, all channels), over the deviation, less their prediction from the samples before.
-
-        Raises
-        ------
-        InputError
-            For noise without a deviation at some samples.
         """
         sizes, rows = np.empty((len(response), len(self.names))), jacobian[:, self.columns].copy()
         for place, (name, (model, values)) in enumerate(zip(self.names, self.noises, strict=True)):
@@ -71,13 +64,7 @@ class PlannedChannels:
 def planned_channels(
     model: ForwardModel, deviations: Mapping[str, float] | ArrayLike | None, noise: Planned | None
 ) -> PlannedChannels:
-    """Return the channels of a model that can be measured.
-
-    Raises
-    ------
-    InputError
-        Without deviations and noise, for unknown channels, noise parameters without a value.
-    """
+    """Return the channels of a model that can be measured."""
     if noise is None and deviations is None:
         raise InputError("design: the noise is not known; give deviations, or noise")
     names, columns, known = _channels(model, deviations, noise)

@@ -22,7 +22,6 @@ class ProfiledLikelihood:
 
     Parameters
     ----------
-    likelihood : Likelihood
     value : float
         At the fit.
     noise : array, shape (noise parameters,)
@@ -72,7 +71,6 @@ def profiled_likelihood(problem: Problem, at: Linearisation, noise: EstimatedNoi
         With the weights of the fit.
     at : Linearisation
         At the identified values.
-    noise : EstimatedNoise
     """
     picked = {own: noise.models[own.name] for own in series_of(problem, fewest=1)}
     channels, _ = noises_of(problem, picked, known=True)

@@ -17,11 +17,6 @@ def noise_of(
     """Channels, their places in the model, and the standard deviations of their noise, each (channels,).
 
     A mapping chooses the channels that it names; a number holds for all that the model has.
-
-    Raises
-    ------
-    InputError
-        For a channel that the model lacks, or a deviation that is not positive.
     """
     known = tuple(channel.name for channel in model.channels)
     names = tuple(deviations) if isinstance(deviations, Mapping) else known
@@ -48,15 +43,7 @@ def at_of(model: ForwardModel, at: Mapping[str, float] | ArrayLike | None, where
 
 
 def linearised(model: ForwardModel, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Response (samples, channels) and jacobian (samples, channels, parameters) at a vector (parameters,).
-
-    Raises
-    ------
-    InputError
-        For a model that cannot be differentiated at all, or that loses the complex step of a parameter.
-    SolveError
-        Where the simulation fails, or is not finite.
-    """
+    """Response (samples, channels) and jacobian (samples, channels, parameters) at a vector (parameters,)."""
     check_derivatives(model, vector)
     at = named(model, vector)
     try:

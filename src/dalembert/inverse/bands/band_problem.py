@@ -21,14 +21,10 @@ class BandProblem:
 
     Parameters
     ----------
-    model : ForwardModel
-    bands : Bands
     columns : array of int, shape (channels,)
         Where the bands' channels stand among the model's.
     weights : array, shape (samples, channels)
         W.
-    unknowns : Unknowns
-    journal : Journal
     """
 
     model: ForwardModel
@@ -61,15 +57,7 @@ class BandProblem:
 def pose(
     model: ForwardModel, bands: Bands, weights: ArrayLike | None, unknowns: Unknowns, journal: Journal
 ) -> BandProblem:
-    """The problem of explaining bands by a box, after checking that they fit to the model.
-
-    Raises
-    ------
-    DataError
-        For a channel that the model lacks, samples that lie elsewhere than the model's.
-    InputError
-        For weights of another shape, or negative.
-    """
+    """The problem of explaining bands by a box, after checking that they fit to the model."""
     columns = columns_of(model, bands)
     check_samples(model, bands)
     return BandProblem(model, bands, columns, weights_of(weights, bands.lower.shape), unknowns, journal)

@@ -44,13 +44,8 @@ class BandSolution:
 
     Parameters
     ----------
-    polynomial : ChebyshevPolynomial
-    candidate : Candidate
     error : array, shape (outputs,)
         Estimate of the surrogate's largest error on the candidate's box.
-    check : Check or None
-    success : bool
-    message : str
     reached : int or None
         Number of descents that ended there; None for a method without descents.
     """

@@ -24,7 +24,6 @@ def corrected(
 
     Parameters
     ----------
-    polynomial : ChebyshevPolynomial
     at : Candidate
         Its box.
     points : array, shape (runs, d)

@@ -18,7 +18,6 @@ class Unknowns:
 
     Parameters
     ----------
-    parameters : Parameters
     intervals : tuple of str
         Names of the parameters whose radius is unknown; that of the others is zero.
     region : (array, array), optional
@@ -119,13 +118,7 @@ class Unknowns:
 
 
 def unknowns_of(parameters: Parameters, intervals: Iterable[str] | None) -> Unknowns:
-    """Unknowns with the named intervals, all if none are named.
-
-    Raises
-    ------
-    InputError
-        For a name that no parameter has, or one alone in place of several.
-    """
+    """Unknowns with the named intervals, all if none are named."""
     if intervals is None:
         return Unknowns(parameters, parameters.names)
     if isinstance(intervals, str):

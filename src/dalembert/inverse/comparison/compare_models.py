@@ -137,12 +137,7 @@ def _groups_of(named: Mapping[str, CrossValidation]) -> tuple[np.ndarray, str]:
 
 
 def _check_same_densities(fits: Mapping[str, Fit]) -> None:
-    """Refuse cross-validations with Student's t and with normal densities side by side.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse cross-validations with Student's t and with normal densities side by side."""
     plain = [name for name, fit in fits.items() if fit.noise is None and not fit.noise_is_known]
     others = [name for name, fit in fits.items() if fit.noise is not None]
     if plain and others:

@@ -131,13 +131,7 @@ def _again(
 
 
 def _noise_without(fit: Fit, experiment: str | None) -> Mapping[str, NoiseModel] | None:
-    """The noise models of a fit, less those of an experiment that is left out.
-
-    Raises
-    ------
-    InputError
-        If the experiment has noise parameters that no other has.
-    """
+    """The noise models of a fit, less those of an experiment that is left out."""
     if fit.noise is None:
         return None
     others = {name: model for name, model in fit.noise.models.items() if name.partition(".")[0] != experiment}
@@ -152,13 +146,7 @@ def _noise_without(fit: Fit, experiment: str | None) -> Mapping[str, NoiseModel]
 
 
 def predicted_density(again: Fit, fit: Fit, rows: np.ndarray) -> float:
-    """Return the log predictive density of the values at ``rows``, which ``again`` was not fitted to.
-
-    Raises
-    ------
-    InputError
-        Where the other values do not determine the parameters.
-    """
+    """Return the log predictive density of the values at ``rows``, which ``again`` was not fitted to."""
     assert again.jacobian is not None
     if again.noise is not None and fit.noise is not None:
         described = replace(again.noise, models=fit.noise.models, bases=fit.noise.bases)

@@ -44,14 +44,7 @@ def default_way(named: Mapping[str, Any]) -> str:
 
 
 def of_draws(name: str, draws: Any, leave_out: str) -> Predictive:
-    """Return the predictive densities of groups of values by draws that were made with them.
-
-    Raises
-    ------
-    InputError
-        Without ArviZ, for draws without log-likelihoods, another word, and for groups whose log-likelihoods the draws
-        do not have.
-    """
+    """Return the predictive densities of groups of values by draws that were made with them."""
     require_known("way", leave_out, WAYS, "leave_out")
     package("arviz", "compare_models")
     if isinstance(draws, Posterior):

@@ -20,16 +20,10 @@ def groups(fit: Fit, leave_out: str, blocks: int | None = None) -> np.ndarray:
 
     Parameters
     ----------
-    fit : Fit
     leave_out : {"values", "blocks", "experiments"}
         Single values; blocks of neighbouring samples with all their channels; whole experiments.
     blocks : int, optional
         Blocks of each record; without it as many as are longer than four correlation times of the residuals.
-
-    Raises
-    ------
-    InputError
-        For another word, a number of blocks that leaves none, experiments where there are none.
     """
     require_known("way", leave_out, WAYS, "leave_out")
     fitted = fit.weights > 0

@@ -9,13 +9,7 @@ from dalembert.inverse.fit.fit import Fit
 
 
 def linearised(name: str, fit: Fit, *, normal: bool = False) -> Linearised | WithNoise:
-    """Return the linearisation of a fit; with ``normal`` densities also where the noise follows from the residuals.
-
-    Raises
-    ------
-    InputError
-        For a fit without a Jacobian, of segments, or with a robust loss.
-    """
+    """Return the linearisation of a fit; with ``normal`` densities also where the noise follows from the residuals."""
     if fit.nodes is not None and fit.nodes.segments > 1:
         raise InputError(
             f"{name!r} is a fit of {fit.nodes.segments} segments, which predict nothing; fit fewer samples, so that "

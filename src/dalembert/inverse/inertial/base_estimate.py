@@ -179,13 +179,7 @@ def torque_findings(joints: Sequence[str], residuals: np.ndarray) -> Iterator[Fi
 
 
 def joint_names(joints: Sequence[str], count: int, where: str) -> tuple[str, ...]:
-    """Return names of joints, ``"1"``, ``"2"`` ... if none are given.
-
-    Raises
-    ------
-    InputError
-        For another number of names.
-    """
+    """Return names of joints, ``"1"``, ``"2"`` ... if none are given."""
     found = tuple(joints) or tuple(str(k + 1) for k in range(count))
     if len(found) != count:
         raise InputError(f"{where}: {len(found)} names of joints; expected {count}, as the regressor has")

@@ -104,8 +104,6 @@ def largest_motion(shape: np.ndarray, period: float, limits: JointLimits) -> Fou
     ----------
     shape : array, shape (joints, 2 harmonics + 1)
         From −1 to 1: sines and cosines of the velocity, and where the motion lies between the limits of the position.
-    period : float
-    limits : JointLimits
 
     Notes
     -----

@@ -20,13 +20,7 @@ _ROWS, _COLUMNS = (0, 1, 2, 0, 1, 0, 0, 1, 2), (0, 1, 2, 1, 2, 2, 3, 3, 3)
 
 
 def upper_factor(values: np.ndarray) -> np.ndarray:
-    """Upper triangular factors U (..., 4, 4) of inertial parameters (..., 10), axes in the order x, y, z, 1.
-
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        For a body that cannot exist.
-    """
+    """Upper triangular factors U (..., 4, 4) of inertial parameters (..., 10), axes in the order x, y, z, 1."""
     turned = pseudo_inertia(values)[..., ORDER[::-1], :][..., :, ORDER[::-1]]
     return np.linalg.cholesky(turned)[..., ::-1, ::-1]
 

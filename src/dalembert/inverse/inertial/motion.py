@@ -143,13 +143,7 @@ def filtered_motion(
 
 
 def kept_samples(count: int, rate: float, cutoff: float, decimation: int | None = None) -> tuple[np.ndarray, int]:
-    """Numbers (kept,) of the samples of a filtered record that are kept, and every which: two a period of the cutoff.
-
-    Raises
-    ------
-    InputError
-        For another decimation than a positive whole number, and for a record that is too short.
-    """
+    """Rows (kept,) of a filtered record that are kept, and the step between them: two in a period of the cutoff."""
     step = max(1, int(rate / (2.0 * cutoff) * (1 + EVEN))) if decimation is None else decimation
     if not isinstance(step, int) or step < 1:
         raise InputError(f"filtered_motion: decimation is {step}; expected a whole number of at least 1")
@@ -164,13 +158,7 @@ def kept_samples(count: int, rate: float, cutoff: float, decimation: int | None 
 
 
 def _rate(times: np.ndarray) -> float:
-    """Samples per second.
-
-    Raises
-    ------
-    InputError
-        For fewer than ten samples, or times that are not even.
-    """
+    """Samples per second."""
     if len(times) < 10:
         raise InputError(f"filtered_motion: {len(times)} samples; expected at least 10")
     steps = np.diff(times)

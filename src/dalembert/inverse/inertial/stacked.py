@@ -8,13 +8,7 @@ from dalembert.errors import InputError, listed, repeated
 
 
 def checked_regressor(regressor: np.ndarray, names: Sequence[str], where: str) -> np.ndarray:
-    """Return a regressor (samples, joints, parameters).
-
-    Raises
-    ------
-    InputError
-        For another shape, a number that is not finite, names that are used twice, or fewer rows than parameters.
-    """
+    """Return a regressor (samples, joints, parameters)."""
     table = np.asarray(regressor, dtype=float)
     if table.ndim != 3 or table.shape[2] != len(names):
         raise InputError(
@@ -34,13 +28,7 @@ def checked_regressor(regressor: np.ndarray, names: Sequence[str], where: str) -
 
 
 def checked_torques(torques: np.ndarray, regressor: np.ndarray, where: str) -> np.ndarray:
-    """Return torques (samples, joints) that belong to a regressor.
-
-    Raises
-    ------
-    InputError
-        For another shape, or a number that is not finite.
-    """
+    """Return torques (samples, joints) that belong to a regressor."""
     table = np.asarray(torques, dtype=float)
     if table.shape != regressor.shape[:2]:
         raise InputError(
@@ -53,13 +41,7 @@ def checked_torques(torques: np.ndarray, regressor: np.ndarray, where: str) -> n
 
 
 def checked_deviations(deviations: object, joints: int, where: str) -> np.ndarray:
-    """Return standard deviations of torques (joints,), from one number or one a joint.
-
-    Raises
-    ------
-    InputError
-        For another number of values, or one that is not positive.
-    """
+    """Return standard deviations of torques (joints,), from one number or one a joint."""
     found = np.asarray(deviations, dtype=float)
     if found.shape not in ((), (joints,)) or not np.all(np.isfinite(found)) or not np.all(found > 0):
         raise InputError(

@@ -30,8 +30,6 @@ def inherited(fit: Fit | None, likelihood: Likelihood, *, usual: bool) -> Iterat
 
     Parameters
     ----------
-    fit : Fit, optional
-    likelihood : Likelihood
     usual : bool
         Whether the noise is that of the data, and no model of it is given.
     """

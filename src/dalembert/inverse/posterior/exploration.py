@@ -35,7 +35,6 @@ def with_guessed_noise(likelihood: Likelihood, vectors: np.ndarray) -> tuple[np.
 
     Parameters
     ----------
-    likelihood : Likelihood
     vectors : array, shape (batch, parameters of the model)
     """
     noise, problem = likelihood.noise_parameters, likelihood.problem

@@ -27,7 +27,6 @@ class Centred:
 
     Parameters
     ----------
-    target : Target
     vector : array, shape (parameters,)
         Parameters at the mode of the density of the coordinates without bounds.
     covariance : array, shape (parameters, parameters)
@@ -55,11 +54,6 @@ def centred(
     With ``gradients`` the mode is searched by L-BFGS-B, and the curvature is JᵀΣ⁻¹J and that of the priors. Without,
     Nelder and Mead's simplex and second differences serve. A ``local`` search takes short steps, and trusts the
     curvature only as far as the density falls by it, so that it stays in a narrow mode.
-
-    Raises
-    ------
-    SolveError
-        If the model cannot be simulated at the start.
     """
     count = len(parameters)
     target = Target(likelihood, parameters, np.zeros(count), np.eye(count))

@@ -261,13 +261,7 @@ def _blocks(likely: Likelihood, blocks: int) -> np.ndarray:
 
 
 def with_priors(likely: Likelihood, priors: Mapping[str, AnyPrior] | None) -> Parameters:
-    """Parameters of a likelihood with the priors that they declare, or that are given in their place.
-
-    Raises
-    ------
-    InputError
-        For unknown names.
-    """
+    """Parameters of a likelihood with the priors that they declare, or that are given in their place."""
     given = dict(priors or {})
     for name in given:
         likely.parameters.check_name(name, where="sample: priors")

@@ -20,10 +20,8 @@ def separate_modes(modes: Modes, places: np.ndarray, sampler: Sampler) -> Iterat
 
     Parameters
     ----------
-    modes : Modes
     places : array, shape (chains, draws, parameters)
         Draws, in the coordinates of the best mode.
-    sampler : Sampler
     """
     if len(modes.targets) < 2:
         return

@@ -23,10 +23,8 @@ class SurrogateModel(Wrapped):
 
     Parameters
     ----------
-    model : ForwardModel
     surrogate : Surrogate
         Of the compared values, over search coordinates.
-    problem : Problem
     places : array of int, shape (values,)
         Of the compared values in the response (samples, channels) of the data, flattened.
     """
@@ -55,13 +53,7 @@ def box_of(problem: Problem, vector: np.ndarray, deviations: np.ndarray) -> tupl
 
 
 def with_surrogate(target: Target, vector: np.ndarray, deviations: np.ndarray, scheme: Scheme, seed: int) -> Target:
-    """Return a target whose model is a surrogate around a vector with linear deviations, both (parameters,).
-
-    Raises
-    ------
-    SolveError
-        For failed runs that the scheme cannot do without.
-    """
+    """Return a target whose model is a surrogate around a vector with linear deviations, both (parameters,)."""
     problem, count = target.problem, len(target.problem.model.parameters)
     places = np.flatnonzero(problem.weights.ravel() > 0)
     lower, upper = box_of(problem, vector[:count], deviations[:count])

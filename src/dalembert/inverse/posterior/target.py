@@ -19,7 +19,6 @@ class Target:
 
     Parameters
     ----------
-    likelihood : Likelihood
     parameters : Parameters
         Those of the likelihood, with their priors.
     centre : array, shape (parameters,)

@@ -15,7 +15,6 @@ class WithoutPriors(Wrapped):
 
     Parameters
     ----------
-    model : ForwardModel
     known : Parameters
         Those of the model, without priors.
     """

@@ -18,10 +18,8 @@ def conclusions(
 
     Parameters
     ----------
-    inversion : Inversion
     surrogate : Surrogate
         The last one.
-    paving : Paving
     left_out : array, shape (n, d)
         Consistent runs that lie in no box of the paving.
     names : sequence of str, of length d

@@ -28,11 +28,8 @@ def outcome(
 
     Parameters
     ----------
-    data : Measurements
     share : float
         Largest error of the surrogate, in units of that of the data.
-    paving : Paving
-    nearest : Nearest or None
     at : str
         The nearest run's parameters as text.
     believed : bool

@@ -68,8 +68,6 @@ def pave(
 
     Parameters
     ----------
-    polynomial : ChebyshevPolynomial
-    limits : Limits
     resolution : float
         Boxes are halved until their sides are no longer than this part of the polynomial's box.
     most_boxes : int

@@ -29,7 +29,6 @@ class Estimates:
     Parameters
     ----------
     names, units : tuple of str, length parameters
-    specimens : tuple of str
     values : array, shape (specimens, parameters)
     covariance : array, shape (specimens · parameters, specimens · parameters)
     """

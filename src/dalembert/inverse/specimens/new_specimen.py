@@ -27,7 +27,6 @@ def new_specimen(values: np.ndarray, variances: np.ndarray, level: float) -> tup
     ----------
     values, variances : array, shape (specimens,)
         Identified values and the squares of their standard deviations.
-    level : float
     """
     centre, scale = values.mean(), np.sqrt(values.var(ddof=1) + variances.mean())
     likelihood = Likelihood((values[:, None] - centre) / scale, np.diag(variances) / scale**2)

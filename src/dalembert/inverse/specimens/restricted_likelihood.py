@@ -86,11 +86,6 @@ class SpreadForm:
     """Ω by unknowns without bounds: deviations σ and, with correlations, the rows l_a of a lower triangle.
 
     Ω_ab = σ_a σ_b l_a·l_b / (‖l_a‖ ‖l_b‖), with 1 on the diagonal of the triangle. Every Ω of full rank has this form.
-
-    Parameters
-    ----------
-    parameters : int
-    correlated : bool
     """
 
     parameters: int
@@ -125,7 +120,6 @@ def most_likely(likelihood: Likelihood, form: SpreadForm) -> tuple[np.ndarray, f
     ----------
     likelihood : Likelihood
         Of values that are scaled to a size of about 1.
-    form : SpreadForm
     """
     k = form.parameters
     starts = [np.concatenate([np.full(k, size), np.zeros(form.unknowns - k)]) for size in (1.0, 0.2)]

@@ -77,12 +77,7 @@ class AffineInvariant(Sampler):
 
 
 def _starts(modes: Modes, walkers: int, random: np.random.RandomState) -> np.ndarray:
-    """Starts (walkers, parameters) that can be simulated, around the modes.
-
-    Raises
-    ------
-    SolveError
-    """
+    """Starts (walkers, parameters) that can be simulated, around the modes."""
     target, mode = modes.best.target, modes.of_chains(walkers)
     found = _around(modes, mode, random.standard_normal((walkers, len(target.centre))))
     for _ in range(TRIES):

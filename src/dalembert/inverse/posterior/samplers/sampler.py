@@ -24,7 +24,6 @@ class Length:
     ----------
     chains, draws, warmup : int
         ``draws`` of each chain are kept, after ``warmup`` that are not.
-    seed : int
     """
 
     chains: int

@@ -16,8 +16,8 @@ import numpy as np
 from scipy.stats import chi2
 
 import dalembert as da
+from dalembert.inverse.posterior.posed import with_priors
 from dalembert.inverse.posterior.prior_density import PriorDensity
-from dalembert.inverse.posterior.sample import with_priors
 
 TABLE = Path(__file__).parent / "verification" / "references" / "posterior_calibration.json"
 DRAWS = 99

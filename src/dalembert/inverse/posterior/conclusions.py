@@ -4,14 +4,20 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from dalembert.findings import Finding
 from dalembert.inverse.fit.fit import Fit
-from dalembert.inverse.likelihood.likelihood import Likelihood
+from dalembert.inverse.posterior.modes import Modes
+from dalembert.inverse.posterior.posed import PosedPosterior
+from dalembert.inverse.posterior.posterior import SEPARATE
 from dalembert.inverse.posterior.preconditioning import Centred
+from dalembert.inverse.posterior.samplers.sampler import Sampler
 from dalembert.inverse.posterior.unbounded import UnboundedCoordinates
 from dalembert.inverse.problem.prior import ALONE
 from dalembert.inverse.problem.prior_conflicts import prior_conflicts
+from dalembert.inverse.problem.simulated import named
 from dalembert.parameters import Parameter, Parameters
 
 CLOSE = 0.02  # distance to a bound, relative to that of the bounds, that counts as at the bound
@@ -25,16 +31,10 @@ ADVICE = {
 OF_INDEPENDENT_NOISE = {"correlated-residuals", "systematic-residuals", "model-misfit"}
 
 
-def inherited(fit: Fit | None, likelihood: Likelihood, *, usual: bool) -> Iterator[Finding]:
-    """Yield the doubts of the fit at which the chains start that concern the draws, too.
-
-    Parameters
-    ----------
-    usual : bool
-        Whether the noise is that of the data, and no model of it is given.
-    """
-    codes = {"correlated-channels"} | ({"misfit-above-noise"} if usual else set())
-    if all(channel.whitening is None for channel in likelihood.channels):
+def inherited(fit: Fit | None, posed: PosedPosterior) -> Iterator[Finding]:
+    """Yield the doubts of the fit at which the chains start that concern the draws, too."""
+    codes = {"correlated-channels"} | ({"misfit-above-noise"} if posed.usual_noise else set())
+    if all(channel.whitening is None for channel in posed.likelihood.channels):
         codes |= OF_INDEPENDENT_NOISE
     for finding in fit.doubts if fit is not None else ():
         if finding.code in codes:
@@ -62,7 +62,7 @@ def contradictions(found: Centred) -> Iterator[Finding]:
     yield from prior_conflicts(target.parameters, found.vector, slope, found.data_information, slope * gradient)
 
 
-def findings(parameters: Parameters, draws: np.ndarray) -> Iterator[Finding]:
+def draw_findings(parameters: Parameters, draws: np.ndarray) -> Iterator[Finding]:
     """Yield findings on the posterior from draws (draws, parameters)."""
     inside = _between(parameters, draws)
     for k, item in enumerate(parameters):
@@ -102,3 +102,50 @@ def _between(parameters: Parameters, draws: np.ndarray) -> np.ndarray:
         np.where(logs, np.log(np.where(logs, one, 1.0)), one) for one in (parameters.lower, parameters.upper, draws)
     )
     return (values - lower) / (upper - lower)
+
+
+def separate_modes(modes: Modes, places: np.ndarray, sampler: Sampler) -> Iterator[Finding]:
+    """Yield the finding on modes between which no chain moves.
+
+    A chain visits a mode where one of its draws is within the distance √(number of parameters) of it, in standard
+    deviations: about half of the draws of a normal mode are. Modes that one chain visits are connected.
+
+    Parameters
+    ----------
+    places : array, shape (chains, draws, parameters)
+        Draws, in the coordinates of the best mode.
+    """
+    if len(modes.targets) < 2:
+        return
+    points = modes.best.target.points(places)
+    distances = np.stack([np.linalg.norm(target.places(points), axis=-1) for target in modes.targets])
+    nearest = np.argmin(distances, axis=0)
+    inside = distances <= np.sqrt(places.shape[-1])
+    visits = np.any(inside, axis=2)  # modes, chains
+    mode, chain = np.nonzero(visits)
+    count, chains = visits.shape
+    joined = coo_array((np.ones(len(mode)), (mode, count + chain)), shape=(count + chains, count + chains))
+    _, group = connected_components(joined, directed=False)
+    if len(set(group[:count])) == 1:
+        return
+    model = modes.best.target.problem.model
+    vectors = [one.vector[: len(model.parameters)] for one in modes.centred]
+    values: dict[str, float] = {"modes": count}
+    for number, (vector, share) in enumerate(zip(vectors, modes.shares, strict=True), 1):
+        values |= {f"mode_{number}.{name}": float(value) for name, value in model.parameters.mapping(vector).items()}
+        values[f"mode_{number}.share"] = float(share)
+        values[f"mode_{number}.draws"] = float(np.mean(nearest == number - 1))
+    texts = [
+        f"{named(model, vector)} (about {100 * share:.0f} % of the probability, "
+        f"{100 * values[f'mode_{number}.draws']:.0f} % of the draws)"
+        for number, (vector, share) in enumerate(zip(vectors, modes.shares, strict=True), 1)
+    ]
+    message = f"The posterior has {count} modes that no chain connects: {'; '.join(texts)}."
+    jumps = "Increase draws" if sampler.jumps else "Use the sampler 'affine-invariant', which jumps between modes"
+    yield Finding(
+        SEPARATE,
+        "error",
+        values,
+        message,
+        f"{jumps}, measure another channel, or narrow the bounds to one mode.",
+    )

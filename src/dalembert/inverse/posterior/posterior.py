@@ -11,6 +11,7 @@ from dalembert.inverse.experiments.experiment import Part
 from dalembert.inverse.fit.fit import check_level
 from dalembert.inverse.fit.stored_data import StoredData, StoredParts
 from dalembert.inverse.posterior.convergence import Convergence, ended
+from dalembert.inverse.posterior.packages import package
 from dalembert.results import EndedResult, fact_lines, fixed_lines, text_table
 from dalembert.stored_fields import Labels, Over, Source, Store, StoredParameters
 
@@ -186,11 +187,25 @@ class Posterior(EndedResult):
     def inference_data(self) -> "InferenceData":
         """Everything as ArviZ has it: posterior, sampler statistics, log-likelihood, predictive and observed data.
 
-        Needs the extra ``posterior``.
+        Log-likelihoods and predictions are by channel, ``"EXPERIMENT.channel"`` with several experiments. If they are
+        of some draws only, these are one chain. Needs the extra ``posterior``.
         """
-        from dalembert.inverse.posterior.inference_data import inference_data
-
-        return inference_data(self)
+        arviz, (chains, draws, _) = package("arviz", "inference_data"), self.draws.shape
+        of_channel = {name: np.flatnonzero(np.array(self.columns) == name) for name in dict.fromkeys(self.columns)}
+        complete = len(self.kept) == chains * draws
+        likelihoods = self.log_likelihood.reshape(chains, draws, -1) if complete else self.log_likelihood[None]
+        columns = {name: self.data.channels.index(name) for name in of_channel}
+        rows = {name: self.rows[values] for name, values in of_channel.items()}
+        along = self.data.coordinate.values
+        return arviz.from_dict(
+            posterior={name: self[name] for name in self.parameters.names},
+            sample_stats={**self.statistics, "lp": self.log_density},
+            log_likelihood={name: likelihoods[:, :, values] for name, values in of_channel.items()},
+            posterior_predictive={name: self.replicas[None, :, rows[name], columns[name]] for name in of_channel},
+            observed_data={name: self.data.values[rows[name], columns[name]] for name in of_channel},
+            coords={f"{name}.sample": along[rows[name]] for name in of_channel},
+            dims={name: [f"{name}.sample"] for name in of_channel},
+        )
 
     def summary(self) -> str:
         """Return a table of the parameters, then how sampling ended and the findings."""

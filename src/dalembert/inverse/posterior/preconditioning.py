@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import minimize
 
-from dalembert.errors import DalembertError, InputError, SolveError, StorageError
+from dalembert.errors import SolveError
 from dalembert.inverse.likelihood.likelihood import Likelihood
 from dalembert.inverse.posterior.target import Target
 from dalembert.inverse.problem.prior import prior_slopes
@@ -147,17 +147,3 @@ def _curvatures(target: Target, point: np.ndarray) -> np.ndarray:
 def _factor(information: np.ndarray) -> np.ndarray:
     """L⁻ᵀ of the Cholesky factor L of an information."""
     return np.linalg.inv(np.linalg.cholesky(information)).T
-
-
-def has_jacobian(likelihood: Likelihood, vector: np.ndarray) -> bool:
-    """Return whether the model returns a jacobian at a vector of the likelihood (parameters,)."""
-    model = likelihood.problem.model
-    try:
-        model.linearise(vector[: len(model.parameters)])
-    except StorageError:
-        raise
-    except (InputError, NotImplementedError, AttributeError):
-        return False
-    except DalembertError:
-        return True  # it fails here, and may not elsewhere
-    return True

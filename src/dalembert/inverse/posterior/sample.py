@@ -3,49 +3,29 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from threading import Lock
-from typing import Any
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.arguments import check_whole
 from dalembert.data import Measurements
-from dalembert.errors import InputError, require_known, shown
-from dalembert.forward import Executor, ForwardModel, check_derivatives, takes_executor
-from dalembert.forward.provenance import provenance
+from dalembert.forward import Executor, ForwardModel, takes_executor
 from dalembert.inverse.events import Drawn, OnEvent
-from dalembert.inverse.experiments.blocks import USUAL, blocks_of_records
+from dalembert.inverse.experiments.blocks import USUAL
 from dalembert.inverse.experiments.experiment import Experiment
 from dalembert.inverse.experiments.experiments import placed
-from dalembert.inverse.experiments.joined import joined
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.identify import identify
-from dalembert.inverse.likelihood.guesses import guessed
-from dalembert.inverse.likelihood.likelihood import Likelihood, likelihood_of
 from dalembert.inverse.likelihood.placing import Noise
-from dalembert.inverse.posterior.conclusions import contradictions, findings, inherited
-from dalembert.inverse.posterior.convergence import convergence
-from dalembert.inverse.posterior.modes import Modes, modes
+from dalembert.inverse.posterior.conclusions import inherited
+from dalembert.inverse.posterior.drawn import draw, posterior_of
+from dalembert.inverse.posterior.model_variants import without_priors
+from dalembert.inverse.posterior.modes import find_modes
+from dalembert.inverse.posterior.posed import Length, pose_posterior, search_start
 from dalembert.inverse.posterior.posterior import Posterior
-from dalembert.inverse.posterior.preconditioning import centred, has_jacobian
-from dalembert.inverse.posterior.remembered import Remembered
-from dalembert.inverse.posterior.samplers.affine_invariant import AffineInvariant
-from dalembert.inverse.posterior.samplers.delayed_acceptance import DelayedAcceptance
-from dalembert.inverse.posterior.samplers.nuts import NUTS
-from dalembert.inverse.posterior.samplers.sampler import Chains, Length, OnDraws, Sampler
-from dalembert.inverse.posterior.separate_modes import separate_modes
-from dalembert.inverse.posterior.unprior import without_priors
-from dalembert.inverse.problem.journal import Journal
-from dalembert.inverse.problem.problem import pose
-from dalembert.kinds import named
-from dalembert.parameters import Parameter, Parameters
-from dalembert.priors import AnyPrior, LogUniform
+from dalembert.inverse.posterior.sampler_choice import choose_sampler, requested_sampler
+from dalembert.inverse.posterior.samplers.sampler import OnDraws, Sampler
+from dalembert.priors import AnyPrior
 from dalembert.surrogate.scheme import Scheme
-
-MOST_VALUES = 2e7  # log-likelihoods of single values that are kept: 160 MB
-REPLICAS = 400  # draws whose responses with simulated noise are kept
-TOGETHER = 256  # draws of which log-likelihoods are computed at once
-SAMPLERS = "dalembert.inverse.posterior.samplers"
 
 
 @takes_executor
@@ -139,203 +119,29 @@ def sample(
     >>> bool(abs(posterior.deviations[0] - exact) < 0.15 * exact)
     True
     """
+    length = _length(chains, draws, warmup, seed, blocks)
+    requested = requested_sampler(sampler, surrogate)
+    posed = pose_posterior(placed(model, executor), data, noise, weights, priors, on_event)
+
+    def identified() -> Fit:
+        alone = model if posed.known_noise else without_priors(model)
+        return identify(alone, data, weights=weights, seed=seed, on_event=on_event, executor=executor)
+
+    begin = search_start(posed, start, identified)
+    choice = choose_sampler(requested, posed.likelihood, begin.vector)
+    all_modes = find_modes(posed, begin, length, gradients=choice.differentiable)
+    drawn = draw(all_modes, choice.sampler, length, _announced(on_event))
+    posterior = posterior_of(drawn, blocks)
+    return replace(posterior, findings=(*posterior.findings, *inherited(begin.fit, posed)))
+
+
+def _length(chains: int, draws: int, warmup: int, seed: int, blocks: int) -> Length:
+    """Return the checked length of the chains."""
+    least = {"seed": 0, "blocks": 2}
     counts = {"chains": chains, "draws": draws, "warmup": warmup, "seed": seed, "blocks": blocks}
     for name, number in counts.items():
-        check_whole("sample", name, number, {"seed": 0, "blocks": 2}.get(name, 1))
-    chosen = _sampler(sampler, surrogate)
-    if chosen is not None:
-        chosen.check()
-    whole, measured, known, _ = joined("sample", placed(model, executor), data, weights)
-    journal = Journal(len(measured.coordinate.values), on_event)
-    problem = pose(whole, measured, known, journal, noise_known=True)
-    likely = likelihood_of(problem, noise, weighted=weights is not None)
-    parameters = with_priors(likely, priors)
-    vector, fit = _start(model, data, weights, likely, start, seed, on_event, executor)
-    differentiable = has_jacobian(likely, vector)
-    chosen = chosen or (NUTS() if differentiable else AffineInvariant())
-    chosen.check()
-    if chosen.gradients:
-        check_derivatives(likely.problem.model, vector[: len(likely.problem.model.parameters)])
-        if not differentiable:
-            raise InputError(
-                f"sample: the sampler {chosen.name!r} needs a jacobian, which the model does not return; use the "
-                "sampler 'affine-invariant'"
-            )
-    around = centred(likely, parameters, vector, gradients=differentiable)
-    length = Length(chains, draws, warmup, seed)
-    ends = [] if fit is None else [start.end for start in fit.starts if np.isfinite(start.fitness)]
-    known_noise = weights is not None or problem.data.deviations is not None
-    found_modes = modes(around, ends, known_noise=known_noise, gradients=differentiable, draws=length.total, seed=seed)
-    # A surrogate's draws are vectors that the model has simulated: what it is asked again costs nothing.
-    remembered = Remembered(problem.model) if isinstance(chosen, DelayedAcceptance) else None
-    own = problem if remembered is None else replace(problem, model=remembered, journal=Journal(problem.samples))
-    found_modes = found_modes.of(own)
-    found = chosen.sampled(found_modes, length, _announced(on_event))
-    result = _result(found_modes, found, chosen, length, blocks)
-    simulations = problem.journal.simulations + found.simulations
-    simulations += 0 if remembered is None else remembered.simulations
-    doubts = inherited(fit, likely, usual=noise is None)
-    return replace(result, simulations=simulations, findings=(*result.findings, *doubts))
-
-
-def _result(modes: Modes, found: Chains, sampler: Sampler, length: Length, blocks: int) -> Posterior:
-    """The result of the draws, with what is computed at them."""
-    around = modes.best
-    target = around.target
-    parameters, vectors = target.parameters, target.vectors(found.places)
-    flat = vectors.reshape(-1, len(parameters))
-    places = target.likelihood.places
-    kept = _spaced(len(flat), int(MOST_VALUES // max(1, len(places.row))))
-    replicated = _spaced(len(flat), REPLICAS)
-    diagnostics = convergence(vectors)
-    likely = target.likelihood
-    block_of = _blocks(likely, blocks)
-    experiment_of = np.unique(places.experiment, return_inverse=True)[1].ravel()
-    groups = np.arange(len(places.row)), block_of, experiment_of
-    single, of_blocks, of_experiments = _left_out(likely, flat[kept], groups)
-    settings = {
-        "chains": length.chains,
-        "draws": length.draws,
-        "warmup": length.warmup,
-        "seed": length.seed,
-        "data": target.problem.data.fingerprint,
-        "units": dict(target.problem.data.source_units),
-        "priors": {item.name: str(item.prior or item.distribution) for item in parameters},
-    }
-    return Posterior(
-        parameters=parameters,
-        draws=vectors,
-        log_density=found.log_density,
-        statistics=found.statistics,
-        r_hat=diagnostics.r_hat,
-        bulk=diagnostics.bulk,
-        tail=diagnostics.tail,
-        errors=diagnostics.error,
-        mode=around.vector,
-        linear_deviations=around.deviations,
-        log_likelihood=single,
-        kept=kept,
-        experiments=tuple(map(str, places.experiment)),
-        channels=tuple(map(str, places.channel)),
-        rows=np.asarray(places.row),
-        blocks=block_of,
-        block_log_likelihood=of_blocks,
-        experiment_log_likelihood=of_experiments,
-        correlated=any(channel.whitening is not None for channel in likely.channels),
-        replicas=likely.replicas(flat[replicated], length.seed),
-        replicated=replicated,
-        data=target.problem.data,
-        parts=tuple(getattr(around.target.problem.model, "parts", ())),
-        sampler=type(sampler).__name__,
-        warmup=length.warmup,
-        simulations=0,
-        provenance=provenance(target.problem.model, sampler, **settings),
-        findings=(
-            *separate_modes(modes, found.places, sampler),
-            *found.findings,
-            *contradictions(around),
-            *findings(parameters, flat),
-        ),
-    )
-
-
-def _spaced(count: int, most: int) -> np.ndarray:
-    """Numbers of at most some of a count of draws, evenly spaced."""
-    return np.unique(np.linspace(0, count - 1, min(count, max(most, 1))).astype(int))
-
-
-def _left_out(likely: Likelihood, vectors: np.ndarray, groups: Sequence[np.ndarray]) -> list[np.ndarray]:
-    """Log densities of groups of values after all others, (vectors, groups) each; equal vectors are simulated once."""
-    distinct, back = np.unique(vectors, axis=0, return_inverse=True)
-    parts = np.array_split(distinct, max(1, len(distinct) // TOGETHER))
-    found = zip(*(likely.left_out(part, *groups) for part in parts), strict=True)
-    return [np.concatenate(one)[back.ravel()] for one in found]
-
-
-def _blocks(likely: Likelihood, blocks: int) -> np.ndarray:
-    """Number of the block of each value, (values,): of at most some blocks of each record."""
-    problem = likely.problem
-    parts = getattr(problem.model, "parts", ())
-    numbers = blocks_of_records(problem.weights > 0, parts, lambda samples: min(blocks, samples))
-    return numbers.ravel()[np.concatenate([channel.series.rows for channel in likely.channels])]
-
-
-def with_priors(likely: Likelihood, priors: Mapping[str, AnyPrior] | None) -> Parameters:
-    """Parameters of a likelihood with the priors that they declare, or that are given in their place."""
-    given = dict(priors or {})
-    for name in given:
-        likely.parameters.check_name(name, where="sample: priors")
-    noise = set(likely.noise_parameters.names)
-
-    def prior_of(item: Parameter) -> Parameter:
-        if item.name in given:
-            return replace(item, prior=given[item.name], deviation=None)
-        if item.name in noise and item.prior is None and item.logarithmic:
-            return replace(item, prior=LogUniform(item.lower, item.upper))
-        return item
-
-    return Parameters(tuple(map(prior_of, likely.parameters.items)), likely.parameters.fixed)
-
-
-def _sampler(given: Sampler | str | None, surrogate: Scheme | bool | None) -> Sampler | None:
-    """The sampler that is asked for; None where the model decides."""
-    if isinstance(given, str):
-        known = named(SAMPLERS, Sampler)
-        require_known("sampler", given, known)
-        given = known[given]()
-    if given is not None and not isinstance(given, Sampler):
-        raise InputError(f"sample: sampler is {shown(given)}; expected a sampler such as NUTS(), or its name")
-    if surrogate is None or surrogate is False:
-        return given
-    if given is not None and not isinstance(given, DelayedAcceptance):
-        raise InputError(
-            f"sample: surrogate and the sampler {given.name!r} were given; a surrogate proposes draws of the sampler "
-            "'delayed-acceptance'. Leave one of them out"
-        )
-    sampler = given or DelayedAcceptance()
-    if surrogate is True:
-        return sampler
-    if not isinstance(surrogate, Scheme):
-        raise InputError(f"sample: surrogate is {shown(surrogate)}; expected a scheme such as TotalDegree(4), or True")
-    return replace(sampler, scheme=surrogate)
-
-
-def _start(
-    model: ForwardModel | Sequence[Experiment],
-    data: Measurements | None,
-    weights: Any,
-    likely: Likelihood,
-    start: Fit | Mapping[str, float] | ArrayLike | None,
-    seed: int,
-    on_event: OnEvent | None,
-    executor: Executor,
-) -> tuple[np.ndarray, Fit | None]:
-    """Where the posterior is searched, (parameters,), and the fit that it comes from."""
-    own, noise = likely.problem.model.parameters, likely.noise_parameters
-    estimated: Mapping[str, float] = {}
-    fit = None
-    if isinstance(start, Fit):
-        fit, estimated = start, {} if start.noise is None else start.noise.estimates
-        fit.needs_one_run("sample")
-        vector = own.real_vector({name: fit.parameters.mapping(fit.values)[name] for name in own.names})
-    elif start is None:
-        known = weights is not None or likely.problem.data.deviations is not None
-        posed = model if known else without_priors(model)
-        fit = identify(posed, data, weights=weights, seed=seed, on_event=on_event, executor=executor)
-        vector = fit.values
-    else:
-        vector = own.start_vector(start)
-    vector = own.clip(vector)
-    sizes = _guesses(likely, vector)
-    sizes |= {name: value for name, value in estimated.items() if name in sizes}
-    return np.concatenate([vector, noise.clip(noise.vector(sizes))]), fit
-
-
-def _guesses(likely: Likelihood, vector: np.ndarray) -> dict[str, float]:
-    """Noise parameters by the residuals at a vector of the model (parameters,); the usual ones if it fails there."""
-    noise, response = likely.noise_parameters, likely.problem.responses(vector[None])[0]
-    values = guessed(likely.channels, noise, likely.problem, response) if np.all(np.isfinite(response)) else noise.start
-    return dict(zip(noise.names, values.tolist(), strict=True))
+        check_whole("sample", name, number, least.get(name, 1))
+    return Length(chains, draws, warmup, seed)
 
 
 def _announced(on_event: OnEvent | None) -> OnDraws:

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from dalembert.inverse import likelihood
+from dalembert.inverse.posterior.posed import with_priors
 from dalembert.inverse.posterior.prior_density import PriorDensity
-from dalembert.inverse.posterior.sample import with_priors
 from dalembert.inverse.posterior.target import Target
 from dalembert.inverse.posterior.unbounded import UnboundedCoordinates
 from dalembert.parameters import Parameter, Parameters

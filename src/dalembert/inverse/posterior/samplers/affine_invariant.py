@@ -10,7 +10,8 @@ from dalembert.arguments import limited
 from dalembert.errors import SolveError
 from dalembert.inverse.posterior.modes import Modes
 from dalembert.inverse.posterior.packages import package
-from dalembert.inverse.posterior.samplers.sampler import Chains, Length, OnDraws, Sampler, moved
+from dalembert.inverse.posterior.posed import Length
+from dalembert.inverse.posterior.samplers.sampler import Chains, OnDraws, Sampler, moved
 
 TRIES = 20  # times that walkers whose start cannot be simulated get another one
 

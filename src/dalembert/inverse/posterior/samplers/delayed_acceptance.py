@@ -11,7 +11,8 @@ from dalembert.arguments import limited
 from dalembert.errors import SolveError
 from dalembert.findings import Finding
 from dalembert.inverse.posterior.modes import Modes
-from dalembert.inverse.posterior.samplers.sampler import Chains, Length, OnDraws, Sampler, moved
+from dalembert.inverse.posterior.posed import Length
+from dalembert.inverse.posterior.samplers.sampler import Chains, OnDraws, Sampler, moved
 from dalembert.inverse.posterior.surrogate_model import SurrogateModel, with_surrogate
 from dalembert.inverse.posterior.target import Target
 from dalembert.surrogate import Adaptive

@@ -14,7 +14,8 @@ from dalembert.forward import ensemble
 from dalembert.forward.prefetch import on_several_machines
 from dalembert.inverse.posterior.modes import Modes
 from dalembert.inverse.posterior.packages import package
-from dalembert.inverse.posterior.samplers.sampler import Chains, Length, OnDraws, Sampler, moved
+from dalembert.inverse.posterior.posed import Length
+from dalembert.inverse.posterior.samplers.sampler import Chains, OnDraws, Sampler, moved
 from dalembert.inverse.posterior.target import Target
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import Problem

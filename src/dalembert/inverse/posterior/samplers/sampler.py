@@ -10,35 +10,11 @@ import numpy as np
 from dalembert.arguments import Checked
 from dalembert.findings import Finding
 from dalembert.inverse.posterior.modes import Modes
+from dalembert.inverse.posterior.posed import Length
 from dalembert.inverse.posterior.target import Target
 
 # Called with the number of draws that were added, of all chains and in the warm-up too, and of those in the end.
 OnDraws: TypeAlias = Callable[[int, int], None]
-
-
-@dataclass(frozen=True)
-class Length:
-    """How long chains are.
-
-    Parameters
-    ----------
-    chains, draws, warmup : int
-        ``draws`` of each chain are kept, after ``warmup`` that are not.
-    """
-
-    chains: int
-    draws: int
-    warmup: int
-    seed: int
-
-    @property
-    def total(self) -> int:
-        """Draws of all chains, with those of the warm-up."""
-        return self.chains * (self.warmup + self.draws)
-
-    def chain_seed(self, chain: int) -> int:
-        """Seed of one chain, independent of those of the others."""
-        return int(np.random.SeedSequence([self.seed, chain]).generate_state(1)[0])
 
 
 @dataclass(frozen=True, eq=False)

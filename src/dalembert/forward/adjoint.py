@@ -54,10 +54,10 @@ def pullback(model: ForwardModel, vector: np.ndarray, derivative: str = AUTO) ->
     [-0.6386]
     """
     require_known("derivative", derivative, GRADIENTS, "pullback")
-    own: Any = getattr(model, "pullback", None)
-    if derivative == ADJOINT and own is None:
+    adjoint: Any = getattr(model, "pullback", None)
+    if derivative == ADJOINT and adjoint is None:
         raise InputError(f"{type(model).__name__} has no adjoint. Take derivative='direct', or a TimeResponse")
     if derivative == ADJOINT or (derivative == AUTO and prefers_adjoint(model)):
-        return own(np.asarray(vector, dtype=float))
+        return adjoint(np.asarray(vector, dtype=float))
     response, jacobian = model.linearise(vector)
     return response, lambda cotangent: np.einsum("sc,scp->p", np.asarray(cotangent, dtype=float), jacobian)

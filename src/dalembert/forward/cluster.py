@@ -76,10 +76,10 @@ def takes_executor(method: M) -> M:
 
 
 def _warn_of(worker: Mapping[str, str]) -> None:
-    own = versions()
-    others = [f"{name} {found}, not {own[name]}" for name, found in worker.items() if found != own[name]]
+    local = versions()
+    differing = [f"{name} {version}, not {local[name]}" for name, version in worker.items() if version != local[name]]
     warnings.warn(
-        f"a worker of the cluster has {' and '.join(others)} as here: the last digits of the result may differ. "
+        f"a worker of the cluster has {' and '.join(differing)} as here: the last digits of the result may differ. "
         "Install one version on all machines",
         RuntimeWarning,
         stacklevel=3,
@@ -116,20 +116,20 @@ class Sender:
     @contextmanager
     def alike(self) -> Iterator[None]:
         """A block on a worker that computes as the sender does; the scheduler's log says if it has other packages."""
-        own = versions()
-        _refuse_other(own, self.versions)
-        if own != self.versions:
+        local = versions()
+        _refuse_other(local, self.versions)
+        if local != self.versions:
             from distributed import get_worker
 
-            get_worker().log_event(OTHERS, own)
+            get_worker().log_event(OTHERS, local)
         with with_threads(self.threads):
             yield
 
 
 def _refuse_other(worker: dict[str, str], process: dict[str, str]) -> None:
-    if found := difference(worker, process):
+    if differing := difference(worker, process):
         raise ClusterError(
-            f"a worker of the cluster has {found} as here. Install the same version on all machines, and start the "
+            f"a worker of the cluster has {differing} as here. Install the same version on all machines, and start the "
             "workers again"
         )
 
@@ -142,12 +142,12 @@ def _received(content: bytes, sender: Sender) -> Any:
 def worker_versions(client: "Client") -> list[dict[str, str]]:
     """Return the different versions that the workers of a cluster have."""
     answers: Any = client.run(versions, on_error="return")
-    found: list[dict[str, str]] = []
+    different: list[dict[str, str]] = []
     for answer in answers.values():
         _refuse_other(answer if isinstance(answer, dict) else {"dalembert": "of a former version"}, versions())
-        if answer not in found:
-            found.append(answer)
-    return found
+        if answer not in different:
+            different.append(answer)
+    return different
 
 
 @contextmanager
@@ -163,29 +163,29 @@ def noted(client: "Client | None", note: Callable[[Mapping[str, str]], None]) ->
     try:
         yield
     finally:
-        found: list[Mapping[str, str]] = []
+        notes: list[Mapping[str, str]] = []
         with suppress(Exception):  # the cluster may be gone; what ended the block says so
-            for own in _logged(client)[before:]:
-                if own not in found:
-                    found.append(own)
-        for own in found:
-            note(own)
+            for versions_of_worker in _logged(client)[before:]:
+                if versions_of_worker not in notes:
+                    notes.append(versions_of_worker)
+        for versions_of_worker in notes:
+            note(versions_of_worker)
 
 
 def _logged(client: "Client") -> list[Mapping[str, str]]:
     events: Any = client.get_events(OTHERS)  # with the address of the worker beside the versions
-    return [{name: own[name] for name in versions()} for _, own in events]
+    return [{name: entry[name] for name in versions()} for _, entry in events]
 
 
 @contextmanager
 def asked_of(client: "Client", what: str) -> Iterator["list[Future]"]:
     """A list for what is asked: it is taken from the cluster where it is no longer wanted, and losses are told."""
-    asked: list[Future] = []
+    futures: list[Future] = []
     try:
-        yield asked
+        yield futures
     except BaseException as error:  # that the user stops the run, or does not ask for the rest, too
         with suppress(Exception):  # the cluster may be gone
-            client.cancel(asked, force=True)
+            client.cancel(futures, force=True)
         if isinstance(error, DalembertError) or not isinstance(error, Exception):
             raise
         raise ClusterError(
@@ -200,7 +200,7 @@ def _own_modules() -> Iterator[None]:
 
     installed = tuple(sysconfig.get_paths()[name] for name in ("stdlib", "platstdlib", "purelib", "platlib"))
     known = cloudpickle.list_registry_pickle_by_value()
-    own = [
+    modules = [
         module
         for name, module in list(sys.modules.items())
         if (file := getattr(module, "__file__", None))
@@ -208,10 +208,10 @@ def _own_modules() -> Iterator[None]:
         and name.partition(".")[0] not in ("dalembert", "__main__")
         and name not in known
     ]
-    for module in own:
+    for module in modules:
         cloudpickle.register_pickle_by_value(module)
     try:
         yield
     finally:
-        for module in own:
+        for module in modules:
             cloudpickle.unregister_pickle_by_value(module)

@@ -125,10 +125,10 @@ def stepped(numbers: Callable[[complex], np.ndarray], scale: float, room: tuple[
     if flat and (lost := flat.steps(numbers, _ALL_FLAT)):
         return lost
     width = min(_WIDTH * scale, span / _INTERVALS)
-    found = _Intervals.around(numbers, scale, room, 2 * width, 1)
-    while np.any(found.differ) and _INTERVALS * width <= span:
-        found = _Intervals.around(numbers, scale, room, _INTERVALS * width, _INTERVALS)
-        if lost := found.steps(numbers, _MOST):
+    intervals = _Intervals.around(numbers, scale, room, 2 * width, 1)
+    while np.any(intervals.differ) and _INTERVALS * width <= span:
+        intervals = _Intervals.around(numbers, scale, room, _INTERVALS * width, _INTERVALS)
+        if lost := intervals.steps(numbers, _MOST):
             return lost
         width *= 4
     return None
@@ -186,7 +186,7 @@ class _Intervals(NamedTuple):
         begin, end = self.ends[number : number + 2]
         slope = self.integrals[number, entry] / (end - begin)
         after, before = (np.real(numbers(point))[entry] - slope * point for point in (end, begin))
-        whole = abs(after - before)
+        change = abs(after - before)
         for _ in range(_HALVINGS):
             middle = (begin + end) / 2
             between = np.real(numbers(middle))[entry] - slope * middle
@@ -194,7 +194,7 @@ class _Intervals(NamedTuple):
                 begin, before = middle, between
             else:
                 end, after = middle, between
-        return bool(abs(after - before) > _JUMP * whole)
+        return bool(abs(after - before) > _JUMP * change)
 
 
 def _largest(sizes: np.ndarray) -> float:

@@ -66,17 +66,17 @@ class Distributed(Wrapped):
             return Responses(np.array(values), failures)
         if len(vectors) < 2:
             return self.model.evaluate(vectors)
-        with asked_of(self.client, f"a part of a batch of {len(vectors)}") as asked:
+        with asked_of(self.client, f"a part of a batch of {len(vectors)}") as futures:
             workers: Any = self.client.nthreads()
             parts = np.array_split(vectors, min(len(vectors), PARTS * max(1, sum(workers.values()))))
             model = sent(self.client, bare(self.model))
-            asked += self.client.map(
+            futures += self.client.map(
                 _answered, [model] * len(parts), parts, sender=Sender(), pure=False, retries=RETRIES
             )
-            for part in as_completed(asked, loop=self.client.loop):  # gather would complain of each that is cancelled
+            for part in as_completed(futures, loop=self.client.loop):  # gather would complain of each that is cancelled
                 if part.status != "finished":
                     part.result()  # raises what became of it
-            answers: Any = self.client.gather(asked)
+            answers: Any = self.client.gather(futures)
         values, failures = zip(*answers, strict=True)
         return Responses(np.concatenate(values), tuple(chain.from_iterable(failures)))
 
@@ -129,10 +129,10 @@ def key_of(method: str, model: ForwardModel, vector: np.ndarray) -> Key:
 def models_in(model: ForwardModel) -> Iterator[ForwardModel]:
     """Yield a model and those that it holds."""
     yield model
-    for held in getattr(model, "__dict__", {}).values():
-        for one in held if isinstance(held, tuple) else (held,):
-            if isinstance(one, ForwardModel):
-                yield from models_in(one)
+    for value in getattr(model, "__dict__", {}).values():
+        for inner in value if isinstance(value, tuple) else (value,):
+            if isinstance(inner, ForwardModel):
+                yield from models_in(inner)
 
 
 def rebuilt(model: ForwardModel, change: Callable[[ForwardModel], ForwardModel | None]) -> ForwardModel:
@@ -143,28 +143,28 @@ def rebuilt(model: ForwardModel, change: Callable[[ForwardModel], ForwardModel |
     changed = change(model)
     if changed is not None:
         return changed
-    own = copy(model)
-    for name, held in list(vars(own).items()):
-        if isinstance(getattr(type(own), name, None), cached_property):
-            del vars(own)[name]
-        elif isinstance(held, ForwardModel):
-            object.__setattr__(own, name, rebuilt(held, change))
-        elif isinstance(held, tuple) and any(isinstance(one, ForwardModel) for one in held):
-            several = tuple(rebuilt(one, change) if isinstance(one, ForwardModel) else one for one in held)
-            object.__setattr__(own, name, several)
-    return own
+    copied = copy(model)
+    for name, value in list(vars(copied).items()):
+        if isinstance(getattr(type(copied), name, None), cached_property):
+            del vars(copied)[name]
+        elif isinstance(value, ForwardModel):
+            object.__setattr__(copied, name, rebuilt(value, change))
+        elif isinstance(value, tuple) and any(isinstance(inner, ForwardModel) for inner in value):
+            several = tuple(rebuilt(inner, change) if isinstance(inner, ForwardModel) else inner for inner in value)
+            object.__setattr__(copied, name, several)
+    return copied
 
 
 def bare(model: ForwardModel) -> ForwardModel:
     """A copy for one thread, of the models that it holds too, without what they have computed of themselves."""
-    own = rebuilt(model, lambda one: None if one is model else bare(one))
-    if hasattr(own, "workers"):
-        object.__setattr__(own, "workers", 1)
-    return own
+    copied = rebuilt(model, lambda inner: None if inner is model else bare(inner))
+    if hasattr(copied, "workers"):
+        object.__setattr__(copied, "workers", 1)
+    return copied
 
 
 def _answered(model: ForwardModel, vectors: np.ndarray, sender: Sender) -> tuple[np.ndarray, tuple[str | None, ...]]:
     """Values and failures of a part of a batch, on a worker."""
     with sender.alike():
-        found = model.evaluate(vectors)
-    return found.values, found.failures
+        responses = model.evaluate(vectors)
+    return responses.values, responses.failures

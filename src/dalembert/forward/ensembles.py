@@ -58,12 +58,12 @@ def ensemble(
 
 
 def _on_cluster(work: Callable[[Item], Answer], items: Sequence[Item], client: Any) -> Generator[Answer, None, None]:
-    with asked_of(client, f"a part of an ensemble of {len(items)}") as asked:
-        asked += client.map(
+    with asked_of(client, f"a part of an ensemble of {len(items)}") as futures:
+        futures += client.map(
             _done, [sent(client, work)] * len(items), items, sender=Sender(), pure=False, retries=RETRIES
         )
-        for one in asked:
-            yield one.result()
+        for future in futures:
+            yield future.result()
 
 
 def _done(work: Callable[[Item], Answer], item: Item, sender: Sender) -> Answer:

@@ -102,12 +102,12 @@ def summarised(model: ForwardModel, name: str, numbers: np.ndarray, compute: Cal
     if known is not None:
         return known
     began, spared = perf_counter(), checkpoint.spared
-    with checkpoint.summarised(key, lambda: (made, seconds)):
-        made = compute()
+    with checkpoint.summarised(key, lambda: (arrays, seconds)):
+        arrays = compute()
         seconds = perf_counter() - began + checkpoint.spared - spared
-    return made
+    return arrays
 
 
 def recorded_in(model: ForwardModel) -> Recorded | None:
     """The first model with a checkpoint, of a model and of those that it holds."""
-    return next((one for one in models_in(model) if isinstance(one, Recorded)), None)
+    return next((inner for inner in models_in(model) if isinstance(inner, Recorded)), None)

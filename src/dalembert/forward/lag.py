@@ -53,7 +53,7 @@ def lagged(
     pieces = np.array([spline.derivative(k)(knots[:-1]) / factorial(k) for k in orders])
     first = spline(knots[:1])
     decay, moments, dmoments = _moments(np.diff(knots) / constant, spline.k)
-    driven, ddriven = (_sums(pieces, np.diff(knots), own) for own in (moments, dmoments))
+    driven, ddriven = (_sums(pieces, np.diff(knots), of_kind) for of_kind in (moments, dmoments))
     toward = -np.diff(knots)[:, None] / constant**2  # of s/T by T
     system = np.ones((2, len(knots)))
     system[1, :-1] = -decay
@@ -63,7 +63,7 @@ def lagged(
     piece = np.clip(np.searchsorted(knots, at, side="right") - 1, 0, len(knots) - 2)
     since = at - knots[piece]
     decay, moments, dmoments = _moments(since / constant, spline.k)
-    driven, ddriven = (_sums(pieces[:, piece], since, own) for own in (moments, dmoments))
+    driven, ddriven = (_sums(pieces[:, piece], since, of_kind) for of_kind in (moments, dmoments))
     values = decay[:, None] * y[piece] + driven
     by_constant = decay[:, None] * dy[piece] - since[:, None] / constant**2 * (ddriven - decay[:, None] * y[piece])
     return values, (spline(at) - values) / constant, by_constant

@@ -60,25 +60,25 @@ def prefetched(model: ForwardModel, work: Work[Item], items: Sequence[Item]) -> 
     parts: list[Distributed] = []
     kept: list[Answers] = []
 
-    def answering(one: ForwardModel) -> ForwardModel | None:
+    def answering(inner: ForwardModel) -> ForwardModel | None:
         """The models of workers: those whose batches go to a cluster keep their answers."""
-        if isinstance(one, Recorded):
-            return rebuilt(one.model, answering)
-        if isinstance(one, Distributed):
-            parts.append(one)
+        if isinstance(inner, Recorded):
+            return rebuilt(inner.model, answering)
+        if isinstance(inner, Distributed):
+            parts.append(inner)
             kept.append({})
-            return _Answering(bare(one.model), kept[-1])
+            return _Answering(bare(inner.model), kept[-1])
         return None
 
-    there = rebuilt(model, answering)
+    remote = rebuilt(model, answering)
     silent = rebuilt(model, lambda one: _Unasked(one.model) if isinstance(one, Distributed) else None)
     missing = [not _known(silent, work, item) for item in items]
-    asked = partial(_answers, packed((work, there, kept)))
+    answer = partial(_answers, packed((work, remote, kept)))
     wanted = [item for item, lacks in zip(items, missing, strict=True) if lacks]
-    with closing(ensemble(asked, wanted, executor=parts[0].client)) as found:
+    with closing(ensemble(answer, wanted, executor=parts[0].client)) as answered:
         for item, lacks in zip(items, missing, strict=True):
             if lacks:
-                for part, answers in zip(parts, next(found), strict=True):
+                for part, answers in zip(parts, next(answered), strict=True):
                     part.prefetched.update(answers)
             try:
                 yield item
@@ -89,7 +89,7 @@ def prefetched(model: ForwardModel, work: Work[Item], items: Sequence[Item]) -> 
 
 def on_several_machines(model: ForwardModel) -> bool:
     """Return whether batches of the model, or of models in it, go to a cluster."""
-    return any(isinstance(one, Distributed) for one in models_in(model))
+    return any(isinstance(inner, Distributed) for inner in models_in(model))
 
 
 @dataclass(frozen=True)
@@ -100,20 +100,20 @@ class _Answering(Wrapped):
 
     def evaluate(self, vectors: np.ndarray) -> Responses:
         vectors = np.atleast_2d(np.asarray(vectors, dtype=float))
-        found = self.model.evaluate(vectors)
-        for vector, values, failure in zip(vectors, found.values, found.failures, strict=True):
+        responses = self.model.evaluate(vectors)
+        for vector, values, failure in zip(vectors, responses.values, responses.failures, strict=True):
             self.answers[key_of("evaluate", self, vector)] = (values, failure)
-        return found
+        return responses
 
     def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         key = key_of("linearise", self, vector)
         try:
-            found = self.model.linearise(vector)
+            linearisation = self.model.linearise(vector)
         except Exception as error:
             self.answers[key] = error if isinstance(error, DalembertError) else SolveError(told(error))
             raise
-        self.answers[key] = found
-        return found
+        self.answers[key] = linearisation
+        return linearisation
 
 
 class _Unknown(BaseException):

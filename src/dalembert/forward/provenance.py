@@ -13,7 +13,8 @@ from dalembert.forward.model import ForwardModel
 
 def provenance(model: ForwardModel, method: object = None, **settings: Any) -> dict[str, Any]:
     """Versions, hashes of model and data, method if there is one, settings, as JSON holds them; no times, no paths."""
-    own = {field.name: getattr(method, field.name) for field in fields(method)} if is_dataclass(method) else {}
+    options = {field.name: getattr(method, field.name) for field in fields(method)} if is_dataclass(method) else {}
+    described = {} if method is None else {"method": {"name": type(method).__name__, "settings": options}}
     return json.loads(
         json.dumps(
             {
@@ -21,7 +22,7 @@ def provenance(model: ForwardModel, method: object = None, **settings: Any) -> d
                 "numpy": np.__version__,
                 "scipy": scipy.__version__,
                 "model": model.fingerprint,
-                **({} if method is None else {"method": {"name": type(method).__name__, "settings": own}}),
+                **described,
                 **settings,
             },
             default=str,

@@ -77,9 +77,9 @@ class PythonModel:
         if kept is not None:
             check_whole("PythonModel", "kept", kept, 0)
         samples = samples_of(samples, "PythonModel", "samples")
-        given = tuple(Channel(entry) if isinstance(entry, str) else entry for entry in channels)
+        outputs = tuple(Channel(entry) if isinstance(entry, str) else entry for entry in channels)
         along = Coordinate(coordinate, unit, samples[:kept])
-        checked = function, parameters, given, along, derivative, kept
+        checked = function, parameters, outputs, along, derivative, kept
         vars(self).update(zip(self.__dataclass_fields__, checked, strict=True))
 
     @property
@@ -107,7 +107,9 @@ class PythonModel:
 
     def jacobian(self, vector: np.ndarray) -> np.ndarray:
         """Derivative of the response, shape (samples, channels, parameters)."""
-        vector = self.parameters.real_vector(vector)
+        return self._jacobian(self.parameters.real_vector(vector))
+
+    def _jacobian(self, vector: np.ndarray) -> np.ndarray:
         derivative = self._complex_step if self.derivative == COMPLEX_STEP else self._central_difference
         jacobian = np.empty((*self._shape, len(vector)))
         for column in range(len(vector)):
@@ -125,28 +127,28 @@ class PythonModel:
             Where the function drops the imaginary part of a parameter.
         """
         if self.derivative == COMPLEX_STEP:
-            given = self.parameters, vector, self._numbers, self._place
-            self._compared.once(vector, lambda thorough: check_steps(*given, thorough=thorough))
+            arguments = self.parameters, vector, self._numbers, self._place
+            self._compared.once(vector, lambda thorough: check_steps(*arguments, thorough=thorough))
 
     def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Response (samples, channels) and its jacobian (samples, channels, parameters)."""
-        return self._call(self.parameters.real_vector(vector)), self.jacobian(vector)
+        vector = self.parameters.real_vector(vector)
+        return self._call(vector), self._jacobian(vector)
 
     def first(self, samples: int) -> ForwardModel:
         """The same model, cut to its first ``samples`` samples."""
         check_whole("PythonModel", "kept", samples, 0)
-        own, along = copy(self), replace(self.coordinate, values=self.coordinate.values[:samples])
-        vars(own).update(coordinate=along, kept=samples, _compared=self._compared)
-        return own
+        shorter, along = copy(self), replace(self.coordinate, values=self.coordinate.values[:samples])
+        vars(shorter).update(coordinate=along, kept=samples, _compared=self._compared)
+        return shorter
 
     @property
     def _shape(self) -> tuple[int, int]:
         return len(self.coordinate.values), len(self.channels)
 
     def _call(self, vector: np.ndarray) -> np.ndarray:
-        given = self.parameters.arguments(vector)
         try:
-            returned = self.function(**given)
+            returned = self.function(**dict(zip(self.parameters.names, vector, strict=True)), **self._fixed)
         except DalembertError:
             raise
         except (Exception, SystemExit) as error:
@@ -181,6 +183,11 @@ class PythonModel:
     def _named(self) -> str:
         """The function with its place, in a sentence."""
         return named(self.function)
+
+    @cached_property
+    def _fixed(self) -> dict[str, float]:
+        """Arguments of the function that do not vary."""
+        return {item.name: item.lower for item in self.parameters.fixed}
 
     @cached_property
     def _compared(self) -> Compared:

@@ -72,11 +72,11 @@ class Recorded(Wrapped):
                 values[row], failures[row] = known[0], _text(known[1])
         for begin in range(0, len(missing), TOGETHER):
             rows, began = missing[begin : begin + TOGETHER], perf_counter()
-            found = self.model.evaluate(vectors[rows])
+            responses = self.model.evaluate(vectors[rows])
             seconds = (perf_counter() - began) / len(rows)
-            for row, own, failure in zip(rows, found.values, found.failures, strict=True):
-                self.checkpoint.keep(keys[row], (own, _bytes(failure)), seconds)
-                values[row], failures[row] = own, failure
+            for row, response, failure in zip(rows, responses.values, responses.failures, strict=True):
+                self.checkpoint.keep(keys[row], (response, _bytes(failure)), seconds)
+                values[row], failures[row] = response, failure
         return Responses(values, tuple(failures))
 
     def jacobian(self, vector: np.ndarray) -> np.ndarray:
@@ -94,8 +94,8 @@ class Recorded(Wrapped):
         (response,) = self._once("pullback", vector, lambda: (opened()[0],))
 
         def pull(cotangent: np.ndarray) -> np.ndarray:
-            asked = np.concatenate([vector, np.ravel(cotangent)])
-            return self._once("pull", asked, lambda: (opened()[1](cotangent),))[0]
+            key_numbers = np.concatenate([vector, np.ravel(cotangent)])
+            return self._once("pull", key_numbers, lambda: (opened()[1](cotangent),))[0]
 
         return response, pull
 

@@ -118,12 +118,12 @@ class Sensors:
             raise InputError(f"Sensors: sensors is {shown(sensors)}; expected a mapping from channels to Sensor")
         along = model.coordinate
         stamps = along.values if times is None else samples_of(times, "Sensors", "times")
-        own = [entry for name, sensor in sensors.items() for entry in _unknowns(model, name, sensor)]
+        unknowns = [entry for name, sensor in sensors.items() for entry in _unknowns(model, name, sensor)]
         _refuse_twice(model, sensors)
-        own += [] if start is None else [reading_parameter(START, start, along.unit, 0.0)]
-        parameters = Parameters((*model.parameters.declared, *own))
-        given = model, dict(sensors), parameters, Coordinate(along.name, along.unit, stamps), start
-        vars(self).update(zip(self.__dataclass_fields__, given, strict=True))
+        unknowns += [] if start is None else [reading_parameter(START, start, along.unit, 0.0)]
+        parameters = Parameters((*model.parameters.declared, *unknowns))
+        entries = model, dict(sensors), parameters, Coordinate(along.name, along.unit, stamps), start
+        vars(self).update(zip(self.__dataclass_fields__, entries, strict=True))
         self._check_reach()
 
     @property
@@ -176,13 +176,13 @@ class Sensors:
 
         def pull(cotangent: np.ndarray) -> np.ndarray:
             cotangent = np.asarray(cotangent, dtype=float)
-            own = np.zeros_like(response)
+            model_cotangent = np.zeros_like(response)
             for column, channel in enumerate(self.channels):
                 gain = self._value(vector, self._named(channel.name, "gain"), 1.0)
                 of_samples, _, _ = self._seen(vector, channel.name, np.eye(len(response)))
-                own[:, column] = gain * (cotangent[:, column] @ of_samples)
+                model_cotangent[:, column] = gain * (cotangent[:, column] @ of_samples)
             gradient = np.einsum("sc,scp->p", cotangent, slopes)
-            gradient[:inner] += pull_model(own)
+            gradient[:inner] += pull_model(model_cotangent)
             return gradient
 
         return read, pull
@@ -197,11 +197,11 @@ class Sensors:
 
     def first(self, samples: int) -> "Sensors":
         """The same readings, cut to their first ``samples`` samples; the model is cut where they no longer need it."""
-        stamps, own = self.coordinate.values[:samples], self.model.coordinate.values
+        stamps, model_samples = self.coordinate.values[:samples], self.model.coordinate.values
         earliest = min((0.0, *(self._bounds(channel.name)[0] for channel in self.channels)))
-        needed = int(np.searchsorted(own, stamps[-1] - earliest, side="left")) + 1
-        kept = min(len(own), needed + DEGREE)
-        inner = self.model if kept == len(own) else self.model.first(kept)
+        needed = int(np.searchsorted(model_samples, stamps[-1] - earliest, side="left")) + 1
+        kept = min(len(model_samples), needed + DEGREE)
+        inner = self.model if kept == len(model_samples) else self.model.first(kept)
         return Sensors(inner, self.sensors, stamps, self.start)
 
     def refined(self) -> Refinement | None:
@@ -220,11 +220,11 @@ class Sensors:
         read = np.empty((len(self.coordinate.values), len(self.channels)))
         jacobian = np.zeros((*read.shape, len(vector)))
         for column, channel in enumerate(self.channels):
-            there, rate, by_lag = self._seen(vector, channel.name, table[:, column])
+            seen, rate, by_lag = self._seen(vector, channel.name, table[:, column])
             gain = self._value(vector, self._named(channel.name, "gain"), 1.0)
-            read[:, column] = gain * there[:, 0] + self._value(vector, self._named(channel.name, "offset"))
-            jacobian[:, column, : there.shape[1] - 1] = gain * there[:, 1:]
-            slopes = {"delay": -gain * rate, "lag": gain * by_lag, "gain": there[:, 0], "offset": 1.0}
+            read[:, column] = gain * seen[:, 0] + self._value(vector, self._named(channel.name, "offset"))
+            jacobian[:, column, : seen.shape[1] - 1] = gain * seen[:, 1:]
+            slopes = {"delay": -gain * rate, "lag": gain * by_lag, "gain": seen[:, 0], "offset": 1.0}
             by_name = {START: slopes["delay"]} | {
                 self._named(channel.name, what): slope for what, slope in slopes.items()
             }
@@ -234,23 +234,23 @@ class Sensors:
 
     def _seen(self, vector: np.ndarray, channel: str, table: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Columns (model's samples, columns) of a channel, late; derivatives of the first by time and by the lag."""
-        own, stamps = self.model.coordinate.values, self.coordinate.values
-        if not self._is_late(channel) and (rows := _rows(own, stamps)) is not None:
+        samples, stamps = self.model.coordinate.values, self.coordinate.values
+        if not self._is_late(channel) and (rows := _rows(samples, stamps)) is not None:
             return table[rows], np.zeros(len(stamps)), np.zeros(len(stamps))
         from scipy.interpolate import make_interp_spline  # models without late sensors start without it
 
-        spline = make_interp_spline(own, table, k=min(DEGREE, len(own) - 1))
-        asked = stamps - self._delay(vector, channel)
-        before = asked < own[0]
-        at = np.clip(asked, own[0], own[-1])  # what lies beyond by rounding
-        there, rate, by_lag = lagged(spline, own, at, self._value(vector, self._named(channel, "lag")))
+        spline = make_interp_spline(samples, table, k=min(DEGREE, len(samples) - 1))
+        wanted = stamps - self._delay(vector, channel)
+        before = wanted < samples[0]
+        at = np.clip(wanted, samples[0], samples[-1])  # what lies beyond by rounding
+        seen, rate, by_lag = lagged(spline, samples, at, self._value(vector, self._named(channel, "lag")))
         rate, by_lag = (np.where(before, 0.0, column[:, 0]) for column in (rate, by_lag))
-        return np.where(before[:, None], table[0], there), rate, by_lag
+        return np.where(before[:, None], table[0], seen), rate, by_lag
 
     def _named(self, channel: str, what: str) -> str:
         """Name of the parameter of a quantity of a channel: its own, or that of the component."""
-        own = (name for name in owners(self.sensors, channel) if getattr(self.sensors[name], what) is not None)
-        return f"{next(own, channel)} {what}"
+        sensors_of = (name for name in owners(self.sensors, channel) if getattr(self.sensors[name], what) is not None)
+        return f"{next(sensors_of, channel)} {what}"
 
     def _value(self, values: np.ndarray, name: str, perfect: float = 0.0) -> float:
         """A quantity by its name, of parameters (parameters,); that of a perfect sensor where it is no parameter."""
@@ -273,24 +273,26 @@ class Sensors:
 
     def _check_reach(self) -> None:
         """Refuse readings of times at which the model says nothing."""
-        own, stamps, along = self.model.coordinate.values, self.coordinate.values, self.coordinate
-        slack = 1e-9 * max(1.0, float(np.max(np.abs(own))))
+        samples, stamps, along = self.model.coordinate.values, self.coordinate.values, self.coordinate
+        slack = 1e-9 * max(1.0, float(np.max(np.abs(samples))))
         for name in (channel.name for channel in self.channels):
             least, most = self._bounds(name)
             begins, ends = stamps[0] - most, stamps[-1] - least
             own_sensors = owners(self.sensors, name)
-            at_rest = all(self.sensors[one].at_rest for one in own_sensors) if own_sensors else self.start is not None
-            if begins < own[0] - slack and not at_rest:
+            at_rest = (
+                all(self.sensors[sensor].at_rest for sensor in own_sensors) if own_sensors else self.start is not None
+            )
+            if begins < samples[0] - slack and not at_rest:
                 raise InputError(
                     f"Sensors: the first reading of {name!r}, at {along.name} {stamps[0]:.6g} {along.unit}, may show "
-                    f"the motion at {begins:.6g} {along.unit}, and the model begins at {own[0]:.6g} {along.unit}; "
+                    f"the motion at {begins:.6g} {along.unit}, and the model begins at {samples[0]:.6g} {along.unit}; "
                     "leave out the first readings, lower the delay's upper bound, or give at_rest=True if nothing "
                     "moves before"
                 )
-            if ends > own[-1] + slack:
+            if ends > samples[-1] + slack:
                 raise InputError(
                     f"Sensors: the last reading of {name!r}, at {along.name} {stamps[-1]:.6g} {along.unit}, may show "
-                    f"the motion at {ends:.6g} {along.unit}, and the model ends at {own[-1]:.6g} {along.unit}; "
+                    f"the motion at {ends:.6g} {along.unit}, and the model ends at {samples[-1]:.6g} {along.unit}; "
                     "build the model with samples until then"
                 )
 
@@ -300,26 +302,26 @@ def _unknowns(model: ForwardModel, name: str, sensor: Sensor) -> list[Parameter]
     units = {channel.name: channel.unit for channel in model.channels if name in owners([name], channel.name)}
     if not units:
         require_known("channel", name, [channel.name for channel in model.channels], "Sensors")
-    given = {what: getattr(sensor, what) for what in QUANTITIES if getattr(sensor, what) is not None}
-    if not given:
+    values = {what: getattr(sensor, what) for what in QUANTITIES if getattr(sensor, what) is not None}
+    if not values:
         raise InputError(
             f"Sensors: the sensor of {name!r} has no delay, lag, gain or offset; give bounds of at least one of them, "
             "or remove the sensor"
         )
-    own = list(dict.fromkeys(units.values()))
-    if sensor.offset is not None and len(own) > 1:
+    channel_units = list(dict.fromkeys(units.values()))
+    if sensor.offset is not None and len(channel_units) > 1:
         raise InputError(
-            f"Sensors: the channels of {name!r} have the units {', '.join(map(repr, own))}, and no offset in "
+            f"Sensors: the channels of {name!r} have the units {', '.join(map(repr, channel_units))}, and no offset in "
             "common; give the offsets by channel"
         )
-    unit = {"delay": model.coordinate.unit, "lag": model.coordinate.unit, "gain": "", "offset": own[0]}
-    found = [
-        reading_parameter(f"{name} {what}", bounds, unit[what], QUANTITIES[what]) for what, bounds in given.items()
+    unit = {"delay": model.coordinate.unit, "lag": model.coordinate.unit, "gain": "", "offset": channel_units[0]}
+    unknowns = [
+        reading_parameter(f"{name} {what}", bounds, unit[what], QUANTITIES[what]) for what, bounds in values.items()
     ]
-    for item in found:
+    for item in unknowns:
         if item.name == f"{name} lag" and item.lower < 0:
             raise InputError(f"Sensors: the lag of {name!r} may be {item.lower:g}; expected bounds of zero or more")
-    return found
+    return unknowns
 
 
 def owners(sensors: Iterable[str], channel: str) -> list[str]:
@@ -331,9 +333,9 @@ def _refuse_twice(model: ForwardModel, sensors: Mapping[str, Sensor]) -> None:
     """Refuse a quantity that two sensors give of one channel."""
     for channel in model.channels:
         for what in QUANTITIES:
-            own = [name for name in owners(sensors, channel.name) if getattr(sensors[name], what) is not None]
-            if len(own) > 1:
-                givers = " and by ".join(map(repr, own))
+            names = [name for name in owners(sensors, channel.name) if getattr(sensors[name], what) is not None]
+            if len(names) > 1:
+                givers = " and by ".join(map(repr, names))
                 raise InputError(f"Sensors: the {what} of {channel.name!r} is given by {givers}; expected one")
 
 
@@ -344,9 +346,9 @@ def reading_parameter(name: str, bounds: Bounds, unit: str, perfect: float) -> P
     return replace(item, unit=item.unit or unit, start=usual if item.start is None else item.start)
 
 
-def _rows(own: np.ndarray, stamps: np.ndarray) -> np.ndarray | None:
+def _rows(samples: np.ndarray, stamps: np.ndarray) -> np.ndarray | None:
     """Numbers of the samples that the stamps are, or None where one is not a sample."""
-    rows = np.clip(np.searchsorted(own, stamps), 0, len(own) - 1)
+    rows = np.clip(np.searchsorted(samples, stamps), 0, len(samples) - 1)
     before = np.maximum(rows - 1, 0)
-    rows = np.where(np.abs(own[before] - stamps) < np.abs(own[rows] - stamps), before, rows)
-    return rows if np.all(np.abs(own[rows] - stamps) <= 1e-9 * max(1.0, float(np.max(np.abs(own))))) else None
+    rows = np.where(np.abs(samples[before] - stamps) < np.abs(samples[rows] - stamps), before, rows)
+    return rows if np.all(np.abs(samples[rows] - stamps) <= 1e-9 * max(1.0, float(np.max(np.abs(samples))))) else None

@@ -66,15 +66,15 @@ def sparse_jacobian(along: Along, count: int, pattern: Pattern | None = None) ->
         return csc_array(np.column_stack(columns)), singly(count, len(columns[0]))
     answer = along(probe)
     if pattern is not None:
-        found = _coloured(along, count, pattern)
-        if _agrees(found, probe, answer):
-            return found, pattern
+        jacobian = _coloured(along, count, pattern)
+        if _agrees(jacobian, probe, answer):
+            return jacobian, pattern
     pattern = _pattern(along, count, probe, answer)
-    found = _coloured(along, count, pattern)
-    if not _agrees(found, probe, answer):
+    jacobian = _coloured(along, count, pattern)
+    if not _agrees(jacobian, probe, answer):
         pattern = singly(count, len(answer))
-        found = _coloured(along, count, pattern)
-    return found, pattern
+        jacobian = _coloured(along, count, pattern)
+    return jacobian, pattern
 
 
 def _coloured(along: Along, count: int, pattern: Pattern) -> csc_array:
@@ -84,10 +84,10 @@ def _coloured(along: Along, count: int, pattern: Pattern) -> csc_array:
         direction = np.zeros(count)
         direction[group] = 1.0
         slopes = along(direction)
-        own = np.flatnonzero((slopes != 0) & (owners >= 0))
-        rows.append(own)
-        columns.append(owners[own])
-        values.append(slopes[own])
+        rows_of_group = np.flatnonzero((slopes != 0) & (owners >= 0))
+        rows.append(rows_of_group)
+        columns.append(owners[rows_of_group])
+        values.append(slopes[rows_of_group])
     places = np.concatenate(rows), np.concatenate(columns)
     return csc_array((np.concatenate(values), places), shape=(len(pattern.owners[0]), count))
 
@@ -111,15 +111,15 @@ def _pattern(along: Along, count: int, probe: np.ndarray, answer: np.ndarray) ->
         if not open_.any():
             return _grouped(csc_array(known), count, numbers)
         weights = np.array([np.ones(count), np.arange(1.0, count + 1), random.uniform(1.0, 2.0, count)]) * chosen
-        (first, there), (second, _), (third, _) = (_rest(known, weight, along(weight)) for weight in weights)
-        there &= open_
+        (first, single), (second, _), (third, _) = (_rest(known, weight, along(weight)) for weight in weights)
+        single &= open_
         with np.errstate(divide="ignore", invalid="ignore"):
-            place = np.rint(np.where(there, second / first, 1.0)).clip(1, count).astype(int) - 1
+            place = np.rint(np.where(single, second / first, 1.0)).clip(1, count).astype(int) - 1
         for number, rest in ((1, second), (2, third)):
             error = _EXACT * np.abs(rest) + _TERMS * (abs(known) @ weights[number])
-            there &= np.abs(rest - weights[number, place] * first) <= error
-        told = np.flatnonzero(there & chosen[place])
-        known = known + csr_array((first[told], (told, place[told])), shape=(numbers, count))
+            single &= np.abs(rest - weights[number, place] * first) <= error
+        rows = np.flatnonzero(single & chosen[place])
+        known = known + csr_array((first[rows], (rows, place[rows])), shape=(numbers, count))
     return singly(count, numbers)
 
 
@@ -138,7 +138,7 @@ def _grouped(known: csc_array, count: int, numbers: int) -> Pattern:
     groups: list[list[int]] = []
     for column in range(count):
         rows = known.indices[known.indptr[column] : known.indptr[column + 1]]
-        place = next((k for k, own in enumerate(owners) if np.all(own[rows] < 0)), len(owners))
+        place = next((k for k, owner in enumerate(owners) if np.all(owner[rows] < 0)), len(owners))
         if place == len(owners):
             owners.append(np.full(numbers, -1))
             groups.append([])

@@ -114,18 +114,18 @@ class Firefly(Checked):
             if not fresh.any():
                 message = f"no firefly moves any more after {generation} generations"
                 break
-            found = np.full(len(places), np.inf)
-            found[fresh] = fitness_of(objective, trial[fresh])
+            fitness_values = np.full(len(places), np.inf)
+            fitness_values[fresh] = fitness_of(objective, trial[fresh])
             evaluations += int(fresh.sum())
-            better = found < fitness
-            places, fitness = np.where(better[:, None], trial, places), np.where(better, found, fitness)
+            better = fitness_values < fitness
+            places, fitness = np.where(better[:, None], trial, places), np.where(better, fitness_values, fitness)
         success = bool(np.isfinite(best))
         message = message if success else "every sample failed"
         return Minimum(places[brightest], best, success, message, generation, evaluations)
 
-    def _apart(self, one: np.ndarray, other: np.ndarray, width: np.ndarray) -> np.ndarray:
+    def _apart(self, place: np.ndarray, other: np.ndarray, width: np.ndarray) -> np.ndarray:
         """Which places (fireflies, parameters) are not the same, (fireflies,)."""
-        return np.any(np.abs(one - other) > self.resolution * width, axis=1)
+        return np.any(np.abs(place - other) > self.resolution * width, axis=1)
 
     def _pull(self, away: np.ndarray) -> np.ndarray:
         """β of fireflies that are so far away, in widths of the box: (fireflies, parameters) to (fireflies, 1)."""

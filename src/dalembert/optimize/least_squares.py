@@ -67,11 +67,11 @@ class LeastSquares(SquaresMinimiser):
         most = TRIALS * (1 + len(start)) if self.trials is None else self.trials
         path = Path(problem, start, Stopping(self.gain, window), most, type(self).__name__)
         try:
-            found = self._trust_region(path)
+            end = self._trust_region(path)
         except Creeps as at:
-            found = settle(path, at, Stopping(self.gain, window), self.tolerance)
-        if found.success or self.gain >= COARSE or not np.isfinite(found.fitness):
-            return found
+            end = settle(path, at, Stopping(self.gain, window), self.tolerance)
+        if end.success or self.gain >= COARSE or not np.isfinite(end.fitness):
+            return end
         path.stopping = Stopping(self.gain, window)
         try:
             follow_valley(path, path.x, path.stopping, self.tolerance)

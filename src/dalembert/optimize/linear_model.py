@@ -49,17 +49,17 @@ class LinearModel:
 
     def step(self, mu: float) -> np.ndarray:
         """The step (parameters,) of least ‖r + S d‖² + μ² ‖d‖² between the bounds."""
-        whole = self._whole
-        step = whole.steps(mu)
+        full = self._whole
+        step = full.steps(mu)
         if np.all((self.down <= step) & (step <= self.up)):
             return step
         from scipy.optimize import lsq_linear
 
         size = len(step)
-        matrix = np.vstack([whole.singular[:, None] * whole.directions, mu * np.eye(size)])
-        right = np.concatenate([whole.parts, np.zeros(size)])
-        found = lsq_linear(matrix, right, (self.down, self.up), method="bvls", tol=1e-14, max_iter=10 * (1 + size))
-        return np.clip(found.x, self.down, self.up)
+        matrix = np.vstack([full.singular[:, None] * full.directions, mu * np.eye(size)])
+        right = np.concatenate([full.parts, np.zeros(size)])
+        solution = lsq_linear(matrix, right, (self.down, self.up), method="bvls", tol=1e-14, max_iter=10 * (1 + size))
+        return np.clip(solution.x, self.down, self.up)
 
     def foreseen(self, step: np.ndarray) -> float:
         """Fall of the sum of squares, ‖r‖² − ‖r + S d‖², without the cancellation."""

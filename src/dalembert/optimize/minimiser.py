@@ -107,11 +107,16 @@ class Minimiser(Checked):
         x0 = (low + high) / 2 if start is None else np.clip(np.asarray(start, dtype=float), low, high)
         watched = _Watched(objective, low, high, on_iteration)
         result = self._global(watched, x0, seed) if self.name in GLOBAL else self._local(watched, x0, gradient)
-        found = bool(np.isfinite(watched.best))
+        success = bool(np.isfinite(watched.best))
         said = result.message if isinstance(result.message, str) else "; ".join(result.message)
-        message = said.rstrip(".") if found else "every sample failed"
+        message = said.rstrip(".") if success else "every sample failed"
         return Minimum(
-            watched.x, watched.best, found and bool(result.success), message, result.get("nit", 0), watched.evaluations
+            watched.x,
+            watched.best,
+            success and bool(result.success),
+            message,
+            result.get("nit", 0),
+            watched.evaluations,
         )
 
     def _local(

@@ -183,8 +183,8 @@ class _Descent:
             length = float(np.linalg.norm(step))
             if length < shortest:
                 raise Stopped("converged: the parameters move no more", stationary=True)
-            point, there = self.trial(step)
-            agreement = float((self.r - there) @ (self.r + there)) / max(model.foreseen(step), np.finfo(float).tiny)
+            point, trial = self.trial(step)
+            agreement = float((self.r - trial) @ (self.r + trial)) / max(model.foreseen(step), np.finfo(float).tiny)
             if agreement >= self.method.agreement:
                 break
             if last:  # what there is to gain is lost in rounding
@@ -198,7 +198,7 @@ class _Descent:
             self.radius = length
         elif agreement > 0.75:
             self.radius = max(self.radius, 3 * length)
-        self.x, self.r, self.iterations = point, there, self.iterations + 1
+        self.x, self.r, self.iterations = point, trial, self.iterations + 1
         if last:
             self.tell(account)
             raise Stopped("converged: the sum of squares falls no more")

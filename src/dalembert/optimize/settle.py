@@ -29,10 +29,10 @@ def settle(path: Path, at: Creeps, stopping: Stopping, shortest: float) -> Minim
             x, r = _after(path, x, r, LinearModel(r, part.slopes, down, up).step(0.0), stopping, shortest)
             slopes = path.slopes_at(x)
     except Stopped as end:
-        found = path.minimum(end)
+        minimum = path.minimum(end)
     if not len(left_out):
-        return found
-    return replace(found, message=f"{found.message}, in the identifiable directions", left_out=left_out)
+        return minimum
+    return replace(minimum, message=f"{minimum.message}, in the identifiable directions", left_out=left_out)
 
 
 def _after(
@@ -43,9 +43,9 @@ def _after(
         if np.linalg.norm(step) < shortest:
             break
         point = np.clip(x + path.problem.unit * step, path.problem.low, path.problem.high)
-        there = path.residual_at(point)
-        if there @ there <= r @ r:
-            return point, there
+        residual = path.residual_at(point)
+        if residual @ residual <= r @ r:
+            return point, residual
         if stopping.foreseen < SMOOTH:
             break
         stopping.tried(path.best)

@@ -141,9 +141,9 @@ class Swarm(Checked, ABC):
 
     def end(self, state: SwarmState) -> Minimum:
         """What a swarm found when it stops in this state."""
-        found = bool(np.isfinite(state.best_fitness))
-        message = f"all {state.iteration} iterations done" if found else "every sample of the swarm failed"
-        return Minimum(state.best, state.best_fitness, found, message, state.iteration, state.evaluations)
+        success = bool(np.isfinite(state.best_fitness))
+        message = f"all {state.iteration} iterations done" if success else "every sample of the swarm failed"
+        return Minimum(state.best, state.best_fitness, success, message, state.iteration, state.evaluations)
 
     def steered(
         self, state: SwarmState, rng: np.random.Generator, inertia: tuple[float, float], c1: float, c2: float

@@ -170,8 +170,8 @@ class Regularised:
         from scipy.optimize import minimize_scalar
 
         between = np.log(self.weights[[place - 1, place + 1]])
-        found = minimize_scalar(lambda at: score(np.exp(at)), bounds=tuple(between), method="bounded")
-        return float(np.exp(found.x))  # pyright: ignore[reportAttributeAccessIssue]
+        minimum = minimize_scalar(lambda at: score(np.exp(at)), bounds=tuple(between), method="bounded")
+        return float(np.exp(minimum.x))  # pyright: ignore[reportAttributeAccessIssue]
 
     @cached_property
     def _full(self) -> np.ndarray:

@@ -52,22 +52,22 @@ def follow_valley(path: Path, start: np.ndarray, stopping: Stopping, shortest: f
                 half = _damped(q.T @ bend / 2, factor, mu, down - v, up - v)
                 if 4 * np.linalg.norm(half) <= BENT * np.linalg.norm(v):
                     point = np.clip(x + unit * (v + half) / scale, low, high)
-                    there = path.residual_at(point)
-                    if there @ there < r @ r or (1 - _cosine(v, scale * last)) * (there @ there) <= least:
+                    residual = path.residual_at(point)
+                    if residual @ residual < r @ r or (1 - _cosine(v, scale * last)) * (residual @ residual) <= least:
                         break
             weight *= HARDER
-        x, r, weight, last = point, there, weight / EASIER, v / scale
+        x, r, weight, last = point, residual, weight / EASIER, v / scale
         least = min(least, float(r @ r))
 
 
 def _damped(residual: np.ndarray, slopes: np.ndarray, mu: float, down: np.ndarray, up: np.ndarray) -> np.ndarray:
     """Return the step d (parameters,) of least ‖r + S d‖² + μ² ‖d‖² between bounds; every direction counts."""
     size = slopes.shape[1]
-    whole = np.vstack([slopes, mu * np.eye(size)])
-    return LinearModel(np.concatenate([residual, np.zeros(size)]), whole, down, up).step(0.0)
+    stacked = np.vstack([slopes, mu * np.eye(size)])
+    return LinearModel(np.concatenate([residual, np.zeros(size)]), stacked, down, up).step(0.0)
 
 
-def _cosine(one: np.ndarray, other: np.ndarray) -> float:
+def _cosine(vector: np.ndarray, other: np.ndarray) -> float:
     """Return the cosine of the angle between two vectors; 0 where one is zero."""
-    lengths = np.linalg.norm(one) * np.linalg.norm(other)
-    return float(one @ other / lengths) if lengths > 0 else 0.0
+    lengths = np.linalg.norm(vector) * np.linalg.norm(other)
+    return float(vector @ other / lengths) if lengths > 0 else 0.0

@@ -40,8 +40,8 @@ class CorrelatedNormal:
         for mistake in self._mistakes():
             raise InputError(f"CorrelatedNormal: {mistake}")
         object.__setattr__(self, "names", tuple(self.names))
-        object.__setattr__(self, "mean", tuple(float(one) for one in self.mean))
-        rows = tuple(tuple(float(one) for one in row) for row in self.covariance)
+        object.__setattr__(self, "mean", tuple(float(value) for value in self.mean))
+        rows = tuple(tuple(float(value) for value in row) for row in self.covariance)
         object.__setattr__(self, "covariance", rows)
 
     def _mistakes(self) -> Iterator[str]:

@@ -14,7 +14,7 @@ AnyPrior: TypeAlias = Prior | CorrelatedNormal
 KINDS: tuple[type[AnyPrior], ...] = (Normal, LogNormal, HalfNormal, Uniform, LogUniform, CorrelatedNormal)
 
 
-def prior_of(given: Mapping[str, Any]) -> AnyPrior:
+def prior_of(table: Mapping[str, Any]) -> AnyPrior:
     """The prior of a mapping with its ``kind`` and its arguments, as files hold it.
 
     Raises
@@ -28,7 +28,7 @@ def prior_of(given: Mapping[str, Any]) -> AnyPrior:
     Normal(mean=1.0, deviation=0.1)
     """
     kinds = {getattr(kind, "name", "correlated-normal"): kind for kind in KINDS}
-    arguments = dict(given)
+    arguments = dict(table)
     name = str(arguments.pop("kind", None))
     require_known("prior", name, kinds)
     try:

@@ -45,11 +45,11 @@ class Prior(ABC):
 
     def mistake_within(self, lower: float, upper: float) -> str:
         """Return what is wrong with the prior of a parameter with these bounds; empty if nothing is."""
-        there = float(self.cumulative(upper) - self.cumulative(lower))
-        if there >= LEAST:
+        within = float(self.cumulative(upper) - self.cumulative(lower))
+        if within >= LEAST:
             return ""
         return (
-            f"its prior has the probability {there:.1g} between the bounds ({lower:g}, {upper:g}). Correct the prior "
+            f"its prior has the probability {within:.1g} between the bounds ({lower:g}, {upper:g}). Correct the prior "
             "or the bounds"
         )
 

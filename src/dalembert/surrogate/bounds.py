@@ -83,13 +83,13 @@ def bounds(
     if method == "bernstein":
         from dalembert.surrogate.bernstein import enclosures
 
-        found = PolynomialBounds(*enclosures(polynomial, low, high, gap))
+        enclosure = PolynomialBounds(*enclosures(polynomial, low, high, gap))
     else:
-        found = _searched(polynomial, low, high, method, points, starts)
+        enclosure = _searched(polynomial, low, high, method, points, starts)
     if np.ndim(lower) == 2:
-        return found
-    at = [None if side is None else side[0] for side in (found.at_lower, found.at_upper)]
-    return PolynomialBounds(found.lower[0], found.upper[0], *at)
+        return enclosure
+    at = [None if side is None else side[0] for side in (enclosure.at_lower, enclosure.at_upper)]
+    return PolynomialBounds(enclosure.lower[0], enclosure.upper[0], *at)
 
 
 def _boxes(polynomial: ChebyshevPolynomial, lower: ArrayLike, upper: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
@@ -126,10 +126,10 @@ def _searched(
         parts.append(
             _pick(values, spread, *box) if method == "scan" else _refine(polynomial, values, spread, *box, starts)
         )
-    found, at = (np.concatenate(entries, axis=1) for entries in zip(*parts, strict=True))
+    extremes, at = (np.concatenate(entries, axis=1) for entries in zip(*parts, strict=True))
     inside = np.clip(polynomial.points(at), low[:, None], high[:, None])
     place = np.where(at == least[:, None], low[:, None], np.where(at == most[:, None], high[:, None], inside))
-    return PolynomialBounds(found[0], found[1], place[0], place[1])
+    return PolynomialBounds(extremes[0], extremes[1], place[0], place[1])
 
 
 def _pick(values: np.ndarray, spread: scan.Scan, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -153,7 +153,7 @@ def _refine(
     from dalembert.surrogate.extremes import extremes, room  # compiled: not before it is needed
 
     prepare([extremes])
-    found, at = np.empty((2, *values.shape[:2])), np.empty((2, *values.shape[:2], low.shape[1]))
-    given = (np.ascontiguousarray(entry) for entry in (values, spread.grid, spread.sides, low, high))
-    extremes(*given, polynomial.rows, found, at, room(polynomial.rows, starts))
-    return found, at
+    refined, at = np.empty((2, *values.shape[:2])), np.empty((2, *values.shape[:2], low.shape[1]))
+    arrays = (np.ascontiguousarray(entry) for entry in (values, spread.grid, spread.sides, low, high))
+    extremes(*arrays, polynomial.rows, refined, at, room(polynomial.rows, starts))
+    return refined, at

@@ -150,9 +150,9 @@ def _ratio(shells: np.ndarray, degree: int) -> np.ndarray:
     # Pairs two degrees apart share no shell; of the lowest degrees there are no two such pairs.
     reach = 2 if degree >= 4 else 1
     late, early = (_pair(shells, degree), _pair(shells, degree - reach)) if degree > 2 else (shells[2], shells[1])
-    own = np.divide(late, early, out=np.where(late > 0, 1.0, 0.0), where=early > 0)
+    ratio = np.divide(late, early, out=np.where(late > 0, 1.0, 0.0), where=early > 0)
     pooled = late.max(initial=0) / early.max(initial=0) if early.any() else 1.0
-    return np.minimum(np.minimum(own, pooled) ** (1 / reach), SLOWEST)
+    return np.minimum(np.minimum(ratio, pooled) ** (1 / reach), SLOWEST)
 
 
 def _power(shells: np.ndarray, order: int) -> float:

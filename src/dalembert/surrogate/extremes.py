@@ -212,10 +212,10 @@ def _minimum(rows, low, high, small, room):
 @inner
 def _lowest_valleys(values, sides, sign, best, places):
     """Places of the lowest points of a scan that no neighbour along an axis is below; how many."""
-    found = 0
+    count = 0
     for g in range(len(values)):
         value = sign * values[g]
-        if found == len(best) and value >= best[found - 1]:
+        if count == len(best) and value >= best[count - 1]:
             continue
         stride = 1
         valley = True
@@ -228,13 +228,13 @@ def _lowest_valleys(values, sides, sign, best, places):
                 break
             stride *= sides[k]
         if valley:
-            place = min(found, len(best) - 1)
+            place = min(count, len(best) - 1)
             while place > 0 and best[place - 1] > value:
                 best[place], places[place] = best[place - 1], places[place - 1]
                 place -= 1
             best[place], places[place] = value, g
-            found = min(found + 1, len(best))
-    return found
+            count = min(count + 1, len(best))
+    return count
 
 
 @inner

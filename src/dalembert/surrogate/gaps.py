@@ -66,13 +66,13 @@ def _largest_empty(eta: np.ndarray, sides: np.ndarray) -> float:
 
     random = np.random.default_rng(0)
     places = random.uniform(-1, 1, (PLACES, f))
-    found = size(places)
-    best = np.argsort(-found, kind="stable")[:KEPT]
-    places, found = places[best], found[best]
+    largest = size(places)
+    best = np.argsort(-largest, kind="stable")[:KEPT]
+    places, largest = places[best], largest[best]
     for turn in range(ROUNDS):
-        reach = found[:, None] * sides * 0.5 ** (turn / 6)
+        reach = largest[:, None] * sides * 0.5 ** (turn / 6)
         moved = np.clip(places + reach * random.uniform(-1, 1, places.shape), -1, 1)
         larger = size(moved)
-        better = larger > found
-        places[better], found[better] = moved[better], larger[better]
-    return float(found.max())
+        better = larger > largest
+        places[better], largest[better] = moved[better], larger[better]
+    return float(largest.max())

@@ -84,8 +84,8 @@ class Growth:
                 sizes.append((float(np.sum(np.abs(surplus))), float(np.sum(expected))))
             self._admit(term)
         if sizes:
-            found, foreseen = np.sum(sizes, axis=0)
-            self._ratio = min(found / foreseen, 1.0)
+            largest, foreseen = np.sum(sizes, axis=0)
+            self._ratio = min(largest / foreseen, 1.0)
 
     def _append(self, term: Term, surplus: np.ndarray) -> None:
         """Store a term; the arrays double when they are full."""

@@ -48,10 +48,10 @@ def hierarchical_at(x: np.ndarray, number: int) -> np.ndarray:
     [1.0, 0.5, -0.125]
     """
     points = leja(number)
-    found = np.ones((len(x), number))
+    values = np.ones((len(x), number))
     for j in range(1, number):
-        found[:, j] = np.prod((x[:, None] - points[:j]) / (points[j] - points[:j]), axis=1)
-    return found
+        values[:, j] = np.prod((x[:, None] - points[:j]) / (points[j] - points[:j]), axis=1)
+    return values
 
 
 def _room(number: int) -> int:

@@ -62,8 +62,8 @@ def orthonormal(polynomial: ChebyshevPolynomial, rules: Sequence[Rule] = ()) -> 
     degrees = polynomial.degrees.tolist()
     changes = [change(degree, rule) for degree, rule in zip(degrees, rules or [uniform] * len(degrees), strict=True)]
     for direction, degree in enumerate(degrees):
-        others = np.delete(exponents, direction, axis=1)
-        rows, row = np.unique(others, axis=0, return_inverse=True)
+        rest = np.delete(exponents, direction, axis=1)
+        rows, row = np.unique(rest, axis=0, return_inverse=True)
         table = np.zeros((len(rows), degree + 1, coefficients.shape[1]))
         table[row.reshape(-1), exponents[:, direction]] = coefficients
         longest = np.zeros(len(rows), dtype=int)

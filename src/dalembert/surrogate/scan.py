@@ -82,12 +82,12 @@ def transformed(polynomial: ChebyshevPolynomial, bases: list[np.ndarray]) -> np.
     table = np.zeros((size[0], outputs, *size[1:]))
     table[polynomial.exponents[:, 0], :, *polynomial.exponents.T[1:]] = polynomial.coefficients
     # The first direction as one product for all boxes, the others box by box from the last one on.
-    found = bases[0].reshape(-1, size[0]) @ table.reshape(size[0], -1)
+    result = bases[0].reshape(-1, size[0]) @ table.reshape(size[0], -1)
     done = 1
     for k in range(len(size) - 1, 0, -1):
-        found = bases[k][:, None] @ found.reshape(boxes, -1, size[k], done)
+        result = bases[k][:, None] @ result.reshape(boxes, -1, size[k], done)
         done *= bases[k].shape[1]
-    return found.reshape(boxes, -1, outputs, done).swapaxes(1, 2).reshape(boxes, outputs, -1)
+    return result.reshape(boxes, -1, outputs, done).swapaxes(1, 2).reshape(boxes, outputs, -1)
 
 
 def _at(polynomial: ChebyshevPolynomial, eta: np.ndarray) -> np.ndarray:

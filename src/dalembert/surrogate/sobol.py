@@ -124,11 +124,11 @@ def sobol_indices(
     summed = squares @ member
     variance, parts = summed[varying].sum(axis=0), np.array([summed[mask].sum(axis=0) for mask in masks])
     norm = np.sqrt(error**2 @ member)
-    own, rest = _by_norm(parts, norm), _by_norm(np.maximum(variance - parts, 0.0), norm)
+    part, rest = _by_norm(parts, norm), _by_norm(np.maximum(variance - parts, 0.0), norm)
     if checks is not None:
         checked = _by_checks(expansion, masks, varying, member, checks)
-        own, rest = (_narrower(of, *mine) for of, mine in zip((own, rest), checked, strict=True))
-    ends = _ends(own, rest).reshape(2, 2, -1, len(variance))
+        part, rest = (_narrower(of, *mine) for of, mine in zip((part, rest), checked, strict=True))
+    ends = _ends(part, rest).reshape(2, 2, -1, len(variance))
     with np.errstate(invalid="ignore", divide="ignore"):
         first, total = (parts / variance).reshape(2, -1, len(variance))
     with np.errstate(over="ignore"):  # infinite where it is no number of 64 bits
@@ -164,15 +164,15 @@ def _by_checks(
     """E[P_u s · e] of the parts and of what is left, each with its error and with E[e²] at most."""
     count = len(checks.eta)
     each = np.empty((len(masks), count, member.shape[1]))
-    whole = np.empty(each.shape[1:])
+    total = np.empty(each.shape[1:])
     for rows, table in expansion.tables(checks.eta):
         errors = checks.errors[rows]
         for number, mask in enumerate(masks):
             each[number, rows] = (table[:, mask] @ expansion.coefficients[mask] * errors) @ member
-        whole[rows] = (table[:, varying] @ expansion.coefficients[varying] * errors) @ member
+        total[rows] = (table[:, varying] @ expansion.coefficients[varying] * errors) @ member
     squares = checks.errors**2 @ member
     most = squares.mean(axis=0) + _standard_error(squares)
-    return tuple((part.mean(axis=-2), _standard_error(part), most) for part in (each, whole - each))  # type: ignore[return-value]
+    return tuple((part.mean(axis=-2), _standard_error(part), most) for part in (each, total - each))  # type: ignore[return-value]
 
 
 def _standard_error(values: np.ndarray) -> np.ndarray:
@@ -181,8 +181,8 @@ def _standard_error(values: np.ndarray) -> np.ndarray:
     return SURE * values.std(axis=-2, ddof=1) / np.sqrt(count)
 
 
-def _ends(own: _Range, rest: _Range) -> np.ndarray:
+def _ends(part: _Range, rest: _Range) -> np.ndarray:
     """Lower and upper ends of indices, shape (2, masks, groups); 0 and 1 where nothing is known."""
     with np.errstate(invalid="ignore", divide="ignore"):
-        lower, upper = own.lower / (own.lower + rest.upper), own.upper / (own.upper + rest.lower)
+        lower, upper = part.lower / (part.lower + rest.upper), part.upper / (part.upper + rest.lower)
     return np.stack([np.nan_to_num(lower, nan=0.0), np.nan_to_num(upper, nan=1.0)])

@@ -113,7 +113,7 @@ class Surrogate:
             Numbers of the directions, that is of the columns of the points, from 0.
         """
         shells = by_direction(self.polynomial.exponents, self.polynomial.coefficients)
-        return [k for k, own in enumerate(shells) if np.any(slow_tail(own) > tolerance)]
+        return [k for k, shell in enumerate(shells) if np.any(slow_tail(shell) > tolerance)]
 
     def demand(
         self,

@@ -52,13 +52,13 @@ class Tensor(Checked):
 
     def orders(self, directions: int) -> tuple[int, ...]:
         """The order of each direction."""
-        given = (self.order,) * directions if isinstance(self.order, int) else tuple(self.order)
-        if len(given) != directions:
+        orders = (self.order,) * directions if isinstance(self.order, int) else tuple(self.order)
+        if len(orders) != directions:
             raise InputError(
-                f"Tensor: {len(given)} orders {given} were given for {directions} directions with a width; "
+                f"Tensor: {len(orders)} orders {orders} were given for {directions} directions with a width; "
                 "expected one for each, or one number for all"
             )
-        return given
+        return orders
 
     def runs(self, directions: int) -> int:
         """Number of runs that it takes."""

@@ -29,12 +29,12 @@ def unseen(surrogate: Surrogate, names: Sequence[str]) -> Finding:
     free = np.flatnonzero(polynomial.upper > polynomial.lower)
     if not len(free):
         return Finding("unseen-features", "note", {"gap": 0.0}, "The box has no width.")
-    found = gaps(polynomial.eta(surrogate.points)[:, free], variation_lengths(surrogate)[free])
-    message, values = _told(found, [names[int(k)] for k in free], surrogate.runs)
+    empty = gaps(polynomial.eta(surrogate.points)[:, free], variation_lengths(surrogate)[free])
+    message, values = _told(empty, [names[int(k)] for k in free], surrogate.runs)
     if not surrogate.tested:
         message += " No held-out run tested the surrogate."
         return Finding("unseen-features", "warning", values, message, "Set held_out to at least 10.")
-    if found.relative > 1:
+    if empty.relative > 1:
         message += " The response varies over shorter lengths than that."
         return Finding("unseen-features", "warning", values, message, "Increase held_out, or make the box smaller.")
     return Finding("unseen-features", "note", values, message, "Increase held_out if the response may have one.")
@@ -64,17 +64,17 @@ def variation_lengths(surrogate: Surrogate) -> np.ndarray:
     return 1 / np.maximum(degrees.max(axis=1), 1.0)
 
 
-def _told(found: Gaps, names: Sequence[str], runs: int) -> tuple[str, dict[str, float | int]]:
+def _told(empty: Gaps, names: Sequence[str], runs: int) -> tuple[str, dict[str, float | int]]:
     """Return a sentence on gaps and values of a finding, as parts of the intervals."""
-    each = dict(zip(names, found.each, strict=True))
+    each = dict(zip(names, empty.each, strict=True))
     values = {f"gap of {name}": part for name, part in each.items()}
-    values = {"gap": found.all_together, **values, "gap in lengths of variation": found.relative, "runs": runs}
+    values = {"gap": empty.all_together, **values, "gap in lengths of variation": empty.relative, "runs": runs}
     if len(names) == 1:
-        interval = f"{_part(found.each[0])} of the interval of {names[0]!r}"
+        interval = f"{_part(empty.each[0])} of the interval of {names[0]!r}"
         return f"{runs} runs cannot exclude a {FEATURE} narrower than {interval}.", values
     parts = ", ".join(f"{_part(part)} of {name!r}" for name, part in each.items())
     sentence = (
-        f"{runs} runs cannot exclude a {FEATURE} narrower than {_part(found.all_together)} of every interval, or in a "
+        f"{runs} runs cannot exclude a {FEATURE} narrower than {_part(empty.all_together)} of every interval, or in a "
         f"single parameter narrower than {parts}."
     )
     return sentence, values

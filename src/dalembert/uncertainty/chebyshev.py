@@ -86,16 +86,16 @@ class Chebyshev(Checked):
         )
         surrogate.demand(self.tolerance * surrogate.scale, runs.place, box.names, "optimise")
         method, points = ("scan", None) if self.bounds == "scan" else ("optimise", _scanned(surrogate))
-        found = bounds(surrogate.polynomial, box.lower, box.upper, method, points=points, starts=STARTS)
+        bounded = bounds(surrogate.polynomial, box.lower, box.upper, method, points=points, starts=STARTS)
         kind, error, findings = "estimate", surrogate.error, [unseen(surrogate, box.names)]
         if self.bounds == "bernstein":
             enclosed = bounds(surrogate.polynomial, box.lower, box.upper, "bernstein")
-            excess = np.maximum(found.lower - enclosed.lower, enclosed.upper - found.upper)
-            found = PolynomialBounds(enclosed.lower - error, enclosed.upper + error)
+            excess = np.maximum(bounded.lower - enclosed.lower, enclosed.upper - bounded.upper)
+            bounded = PolynomialBounds(enclosed.lower - error, enclosed.upper + error)
             kind, error = "enclosure of the surrogate", 2 * error + np.maximum(excess, 0.0)
             findings += _overestimation(excess, surrogate.scale, self.tolerance)
         sides: list[Any] = [
-            None if side is None else side.reshape(*shape, *side.shape[1:]) for side in vars(found).values()
+            None if side is None else side.reshape(*shape, *side.shape[1:]) for side in vars(bounded).values()
         ]
         message = (
             f"The bounds are those of a polynomial of order {surrogate.order} in place of the model, "

@@ -75,8 +75,8 @@ class Expansions:
     def _neighbours(self) -> tuple[np.ndarray, np.ndarray]:
         """The runs nearest to each run, and their distances; both (runs, neighbours)."""
         runs, f = self.points.shape
-        found = KDTree(self.points).query(self.points, min(runs, 2 * f + 3))
-        distance, near = (np.reshape(part, (runs, -1))[:, 1:] for part in found)
+        neighbours = KDTree(self.points).query(self.points, min(runs, 2 * f + 3))
+        distance, near = (np.reshape(part, (runs, -1))[:, 1:] for part in neighbours)
         return near, np.maximum(distance, np.finfo(float).eps)
 
 

@@ -79,11 +79,11 @@ class ExtremeSearch:
     def run(self, etas: np.ndarray) -> None:
         """Run the model with its gradients at coordinates (n, f)."""
         box, free = self.runs.box, self.runs.free
-        whole = np.zeros((len(etas), len(box)))
-        whole[:, free] = etas
-        points = [box.points(row) for row in whole]
-        asked = prefetched(self.runs.model, lambda model, point: model.linearise(point), points)
-        for eta, point in zip(etas, asked, strict=True):
+        complete = np.zeros((len(etas), len(box)))
+        complete[:, free] = etas
+        points = [box.points(row) for row in complete]
+        ahead = prefetched(self.runs.model, lambda model, point: model.linearise(point), points)
+        for eta, point in zip(etas, ahead, strict=True):
             at = self.runs.linearised(point)
             self.tried.append(eta)
             self.failed.append(at is None)

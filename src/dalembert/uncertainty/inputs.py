@@ -73,7 +73,7 @@ class Inputs:
         return (points - self.box.middle) / np.where(radius > 0, radius, 1.0)
 
 
-def inputs_of(model: ForwardModel, given: Distributions | None, method: str) -> Inputs:
+def inputs_of(model: ForwardModel, distributions: Distributions | None, method: str) -> Inputs:
     """Return the inputs of a model, in its order.
 
     Parameters
@@ -85,26 +85,29 @@ def inputs_of(model: ForwardModel, given: Distributions | None, method: str) -> 
         Named in errors.
     """
     items = {item.name: item for item in model.parameters}
-    if given is None:
-        given = completed({}, model, method)
-    if not isinstance(given, Mapping):
-        box = box_of(model, given)
+    if distributions is None:
+        distributions = completed({}, model, method)
+    if not isinstance(distributions, Mapping):
+        box = box_of(model, distributions)
         return Inputs(box, (None,) * len(box), (0.0,) * len(box))
-    for name, entry in given.items():
+    for name, entry in distributions.items():
         if isinstance(entry, CorrelatedNormal):
             raise _correlated(method, name)
-    priors = {name: entry for name, entry in given.items() if isinstance(entry, Prior) and name in items}
+    priors = {name: entry for name, entry in distributions.items() if isinstance(entry, Prior) and name in items}
     ends = {name: _ends(prior, items[name], method) for name, prior in priors.items()}
-    box = box_of(model, {name: ends.get(name, entry) for name, entry in given.items()})  # type: ignore[arg-type]
+    box = box_of(model, {name: ends.get(name, entry) for name, entry in distributions.items()})  # type: ignore[arg-type]
     lost = {
         name: lost_variance(prior, ends[name], (items[name].lower, items[name].upper)) for name, prior in priors.items()
     }
     return Inputs(box, tuple(priors.get(name) for name in box.names), tuple(lost.get(name, 0.0) for name in box.names))
 
 
-def completed(given: Mapping[str, Interval | Prior], model: ForwardModel, method: str) -> dict[str, Any]:
+def completed(distributions: Mapping[str, Interval | Prior], model: ForwardModel, method: str) -> dict[str, Any]:
     """Return an entry for each parameter of a model: the one that is given, else its prior, else its bounds."""
-    return {item.name: given[item.name] if item.name in given else _known(item, method) for item in model.parameters}
+    return {
+        item.name: distributions[item.name] if item.name in distributions else _known(item, method)
+        for item in model.parameters
+    }
 
 
 def _known(item: Parameter, method: str) -> Prior | tuple[float, float]:

@@ -14,7 +14,7 @@ def methods_by_name() -> dict[str, type[Method]]:
     return named("dalembert.uncertainty", Sampling, Taylor, Optimise, Chebyshev)
 
 
-def method_of(given: Method | str) -> Method:
+def method_of(method: Method | str) -> Method:
     """A method itself, or the one of that name with its usual settings.
 
     Examples
@@ -26,14 +26,15 @@ def method_of(given: Method | str) -> Method:
     dalembert.errors.InputError: unknown method 'vertices'; did you mean 'vertex'?
     """
     known = methods_by_name()
-    if isinstance(given, str):
-        require_known("method", given, known)
-        return known[given]()
-    if not isinstance(given, tuple(known.values())):
+    if isinstance(method, str):
+        require_known("method", method, known)
+        return known[method]()
+    if not isinstance(method, tuple(known.values())):
         raise InputError(
-            f"method: {given!r} was given; expected one of {', '.join(known)}, or settings such as MonteCarlo(runs=500)"
+            f"method: {method!r} was given; expected one of {', '.join(known)}, or settings such as "
+            "MonteCarlo(runs=500)"
         )
-    return given
+    return method
 
 
 def label(method: Method) -> str:

@@ -107,7 +107,7 @@ def screen(
     effects = np.ldexp(effects, -powers)  # the squares of large effects would overflow
     size = np.sqrt((effects**2).mean(axis=1))
     spread = effects.std(axis=0, ddof=1)
-    whole, errors = size.mean(axis=0), size.std(axis=0, ddof=1) / np.sqrt(len(size))
+    mean_size, errors = size.mean(axis=0), size.std(axis=0, ddof=1) / np.sqrt(len(size))
     result = Screening(
         coordinate=model.coordinate,
         channels=tuple(channel.name for channel in model.channels),
@@ -118,7 +118,7 @@ def screen(
         mean=np.ldexp(effects.mean(axis=0), powers),
         effects=np.ldexp(np.abs(effects).mean(axis=0), powers),
         spread=np.ldexp(spread, powers),
-        whole_effects=np.ldexp(whole, powers),
+        whole_effects=np.ldexp(mean_size, powers),
         whole_spread=np.ldexp(np.sqrt((spread**2).mean(axis=0)), powers),
         errors=np.ldexp(errors, powers),
         trajectories=len(effects),
@@ -129,7 +129,7 @@ def screen(
         ),
         findings=(
             *failed_runs(runs),
-            *_small(inputs.box.names, whole + 2 * errors, whole, free),
+            *_small(inputs.box.names, mean_size + 2 * errors, mean_size, free),
             *findings_at(model, inputs.box.middle),
         ),
     )
@@ -166,9 +166,9 @@ def _effects(parts: np.ndarray, values: np.ndarray) -> np.ndarray:
     return np.moveaxis(np.take_along_axis(slopes, order[:, :, None, None], axis=1), 1, -1)
 
 
-def _small(names: tuple[str, ...], most: np.ndarray, whole: np.ndarray, free: np.ndarray) -> list[Finding]:
+def _small(names: tuple[str, ...], most: np.ndarray, mean_size: np.ndarray, free: np.ndarray) -> list[Finding]:
     """Finding on parameters whose effects are small in all channels, shape (channels, parameters)."""
-    largest = whole.max(axis=1, keepdims=True)
+    largest = mean_size.max(axis=1, keepdims=True)
     shares = np.divide(most, largest, out=np.zeros_like(most), where=largest > 0).max(axis=0)
     values = {names[k]: float(shares[k]) for k in free if shares[k] < SMALL}
     if not values:

@@ -72,8 +72,8 @@ class Optimise(Checked):
 
     def _unknown(self, runs: Runs, search: ExtremeSearch, gains: np.ndarray) -> Finding:
         """Return why the error is unknown: expansions around the runs see no more than these do."""
-        found = search.extremes
-        gain = share_of(gains, found.lower, found.upper)
+        extremes = search.extremes
+        gain = share_of(gains, extremes.lower, extremes.upper)
         wider = "no wider bounds" if gain == 0 else f"bounds that are wider by {gain:.2g} of the width"
         reason = f"Expansions around the runs predict {wider}."
         points = runs.box.middle + np.zeros((len(search.tried), len(runs.box)))

@@ -76,12 +76,12 @@ def propagate(
     runs.most = chosen.most(runs)
     runs.tell(Began(runs.method, runs.most))
     began = clock(model)
-    found = chosen.bound(runs, seed)
+    bounded = chosen.bound(runs, seed)
     seconds = clock(model) - began
-    known = vars(found) | {
-        "success": found.success and not runs.failures,
-        "outcome": (*_failures(runs), found.outcome),
-        "findings": (*found.findings, *findings_at(model, box.middle)),
+    known = vars(bounded) | {
+        "success": bounded.success and not runs.failures,
+        "outcome": (*_failures(runs), bounded.outcome),
+        "findings": (*bounded.findings, *findings_at(model, box.middle)),
     }
     result = Propagation(
         **known,
@@ -104,18 +104,18 @@ def propagate(
 def box_of(model: ForwardModel, intervals: Intervals) -> Box:
     """The box of a model's parameters, in the model's order."""
     model.parameters.check_some("propagate")
-    given, names = Box.of(intervals), model.parameters.names
-    for name, interval in given.items():
+    box, names = Box.of(intervals), model.parameters.names
+    for name, interval in box.items():
         known = interval.lower if interval.width == 0 else None
         model.parameters.check_name(name, known, "intervals")
     for name in names:
-        if name not in given.names:
+        if name not in box.names:
             raise InputError(
                 f"intervals: none is given for parameter {name!r}; expected an interval, or a number if it is known "
                 f"exactly, for each of {', '.join(names)}"
             )
-    places = [given.names.index(name) for name in names]
-    return Box(names, given.lower[places], given.upper[places])
+    places = [box.names.index(name) for name in names]
+    return Box(names, box.lower[places], box.upper[places])
 
 
 def _failures(runs: Runs) -> list[Finding]:

@@ -102,15 +102,15 @@ def global_sensitivity(
     inputs, scheme = inputs_of(model, intervals, NAME), scheme or Adaptive(USUAL * tolerance)
     runs = Runs(model, inputs.box, "global sensitivity", on_event)
     runs.tell(Began(runs.method, None))
-    made = _surrogate(runs, inputs, scheme, checks, seed)
+    surrogate = _surrogate(runs, inputs, scheme, checks, seed)
     samples, channels = runs.shape
-    each, whole = (
-        sobol_indices(made.surrogate, rules=inputs.rules, groups=groups, checks=made.checks)
-        for groups in (None, made.groups)
+    each, overall = (
+        sobol_indices(surrogate.surrogate, rules=inputs.rules, groups=groups, checks=surrogate.checks)
+        for groups in (None, surrogate.groups)
     )
     names = tuple(channel.name for channel in model.channels)
-    uncertainty = whole.uncertainty + _of_tails(inputs, whole, names, tolerance)
-    _demand(uncertainty, names, tolerance, made.surrogate.improvement)
+    uncertainty = overall.uncertainty + _of_tails(inputs, overall, names, tolerance)
+    _demand(uncertainty, names, tolerance, surrogate.surrogate.improvement)
     shape = samples, channels, len(inputs.box)
     result = SensitivityIndices(
         coordinate=model.coordinate,
@@ -123,19 +123,19 @@ def global_sensitivity(
         deviations=np.sqrt(each.variance).reshape(samples, channels),
         first=each.first.T.reshape(shape),
         total=each.total.T.reshape(shape),
-        whole_first=whole.first.T,
-        whole_total=whole.total.T,
+        whole_first=overall.first.T,
+        whole_total=overall.total.T,
         uncertainty=uncertainty,
         runs=runs.count,
-        checks=0 if made.checks is None else len(made.checks.eta),
+        checks=0 if surrogate.checks is None else len(surrogate.checks.eta),
         failures=tuple(runs.failures),
         provenance=provenance(model, scheme, seed=seed, tolerance=tolerance, intervals=dict(described(inputs))),
         findings=(
             *failed_runs(runs),
-            *_constant(names, whole),
-            *_without_indices(names, whole, each.variance.reshape(samples, channels)),
-            *_negligible(inputs, whole),
-            unseen(made.surrogate, inputs.box.names),
+            *_constant(names, overall),
+            *_without_indices(names, overall, each.variance.reshape(samples, channels)),
+            *_negligible(inputs, overall),
+            unseen(surrogate.surrogate, inputs.box.names),
             *findings_at(model, inputs.box.middle),
         ),
     )
@@ -170,7 +170,7 @@ def _surrogate(runs: Runs, inputs: Inputs, scheme: Scheme, count: int | None, se
     return _Made(surrogate, groups, checks)
 
 
-def _of_tails(inputs: Inputs, whole: SobolIndices, names: tuple[str, ...], tolerance: float) -> np.ndarray:
+def _of_tails(inputs: Inputs, overall: SobolIndices, names: tuple[str, ...], tolerance: float) -> np.ndarray:
     """Return how much the tails that are cut off can change an index of each channel, (channels,).
 
     Notes
@@ -178,7 +178,7 @@ def _of_tails(inputs: Inputs, whole: SobolIndices, names: tuple[str, ...], toler
     The part m of the variance of an input, to whose share S it is proportional, changes an index by at most
     S (1 − S) m / (1 − m (1 − S)), as that of a linear model.
     """
-    lost, share = np.array(inputs.lost)[:, None], np.nan_to_num(np.clip(whole.total, 0.0, 1.0))
+    lost, share = np.array(inputs.lost)[:, None], np.nan_to_num(np.clip(overall.total, 0.0, 1.0))
     each = share * (1 - share) * lost / np.maximum(1 - lost * (1 - share), np.finfo(float).tiny)
     total = each.sum(axis=0)
     if np.max(total) > tolerance:
@@ -206,9 +206,9 @@ def _demand(uncertainty: np.ndarray, names: tuple[str, ...], tolerance: float, m
         )
 
 
-def _constant(names: tuple[str, ...], whole: SobolIndices) -> list[Finding]:
+def _constant(names: tuple[str, ...], overall: SobolIndices) -> list[Finding]:
     """Finding on channels without a variance, which have no indices."""
-    still = [name for name, variance in zip(names, whole.variance, strict=True) if not variance > 0]
+    still = [name for name, variance in zip(names, overall.variance, strict=True) if not variance > 0]
     if not still:
         return []
     message = f"The response of {listed(list(map(repr, still)))} is constant: it has no indices."
@@ -216,12 +216,12 @@ def _constant(names: tuple[str, ...], whole: SobolIndices) -> list[Finding]:
     return [Finding("constant-response", "warning", {"channels": ", ".join(still)}, message, advice)]
 
 
-def _without_indices(names: tuple[str, ...], whole: SobolIndices, variances: np.ndarray) -> list[Finding]:
+def _without_indices(names: tuple[str, ...], overall: SobolIndices, variances: np.ndarray) -> list[Finding]:
     """Finding on samples without a variance, (samples, channels), of channels that vary at others."""
     still = np.count_nonzero(~(variances > 0), axis=0)
     values = {
         name: int(count)
-        for name, count, variance in zip(names, still, whole.variance, strict=True)
+        for name, count, variance in zip(names, still, overall.variance, strict=True)
         if count and variance > 0
     }
     if not values:
@@ -231,12 +231,12 @@ def _without_indices(names: tuple[str, ...], whole: SobolIndices, variances: np.
     return [Finding("samples-without-indices", "note", values, message, "")]
 
 
-def _negligible(inputs: Inputs, whole: SobolIndices) -> list[Finding]:
+def _negligible(inputs: Inputs, overall: SobolIndices) -> list[Finding]:
     """Finding on parameters that may be fixed, as the upper ends of their total indices are small in all channels."""
-    varying = whole.variance > 0
+    varying = overall.variance > 0
     if not varying.any():
         return []
-    most = whole.total_ends[1][:, varying].max(axis=1)
+    most = overall.total_ends[1][:, varying].max(axis=1)
     values = {
         name: float(index)
         for name, index, width in zip(inputs.box.names, most, inputs.box.radius, strict=True)

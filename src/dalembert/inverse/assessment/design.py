@@ -90,13 +90,13 @@ def design(
     for chosen in sets:
         places = [names.index(name) for name in chosen]
         for end, count in zip(ends, counts, strict=True):
-            own = slopes[:count, places].reshape(-1, len(vector))
-            told = estimate(np.concatenate([own, prior]), parameters.scale, 1.0)
-            seen = told.singular_values > UNSEEN * (told.singular_values[0] or 1.0)
+            planned = slopes[:count, places].reshape(-1, len(vector))
+            estimated = estimate(np.concatenate([planned, prior]), parameters.scale, 1.0)
+            seen = estimated.singular_values > UNSEEN * (estimated.singular_values[0] or 1.0)
             with np.errstate(divide="ignore"):
-                lengths = np.where(seen, 1 / told.singular_values, np.inf)
+                lengths = np.where(seen, 1 / estimated.singular_values, np.inf)
             score = np.exp(np.mean(np.log(lengths))) if criterion == "D" else np.max(lengths)
-            rows.append((int(np.sum(~seen)), float(score), chosen, end, count, told))
+            rows.append((int(np.sum(~seen)), float(score), chosen, end, count, estimated))
     rows.sort(key=lambda row: row[:2])
     return Designs(
         parameters=parameters,
@@ -123,16 +123,16 @@ def _sets(sensors: str | Iterable[str | Sequence[str]], names: tuple[str, ...]) 
         require_known("set of sensors", sensors, SETS, "design")
         if sensors == "all":
             return [names]
-        found = list(combinations(names, 1 if sensors == "singles" else 2))
-        if not found:
+        sets = list(combinations(names, 1 if sensors == "singles" else 2))
+        if not sets:
             raise InputError(f"design: pairs of sensors were asked for, but {names[0]!r} is the only channel")
-        return found
-    found = [(entry,) if isinstance(entry, str) else tuple(entry) for entry in sensors]
-    for name in (name for chosen in found for name in chosen):
+        return sets
+    sets = [(entry,) if isinstance(entry, str) else tuple(entry) for entry in sensors]
+    for name in (name for chosen in sets for name in chosen):
         require_known("channel", name, names, "design: sensors")
-    if not found or not all(found):
+    if not sets or not all(sets):
         raise InputError("design: a set of sensors is empty; expected at least one channel in each")
-    return found
+    return sets
 
 
 def _samples(values: np.ndarray, end: float, unit: str) -> int:

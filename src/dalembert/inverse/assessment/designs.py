@@ -125,6 +125,6 @@ class Designs(EndedResult):
         return "\n".join([*text_table(rows), *more, "", *fixed_lines(self), self.status])
 
     def contents(self) -> Contents:
-        found = super().contents()
+        contents = super().contents()
         horizons = ("design", self.horizons, {"units": self.unit})
-        return replace(found, variables={**found.variables, "horizons": horizons})
+        return replace(contents, variables={**contents.variables, "horizons": horizons})

@@ -25,33 +25,33 @@ def elsewhere(
     parameters, and where that ends below the threshold at another value, both sides are walked from there. A region
     whose basin lies between two values of the scan is not seen.
     """
-    found = [interval]
+    intervals = [interval]
     starts = list(_starts(problem, vector, k, interval))
-    for point in problem.prefetched(partial(_around, k, walk, found[:1]), starts):
-        further = _around(k, walk, found, problem, point)
+    for point in problem.prefetched(partial(_around, k, walk, intervals[:1]), starts):
+        further = _around(k, walk, intervals, problem, point)
         if further is not None:
-            found.append(further)
-    return tuple(sorted(found[1:]))
+            intervals.append(further)
+    return tuple(sorted(intervals[1:]))
 
 
 def _around(
-    k: int, walk: Walk, found: list[tuple[float, float]], problem: Problem, point: np.ndarray
+    k: int, walk: Walk, intervals: list[tuple[float, float]], problem: Problem, point: np.ndarray
 ) -> tuple[float, float] | None:
     """Interval around where the misfit is least near a search point, apart from those found; None if there is none."""
     memo, search = Memo(problem), problem.search
     try:
         end = walk.method.minimise(memo.residual, memo.jacobian, search.lower, search.upper, point, ahead=memo.ahead)
-        excess, there = (end.fitness - walk.best) / walk.variance, search.vectors(end.x)
-        if any(lower <= there[k] <= upper for lower, upper in found):
+        excess, end_vector = (end.fitness - walk.best) / walk.variance, search.vectors(end.x)
+        if any(lower <= end_vector[k] <= upper for lower, upper in intervals):
             return None
         if walk.likelihood is not None and excess < 4 * walk.threshold:  # the misfit with fixed noise is near it
             found_there = least(problem, k, end.x, walk)
             if isinstance(found_there, str):
                 return None
-            excess, there = found_there[0], search.vectors(found_there[1])
-        if not excess < walk.threshold or any(lower <= there[k] <= upper for lower, upper in found):
+            excess, end_vector = found_there[0], search.vectors(found_there[1])
+        if not excess < walk.threshold or any(lower <= end_vector[k] <= upper for lower, upper in intervals):
             return None
-        at = problem.linearise(there)
+        at = problem.linearise(end_vector)
     except SolveError:
         return None
     lower, upper = (walked(problem, at, k, side, walk, excess).end for side in (-1, 1))
@@ -73,7 +73,7 @@ def _starts(problem: Problem, vector: np.ndarray, k: int, interval: tuple[float,
     fitness = np.where(np.isfinite(fitness), fitness, np.inf)
     best = np.argmin(fitness, axis=1)
     chosen, lowest = points[np.arange(SCANNED), best], fitness[np.arange(SCANNED), best]
-    own = search.vectors(chosen)[:, k]
-    outside = (own < interval[0]) | (own > interval[1])
+    along = search.vectors(chosen)[:, k]
+    outside = (along < interval[0]) | (along > interval[1])
     low = [n for n in dips(np.concatenate([[np.inf], lowest, [np.inf]])) - 1 if outside[n] and np.isfinite(lowest[n])]
     return chosen[sorted(low, key=lambda n: lowest[n])[:MOST]]

@@ -78,6 +78,8 @@ def identifiability(
     slopes = (np.sqrt(weights) / noise)[:, :, None] * linearised(model, vector)[1][:, columns] * parameters.scale
     prior = [prior_slopes(parameters, vector, parameters.scale)] if known else []
     rows = [slopes.reshape(-1, len(vector)), *prior]
-    told = estimate(np.concatenate(rows), parameters.scale, 1.0 if known else np.nan)
-    findings = tuple(foreseen(parameters, told, noise_known=known))
-    return Identifiability(told.singular_values, told.directions, findings, told.deviations, told.correlation)
+    estimated = estimate(np.concatenate(rows), parameters.scale, 1.0 if known else np.nan)
+    findings = tuple(foreseen(parameters, estimated, noise_known=known))
+    return Identifiability(
+        estimated.singular_values, estimated.directions, findings, estimated.deviations, estimated.correlation
+    )

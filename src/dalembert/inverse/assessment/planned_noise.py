@@ -47,8 +47,10 @@ class PlannedChannels:
         """
         sizes, rows = np.empty((len(response), len(self.names))), jacobian[:, self.columns].copy()
         for place, (name, (model, values)) in enumerate(zip(self.names, self.noises, strict=True)):
-            own = response[:, self.columns[place]]
-            sizes[:, place] = model.deviations(own, np.full(len(own), self.deviations[place]), values)
+            channel_response = response[:, self.columns[place]]
+            sizes[:, place] = model.deviations(
+                channel_response, np.full(len(channel_response), self.deviations[place]), values
+            )
             if not np.all(sizes[:, place] > 0):
                 raise InputError(
                     f"design: the noise of channel {name!r} has no standard deviation at some samples; give its "
@@ -69,9 +71,9 @@ def planned_channels(
         raise InputError("design: the noise is not known; give deviations, or noise")
     names, columns, known = _channels(model, deviations, noise)
     noises = tuple(_described(name, noise, Extent(1.0, "", 1.0, 1.0, "")) for name in names)
-    for name, (one, _) in zip(names, noises, strict=True):
-        one.whitening(_series(name, model.coordinate))  # refuses an order that is open
-    if deviations is not None and noise is not None and not any(_needs_deviations(*one) for one in noises):
+    for name, (named_noise, _) in zip(names, noises, strict=True):
+        named_noise.whitening(_series(name, model.coordinate))  # refuses an order that is open
+    if deviations is not None and noise is not None and not any(_needs_deviations(*entry) for entry in noises):
         raise InputError(
             "design: noise and deviations were given, and noise needs no deviations; leave one of them out"
         )
@@ -113,7 +115,11 @@ def _described(name: str, noise: Planned | None, extent: Extent) -> tuple[NoiseM
 
 def _fitted(noise: EstimatedNoise, name: str) -> list[str]:
     """Names of a channel in a fit: its own, or those of its experiments, ``"EXPERIMENT.channel"``."""
-    return [name] if name in noise.models else [own for own in noise.models if own.partition(".")[2] == name]
+    return (
+        [name]
+        if name in noise.models
+        else [full_name for full_name in noise.models if full_name.partition(".")[2] == name]
+    )
 
 
 def _estimated(name: str, noise: EstimatedNoise) -> tuple[NoiseModel, Mapping[str, np.ndarray]]:
@@ -121,7 +127,7 @@ def _estimated(name: str, noise: EstimatedNoise) -> tuple[NoiseModel, Mapping[st
     fitted = _fitted(noise, name)
     if not fitted:
         raise InputError(unknown("channel", name, noise.models, "design: noise"))
-    if len({noise.bases[own] for own in fitted}) > 1:
+    if len({noise.bases[full_name] for full_name in fitted}) > 1:
         raise InputError(
             f"design: the noise of channel {name!r} differs between the experiments of the fit ({', '.join(fitted)}). "
             "Give a noise model with numbers for it"

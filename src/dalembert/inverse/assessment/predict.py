@@ -78,15 +78,15 @@ def predict(model: ForwardModel | Experiment, fit: Fit, level: float = 0.95) -> 
     else:
         parameters = tuple(model.parameters)
     wiring = _wiring([item.name for item in parameters], fit)
-    response, own = linearised(model, fit.values[wiring])
+    response, slopes = linearised(model, fit.values[wiring])
     jacobian = np.zeros((*response.shape, len(fit.values)))
-    jacobian[:, :, wiring] = own
+    jacobian[:, :, wiring] = slopes
     names = tuple(channel.name for channel in model.channels)
     wraps = [prefix + name in fit.data.wraps for name in names]
     deviations, width = response_deviations(fit, jacobian), fit.quantile(level)
     ends = [
-        band_end(width * own, column, wraps=turns)
-        for own, column, turns in zip(deviations.T, response.T, wraps, strict=True)
+        band_end(width * slopes, column, wraps=turns)
+        for slopes, column, turns in zip(deviations.T, response.T, wraps, strict=True)
     ]
     for column, end in enumerate(ends):
         deviations[len(response) if end is None else end :, column] = np.nan
@@ -98,7 +98,7 @@ def predict(model: ForwardModel | Experiment, fit: Fit, level: float = 0.95) -> 
         units=tuple(channel.unit for channel in model.channels),
         response=response,
         deviations=deviations,
-        noise=np.array([np.sqrt(np.mean(own**2)) for own in noise]),
+        noise=np.array([np.sqrt(np.mean(slopes**2)) for slopes in noise]),
         data=data if same else None,
         level=level,
         quantile=width,
@@ -203,19 +203,19 @@ def _fitted(fit: Fit, column: int) -> list[int]:
 
 def _noise(fit: Fit, column: int, wanted: int) -> float:
     """Deviation of the noise in a column, in proportion to the given one of the wanted column."""
-    found = () if fit.correlated is None else fit.correlated.processes
-    process = next((item for item in found if item.channel == fit.data.channels[column]), None)
+    processes = () if fit.correlated is None else fit.correlated.processes
+    process = next((item for item in processes if item.channel == fit.data.channels[column]), None)
     weights = fit.weights[:, column]
     if fit.data.deviations is not None and process is None:
         return float(fit.data.deviations[wanted]) * _excess(fit, column)
     if not np.any(weights > 0):
         return np.nan
-    own = (
+    of_channel = (
         fit.residual_variance
         if process is None
         else max(process.variance, fit.residual_variance if fit.noise_is_known else 0.0)
     )
-    return float(np.sqrt(own / np.mean(weights[weights > 0])))
+    return float(np.sqrt(of_channel / np.mean(weights[weights > 0])))
 
 
 def _excess(fit: Fit, column: int) -> float:
@@ -224,9 +224,9 @@ def _excess(fit: Fit, column: int) -> float:
     It is the root mean square. With a robust loss it is the median over that of the normal distribution, which outliers
     do not change; the standard error of that is 1.17/√n.
     """
-    there = fit.weights[:, column] > 0
-    count = np.count_nonzero(there)
-    ratios = np.abs(fit.residuals[there, column]) / fit.data.deviations[column]  # pyright: ignore[reportOptionalSubscript]
+    compared = fit.weights[:, column] > 0
+    count = np.count_nonzero(compared)
+    ratios = np.abs(fit.residuals[compared, column]) / fit.data.deviations[column]  # pyright: ignore[reportOptionalSubscript]
     if not count:
         return 1.0
     if "loss" in fit.provenance:

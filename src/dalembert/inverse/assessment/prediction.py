@@ -151,6 +151,6 @@ class Prediction(EndedResult):
         return "\n".join([*text_table(rows), "", self.status, *map(str, self.findings)])
 
     def contents(self) -> Contents:
-        found, over = super().contents(), ("sample", "channel")
+        contents, over = super().contents(), ("sample", "channel")
         bands = {"lower": (over, self.lower), "upper": (over, self.upper)}
-        return replace(found, variables={**found.variables, **bands})
+        return replace(contents, variables={**contents.variables, **bands})

@@ -204,15 +204,15 @@ def _problem(
     if isinstance(model, ForwardModel):
         if data is None:
             raise InputError("profile: data is missing; give the measurements that the model was fitted to")
-        whole, given = model, data
+        complete, measured = model, data
     else:
-        whole, given = joint(model)
-    if whole.parameters.identity != fit.parameters.identity:
+        complete, measured = joint(model)
+    if complete.parameters.identity != fit.parameters.identity:
         raise InputError(
-            f"profile: the model has the parameters {_listed(whole)}, the fit {_listed(fit)}; expected the same"
+            f"profile: the model has the parameters {_listed(complete)}, the fit {_listed(fit)}; expected the same"
         )
-    journal = Journal(len(given.coordinate.values), on_event)
-    return pose(whole, given, fit.weights, journal)
+    journal = Journal(len(measured.coordinate.values), on_event)
+    return pose(complete, measured, fit.weights, journal)
 
 
 def _listed(owner: ForwardModel | Fit) -> str:

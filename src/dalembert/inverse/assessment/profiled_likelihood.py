@@ -48,18 +48,18 @@ class ProfiledLikelihood:
         """
         search = problem.search
         vector = search.vectors(np.clip(guess, search.lower, search.upper))
-        own = replace(
+        restricted = replace(
             self.likelihood, problem=replace(self.likelihood.problem, model=problem.model, journal=problem.journal)
         )
         try:
             start = np.concatenate([vector, self._last[-1] if self._last else self.noise])
-            found = maximum(own, start, frozenset({k}), restriction=self.restriction)
+            best = maximum(restricted, start, frozenset({k}), restriction=self.restriction)
         except DalembertError as error:
             return str(error)
-        if not found.success:
-            return found.message
-        self._last[:] = [found.vector[len(vector) :]]
-        return 2 * (self.value - found.value), search.points(found.vector[: len(vector)])
+        if not best.success:
+            return best.message
+        self._last[:] = [best.vector[len(vector) :]]
+        return 2 * (self.value - best.value), search.points(best.vector[: len(vector)])
 
 
 def profiled_likelihood(problem: Problem, at: Linearisation, noise: EstimatedNoise) -> ProfiledLikelihood:
@@ -72,11 +72,11 @@ def profiled_likelihood(problem: Problem, at: Linearisation, noise: EstimatedNoi
     at : Linearisation
         At the identified values.
     """
-    picked = {own: noise.models[own.name] for own in series_of(problem, fewest=1)}
+    picked = {series: noise.models[series.name] for series in series_of(problem, fewest=1)}
     channels, _ = noises_of(problem, picked, known=True)
-    own = problem.model.parameters
-    parameters = Parameters((*own.items, *noise.parameters.items), (*own.fixed, *noise.parameters.fixed))
+    series = problem.model.parameters
+    parameters = Parameters((*series.items, *noise.parameters.items), (*series.fixed, *noise.parameters.fixed))
     restriction = Restriction(problem, channels, parameters, at)
-    there = expanded(problem, channels, parameters, at, np.concatenate([at.vector, noise.values]))
-    value = Objective(parameters, own, restriction).value(there)
+    expansion = expanded(problem, channels, parameters, at, np.concatenate([at.vector, noise.values]))
+    value = Objective(parameters, series, restriction).value(expansion)
     return ProfiledLikelihood(Likelihood(problem, noise.models, parameters, channels), value, noise.values, restriction)

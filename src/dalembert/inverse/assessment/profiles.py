@@ -159,8 +159,8 @@ class Profiles(EndedResult):
         message = f"{100 * self.level:g} % intervals of {names} from profile likelihoods, noise level from {source}."
         yield Finding("profile-level", "note", {"level": self.level, "noise_is_known": self.known}, message)
         if self.better is not None:
-            there = ", ".join(f"{name} = {value:.6g}" for name, value in self.better.items())
-            message = f"There is a better minimum near {there}."
+            values = ", ".join(f"{name} = {value:.6g}" for name, value in self.better.items())
+            message = f"There is a better minimum near {values}."
             yield Finding("better-minimum", "error", self.better, message, "Identify again from there.")
         for curve in self.curves:
             yield from self._of_one(curve)

@@ -22,8 +22,8 @@ def noise_of(
     names = tuple(deviations) if isinstance(deviations, Mapping) else known
     for name in names:
         require_known("channel", name, known, f"{where}: deviations")
-    given = [deviations[name] for name in names] if isinstance(deviations, Mapping) else deviations
-    values = numbers_of(given, where, "deviations")
+    levels = [deviations[name] for name in names] if isinstance(deviations, Mapping) else deviations
+    values = numbers_of(levels, where, "deviations")
     if values.shape not in ((), (len(names),)) or not names:
         raise InputError(
             f"{where}: deviations of shape {values.shape} were given; expected a number, or one for each of "

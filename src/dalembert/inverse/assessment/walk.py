@@ -60,7 +60,7 @@ def walked(problem: Problem, at: Linearisation, k: int, side: int, walk: Walk, e
     bound = (search.upper if side > 0 else search.lower)[k]
     width = search.upper[k] - search.lower[k]
     goal = np.sqrt(walk.threshold)
-    found = Side()
+    branch = Side()
     path = [(_root(excess), origin)]  # √excess and search point, outward
     step, way = _first(problem, at, k, walk)
     step, failed = step * STEP * goal, ""
@@ -77,33 +77,33 @@ def walked(problem: Problem, at: Linearisation, k: int, side: int, walk: Walk, e
                 continue
             break
         else:
-            found.broken = failed
+            branch.broken = failed
             break
         root = _root(here[0])
         path.append((root, here[1]))
-        found.rows.append((here[0], search.vectors(here[1])))
+        branch.rows.append((here[0], search.vectors(here[1])))
         problem.journal.tell(Profiled(problem.model.parameters.names[k], here[0], problem.journal.simulations))
         way = _way(path, k)
         step = _step(path, k, goal)
     if path[-1][0] >= goal:
         last = path[-1][1].copy()
-        last[k] = _crossing(problem, k, path, walk, found)
-        found.end = float(search.vectors(last)[k])
-    elif not found.broken and abs(bound - path[-1][1][k]) <= 1e-9 * width:
-        found.end, found.open = float(getattr(problem.model.parameters, "upper" if side > 0 else "lower")[k]), True
+        last[k] = _crossing(problem, k, path, walk, branch)
+        branch.end = float(search.vectors(last)[k])
+    elif not branch.broken and abs(bound - path[-1][1][k]) <= 1e-9 * width:
+        branch.end, branch.open = float(getattr(problem.model.parameters, "upper" if side > 0 else "lower")[k]), True
     else:
-        found.end = float(search.vectors(path[-1][1])[k])
-        found.broken = found.broken or "the threshold was not reached; increase points"
-    return found
+        branch.end = float(search.vectors(path[-1][1])[k])
+        branch.broken = branch.broken or "the threshold was not reached; increase points"
+    return branch
 
 
 def _first(problem: Problem, at: Linearisation, k: int, walk: Walk) -> tuple[float, np.ndarray]:
     """Deviation of search coordinate k, and how all coordinates follow it (parameters,), by the linearised response."""
     slopes = problem.slopes(at)
-    others = np.arange(slopes.shape[1]) != k
+    free = np.arange(slopes.shape[1]) != k
     way = np.zeros(slopes.shape[1])
     way[k] = 1.0
-    way[others] = -np.linalg.lstsq(slopes[:, others], slopes[:, k], rcond=1e-10)[0]
+    way[free] = -np.linalg.lstsq(slopes[:, free], slopes[:, k], rcond=1e-10)[0]
     length = float(np.linalg.norm(slopes @ way))
     return (np.sqrt(walk.variance) / length if length > 0 else np.inf), way
 
@@ -114,26 +114,26 @@ def least(problem: Problem, k: int, guess: np.ndarray, walk: Walk) -> tuple[floa
         return walk.likelihood.least(problem, k, guess)
     search = problem.search
     guess = np.clip(guess, search.lower, search.upper)
-    others = np.arange(len(guess)) != k
+    free = np.arange(len(guess)) != k
     memo = Memo(problem)
 
     def whole(rest: np.ndarray) -> np.ndarray:
         point = guess.copy()
-        point[others] = rest
+        point[free] = rest
         return point
 
     before = len(problem.journal.failures)
-    if not others.any():
+    if not free.any():
         memo.hopeful = False
         fitness, point = float(np.sum(memo.residual(guess) ** 2)), guess
     else:
         try:
             end = walk.method.minimise(
                 lambda rest: memo.residual(whole(rest)),
-                lambda rest: memo.jacobian(whole(rest))[:, others],
-                search.lower[others],
-                search.upper[others],
-                guess[others],
+                lambda rest: memo.jacobian(whole(rest))[:, free],
+                search.lower[free],
+                search.upper[free],
+                guess[free],
                 ahead=lambda rest: memo.ahead(whole(rest)),
             )
         except SolveError as error:
@@ -162,7 +162,7 @@ def _step(path: list[tuple[float, np.ndarray]], k: int, goal: float) -> float:
     return 2 * run if rise <= 0 else min(2 * run, max(wanted * run / rise, run / 4))
 
 
-def _crossing(problem: Problem, k: int, path: list[tuple[float, np.ndarray]], walk: Walk, found: Side) -> float:
+def _crossing(problem: Problem, k: int, path: list[tuple[float, np.ndarray]], walk: Walk, side: Side) -> float:
     """Value of search coordinate k where √excess passes its threshold, between the last two points of the path.
 
     The others begin where those of the points around lie on a line.
@@ -178,14 +178,14 @@ def _crossing(problem: Problem, k: int, path: list[tuple[float, np.ndarray]], wa
             if isinstance(here, str):
                 raise SolveError(here)
             known[value] = _root(here[0]), here[1]
-            found.rows.append((here[0], problem.search.vectors(here[1])))
+            side.rows.append((here[0], problem.search.vectors(here[1])))
         return known[value][0] - goal
 
     low, high = (float(point[k]) for _, point in path[-2:])
     try:
         end = brentq(beyond, low, high, xtol=EXACT * abs(high - path[0][1][k]))
     except SolveError as error:
-        found.broken, end = str(error), low
+        side.broken, end = str(error), low
     origin = problem.search.vectors(path[0][1])[k]
-    found.rows.sort(key=lambda row: abs(row[1][k] - origin))
+    side.rows.sort(key=lambda row: abs(row[1][k] - origin))
     return float(end)  # pyright: ignore[reportArgumentType]

@@ -43,7 +43,7 @@ def corrected(
     basis = products(chebyshev(polynomial.eta(points[near]), exponents.max(axis=0)), exponents)
     weight = np.where(np.arange(len(points)) < len(points) - taken, 1.0, TAKEN)[near, None]
     coefficients = np.linalg.lstsq(weight * basis, weight * (values[near] - polynomial(points[near])), rcond=1e-10)[0]
-    table = {tuple(row): own for row, own in zip(polynomial.exponents, polynomial.coefficients, strict=True)}
-    for row, own in zip(exponents, coefficients, strict=True):
-        table[tuple(row)] = table.get(tuple(row), 0.0) + own
+    table = {tuple(row): column for row, column in zip(polynomial.exponents, polynomial.coefficients, strict=True)}
+    for row, column in zip(exponents, coefficients, strict=True):
+        table[tuple(row)] = table.get(tuple(row), 0.0) + column
     return replace(polynomial, exponents=np.array(list(table)), coefficients=np.array(list(table.values())))

@@ -32,7 +32,7 @@ def descend(problem: BandProblem, polynomial: ChebyshevPolynomial, method: Least
         journal.step(now.best, unknowns.physical(now.x), problem.shape[0])
 
     journal.began(unknowns.physical(x))
-    found = method.minimise(
+    minimum = method.minimise(
         residual,
         jacobian,
         unknowns.lower,
@@ -41,8 +41,8 @@ def descend(problem: BandProblem, polynomial: ChebyshevPolynomial, method: Least
         scale=unknowns.upper - unknowns.lower,
         on_iteration=progress,
     )
-    journal.ended(unknowns.physical(x), unknowns.physical(found.x), found.fitness, found.success, found.message)
-    return found
+    journal.ended(unknowns.physical(x), unknowns.physical(minimum.x), minimum.fitness, minimum.success, minimum.message)
+    return minimum
 
 
 def jacobian_of(problem: BandProblem, polynomial: ChebyshevPolynomial, at: Candidate) -> np.ndarray:
@@ -57,12 +57,12 @@ def screened(problem: BandProblem, polynomial: ChebyshevPolynomial, number: int,
     unknowns = problem.unknowns
     width = unknowns.upper - unknowns.lower
     x = unknowns.lower + width * latin_hypercube(len(width), number, np.random.default_rng((seed, 1)))
-    found = bounds(polynomial, *unknowns.ends(x))
-    order = x[np.argsort(problem.fitness(found.lower, found.upper), kind="stable")]
+    bounded = bounds(polynomial, *unknowns.ends(x))
+    order = x[np.argsort(problem.fitness(bounded.lower, bounded.upper), kind="stable")]
     chosen = order[:1]
-    for one in order[1:]:
+    for start in order[1:]:
         if len(chosen) == starts:
             break
-        if np.all(np.max(np.abs(chosen - one) / width, axis=1) > APART):
-            chosen = np.concatenate([chosen, one[None]])
+        if np.all(np.max(np.abs(chosen - start) / width, axis=1) > APART):
+            chosen = np.concatenate([chosen, start[None]])
     return chosen

@@ -88,13 +88,15 @@ class GlobalSurrogate(CheckedArguments):
         if self.checks == 0:
             surrogate.demand(allowed, partial(place, problem.bands))
         best, times = self._descended(problem, surrogate, seed)
-        found, surrogate = self._refined(problem, surrogate, best, seed)
-        if found.check is not None:
-            told = replace(surrogate, tail=np.minimum(surrogate.tail, found.error), held_out=SHARE * found.error)
+        solution, surrogate = self._refined(problem, surrogate, best, seed)
+        if solution.check is not None:
+            judged = replace(
+                surrogate, tail=np.minimum(surrogate.tail, solution.error), held_out=SHARE * solution.error
+            )
             # A surrogate that is better than the misfit of the bands does not limit the answer.
-            if np.any(told.error > np.maximum(allowed, _misfit(problem, found.candidate))):
-                told.demand(allowed, partial(place, problem.bands), problem.model.parameters.names)
-        return replace(found, reached=times)
+            if np.any(judged.error > np.maximum(allowed, _misfit(problem, solution.candidate))):
+                judged.demand(allowed, partial(place, problem.bands), problem.model.parameters.names)
+        return replace(solution, reached=times)
 
     def _descended(self, problem: BandProblem, surrogate: Surrogate, seed: int) -> tuple[Minimum, int]:
         """Return the best of the descents, and how many of them reached it: more of them until two did."""
@@ -121,7 +123,7 @@ class GlobalSurrogate(CheckedArguments):
     ) -> tuple[BandSolution, Surrogate]:
         """In turn checked by true runs, made better by them or around them, and descended from the answer so far."""
         polynomial, points, values = surrogate.polynomial, surrogate.points, surrogate.values
-        found = BandSolution(
+        solution = BandSolution(
             polynomial, candidate(problem, polynomial, best.x), surrogate.error, None, best.success, best.message
         )
         sharpest = np.inf
@@ -136,7 +138,7 @@ class GlobalSurrogate(CheckedArguments):
             if worst > sharpest:  # the correction made it worse
                 break
             sharpest = worst
-            found = BandSolution(polynomial, at, checked.error, checked, best.success, best.message)
+            solution = BandSolution(polynomial, at, checked.error, checked, best.success, best.message)
             if left == 0 or worst <= ENOUGH or np.all(checked.error <= NEGLIGIBLE * _misfit(problem, at)):
                 break
             points, values = np.concatenate([points, checked.points]), np.concatenate([values, checked.values])
@@ -148,7 +150,7 @@ class GlobalSurrogate(CheckedArguments):
             else:
                 polynomial = corrected(polynomial, at, points, values, len(checked.points))
             best = descend(problem, polynomial, LeastSquares(), problem.unknowns.of(at.lower, at.upper))
-        return found, surrogate
+        return solution, surrogate
 
 
 def _misfit(problem: BandProblem, at: Candidate) -> float:

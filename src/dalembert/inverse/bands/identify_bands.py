@@ -114,11 +114,11 @@ def identify_bands(
     unknowns = unknowns_of(model.parameters, intervals)
     journal = Journal(len(bands.coordinate.values), on_event)
     problem = pose(model, bands, weights, unknowns, journal)
-    found = chosen.search(problem, seed)
-    at, checked = found.candidate, found.check
-    concluded = tuple(conclusions(problem, found))
+    solution = chosen.search(problem, seed)
+    at, checked = solution.candidate, solution.check
+    concluded = tuple(conclusions(problem, solution))
     ends = tuple(unknowns.search.vectors(end) for end in (at.lower, at.upper))
-    estimated = _estimated(problem, found)
+    estimated = _estimated(problem, solution)
     d = len(model.parameters)
     radius_deviations = np.zeros(d)
     radius_deviations[unknowns.chosen] = estimated.deviations[d:]
@@ -137,14 +137,14 @@ def identify_bands(
         weights=np.array(problem.weights),
         lower=at.bounds.lower.reshape(problem.shape),
         upper=at.bounds.upper.reshape(problem.shape),
-        error=found.error.reshape(problem.shape),
+        error=solution.error.reshape(problem.shape),
         checked_lower=None if checked is None else checked.lower.reshape(problem.shape),
         checked_upper=None if checked is None else checked.upper.reshape(problem.shape),
         checked_fitness=None if checked is None else float(problem.fitness(checked.lower, checked.upper)),
         history=tuple(journal.history),
         starts=tuple(journal.starts),
-        success=found.success and not any(finding.severity == "error" for finding in concluded),
-        outcome=tuple(outcome(problem, found)),
+        success=solution.success and not any(finding.severity == "error" for finding in concluded),
+        outcome=tuple(outcome(problem, solution)),
         method=chosen.name,
         simulations=journal.simulations,
         seconds=clock(model) - began,
@@ -164,21 +164,21 @@ def identify_bands(
     return fit
 
 
-def _method(given: Method | str | None) -> Method:
-    if given is None:
+def _method(method: Method | str | None) -> Method:
+    if method is None:
         return GlobalSurrogate()
-    if isinstance(given, str):
-        require_known("method of identifying bands", given, METHODS)
-        return METHODS[given]()
-    if isinstance(given, type) or not hasattr(given, "search"):
-        raise InputError(f"method is {shown(given)}; expected GlobalSurrogate(...), Nested(...), 'global' or 'nested'")
-    return given
+    if isinstance(method, str):
+        require_known("method of identifying bands", method, METHODS)
+        return METHODS[method]()
+    if isinstance(method, type) or not hasattr(method, "search"):
+        raise InputError(f"method is {shown(method)}; expected GlobalSurrogate(...), Nested(...), 'global' or 'nested'")
+    return method
 
 
-def _estimated(problem: BandProblem, found: BandSolution) -> Estimate:
+def _estimated(problem: BandProblem, solution: BandSolution) -> Estimate:
     """Deviations and correlations of middles and radii, the noise estimated from the residuals."""
-    unknowns, at = problem.unknowns, found.candidate
-    by_lower, by_upper = slopes(problem, found.polynomial, at)
+    unknowns, at = problem.unknowns, solution.candidate
+    by_lower, by_upper = slopes(problem, solution.polynomial, at)
     search, parameters = unknowns.search, problem.model.parameters
     # dz/dp at the two ends; in the parameters' units these are middle ∓ radius, with nothing cut.
     lower, upper = (

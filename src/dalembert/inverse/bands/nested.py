@@ -65,9 +65,9 @@ class Nested(Checked):
             if not ok.any():
                 return result
             coefficients = np.moveaxis(solve @ values[ok], 1, 0).reshape(len(exponents), -1)
-            one = np.ones(eta.shape[1])
-            found = bounds(ChebyshevPolynomial(-one, one, exponents, coefficients), -one, one)
-            result[ok] = problem.fitness(*(side.reshape(ok.sum(), -1) for side in (found.lower, found.upper)))
+            ones = np.ones(eta.shape[1])
+            bounded = bounds(ChebyshevPolynomial(-ones, ones, exponents, coefficients), -ones, ones)
+            result[ok] = problem.fitness(*(side.reshape(ok.sum(), -1) for side in (bounded.lower, bounded.upper)))
             return result
 
         def progress(now: Progress) -> None:

@@ -20,17 +20,17 @@ CHANCE = 1e-3  # probability with which normal noise would make some bound stand
 CORRELATED = 4.0
 
 
-def outcome(problem: BandProblem, found: BandSolution) -> Iterator[Finding]:
+def outcome(problem: BandProblem, solution: BandSolution) -> Iterator[Finding]:
     """Yield whether the search converged, the difference of given and reproduced bands, and the check by runs."""
-    yield converged(found.success, found.message)
+    yield converged(solution.success, solution.message)
     yield from failed_simulations(problem.journal.failures)
-    yield from _differences(problem, found)
-    if found.check is None:
+    yield from _differences(problem, solution)
+    if solution.check is None:
         yield Finding(
             "surrogate-unchecked", "note", {}, "The bounds of the surrogate are not checked by runs of the model."
         )
     else:
-        worst, points = float(np.max(found.check.error / scale(problem))), len(found.check.points)
+        worst, points = float(np.max(solution.check.error / scale(problem))), len(solution.check.points)
         message = (
             f"At the {points} parameter points where the surrogate has its minima and maxima, it differs from runs "
             f"of the model by at most {worst:.1g} of a channel's range."
@@ -38,17 +38,17 @@ def outcome(problem: BandProblem, found: BandSolution) -> Iterator[Finding]:
         yield Finding("surrogate-checked", "note", {"points": points, "difference": worst}, message)
 
 
-def _differences(problem: BandProblem, found: BandSolution) -> Iterator[Finding]:
+def _differences(problem: BandProblem, solution: BandSolution) -> Iterator[Finding]:
     """Yield what the difference between reproduced and given bands shows."""
-    given, apart = problem.bands, _apart(problem, found)
+    bands, apart = problem.bands, _apart(problem, solution)
     if _rounded(problem, apart):
         message = "The given bands are reproduced to the digits that they are rounded to."
         yield Finding("bands-reproduced", "note", {}, message)
         return
-    rms, width = np.sqrt(np.mean(apart**2, axis=(0, 1))), given.width.mean(axis=0)
+    rms, width = np.sqrt(np.mean(apart**2, axis=(0, 1))), bands.width.mean(axis=0)
     share = _shares(problem, apart)
     worst = int(np.argmax(share))
-    name = given.channels[worst]
+    name = bands.channels[worst]
     size = f"{share[worst]:.2g} of their mean width"
     if not width[worst] > 0:
         size = f"{rms[worst]:.2g} (SI unit; the given bands have no width)"
@@ -67,9 +67,9 @@ def _differences(problem: BandProblem, found: BandSolution) -> Iterator[Finding]
         yield Finding("uncorrelated-residuals", "note", {}, "The remaining differences are not correlated.")
 
 
-def conclusions(problem: BandProblem, found: BandSolution) -> Iterator[Finding]:
+def conclusions(problem: BandProblem, solution: BandSolution) -> Iterator[Finding]:
     """Yield the findings: bands that no box has, and a best end that only one of the descents reached."""
-    apart = _apart(problem, found)
+    apart = _apart(problem, solution)
     share = float(_shares(problem, apart).max())
     if share > SMALL and not _rounded(problem, apart) and not _random(problem, apart):
         message = (
@@ -78,22 +78,22 @@ def conclusions(problem: BandProblem, found: BandSolution) -> Iterator[Finding]:
         )
         advice = "Check the bands, the model and the bounds of the parameters."
         yield Finding("inconsistent-bands", "error" if share > CLEAR else "warning", {"share": share}, message, advice)
-    if found.reached == 1:
+    if solution.reached == 1:
         message = "Only one of the descents reached the smallest misfit: another minimum may be better."
         yield Finding("minimum-reached-once", "warning", {"reached": 1}, message, "Increase starts.")
 
 
-def _apart(problem: BandProblem, found: BandSolution) -> np.ndarray:
+def _apart(problem: BandProblem, solution: BandSolution) -> np.ndarray:
     """Differences of reproduced and given bands, (2, samples, channels); 0 where none was given."""
-    bounds, given = found.candidate.bounds, problem.bands
-    apart = np.stack([bounds.lower, bounds.upper]).reshape(2, *problem.shape) - np.stack([given.lower, given.upper])
+    bounds, bands = solution.candidate.bounds, problem.bands
+    apart = np.stack([bounds.lower, bounds.upper]).reshape(2, *problem.shape) - np.stack([bands.lower, bands.upper])
     return np.where(problem.weights > 0, apart, 0.0)
 
 
 def _rounded(problem: BandProblem, apart: np.ndarray) -> bool:
     """Whether the differences are those of rounding."""
-    given = problem.bands
-    digits = [max(map(quantum, columns)) for columns in zip(given.lower.T, given.upper.T, strict=True)]
+    bands = problem.bands
+    digits = [max(map(quantum, columns)) for columns in zip(bands.lower.T, bands.upper.T, strict=True)]
     return bool(np.all(np.abs(apart) <= digits))
 
 

@@ -123,7 +123,7 @@ def unknowns_of(parameters: Parameters, intervals: Iterable[str] | None) -> Unkn
         return Unknowns(parameters, parameters.names)
     if isinstance(intervals, str):
         raise InputError(f"intervals is {intervals!r}; expected names in a list, for example [{intervals!r}]")
-    given = names_of(intervals, "identify_bands", "intervals")
-    for name in given:
+    names = names_of(intervals, "identify_bands", "intervals")
+    for name in names:
         parameters.check_name(name, where="intervals")
-    return Unknowns(parameters, tuple(name for name in parameters.names if name in given))
+    return Unknowns(parameters, tuple(name for name in parameters.names if name in names))

@@ -87,21 +87,21 @@ def compare_models(
         if blocks is not None:
             raise InputError("compare_models: the blocks of draws are those of sample; leave blocks out here")
         way = leave_out or default_way(named)
-        return _compared_draws({name: of_draws(name, one, way) for name, one in named.items()}, way)
-    for name, one in named.items():
-        if not isinstance(one, Fit | CrossValidation) or type(one) is not type(next(iter(named.values()))):
+        return _compared_draws({name: of_draws(name, model, way) for name, model in named.items()}, way)
+    for name, model in named.items():
+        if not isinstance(model, Fit | CrossValidation) or type(model) is not type(next(iter(named.values()))):
             raise InputError(
-                f"compare_models: {name!r} is {shown(one)}; expected fits alone, cross-validations alone, or "
+                f"compare_models: {name!r} is {shown(model)}; expected fits alone, cross-validations alone, or "
                 "posteriors alone"
             )
     fits = fits_of(named)
     _check_same_data(fits)
     estimated = any(fit.noise is not None for fit in fits.values())
     linear = {name: linearised(name, fit, normal=estimated) for name, fit in fits.items()}
-    if any(isinstance(one, CrossValidation) for one in named.values()):
+    if any(isinstance(model, CrossValidation) for model in named.values()):
         numbers, left_out = _groups_of(named)
         _check_same_densities(fits)
-        densities = {name: one.log_densities for name, one in named.items()}
+        densities = {name: model.log_densities for name, model in named.items()}
         how = "cross-validation by fits without each group"
     else:
         slowest = max(fits.values(), key=correlation_time)
@@ -110,7 +110,7 @@ def compare_models(
         places = counted_groups(numbers)
         densities = {name: np.array([at.without(rows) for rows in places]) for name, at in linear.items()}
         how = "leave-out predictions of the linearised models"
-    found = {}
+    criteria = {}
     for name, at in linear.items():
         if not np.all(np.isfinite(densities[name])):
             raise InputError(
@@ -118,17 +118,17 @@ def compare_models(
                 "parameter; leave out smaller groups"
             )
         rms = float(np.sqrt(np.mean(at.residual[at.fitted] ** 2)))
-        found[name] = Criteria(at.parameters, rms, at.log_likelihood(), densities[name])
+        criteria[name] = Criteria(at.parameters, rms, at.log_likelihood(), densities[name])
     correlated = [name for name, fit in fits.items() if fit.correlated is not None and fit.correlated.detected]
     data = next(iter(fits.values())).provenance["data"]
     number = int(np.count_nonzero(numbers >= 0))
-    return _result(found, number, how, left_out, {"data": data}, correlated)
+    return _result(criteria, number, how, left_out, {"data": data}, correlated)
 
 
 def _groups_of(named: Mapping[str, CrossValidation]) -> tuple[np.ndarray, str]:
     first = next(iter(named.values()))
-    for name, one in named.items():
-        if not np.array_equal(one.groups, first.groups):
+    for name, model in named.items():
+        if not np.array_equal(model.groups, first.groups):
             raise InputError(
                 f"compare_models: the cross-validation of {name!r} left out other groups; use the same leave_out and "
                 "blocks for all models"
@@ -139,17 +139,17 @@ def _groups_of(named: Mapping[str, CrossValidation]) -> tuple[np.ndarray, str]:
 def _check_same_densities(fits: Mapping[str, Fit]) -> None:
     """Refuse cross-validations with Student's t and with normal densities side by side."""
     plain = [name for name, fit in fits.items() if fit.noise is None and not fit.noise_is_known]
-    others = [name for name, fit in fits.items() if fit.noise is not None]
-    if plain and others:
+    with_noise = [name for name, fit in fits.items() if fit.noise is not None]
+    if plain and with_noise:
         raise InputError(
-            f"compare_models: {plain[0]!r} has no noise model, but {others[0]!r} has one, so that their predictive "
+            f"compare_models: {plain[0]!r} has no noise model, but {with_noise[0]!r} has one, so that their predictive "
             f"densities differ; identify {plain[0]!r} with noise='constant', and cross-validate it again"
         )
 
 
 def _check_same_data(fits: Mapping[str, Fit]) -> None:
-    (first, reference), *others = fits.items()
-    for name, fit in others:
+    (first, reference), *rest = fits.items()
+    for name, fit in rest:
         if fit.provenance["data"] != reference.provenance["data"]:
             raise InputError(
                 f"compare_models: {name!r} was fitted to other data than {first!r}; fit both models to the same "
@@ -168,23 +168,25 @@ def _check_same_data(fits: Mapping[str, Fit]) -> None:
 
 def _compared_draws(known: Mapping[str, Predictive], leave_out: str) -> ModelComparison:
     """Compare posterior draws."""
-    (first, reference), *others = known.items()
-    for name, one in others:
-        if not np.array_equal(one.observed, reference.observed, equal_nan=True):
+    (first, reference), *rest = known.items()
+    for name, densities in rest:
+        if not np.array_equal(densities.observed, reference.observed, equal_nan=True):
             raise InputError(f"compare_models: the draws of {name!r} are of other data than those of {first!r}")
-        if not np.array_equal(one.groups, reference.groups):
+        if not np.array_equal(densities.groups, reference.groups):
             raise InputError(
                 f"compare_models: the draws of {name!r} have other blocks than those of {first!r}; sample both with "
                 "the same number of blocks"
             )
-    found = {name: Criteria(-1, np.nan, np.nan, one.densities, one.waic) for name, one in known.items()}
-    unreliable = {name: one.unreliable for name, one in known.items() if one.unreliable}
+    criteria = {
+        name: Criteria(-1, np.nan, np.nan, densities.densities, densities.waic) for name, densities in known.items()
+    }
+    unreliable = {name: densities.unreliable for name, densities in known.items() if densities.unreliable}
     how = "PSIS-LOO of posterior draws"
-    return _result(found, len(reference.groups), how, leave_out, {}, (), unreliable)
+    return _result(criteria, len(reference.groups), how, leave_out, {}, (), unreliable)
 
 
 def _result(
-    found: Mapping[str, Criteria],
+    criteria: Mapping[str, Criteria],
     number: int,
     how: str,
     left_out: str,
@@ -192,20 +194,20 @@ def _result(
     correlated: Sequence[str],
     unreliable: Mapping[str, int] | None = None,
 ) -> ModelComparison:
-    names = sorted(found, key=lambda name: -float(np.sum(found[name].densities)))
-    ordered = [found[name] for name in names]
-    densities = np.array([one.densities for one in ordered])
+    names = sorted(criteria, key=lambda name: -float(np.sum(criteria[name].densities)))
+    ordered = [criteria[name] for name in names]
+    densities = np.array([item.densities for item in ordered])
     size = np.sqrt(densities.shape[1])
     apart = densities - densities[0]
-    count = np.array([one.parameters for one in ordered])
-    logs = np.array([one.log_likelihood for one in ordered])
+    count = np.array([item.parameters for item in ordered])
+    logs = np.array([item.log_likelihood for item in ordered])
     aic = 2 * count - 2 * logs
     left = number - count - 1
     aicc = np.where(left > 0, aic + 2 * count * (count + 1) / np.where(left > 0, left, 1), np.nan)
-    made = ModelComparison(
+    comparison = ModelComparison(
         models=tuple(names),
         parameters=count,
-        rms=np.array([one.rms for one in ordered]),
+        rms=np.array([item.rms for item in ordered]),
         log_likelihood=logs,
         aic=aic,
         aicc=aicc,
@@ -214,11 +216,11 @@ def _result(
         elpd_deviation=size * np.std(densities, axis=1, ddof=1),
         difference=np.sum(apart, axis=1),
         difference_deviation=size * np.std(apart, axis=1, ddof=1),
-        waic=np.array([one.waic for one in ordered]),
+        waic=np.array([item.waic for item in ordered]),
         densities=densities,
         values=number,
         how=how,
         left_out=left_out,
         provenance=dict(provenance),
     )
-    return comparison_findings(made, correlated, unreliable or {})
+    return comparison_findings(comparison, correlated, unreliable or {})

@@ -15,32 +15,34 @@ FEW = 10  # fewest groups with which the standard deviation of a difference is r
 
 
 def comparison_findings(
-    made: ModelComparison, correlated: Sequence[str], unreliable: Mapping[str, int]
+    comparison: ModelComparison, correlated: Sequence[str], unreliable: Mapping[str, int]
 ) -> ModelComparison:
     """Return a comparison with its findings; ``unreliable`` counts groups that draws do not predict reliably."""
-    found = (
-        _ranking(made),
-        *_criteria(made),
-        *_correlated(made, correlated),
-        *_few(made),
-        *_unreliable(made, unreliable),
+    findings = (
+        _ranking(comparison),
+        *_criteria(comparison),
+        *_correlated(comparison, correlated),
+        *_few(comparison),
+        *_unreliable(comparison, unreliable),
     )
-    return replace(made, findings=found)
+    return replace(comparison, findings=findings)
 
 
-def alike(made: ModelComparison) -> np.ndarray:
+def alike(comparison: ModelComparison) -> np.ndarray:
     """Return which models predict no worse than the first one, as far as the data show; shape (models,)."""
-    return (np.abs(made.difference) < SMALL) | (np.abs(made.difference) < CLEAR * made.difference_deviation)
+    return (np.abs(comparison.difference) < SMALL) | (
+        np.abs(comparison.difference) < CLEAR * comparison.difference_deviation
+    )
 
 
-def _ranking(made: ModelComparison) -> Finding:
-    first, second = made.models[:2]
-    difference, deviation = float(-made.difference[1]), float(made.difference_deviation[1])
+def _ranking(comparison: ModelComparison) -> Finding:
+    first, second = comparison.models[:2]
+    difference, deviation = float(-comparison.difference[1]), float(comparison.difference_deviation[1])
     values = {"best": first, "second": second, "difference": difference, "deviation": deviation}
-    same = alike(made)
+    same = alike(comparison)
     if same[1]:
-        names = [name for name, one in zip(made.models, same, strict=True) if one]
-        counts = made.parameters[same]
+        names = [name for name, is_alike in zip(comparison.models, same, strict=True) if is_alike]
+        counts = comparison.parameters[same]
         simplest = names[int(np.argmin(counts))]
         advice = (
             f"Prefer the simplest, {simplest!r}, or measure where their responses differ."
@@ -59,46 +61,46 @@ def _ranking(made: ModelComparison) -> Finding:
     return Finding("best-model", "note", values, message)
 
 
-def _criteria(made: ModelComparison) -> Iterator[Finding]:
+def _criteria(comparison: ModelComparison) -> Iterator[Finding]:
     """Yield a finding where a criterion prefers another model, which predicts worse."""
-    if not np.all(np.isfinite(made.bic)):
+    if not np.all(np.isfinite(comparison.bic)):
         return
-    chosen = {"AICc": made.aicc, "BIC": made.bic}
-    others = {
-        name: made.models[int(np.nanargmin(values))]
+    chosen = {"AICc": comparison.aicc, "BIC": comparison.bic}
+    best = {
+        name: comparison.models[int(np.nanargmin(values))]
         for name, values in chosen.items()
-        if np.any(np.isfinite(values)) and not alike(made)[int(np.nanargmin(values))]
+        if np.any(np.isfinite(values)) and not alike(comparison)[int(np.nanargmin(values))]
     }
-    if others:
-        what = listed([f"{name} prefers {model!r}" for name, model in others.items()])
+    if best:
+        what = listed([f"{name} prefers {model!r}" for name, model in best.items()])
         message = f"{what}, but it predicts worse."
         advice = "Trust the predictions: criteria take all values for independent."
-        yield Finding("criteria-disagree", "warning", dict(others), message, advice)
+        yield Finding("criteria-disagree", "warning", dict(best), message, advice)
 
 
-def _correlated(made: ModelComparison, names: Sequence[str]) -> Iterator[Finding]:
+def _correlated(comparison: ModelComparison, names: Sequence[str]) -> Iterator[Finding]:
     if not names:
         return
     message = (
         f"The residuals of {listed([repr(name) for name in names])} are correlated. AIC, AICc and BIC take values for "
         "independent, so their differences are too large."
     )
-    blocks = made.left_out != "values"
+    blocks = comparison.left_out != "values"
     advice = "" if blocks else "Leave out blocks: leave_out='blocks'."
     values = {"models": ", ".join(names)}
     yield Finding("correlated-comparison", "note" if blocks else "warning", values, message, advice)
 
 
-def _few(made: ModelComparison) -> Iterator[Finding]:
-    count = made.densities.shape[1]
+def _few(comparison: ModelComparison) -> Iterator[Finding]:
+    count = comparison.densities.shape[1]
     if count < FEW:
         message = f"Only {counted(count, 'group')} were left out: the standard deviation of a difference is uncertain."
         yield Finding("few-groups", "note", {"groups": count}, message, "Leave out more, smaller groups.")
 
 
-def _unreliable(made: ModelComparison, counts: Mapping[str, int]) -> Iterator[Finding]:
+def _unreliable(comparison: ModelComparison, counts: Mapping[str, int]) -> Iterator[Finding]:
     if counts:
-        group = made.left_out.removesuffix("s")
+        group = comparison.left_out.removesuffix("s")
         what = listed([f"{counted(count, group)} of {name!r}" for name, count in counts.items()])
         message = f"PSIS-LOO does not predict {what} reliably (Pareto shape above 0.7)."
         yield Finding(

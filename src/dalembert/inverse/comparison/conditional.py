@@ -68,12 +68,12 @@ class Conditional:
         """
         columns = self.whitening[:, rows]
         places = np.unique(columns.indices)
-        own = columns.tocsr()[places].toarray()
-        along = self.basis[places].T @ own
-        values, vectors = np.linalg.eigh(own.T @ own - along.T @ along)
-        if np.min(values) < LEAST * np.max(np.sum(own**2, axis=0)):
+        rows_of_places = columns.tocsr()[places].toarray()
+        along = self.basis[places].T @ rows_of_places
+        values, vectors = np.linalg.eigh(rows_of_places.T @ rows_of_places - along.T @ along)
+        if np.min(values) < LEAST * np.max(np.sum(rows_of_places**2, axis=0)):
             return -np.inf  # the others do not determine all that these values depend on
-        square = float(np.sum((vectors.T @ (own.T @ self.white[places])) ** 2 / values))
+        square = float(np.sum((vectors.T @ (rows_of_places.T @ self.white[places])) ** 2 / values))
         return 0.5 * float(np.sum(np.log(values))) + log_density(square, len(rows), 1.0, None)
 
 
@@ -131,16 +131,16 @@ class WithNoise:
         Source: K. R. Rad, A. Maleki, A scalable estimate of the out-of-sample prediction error via approximate
         leave-one-out cross-validation, Journal of the Royal Statistical Society B 82 (2020).
         """
-        found = self._best.without(rows)
-        if self.noise.known or not np.isfinite(found):
-            return found
+        conditional = self._best.without(rows)
+        if self.noise.known or not np.isfinite(conditional):
+            return conditional
         if any(np.all(np.isin(places, rows)) for places in self._described):
             return -np.inf  # nothing else determines a noise parameter
         self._check_deviations()
         if not self._determined:
             return self._searched(rows).without(rows)
         count = len(self.noise.parameters)
-        ends = {pair: [end.without(rows) - found for end in both] for pair, both in self._moved.items()}
+        ends = {pair: [end.without(rows) - conditional for end in both] for pair, both in self._moved.items()}
         gradient = np.array([(ends[k, k][0] - ends[k, k][1]) / (2 * STEP) for k in range(count)])
         square = np.zeros((count, count))
         for (k, j), (up, down) in ends.items():
@@ -150,7 +150,7 @@ class WithNoise:
         move = -np.linalg.solve(left, gradient)
         if np.min(np.linalg.eigvalsh(left)) < LEAST or np.max(np.abs(move)) > FAR:
             return self._searched(rows).without(rows)
-        return found + float(gradient @ move + 0.5 * move @ square @ move)
+        return conditional + float(gradient @ move + 0.5 * move @ square @ move)
 
     def _searched(self, rows: np.ndarray) -> Conditional:
         """Return the linearisation with the noise at the largest restricted likelihood of all values but ``rows``."""
@@ -159,8 +159,8 @@ class WithNoise:
             at = self._moved_by(steps)
             return at.without(rows) - at.restricted
 
-        found = minimize(cost, np.zeros(len(self.noise.values)), method="L-BFGS-B", bounds=self._room)
-        return self._moved_by(found.x)
+        minimum = minimize(cost, np.zeros(len(self.noise.values)), method="L-BFGS-B", bounds=self._room)
+        return self._moved_by(minimum.x)
 
     @cached_property
     def _room(self) -> list[tuple[float, float]]:
@@ -197,12 +197,12 @@ class WithNoise:
     @cached_property
     def _described(self) -> list[np.ndarray]:
         """Places of the values that each free noise parameter describes."""
-        found = []
+        described = []
         for name in self.noise.parameters.names:
             base = name.rpartition(".")[0]
-            own = [series.rows for series in self._series if self.noise.bases[series.name] == base]
-            found.append(np.concatenate([np.zeros(0, dtype=int), *own]))
-        return found
+            rows = [series.rows for series in self._series if self.noise.bases[series.name] == base]
+            described.append(np.concatenate([np.zeros(0, dtype=int), *rows]))
+        return described
 
     @cached_property
     def _best(self) -> Conditional:
@@ -234,10 +234,10 @@ class WithNoise:
         residual = np.nan_to_num(fit.residuals.ravel())
         slopes = whitening @ np.nan_to_num(fit.jacobian.reshape(len(residual), -1))
         prior = prior_slopes(parameters, fit.values, np.ones(len(fit.values)))
-        whole = np.concatenate([slopes, prior])[:, off_bounds(parameters, fit.values)]
+        full = np.concatenate([slopes, prior])[:, off_bounds(parameters, fit.values)]
         left = np.concatenate([-(whitening @ residual), -prior_residual(parameters, fit.values)])
-        size = np.linalg.norm(whole, axis=0)
-        basis, singular, _ = np.linalg.svd(whole / np.where(size > 0, size, 1.0), full_matrices=False)
+        size = np.linalg.norm(full, axis=0)
+        basis, singular, _ = np.linalg.svd(full / np.where(size > 0, size, 1.0), full_matrices=False)
         seen = singular > UNSEEN * (singular[0] if len(singular) else 1.0)
         basis = basis[:, seen]
         left -= basis @ (basis.T @ left)
@@ -249,16 +249,18 @@ class WithNoise:
         from scipy.sparse import coo_array, eye_array
 
         response = self.fit.response.ravel()
-        whole = coo_array((response.size, response.size))
+        whitening = coo_array((response.size, response.size))
         for series in self._series:
-            model, own = self.noise.models[series.name], self.noise.of_channel(series.name, values)
-            given = self.weights.ravel()[series.rows] ** -0.5
-            sizes = np.broadcast_to(model.deviations(response[series.rows], given, own), given.shape)
+            model, values_of_channel = self.noise.models[series.name], self.noise.of_channel(series.name, values)
+            deviations = self.weights.ravel()[series.rows] ** -0.5
+            sizes = np.broadcast_to(
+                model.deviations(response[series.rows], deviations, values_of_channel), deviations.shape
+            )
             process = model.whitening(series)
-            matrix = eye_array(len(given), format="csr") if process is None else process.matrix(own)
+            matrix = eye_array(len(deviations), format="csr") if process is None else process.matrix(values_of_channel)
             part = coo_array(matrix.multiply(1 / sizes))
-            whole += coo_array((part.data, (series.rows[part.row], series.rows[part.col])), shape=whole.shape)
-        return whole.tocsc()
+            whitening += coo_array((part.data, (series.rows[part.row], series.rows[part.col])), shape=whitening.shape)
+        return whitening.tocsc()
 
     @cached_property
     def _series(self) -> list[Series]:

@@ -85,14 +85,14 @@ def cross_validate(
     numbers = groups(fit, leave_out, blocks)
     places = counted_groups(numbers)
     errors = np.full(numbers.size, np.nan)
-    found = [np.zeros(0)] * len(places)
+    values_left_out = [np.zeros(0)] * len(places)
     densities, converged = np.zeros(len(places)), np.zeros(len(places), dtype=bool)
     for number, rows in enumerate(places):
         again = _again(model, data, fit, rows, leave_out, executor)
         errors[rows] = again.residuals.ravel()[rows]
         densities[number] = predicted_density(again, fit, rows)
-        found[number], converged[number] = again.values, again.success
-    errors, values = errors.reshape(numbers.shape), np.array(found)
+        values_left_out[number], converged[number] = again.values, again.success
+    errors, values = errors.reshape(numbers.shape), np.array(values_left_out)
     return CrossValidation(fit, leave_out, numbers, errors, densities, values, converged)
 
 
@@ -116,11 +116,11 @@ def _again(
     else:
         weights[rows] = 0.0
     table = weights.reshape(fit.weights.shape)
-    given = {part.name: table[part.block] for part in fit.parts} if fit.parts else table
+    kept_weights = {part.name: table[part.block] for part in fit.parts} if fit.parts else table
     return identify(
         model,
         data,
-        weights=given,
+        weights=kept_weights,
         validation=without,
         noise=_noise_without(fit, without),
         start=fit.values,
@@ -134,15 +134,15 @@ def _noise_without(fit: Fit, experiment: str | None) -> Mapping[str, NoiseModel]
     """The noise models of a fit, less those of an experiment that is left out."""
     if fit.noise is None:
         return None
-    others = {name: model for name, model in fit.noise.models.items() if name.partition(".")[0] != experiment}
-    for name in fit.noise.models.keys() - others.keys():
-        own = [item for item in fit.noise.parameters.names if item.startswith(f"{fit.noise.bases[name]}.")]
-        if own and fit.noise.bases[name] not in {fit.noise.bases[other] for other in others}:
+    kept = {name: model for name, model in fit.noise.models.items() if name.partition(".")[0] != experiment}
+    for name in fit.noise.models.keys() - kept.keys():
+        noise_names = [item for item in fit.noise.parameters.names if item.startswith(f"{fit.noise.bases[name]}.")]
+        if noise_names and fit.noise.bases[name] not in {fit.noise.bases[other] for other in kept}:
             raise InputError(
-                f"cross_validate: only experiment {experiment!r} has {own[0]!r}, so that its noise cannot be "
+                f"cross_validate: only experiment {experiment!r} has {noise_names[0]!r}, so that its noise cannot be "
                 "predicted; share the noise of the experiments, or leave out blocks"
             )
-    return others if experiment is not None else fit.noise.models
+    return kept if experiment is not None else fit.noise.models
 
 
 def predicted_density(again: Fit, fit: Fit, rows: np.ndarray) -> float:
@@ -150,10 +150,10 @@ def predicted_density(again: Fit, fit: Fit, rows: np.ndarray) -> float:
     assert again.jacobian is not None
     if again.noise is not None and fit.noise is not None:
         described = replace(again.noise, models=fit.noise.models, bases=fit.noise.bases)
-        found = WithNoise(replace(again, noise=described), fit.weights).predicted(rows)
-        if not np.isfinite(found):
+        prediction = WithNoise(replace(again, noise=described), fit.weights).predicted(rows)
+        if not np.isfinite(prediction):
             raise InputError(UNDETERMINED)
-        return found
+        return prediction
     known = fit.noise_is_known
     scale, free = again.parameters.scale, off_bounds(again.parameters, again.values)
     slopes = (again.jacobian.reshape(-1, len(scale)) * scale)[:, free]
@@ -164,8 +164,8 @@ def predicted_density(again: Fit, fit: Fit, rows: np.ndarray) -> float:
     )
     if len(singular) and (len(singular) < slopes.shape[1] or singular[-1] <= UNSEEN * singular[0]):
         raise InputError(UNDETERMINED)
-    own = roots[rows, None] * slopes[rows] @ (directions.T / singular)
-    values, vectors = np.linalg.eigh(np.eye(len(rows)) + own @ own.T)
+    rows_left_out = roots[rows, None] * slopes[rows] @ (directions.T / singular)
+    values, vectors = np.linalg.eigh(np.eye(len(rows)) + rows_left_out @ rows_left_out.T)
     residual = roots[rows] * again.residuals.ravel()[rows]
     square = float(np.sum((vectors.T @ residual) ** 2 / values))
     logs = float(np.sum(np.log(roots[rows]))) - 0.5 * float(np.sum(np.log(values)))
@@ -181,4 +181,4 @@ Compared = Fit | CrossValidation  # what models are compared by
 
 def fits_of(models: Mapping[str, Compared]) -> dict[str, Fit]:
     """Return the fits of all data, by name."""
-    return {name: one.fit if isinstance(one, CrossValidation) else one for name, one in models.items()}
+    return {name: model.fit if isinstance(model, CrossValidation) else model for name, model in models.items()}

@@ -31,15 +31,17 @@ class Predictive:
     groups: np.ndarray
 
 
-def is_draws(one: object) -> bool:
+def is_draws(candidate: object) -> bool:
     """Return whether something is a posterior, ArviZ's InferenceData, or a tree of datasets like it."""
-    return isinstance(one, Posterior) or hasattr(one, "posterior") or hasattr(one, "log_likelihood")
+    return isinstance(candidate, Posterior) or hasattr(candidate, "posterior") or hasattr(candidate, "log_likelihood")
 
 
 def default_way(named: Mapping[str, Any]) -> str:
     """Return what is left out if nothing is asked for: blocks where values depend on their neighbours."""
-    known = [one for one in named.values() if isinstance(one, Posterior)]
-    correlated = any(one.correlated or any(found.code == CORRELATED for found in one.findings) for one in known)
+    known = [posterior for posterior in named.values() if isinstance(posterior, Posterior)]
+    correlated = any(
+        posterior.correlated or any(finding.code == CORRELATED for finding in posterior.findings) for posterior in known
+    )
     return "blocks" if correlated and len(known) == len(named) else "values"
 
 
@@ -56,9 +58,9 @@ def of_draws(name: str, draws: Any, leave_out: str) -> Predictive:
             f"compare_models: the draws of {name!r} have log-likelihoods of single values only, so leave_out cannot be "
             f"{leave_out!r}; use leave_out='values', or posteriors of sample"
         )
-    arrays = [np.asarray(one) for one in draws.log_likelihood.values()]
-    logs = np.concatenate([one.reshape(*one.shape[:2], -1) for one in arrays], axis=2)
-    observed = [np.ravel(one) for one in getattr(draws, "observed_data", {}).values()]
+    arrays = [np.asarray(array) for array in draws.log_likelihood.values()]
+    logs = np.concatenate([array.reshape(*array.shape[:2], -1) for array in arrays], axis=2)
+    observed = [np.ravel(array) for array in getattr(draws, "observed_data", {}).values()]
     known = getattr(draws, "posterior", None)
     return _predictive(known, logs, np.concatenate([*observed, np.zeros(0)]), np.arange(logs.shape[2]))
 
@@ -104,5 +106,5 @@ def _efficiency(draws: Any, chains: int) -> float:
     if chains < 2 or draws is None:
         return 1.0
     known = arviz.convert_to_dataset(draws)
-    effective = [np.ravel(one) for one in arviz.ess(known, method="mean").values()]
+    effective = [np.ravel(array) for array in arviz.ess(known, method="mean").values()]
     return float(np.mean(np.concatenate(effective))) / (known.sizes["chain"] * known.sizes["draw"])

@@ -28,9 +28,9 @@ def groups(fit: Fit, leave_out: str, blocks: int | None = None) -> np.ndarray:
     require_known("way", leave_out, WAYS, "leave_out")
     fitted = fit.weights > 0
     if leave_out == "values":
-        found = np.full(fitted.shape, -1)
-        found[fitted] = np.arange(np.count_nonzero(fitted))
-        return found
+        numbers = np.full(fitted.shape, -1)
+        numbers[fitted] = np.arange(np.count_nonzero(fitted))
+        return numbers
     if leave_out == "experiments" and len(fit.experiments) < 2:
         raise InputError("leave_out is 'experiments', but the fit has one experiment; use 'blocks'")
     together = leave_out == "experiments"
@@ -55,7 +55,7 @@ def correlation_time(fit: Fit) -> float:
     """Return the longest correlation time of the residuals, or of an estimated noise model; 0 where there is none."""
     if fit.noise is not None:
         series = series_of_record(fit.data, fit.weights, fit.parts, fewest=1)
-        return max((_time_of(fit.noise, own) for own in series), default=0.0)
+        return max((_time_of(fit.noise, series_item) for series_item in series), default=0.0)
     return max((item.time for item in fit.correlated.processes), default=0.0) if fit.correlated is not None else 0.0
 
 

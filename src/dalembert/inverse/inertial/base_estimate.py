@@ -130,11 +130,13 @@ def identify_base(
     table = checked_regressor(regressor, names, where)
     measured = checked_torques(torques, table, where)
     joints = joint_names(joints, table.shape[1], where)
-    found = base if base is not None else base_parameters(table, names)
+    base_columns = base if base is not None else base_parameters(table, names)
     known = None if deviations is None else checked_deviations(deviations, len(joints), where)
-    columns = table[..., found.independent]
-    if columns.shape[0] * columns.shape[1] <= found.rank:
-        raise InputError(f"{where}: {columns.shape[0]} samples for {found.rank} base parameters. Give more samples")
+    columns = table[..., base_columns.independent]
+    if columns.shape[0] * columns.shape[1] <= base_columns.rank:
+        raise InputError(
+            f"{where}: {columns.shape[0]} samples for {base_columns.rank} base parameters. Give more samples"
+        )
     noise = np.ones(len(joints)) if known is None else known
     change, count = np.inf, 0
     while True:
@@ -149,7 +151,9 @@ def identify_base(
     inverse = np.linalg.inv(triangle)
     end = converged(known is not None or change < SETTLED, f"{count} iterations of the weights")
     findings = tuple(torque_findings(joints, residuals))
-    return BaseEstimate(found, joints, values, inverse @ inverse.T, noise, known is not None, count, (end,), findings)
+    return BaseEstimate(
+        base_columns, joints, values, inverse @ inverse.T, noise, known is not None, count, (end,), findings
+    )
 
 
 def _weighted(columns: np.ndarray, torques: np.ndarray, noise: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -180,10 +184,10 @@ def torque_findings(joints: Sequence[str], residuals: np.ndarray) -> Iterator[Fi
 
 def joint_names(joints: Sequence[str], count: int, where: str) -> tuple[str, ...]:
     """Return names of joints, ``"1"``, ``"2"`` ... if none are given."""
-    found = tuple(joints) or tuple(str(k + 1) for k in range(count))
-    if len(found) != count:
-        raise InputError(f"{where}: {len(found)} names of joints; expected {count}, as the regressor has")
-    return found
+    names = tuple(joints) or tuple(str(k + 1) for k in range(count))
+    if len(names) != count:
+        raise InputError(f"{where}: {len(names)} names of joints; expected {count}, as the regressor has")
+    return names
 
 
 def intervals(

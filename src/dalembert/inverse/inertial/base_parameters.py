@@ -146,8 +146,8 @@ def base_parameters(regressor: np.ndarray, names: Sequence[str], *, noise: float
 def _triangle(scaled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """R and the order of the columns of QR with pivoting; a first QR without makes the table small."""
     small = np.linalg.qr(scaled, mode="r") if len(scaled) > scaled.shape[1] else scaled
-    found = qr(small, mode="r", pivoting=True)
-    return np.asarray(found[0])[: scaled.shape[1]], np.asarray(found[-1])
+    factors = qr(small, mode="r", pivoting=True)
+    return np.asarray(factors[0])[: scaled.shape[1]], np.asarray(factors[-1])
 
 
 def _findings(pivots: np.ndarray, rank: int, condition: float) -> Iterator[Finding]:

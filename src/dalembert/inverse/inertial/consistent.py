@@ -175,8 +175,8 @@ def _checked_prior(
                 f"{where}: the prior of {name!r} is {values[list(names).index(name)]:g}; expected a positive number. "
                 "Give an expected size"
             )
-    own = values[: 10 * len(links)].reshape(-1, 10)
-    for link, row in zip(links, own, strict=True):
+    of_links = values[: 10 * len(links)].reshape(-1, 10)
+    for link, row in zip(links, of_links, strict=True):
         try:
             log_cholesky(row)
         except np.linalg.LinAlgError:
@@ -217,8 +217,8 @@ def _followed(problem: ConsistentProblem) -> tuple[np.ndarray, float, int]:
     """The same from the prior, by problems whose regularisation decreases to that of the problem."""
     values, decrement, steps = problem.prior, np.inf, 0
     for power in np.arange(DECADES, -0.5, -0.5):
-        own = replace(problem, regularisation=problem.regularisation * 10.0**power)
-        values, decrement, count = _minimised(own, values)
+        scaled = replace(problem, regularisation=problem.regularisation * 10.0**power)
+        values, decrement, count = _minimised(scaled, values)
         steps += count
     return values, decrement, steps
 

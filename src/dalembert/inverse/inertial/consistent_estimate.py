@@ -126,17 +126,17 @@ class ConsistentInertias(EndedResult):
         for k, link in enumerate(self.links):
             sizes = (masses[k], before[k], self.distances[k], self.eigenvalues[k], self.plain_eigenvalues[k])
             rows.append((link, *(f"{size:.4g}" for size in sizes), "yes" if self.consistent[k] else "no"))
-        others = [("other parameter", "value", "± deviation", "prior")]
+        rows_of_others = [("other parameter", "value", "± deviation", "prior")]
         for name, *sizes in zip(
             self.names[count:], self.values[count:], self.deviations[count:], self.prior[count:], strict=True
         ):
-            others.append((name, f"{sizes[0]:.6g}", f"{sizes[1]:.2g}", f"{sizes[2]:.4g}"))
+            rows_of_others.append((name, f"{sizes[0]:.6g}", f"{sizes[1]:.2g}", f"{sizes[2]:.4g}"))
         largest = float(np.max(np.abs(np.concatenate([self.gradient.ravel(), self.other_gradient]))))
         return "\n".join(
             [
                 *text_table(rows),
                 "",
-                *([*text_table(others), ""] if len(others) > 1 else []),
+                *([*text_table(rows_of_others), ""] if len(rows_of_others) > 1 else []),
                 *base_table(self.base, self.base_values, self.base_deviations),
                 "",
                 *noise_lines(self.joints, self.noise, self.noise_is_known),

@@ -54,20 +54,20 @@ class ConsistentProblem:
         """Matrices E (links, 10, 4, 4) with θ_i = ⟨E_i, W Wᵀ⟩."""
         units = np.zeros((10, 4, 4))
         units[range(10), _ROWS, _COLUMNS] = units[range(10), _COLUMNS, _ROWS] = 1.0
-        found = np.empty((self.links, 10, 4, 4))
+        forms = np.empty((self.links, 10, 4, 4))
         for k, factor in enumerate(self.factors):
             slopes = of_ordered(factor @ units @ factor.T).T  # of θ by the ten entries of the symmetric matrix
-            found[k][:, _ROWS, _COLUMNS] = found[k][:, _COLUMNS, _ROWS] = np.where(_DIAGONAL, slopes, slopes / 2)
-        return found
+            forms[k][:, _ROWS, _COLUMNS] = forms[k][:, _COLUMNS, _ROWS] = np.where(_DIAGONAL, slopes, slopes / 2)
+        return forms
 
     def parameters(self, unknowns: np.ndarray) -> np.ndarray:
         """θ (parameters,) of unknowns z (parameters,)."""
-        inertial, others = self._split(unknowns)
-        own = parameters_of_factor(self.factors @ _triangular(inertial)).ravel()
+        inertial, other_parameters = self._split(unknowns)
+        of_links = parameters_of_factor(self.factors @ _triangular(inertial)).ravel()
         positive, prior = self.positive[10 * self.links :], self.prior[10 * self.links :]
-        moved = prior + others
-        moved[positive] = prior[positive] * np.exp(others[positive])
-        return np.concatenate([own, moved])
+        moved = prior + other_parameters
+        moved[positive] = prior[positive] * np.exp(other_parameters[positive])
+        return np.concatenate([of_links, moved])
 
     def value(self, unknowns: np.ndarray) -> float | complex:
         """Objective; complex for complex unknowns."""
@@ -76,31 +76,31 @@ class ConsistentProblem:
 
     def distance(self, unknowns: np.ndarray) -> float | complex:
         """Sum of the distances from the prior."""
-        inertial, others = self._split(unknowns)
-        matrices, logs = _triangular(inertial), others[self.positive[10 * self.links :]]
+        inertial, other_parameters = self._split(unknowns)
+        matrices, logs = _triangular(inertial), other_parameters[self.positive[10 * self.links :]]
         links = np.sum(matrices**2) - 2.0 * np.sum(inertial[:, _DIAGONAL]) - 4.0 * self.links
         return (links + np.sum(np.exp(logs) - 1.0 - logs)).item()
 
     def derivatives(self, unknowns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Gradient (parameters,) and Hessian (parameters, parameters) of the objective."""
-        inertial, others = self._split(unknowns)
+        inertial, other_parameters = self._split(unknowns)
         gamma, count = self.regularisation, 10 * self.links
         slope = self.triangle.T @ (self.triangle @ self.parameters(unknowns) - self.right)
         jacobian = np.zeros((len(unknowns), len(unknowns)))
         extra, pull = np.zeros_like(jacobian), np.zeros(len(unknowns))
         for k, matrix in enumerate(_triangular(inertial)):
-            own, scale = slice(10 * k, 10 * k + 10), np.where(_DIAGONAL, matrix[_ROWS, _COLUMNS], 1.0)
-            jacobian[own, own] = 2.0 * (self._forms[k] @ matrix)[:, _ROWS, _COLUMNS] * scale
-            weight = np.einsum("i,ijk->jk", slope[own], self._forms[k])
+            block, scale = slice(10 * k, 10 * k + 10), np.where(_DIAGONAL, matrix[_ROWS, _COLUMNS], 1.0)
+            jacobian[block, block] = 2.0 * (self._forms[k] @ matrix)[:, _ROWS, _COLUMNS] * scale
+            weight = np.einsum("i,ijk->jk", slope[block], self._forms[k])
             same = _COLUMNS[:, None] == _COLUMNS
             second = 2.0 * weight[_ROWS[:, None], _ROWS] * same * np.outer(scale, scale)
             second += np.diag(np.where(_DIAGONAL, 2.0 * (weight @ matrix)[_ROWS, _COLUMNS] * scale, 0.0))
             entries = matrix[_ROWS, _COLUMNS]
-            pull[own] = np.where(_DIAGONAL, entries**2 - 1.0, entries)
-            extra[own, own] = second + gamma * np.diag(np.where(_DIAGONAL, 2.0 * entries**2, 1.0))
+            pull[block] = np.where(_DIAGONAL, entries**2 - 1.0, entries)
+            extra[block, block] = second + gamma * np.diag(np.where(_DIAGONAL, 2.0 * entries**2, 1.0))
         tail = np.arange(count, len(unknowns))
         positive = self.positive[count:]
-        grown = np.exp(np.where(positive, others, 0.0))
+        grown = np.exp(np.where(positive, other_parameters, 0.0))
         jacobian[tail, tail] = np.where(positive, self.prior[count:] * grown, 1.0)
         pull[tail] = np.where(positive, 0.5 * (grown - 1.0), 0.0)
         extra[tail, tail] = np.where(positive, slope[count:] * self.prior[count:] * grown + 0.5 * gamma * grown, 0.0)
@@ -113,23 +113,23 @@ class ConsistentProblem:
         Eigenvalues of pseudo-inertias relative to the prior, and positive parameters relative to theirs, become at
         least ``least``.
         """
-        found = np.zeros(len(self.prior))
+        unknowns = np.zeros(len(self.prior))
         for k, factor in enumerate(self.factors):
-            own = slice(10 * k, 10 * k + 10)
-            target = np.linalg.solve(self._linear(k), parameters[own])
+            block = slice(10 * k, 10 * k + 10)
+            target = np.linalg.solve(self._linear(k), parameters[block])
             matrix = np.zeros((4, 4))
             matrix[_ROWS, _COLUMNS] = matrix[_COLUMNS, _ROWS] = target
             sizes, vectors = np.linalg.eigh(matrix)
             raised = (vectors * np.maximum(sizes, least)) @ vectors.T
             factor = np.linalg.cholesky(raised[::-1, ::-1])[::-1, ::-1]
-            found[own] = np.where(
+            unknowns[block] = np.where(
                 _DIAGONAL, np.log(np.where(_DIAGONAL, factor[_ROWS, _COLUMNS], 1.0)), factor[_ROWS, _COLUMNS]
             )
         tail = slice(10 * self.links, None)
         positive, prior = self.positive[tail], self.prior[tail]
         ratio = np.maximum(parameters[tail] / np.where(positive, prior, 1.0), least)
-        found[tail] = np.where(positive, np.log(ratio), parameters[tail] - prior)
-        return found
+        unknowns[tail] = np.where(positive, np.log(ratio), parameters[tail] - prior)
+        return unknowns
 
     def _linear(self, k: int) -> np.ndarray:
         """Matrix (10, 10) from the upper entries of W Wᵀ to the parameters of link k."""
@@ -137,17 +137,17 @@ class ConsistentProblem:
 
     def slope(self, parameters: np.ndarray) -> np.ndarray:
         """Gradient of the objective by θ (parameters,)."""
-        found = self.triangle.T @ (self.triangle @ parameters - self.right)
+        gradient = self.triangle.T @ (self.triangle @ parameters - self.right)
         for k in range(self.links):
-            own = slice(10 * k, 10 * k + 10)
-            found[own] += 0.5 * self.regularisation * np.einsum("ij,kij->k", *self._pulls(parameters, k))
+            block = slice(10 * k, 10 * k + 10)
+            gradient[block] += 0.5 * self.regularisation * np.einsum("ij,kij->k", *self._pulls(parameters, k))
         tail, kept = slice(10 * self.links, None), self.positive[10 * self.links :]
-        found[tail] += (
+        gradient[tail] += (
             0.5
             * self.regularisation
             * np.where(kept, 1 / np.where(kept, self.prior[tail], 1.0) - 1 / np.where(kept, parameters[tail], 1.0), 0.0)
         )
-        return found
+        return gradient
 
     def _pulls(self, parameters: np.ndarray, k: int) -> tuple[np.ndarray, np.ndarray]:
         """1 − X⁻¹ of X = U₀⁻¹ P U₀⁻ᵀ, and the derivatives (10, 4, 4) of X by the parameters of link k."""
@@ -163,16 +163,16 @@ class ConsistentProblem:
 
     def curvature(self, parameters: np.ndarray) -> np.ndarray:
         """Hessian (parameters, parameters) of the objective by θ: the inverse of the covariance."""
-        found = self.triangle.T @ self.triangle
+        hessian = self.triangle.T @ self.triangle
         for k in range(self.links):
-            own = slice(10 * k, 10 * k + 10)
+            block = slice(10 * k, 10 * k + 10)
             pull, slopes = self._pulls(parameters, k)
             inverse = np.eye(4) - pull
             half = inverse @ slopes
-            found[own, own] += 0.5 * self.regularisation * np.einsum("iab,jba->ij", half, half)
+            hessian[block, block] += 0.5 * self.regularisation * np.einsum("iab,jba->ij", half, half)
         tail = np.flatnonzero(self.positive)
-        found[tail, tail] += 0.5 * self.regularisation / parameters[tail] ** 2
-        return found
+        hessian[tail, tail] += 0.5 * self.regularisation / parameters[tail] ** 2
+        return hessian
 
     def linearised(self, parameters: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """S (rows, parameters) and b (rows,): by θ, SᵀS is the Hessian of the objective and Sᵀb its gradient.
@@ -182,12 +182,12 @@ class ConsistentProblem:
         root = np.sqrt(0.5 * self.regularisation)
         count, rows, right = len(parameters), [self.triangle], [self.triangle @ parameters - self.right]
         for k in range(self.links):
-            own = slice(10 * k, 10 * k + 10)
+            link = slice(10 * k, 10 * k + 10)
             slopes = self._slopes(k)
-            factor = np.linalg.cholesky(np.einsum("i,ijk->jk", parameters[own], slopes))
+            factor = np.linalg.cholesky(np.einsum("i,ijk->jk", parameters[link], slopes))
             both = np.linalg.solve(factor, np.swapaxes(np.linalg.solve(factor, slopes), 1, 2))
             block = np.zeros((16, count))
-            block[:, own] = root * both.reshape(10, 16).T
+            block[:, link] = root * both.reshape(10, 16).T
             rows.append(block)
             right.append(root * (factor.T @ factor - np.eye(4)).ravel())
         tail = np.flatnonzero(self.positive)
@@ -222,8 +222,8 @@ class ConsistentProblem:
 
 def _triangular(inertial: np.ndarray) -> np.ndarray:
     """W (links, 4, 4) of unknowns (links, 10)."""
-    found = np.zeros((len(inertial), 4, 4), dtype=inertial.dtype)
+    factors = np.zeros((len(inertial), 4, 4), dtype=inertial.dtype)
     entries = np.array(inertial)
     entries[:, _DIAGONAL] = np.exp(entries[:, _DIAGONAL])
-    found[:, _ROWS, _COLUMNS] = entries
-    return found
+    factors[:, _ROWS, _COLUMNS] = entries
+    return factors

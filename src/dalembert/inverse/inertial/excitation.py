@@ -66,10 +66,10 @@ class ExcitingTrajectory(EndedResult):
 
     def summary(self) -> str:
         """Return a table of the largest positions, velocities and accelerations, then the criterion."""
-        found = self.sampled(FINE * self.motion.sine.shape[1] / self.motion.period)[1:]
+        sampled = self.sampled(FINE * self.motion.sine.shape[1] / self.motion.period)[1:]
         rows = [("joint", "positions", "limits", "velocity", "limit", "acceleration", "limit")]
         for k, joint in enumerate(self.joints):
-            path, velocity, acceleration = (one[:, k] for one in found)
+            path, velocity, acceleration = (table[:, k] for table in sampled)
             rows.append(
                 (
                     joint,
@@ -180,24 +180,28 @@ def exciting_trajectory(
             return float(np.log(condition)), condition
         return float(-np.mean(np.log(singular)) - np.mean(np.log(norms))), condition
 
-    found = [scores(table) for table in tables]
-    best = int(np.argmin([score for score, _ in found]))
-    shape, (score, condition) = shapes[best], found[best]
-    history, step, slow = list(np.minimum.accumulate([one for one, _ in found])), FIRST, 1 / np.sqrt(shape.size + 1)
+    scored = [scores(table) for table in tables]
+    best = int(np.argmin([score for score, _ in scored]))
+    shape, (score, condition) = shapes[best], scored[best]
+    history, step, slow = (
+        list(np.minimum.accumulate([value for value, _ in scored])),
+        FIRST,
+        1 / np.sqrt(shape.size + 1),
+    )
     parent, least = shape, score
     for _ in range(evaluations):
         child = np.clip(parent + step * rng.standard_normal(size), -1.0, 1.0)
-        own = scores(regressor(*largest_motion(child, period, limits).motion(times)))
-        better = own[0] < least
+        child_score = scores(regressor(*largest_motion(child, period, limits).motion(times)))
+        better = child_score[0] < least
         step *= np.exp(slow if better else -slow / 4)  # constant at one success in five
         if better:
-            parent, least = child, own[0]
+            parent, least = child, child_score[0]
         if least < score:
-            shape, (score, condition) = child, own
+            shape, (score, condition) = child, child_score
         if step < SMALLEST:
             parent, least, step = rng.uniform(-1.0, 1.0, size), np.inf, FIRST
         history.append(score)
-    usual = np.median(np.array(found), axis=0)
+    usual = np.median(np.array(scored), axis=0)
     message = (
         f"The condition number of the scaled columns is {condition:.3g}, that of random motions {usual[1]:.3g} "
         "(median). All limits hold at all times."

@@ -34,12 +34,12 @@ class JointLimits:
     acceleration: Annotated[np.ndarray, Over("joint", name="acceleration_limit")]
 
     def __post_init__(self) -> None:
-        given = [np.atleast_1d(np.asarray(one, dtype=float)) for one in vars(self).values()]
-        for name, one in zip(vars(self), given, strict=True):
-            object.__setattr__(self, name, one)
-        lower, upper, velocity, acceleration = given
-        if len({one.shape for one in given}) > 1 or lower.ndim != 1:
-            shapes = ", ".join(str(one.shape) for one in given)
+        limits = [np.atleast_1d(np.asarray(limit, dtype=float)) for limit in vars(self).values()]
+        for name, limit in zip(vars(self), limits, strict=True):
+            object.__setattr__(self, name, limit)
+        lower, upper, velocity, acceleration = limits
+        if len({limit.shape for limit in limits}) > 1 or lower.ndim != 1:
+            shapes = ", ".join(str(limit.shape) for limit in limits)
             raise InputError(f"JointLimits: the arrays have the shapes {shapes}; expected (joints,) for all")
         for k in range(len(lower)):
             if not (np.isfinite(lower[k]) and np.isfinite(upper[k]) and lower[k] < upper[k]):

@@ -71,8 +71,8 @@ def log_cholesky_jacobian(logs: np.ndarray) -> np.ndarray:
 
 def _factor(logs: np.ndarray) -> np.ndarray:
     """Factor U (..., 4, 4) of log-Cholesky parameters (..., 10)."""
-    found = np.zeros((*logs.shape[:-1], 4, 4), dtype=logs.dtype)
-    found[..., _ROWS[:3], _COLUMNS[:3]] = np.exp(logs[..., 1:4])
-    found[..., _ROWS[3:], _COLUMNS[3:]] = logs[..., 4:]
-    found[..., 3, 3] = 1.0
-    return np.exp(logs[..., :1])[..., None] * found
+    factor = np.zeros((*logs.shape[:-1], 4, 4), dtype=logs.dtype)
+    factor[..., _ROWS[:3], _COLUMNS[:3]] = np.exp(logs[..., 1:4])
+    factor[..., _ROWS[3:], _COLUMNS[3:]] = logs[..., 4:]
+    factor[..., 3, 3] = 1.0
+    return np.exp(logs[..., :1])[..., None] * factor

@@ -126,16 +126,16 @@ def filtered_motion(
     """
     from scipy.interpolate import make_interp_spline
 
-    along, path, effort = (np.asarray(one, dtype=float) for one in (times, positions, torques))
+    along, path, effort = (np.asarray(record, dtype=float) for record in (times, positions, torques))
     if along.ndim != 1 or path.ndim != 2 or path.shape != effort.shape or len(path) != len(along):
         raise InputError(
             f"filtered_motion: times, positions and torques have the shapes {along.shape}, {path.shape} and "
             f"{effort.shape}; expected (samples,), (samples, joints) and (samples, joints)"
         )
-    if not all(np.all(np.isfinite(one)) for one in (along, path, effort)):
+    if not all(np.all(np.isfinite(record)) for record in (along, path, effort)):
         raise InputError("filtered_motion: a time, position or torque is not finite. Remove this sample, and resample")
     rate = _rate(along)
-    slow, quiet = (lowpass(one, rate, cutoff, order=order) for one in (path, effort))
+    slow, quiet = (lowpass(record, rate, cutoff, order=order) for record in (path, effort))
     curve = make_interp_spline(along - along[0], slow, k=DEGREE)
     kept, step = kept_samples(len(along), rate, cutoff, decimation)
     velocities, accelerations = (curve.derivative(k)(along[kept] - along[0]) for k in (1, 2))

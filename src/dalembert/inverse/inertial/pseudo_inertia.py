@@ -43,11 +43,11 @@ def pseudo_inertia(values: np.ndarray) -> np.ndarray:
     values = np.asarray(values)
     tensor = np.zeros((*values.shape[:-1], 3, 3), dtype=values.dtype)
     tensor[..., _ROWS, _COLUMNS] = tensor[..., _COLUMNS, _ROWS] = values[..., 4:]
-    found = np.empty((*values.shape[:-1], 4, 4), dtype=values.dtype)
-    found[..., 0, 0] = values[..., 0]
-    found[..., 0, 1:] = found[..., 1:, 0] = values[..., 1:4]
-    found[..., 1:, 1:] = _opposite(tensor, 0.5)
-    return found
+    matrices = np.empty((*values.shape[:-1], 4, 4), dtype=values.dtype)
+    matrices[..., 0, 0] = values[..., 0]
+    matrices[..., 0, 1:] = matrices[..., 1:, 0] = values[..., 1:4]
+    matrices[..., 1:, 1:] = _opposite(tensor, 0.5)
+    return matrices
 
 
 def inertial_parameters(pseudo: np.ndarray) -> np.ndarray:

@@ -130,20 +130,20 @@ def simulated_recovery(
     size = noise * np.sqrt(np.mean(exact**2, axis=0))
     base = base_parameters(table, names)
     true = base.values(np.asarray(truth))
-    found = []
+    recovered = []
     for run in range(runs):
         rng = np.random.default_rng((seed, run))
         torques = exact + size * rng.standard_normal(exact.shape)
-        one = identify_inertias(
+        estimate = identify_inertias(
             table, torques, names, prior, links=links, positive=positive, regularisation=regularisation, base=base
         )
         inside = np.array(
-            [low <= value <= high for value, (low, high) in zip(true, one.intervals(level).values(), strict=True)]
+            [low <= value <= high for value, (low, high) in zip(true, estimate.intervals(level).values(), strict=True)]
         )
-        quantile = (one.intervals(level)[base.base[0]][1] - one.base_values[0]) / one.base_deviations[0]
-        plain = np.abs(one.plain_values - true) <= quantile * np.sqrt(np.diagonal(one.plain_covariance))
+        quantile = (estimate.intervals(level)[base.base[0]][1] - estimate.base_values[0]) / estimate.base_deviations[0]
+        plain = np.abs(estimate.plain_values - true) <= quantile * np.sqrt(np.diagonal(estimate.plain_covariance))
         added = rng.standard_normal(other.shape)
-        ratio = (one.torques(unseen) - other) / size - added
-        largest = float(np.max(np.abs(np.concatenate([one.gradient.ravel(), one.other_gradient]))))
-        found.append((inside, plain, rms(ratio), rms(added), one.consistent, one.decrement, largest))
-    return Recovery(base.base, level, *(np.array(column) for column in zip(*found, strict=True)))
+        ratio = (estimate.torques(unseen) - other) / size - added
+        largest = float(np.max(np.abs(np.concatenate([estimate.gradient.ravel(), estimate.other_gradient]))))
+        recovered.append((inside, plain, rms(ratio), rms(added), estimate.consistent, estimate.decrement, largest))
+    return Recovery(base.base, level, *(np.array(column) for column in zip(*recovered, strict=True)))

@@ -42,12 +42,12 @@ def checked_torques(torques: np.ndarray, regressor: np.ndarray, where: str) -> n
 
 def checked_deviations(deviations: object, joints: int, where: str) -> np.ndarray:
     """Return standard deviations of torques (joints,), from one number or one a joint."""
-    found = np.asarray(deviations, dtype=float)
-    if found.shape not in ((), (joints,)) or not np.all(np.isfinite(found)) or not np.all(found > 0):
+    checked = np.asarray(deviations, dtype=float)
+    if checked.shape not in ((), (joints,)) or not np.all(np.isfinite(checked)) or not np.all(checked > 0):
         raise InputError(
             f"{where}: deviations are {deviations}; expected a positive number, or {joints} of them, one for each joint"
         )
-    return np.broadcast_to(found, (joints,)).copy()
+    return np.broadcast_to(checked, (joints,)).copy()
 
 
 def _place(table: np.ndarray) -> str:

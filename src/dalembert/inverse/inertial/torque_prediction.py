@@ -64,11 +64,11 @@ class TorquePrediction(EndedResult):
     def __post_init__(self) -> None:
         joints = len(self.inertias.joints)
         for name, times in (("", self.times), ("unseen_", self.unseen_times)):
-            for one in ("measured", "predicted"):
-                shape = np.shape(getattr(self, name + one))
+            for attribute in ("measured", "predicted"):
+                shape = np.shape(getattr(self, name + attribute))
                 if shape != (len(times), joints):
                     raise InputError(
-                        f"TorquePrediction: {name}{one} has the shape {shape}; expected ({len(times)}, {joints})"
+                        f"TorquePrediction: {name}{attribute} has the shape {shape}; expected ({len(times)}, {joints})"
                     )
 
     @property

@@ -43,23 +43,24 @@ def inherited(fit: Fit | None, posed: PosedPosterior) -> Iterator[Finding]:
 
 
 def _correlated(finding: Finding) -> str:
-    found = finding.values
+    values = finding.values
     message = (
-        f"The residuals of {found['channel']!r} are correlated (lag-1 autocorrelation {found['autocorrelation']:.2f})."
+        f"The residuals of {values['channel']!r} are correlated (lag-1 autocorrelation "
+        f"{values['autocorrelation']:.2f})."
     )
-    if "largest_factor" in found:
-        message += f" With correlated noise, deviations are up to {found['largest_factor']:.2g} times as large."
+    if "largest_factor" in values:
+        message += f" With correlated noise, deviations are up to {values['largest_factor']:.2g} times as large."
     return message
 
 
-def contradictions(found: Centred) -> Iterator[Finding]:
+def contradictions(centred: Centred) -> Iterator[Finding]:
     """Yield findings on priors that contradict the data, by the linearised likelihood at the mode."""
-    if found.data_information is None:
+    if centred.data_information is None:
         return
-    target = found.target
+    target = centred.target
     slope = target.coordinates.slope(target.centre)
-    _, gradient = target.likelihood.linearise(found.vector)
-    yield from prior_conflicts(target.parameters, found.vector, slope, found.data_information, slope * gradient)
+    _, gradient = target.likelihood.linearise(centred.vector)
+    yield from prior_conflicts(target.parameters, centred.vector, slope, centred.data_information, slope * gradient)
 
 
 def draw_findings(parameters: Parameters, draws: np.ndarray) -> Iterator[Finding]:
@@ -99,7 +100,8 @@ def _between(parameters: Parameters, draws: np.ndarray) -> np.ndarray:
     """Where draws lie between the bounds, from 0 to 1, in the coordinates of the search."""
     logs = UnboundedCoordinates(parameters).logarithmic
     lower, upper, values = (
-        np.where(logs, np.log(np.where(logs, one, 1.0)), one) for one in (parameters.lower, parameters.upper, draws)
+        np.where(logs, np.log(np.where(logs, column, 1.0)), column)
+        for column in (parameters.lower, parameters.upper, draws)
     )
     return (values - lower) / (upper - lower)
 
@@ -129,7 +131,7 @@ def separate_modes(modes: Modes, places: np.ndarray, sampler: Sampler) -> Iterat
     if len(set(group[:count])) == 1:
         return
     model = modes.best.target.problem.model
-    vectors = [one.vector[: len(model.parameters)] for one in modes.centred]
+    vectors = [centred.vector[: len(model.parameters)] for centred in modes.centred]
     values: dict[str, float] = {"modes": count}
     for number, (vector, share) in enumerate(zip(vectors, modes.shares, strict=True), 1):
         values |= {f"mode_{number}.{name}": float(value) for name, value in model.parameters.mapping(vector).items()}

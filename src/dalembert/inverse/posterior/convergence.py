@@ -43,26 +43,26 @@ def convergence(draws: np.ndarray) -> Convergence:
     columns = [np.ascontiguousarray(draws[:, :, k]) for k in range(count)]
     several = len(draws) > 1
     return Convergence(
-        np.array([float(arviz.rhat(one)) if several else np.nan for one in columns]),
-        np.array([float(arviz.ess(one)) for one in columns]),
-        np.array([float(arviz.ess(one, method="tail")) for one in columns]),
-        np.array([np.std(one, ddof=1) / np.sqrt(float(arviz.ess(one, method="mean"))) for one in columns]),
+        np.array([float(arviz.rhat(column)) if several else np.nan for column in columns]),
+        np.array([float(arviz.ess(column)) for column in columns]),
+        np.array([float(arviz.ess(column, method="tail")) for column in columns]),
+        np.array([np.std(column, ddof=1) / np.sqrt(float(arviz.ess(column, method="mean"))) for column in columns]),
     )
 
 
-def ended(names: Sequence[str], found: Convergence, chains: int, draws: int) -> Iterator[Finding]:
+def ended(names: Sequence[str], convergence_of_draws: Convergence, chains: int, draws: int) -> Iterator[Finding]:
     """Yield how sampling ended, from the diagnostics of the parameters with these names."""
-    apart = [k for k in range(len(names)) if found.r_hat[k] > LARGEST_R_HAT]
-    sizes = np.minimum(found.bulk, found.tail)
+    apart = [k for k in range(len(names)) if convergence_of_draws.r_hat[k] > LARGEST_R_HAT]
+    sizes = np.minimum(convergence_of_draws.bulk, convergence_of_draws.tail)
     few = [k for k in range(len(names)) if not sizes[k] >= LEAST_DRAWS]
     if apart:
-        worst = max(apart, key=lambda k: found.r_hat[k])
+        worst = max(apart, key=lambda k: convergence_of_draws.r_hat[k])
         yield Finding(
             "chains-differ",
             "error",
-            {"parameters": ", ".join(names[k] for k in apart), "r_hat": float(found.r_hat[worst])},
+            {"parameters": ", ".join(names[k] for k in apart), "r_hat": float(convergence_of_draws.r_hat[worst])},
             f"The chains have not converged: R-hat of {listed([repr(names[k]) for k in apart])} is up to "
-            f"{found.r_hat[worst]:.3f}, above {LARGEST_R_HAT:g}.",
+            f"{convergence_of_draws.r_hat[worst]:.3f}, above {LARGEST_R_HAT:g}.",
             "Increase warmup and draws. If R-hat stays large, the posterior has several maxima: narrow the bounds to "
             "one, or give priors.",
         )
@@ -87,7 +87,11 @@ def ended(names: Sequence[str], found: Convergence, chains: int, draws: int) -> 
             "Use chains=4.",
         )
     if not apart and not few and chains > 1:
-        values = {"r_hat": float(np.max(found.r_hat)), "effective": float(np.min(sizes)), "draws": chains * draws}
+        values = {
+            "r_hat": float(np.max(convergence_of_draws.r_hat)),
+            "effective": float(np.min(sizes)),
+            "draws": chains * draws,
+        }
         message = (
             f"{chains} chains of {draws} draws converged: R-hat is at most {values['r_hat']:.3f}, and the effective "
             f"sample size at least {values['effective']:.0f}."

@@ -58,11 +58,11 @@ class Modes:
     @property
     def targets(self) -> tuple[Target, ...]:
         """The density in the coordinates in which each mode is round."""
-        return tuple(one.target for one in self.centred)
+        return tuple(mode.target for mode in self.centred)
 
     def of(self, problem: Problem) -> "Modes":
         """Return the same modes with the model of another problem."""
-        known = tuple(replace(one, target=one.target.of(problem)) for one in self.centred)
+        known = tuple(replace(mode, target=mode.target.of(problem)) for mode in self.centred)
         return replace(self, centred=known)
 
     def of_chains(self, chains: int) -> np.ndarray:
@@ -152,7 +152,7 @@ def _height(mode: Centred) -> float:
 
 def _apart(end: Centred, known: Centred) -> bool:
     """Return True if the density falls between two ends, which are then two modes."""
-    first, last = (one.target.centre for one in (end, known))
+    first, last = (mode.target.centre for mode in (end, known))
     if min(np.linalg.norm(known.target.places(first)), np.linalg.norm(end.target.places(last))) < NEAR:
         return False
     parts = np.linspace(0.0, 1.0, BETWEEN + 2)[:, None]

@@ -27,13 +27,15 @@ class _Statistics:
 
     def store(self, to: Store, settings: dict[str, Any], name: str, value: Mapping[str, np.ndarray]) -> None:
         settings[name] = sorted(value)
-        for one, array in value.items():
+        for statistic, array in value.items():
             array = array.astype(np.int8) if array.dtype == bool else array
-            to.variables[f"statistic_{one}"] = (_OF_DRAWS, array)
+            to.variables[f"statistic_{statistic}"] = (_OF_DRAWS, array)
 
     def load(self, source: Source, settings: Mapping[str, Any], name: str) -> dict[str, np.ndarray]:
-        arrays = {one: source.arrays[f"statistic_{one}"] for one in settings[name]}
-        return {one: array.astype(bool) if array.dtype == np.int8 else array for one, array in arrays.items()}
+        arrays = {statistic: source.arrays[f"statistic_{statistic}"] for statistic in settings[name]}
+        return {
+            statistic: array.astype(bool) if array.dtype == np.int8 else array for statistic, array in arrays.items()
+        }
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,9 +175,9 @@ class Posterior(EndedResult):
         """Quantiles of the posterior predictive, shape (samples, channels) each; NaN where no value was compared."""
         check_level(level, "band")
         lower, upper = np.full((2, *self.replicas.shape[1:]), np.nan)
-        there = np.all(np.isfinite(self.replicas), axis=0)
-        ends = np.quantile(self.replicas[:, there], [(1 - level) / 2, (1 + level) / 2], axis=0)
-        lower[there], upper[there] = ends
+        compared = np.all(np.isfinite(self.replicas), axis=0)
+        ends = np.quantile(self.replicas[:, compared], [(1 - level) / 2, (1 + level) / 2], axis=0)
+        lower[compared], upper[compared] = ends
         return lower, upper
 
     @property

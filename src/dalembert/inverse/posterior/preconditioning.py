@@ -72,10 +72,10 @@ def centred(
         if number and np.max(np.abs(place), initial=0.0) < NEAR:
             break
     information, data = _information(target, point, gradients=gradients)
-    found = replace(target, centre=point, factor=_factor(information))
-    found = _narrowed(found) if local else found
-    rows = target.coordinates.slope(point)[:, None] * found.factor
-    return Centred(found, target.coordinates.vectors(point), rows @ rows.T, data)
+    result = replace(target, centre=point, factor=_factor(information))
+    result = _narrowed(result) if local else result
+    rows = target.coordinates.slope(point)[:, None] * result.factor
+    return Centred(result, target.coordinates.vectors(point), rows @ rows.T, data)
 
 
 def _narrowed(target: Target) -> Target:
@@ -140,8 +140,8 @@ def _curvatures(target: Target, point: np.ndarray) -> np.ndarray:
     moved = STEP * np.eye(len(point))
     vectors = target.vectors(np.concatenate([point[None], point + moved, point - moved]))
     middle, above, below = np.split(target.likelihood.evaluate(vectors), [1, 1 + len(point)])
-    found = -(above - 2 * middle + below) / STEP**2
-    return np.where(np.isfinite(found) & (found > 0), found, 0.0)
+    curvatures = -(above - 2 * middle + below) / STEP**2
+    return np.where(np.isfinite(curvatures) & (curvatures > 0), curvatures, 0.0)
 
 
 def _factor(information: np.ndarray) -> np.ndarray:

@@ -31,41 +31,41 @@ class PriorDensity:
     @cached_property
     def _joint(self) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
         """Columns, mean and whitening matrix of the priors of several parameters."""
-        found = joint_priors(self.parameters)
-        return [(columns, np.array(prior.mean), prior.whitening()) for prior, columns in found]
+        joint = joint_priors(self.parameters)
+        return [(columns, np.array(prior.mean), prior.whitening()) for prior, columns in joint]
 
     def __call__(self, vectors: np.ndarray) -> np.ndarray:
         """Logarithm of the density (...,) at vectors (..., parameters)."""
-        found = np.zeros(vectors.shape[:-1])
+        density = np.zeros(vectors.shape[:-1])
         for k in self._alone:
-            found = found + self.parameters.items[k].distribution.log_density(vectors[..., k])
+            density = density + self.parameters.items[k].distribution.log_density(vectors[..., k])
         for columns, mean, matrix in self._joint:
             white = (vectors[..., columns] - mean) @ matrix.T
             constant = np.sum(np.log(np.diag(matrix))) - len(mean) / 2 * np.log(2 * np.pi)
-            found = found - 0.5 * np.sum(white**2, axis=-1) + constant
-        return found
+            density = density - 0.5 * np.sum(white**2, axis=-1) + constant
+        return density
 
     def gradient(self, vector: np.ndarray) -> np.ndarray:
         """Its derivative at a vector, both (parameters,)."""
-        found = np.zeros(len(vector))
+        gradient = np.zeros(len(vector))
         for k in self._alone:
-            found[k] = self.parameters.items[k].distribution.slope(vector[k])
+            gradient[k] = self.parameters.items[k].distribution.slope(vector[k])
         for columns, mean, matrix in self._joint:
-            found[columns] = -matrix.T @ matrix @ (vector[columns] - mean)
-        return found
+            gradient[columns] = -matrix.T @ matrix @ (vector[columns] - mean)
+        return gradient
 
     def draws(self, count: int, seed: int) -> np.ndarray:
         """Vectors drawn from the truncated prior, shape (count, parameters)."""
         random, parameters = np.random.default_rng(seed), self.parameters
-        found = np.empty((count, len(parameters)))
+        vectors = np.empty((count, len(parameters)))
         for k in self._alone:
             item = parameters.items[k]
-            found[:, k] = item.distribution.within(random.random(count), item.lower, item.upper)
+            vectors[:, k] = item.distribution.within(random.random(count), item.lower, item.upper)
         for columns, mean, matrix in self._joint:
             factor, missing = np.linalg.inv(matrix), np.arange(count)
             lower, upper = parameters.lower[columns], parameters.upper[columns]
             while len(missing):
-                found[np.ix_(missing, columns)] = mean + random.standard_normal((len(missing), len(mean))) @ factor.T
-                there = found[np.ix_(missing, columns)]
-                missing = missing[np.any((there < lower) | (there > upper), axis=1)]
-        return found
+                vectors[np.ix_(missing, columns)] = mean + random.standard_normal((len(missing), len(mean))) @ factor.T
+                drawn = vectors[np.ix_(missing, columns)]
+                missing = missing[np.any((drawn < lower) | (drawn > upper), axis=1)]
+        return vectors

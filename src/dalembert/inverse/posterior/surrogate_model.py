@@ -42,7 +42,7 @@ class SurrogateModel(Wrapped):
         flat[np.ix_(inside, self.places)] = self.surrogate(points[inside])
         values = np.zeros((len(points), len(self.coordinate.values), len(self.channels)))
         values[:, :, self.problem.columns] = compared
-        return Responses(values, tuple(None if one else OUTSIDE for one in inside))
+        return Responses(values, tuple(None if is_inside else OUTSIDE for is_inside in inside))
 
 
 def box_of(problem: Problem, vector: np.ndarray, deviations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

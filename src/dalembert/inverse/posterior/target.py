@@ -67,8 +67,8 @@ class Target:
 
     def density(self, points: np.ndarray, vectors: np.ndarray, likelihoods: np.ndarray) -> np.ndarray:
         """Log density (batch,) from log-likelihoods (batch,) at coordinates z and vectors (batch, parameters) each."""
-        found = likelihoods + self.prior(vectors) + self.coordinates.log_slope(points)
-        return np.where(np.isnan(found), -np.inf, found)
+        density = likelihoods + self.prior(vectors) + self.coordinates.log_slope(points)
+        return np.where(np.isnan(density), -np.inf, density)
 
     def linearise(self, place: np.ndarray) -> tuple[float, np.ndarray]:
         """Log density and its gradient (parameters,) at y (parameters,); −∞ and 0 where the simulation failed."""
@@ -80,5 +80,7 @@ class Target:
             return -np.inf, np.zeros(len(place))
         value = value + float(self.prior(vector)) + float(self.coordinates.log_slope(point))
         slope = self.coordinates.slope(point) * (gradient + self.prior.gradient(vector))
-        found = self.factor.T @ (slope + self.coordinates.log_slope_gradient(point))
-        return (value, found) if np.isfinite(value) and np.all(np.isfinite(found)) else (-np.inf, np.zeros(len(place)))
+        result = self.factor.T @ (slope + self.coordinates.log_slope_gradient(point))
+        return (
+            (value, result) if np.isfinite(value) and np.all(np.isfinite(result)) else (-np.inf, np.zeros(len(place)))
+        )

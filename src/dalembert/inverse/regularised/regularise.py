@@ -212,9 +212,9 @@ def _above_noise(many: Smoothed, residual: np.ndarray, mu: float) -> Iterator[Fi
 
 def _findings(before: float, mu: float, left: float) -> tuple[Finding, ...]:
     """What was still moving in the last round."""
-    found = []
+    findings = []
     if abs(mu - before) > _SETTLED * before:
-        found.append(
+        findings.append(
             Finding(
                 "weight-not-settled",
                 "warning",
@@ -224,7 +224,7 @@ def _findings(before: float, mu: float, left: float) -> tuple[Finding, ...]:
             )
         )
     if left > _CONVERGED:
-        found.append(
+        findings.append(
             Finding(
                 "values-not-settled",
                 "warning",
@@ -233,7 +233,7 @@ def _findings(before: float, mu: float, left: float) -> tuple[Finding, ...]:
                 "Take more rounds, or start from these values.",
             )
         )
-    return tuple(found)
+    return tuple(findings)
 
 
 def _linearised(
@@ -248,7 +248,9 @@ def _linearised(
     many = Smoothed(matrix, matrix @ (vector / scale) - residual[used], penalty)
     if many.blind.size:
         undetermined = np.any(np.abs(many.blind) > _SEEN, axis=1)
-        names = [repr(name) for name, one in zip(problem.model.parameters.names, undetermined, strict=True) if one]
+        names = [
+            repr(name) for name, is_free in zip(problem.model.parameters.names, undetermined, strict=True) if is_free
+        ]
         more = [f"{len(names) - _NAMED} others"] if len(names) > _NAMED + 1 else names[_NAMED:]
         raise InputError(
             f"regularise: neither the data nor the penalty determine {listed([*names[:_NAMED], *more])}. Name them in "
@@ -259,13 +261,13 @@ def _linearised(
     return at, many, many.standard.corner(), float(discrepancy)
 
 
-def _weight(asked: float | str, corner: float, discrepancy: float) -> float:
-    if asked == DISCREPANCY and np.isinf(discrepancy):
+def _weight(weight: float | str, corner: float, discrepancy: float) -> float:
+    if weight == DISCREPANCY and np.isinf(discrepancy):
         raise InputError(
             "regularise: parameters whose penalty is 0 explain the data within their standard deviations, so that the "
             "discrepancy principle gives no weight. Correct the deviations of the data, or give a weight"
         )
-    return {L_CURVE: corner, DISCREPANCY: discrepancy}[asked] if isinstance(asked, str) else float(asked)
+    return {L_CURVE: corner, DISCREPANCY: discrepancy}[weight] if isinstance(weight, str) else float(weight)
 
 
 @dataclass(frozen=True)
@@ -295,8 +297,8 @@ def _minimised(problem: Problem, many: Smoothed, mu: float, near: np.ndarray, st
         return np.sum(squares, axis=(1, 2)) + np.sum((places @ penalty.T) ** 2, axis=1)
 
     shares = np.concatenate([[0.0], 0.5 ** np.arange(_HALVINGS)])
-    before, *others = fitness_of(near + shares[:, None] * (goal - near))
-    lower = [share for share, value in zip(shares[1:], others, strict=True) if value < before]
+    before, *rest = fitness_of(near + shares[:, None] * (goal - near))
+    lower = [share for share, value in zip(shares[1:], rest, strict=True) if value < before]
     base = near + (lower[0] if lower else 0.0) * (goal - near)
 
     def place(u: np.ndarray) -> np.ndarray:
@@ -312,13 +314,13 @@ def _minimised(problem: Problem, many: Smoothed, mu: float, near: np.ndarray, st
         return solve_triangular(factor, slope + 2 * penalty.T @ (penalty @ z), lower=True)
 
     reach = np.full(len(base), _REACH)
-    found = Minimiser("L-BFGS-B", _STEPS).minimise(
+    minimum = Minimiser("L-BFGS-B", _STEPS).minimise(
         lambda batch: fitness_of(np.array([place(u) for u in batch])), -reach, reach, 0,
         start=np.zeros(len(base)), gradient=gradient,
     )  # fmt: skip
-    if not np.isfinite(found.fitness):
+    if not np.isfinite(minimum.fitness):
         raise SolveError(
             f"the model cannot be simulated near the start: {problem.journal.failures[0]}. "
             "Start from other values, or give a larger weight"
         )
-    return place(found.x)
+    return place(minimum.x)

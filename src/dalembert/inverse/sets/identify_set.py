@@ -133,7 +133,7 @@ def identify_set(
     at = "" if nearest is None else named(model, search.vectors(nearest.point))
     share = float(np.max(surrogate.error / errors.ravel()))
     outer = None if paving.hull is None else Box(names, *(search.vectors(corner) for corner in paving.hull))
-    found = ParameterSet(
+    result = ParameterSet(
         parameters=model.parameters,
         data=data,
         error=errors,
@@ -159,31 +159,31 @@ def identify_set(
         ),
         findings=(*findings, *(() if outer is None else findings_at(model, outer.middle))),
     )
-    middle = np.full(len(names), np.nan) if found.outer is None else found.outer.middle
-    journal.tell(Finished(found.success, found.status, np.nan, middle, found.runs))
-    return found
+    middle = np.full(len(names), np.nan) if result.outer is None else result.outer.middle
+    journal.tell(Finished(result.success, result.status, np.nan, middle, result.runs))
+    return result
 
 
-def _resolution(given: float | None, parameters: int) -> float:
-    if given is None:
+def _resolution(resolution: float | None, parameters: int) -> float:
+    if resolution is None:
         return RESOLUTIONS.get(parameters, 1 / 16)
-    if not 0 < given < 1:
-        raise InputError(f"resolution is {given}; expected a part of the width, a number between 0 and 1")
-    return float(given)
+    if not 0 < resolution < 1:
+        raise InputError(f"resolution is {resolution}; expected a part of the width, a number between 0 and 1")
+    return float(resolution)
 
 
-def _errors(given: float | Mapping[str, float] | ArrayLike, data: Measurements) -> np.ndarray:
+def _errors(error: float | Mapping[str, float] | ArrayLike, data: Measurements) -> np.ndarray:
     """Largest errors of shape (samples, channels)."""
-    if isinstance(given, Mapping):
-        for name in given:
+    if isinstance(error, Mapping):
+        for name in error:
             require_known("channel", name, data.channels, "error")
-        missing = [name for name in data.channels if name not in given]
+        missing = [name for name in data.channels if name not in error]
         if missing:
             raise InputError(
                 f"no error given for channel {missing[0]!r}; give one for each of {', '.join(data.channels)}"
             )
-        given = [given[name] for name in data.channels]
-    errors = numbers_of(given, "identify_set", "error")
+        error = [error[name] for name in data.channels]
+    errors = numbers_of(error, "identify_set", "error")
     if errors.shape not in ((), data.values.shape[1:], data.values.shape):
         raise InputError(
             f"an error of shape {errors.shape} was given; expected one number, (channels,) = {data.values.shape[1:]} "

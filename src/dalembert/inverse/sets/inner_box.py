@@ -28,8 +28,8 @@ def inner_box(boxes: np.ndarray) -> np.ndarray | None:
     seeds = [central, *np.argsort(-volumes, kind="stable")[:SEEDS]]
     d = boxes.shape[2]
     orders = [[list(range(d))], *([[k], [j for j in range(d) if j != k]] for k in range(d) if d > 1)]
-    found = [_grown(boxes, boxes[seed], order) for seed in seeds for order in orders]
-    return max(found, key=lambda box: float(np.prod(box[1] - box[0])))
+    grown = [_grown(boxes, boxes[seed], order) for seed in seeds for order in orders]
+    return max(grown, key=lambda box: float(np.prod(box[1] - box[0])))
 
 
 def _grown(boxes: np.ndarray, seed: np.ndarray, order: list[list[int]]) -> np.ndarray:

@@ -112,8 +112,8 @@ class Inversion:
         boxes = np.concatenate([paving.inside, paving.boundary])
         points = np.array(self.members).reshape(len(self.members), boxes.shape[2])
         slack = SLACK * np.ptp(boxes.reshape(-1, boxes.shape[2]), axis=0) if len(boxes) else 0.0
-        held = [bool(np.any(np.all((boxes[:, 0] - slack <= p) & (p <= boxes[:, 1] + slack), axis=1))) for p in points]
-        return points[~np.array(held, dtype=bool)]
+        inside = [bool(np.any(np.all((boxes[:, 0] - slack <= p) & (p <= boxes[:, 1] + slack), axis=1))) for p in points]
+        return points[~np.array(inside, dtype=bool)]
 
     def _excess(self, values: np.ndarray) -> np.ndarray:
         """|values − data| in units of the error, both (n, outputs); infinite where a run failed."""

@@ -108,8 +108,8 @@ def pave(
 
 def enclosures(polynomial: ChebyshevPolynomial, boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Bounds (boxes, outputs) twice, from Bernstein coefficients as they are: halving the boxes makes them sharp."""
-    found = bounds(polynomial, boxes[:, 0], boxes[:, 1], "bernstein", gap=AS_THEY_ARE)
-    return found.lower, found.upper
+    enclosure = bounds(polynomial, boxes[:, 0], boxes[:, 1], "bernstein", gap=AS_THEY_ARE)
+    return enclosure.lower, enclosure.upper
 
 
 def _halved(boxes: np.ndarray, along: np.ndarray) -> np.ndarray:

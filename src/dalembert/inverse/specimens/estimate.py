@@ -184,9 +184,9 @@ def _alone(values: np.ndarray, variances: np.ndarray) -> float:
 
 def _findings(estimates: Estimates, lower: np.ndarray, upper: np.ndarray, level: float) -> list[Finding]:
     count = len(estimates.specimens)
-    found = [] if count >= FEW else [_few(count)]
+    findings = [] if count >= FEW else [_few(count)]
     ends = zip(estimates.names, estimates.units, lower.tolist(), upper.tolist(), strict=True)
-    return [*found, *(_equal(name, unit, above, level) for name, unit, below, above in ends if below == 0)]
+    return [*findings, *(_equal(name, unit, above, level) for name, unit, below, above in ends if below == 0)]
 
 
 def _few(count: int) -> Finding:
@@ -227,8 +227,11 @@ def _of_experiments(fit: Fit, chosen: tuple[str, ...] | None) -> Estimates:
     """Estimates of the local parameters of one fit, with their covariance through shared ones."""
     specimens = [part.name for part in fit.parts]
     known = fit.parameters.names
-    own = [{name.removeprefix(f"{one}.") for name in known if name.startswith(f"{one}.")} for one in specimens]
-    common = set.intersection(*own) if own else set()
+    local = [
+        {name.removeprefix(f"{specimen}.") for name in known if name.startswith(f"{specimen}.")}
+        for specimen in specimens
+    ]
+    common = set.intersection(*local) if local else set()
     names = chosen or tuple(dict.fromkeys(name.partition(".")[2] for name in known if name.partition(".")[2] in common))
     if not names:
         raise InputError(
@@ -237,7 +240,7 @@ def _of_experiments(fit: Fit, chosen: tuple[str, ...] | None) -> Estimates:
         )
     for name in names:
         require_known("local parameter", name, common, "population")
-    places = [known.index(f"{one}.{name}") for one in specimens for name in names]
+    places = [known.index(f"{specimen}.{name}") for specimen in specimens for name in names]
     values = fit.values[places].reshape(len(specimens), len(names))
     items = {item.name: item for item in fit.parameters}
     units = tuple(items[f"{specimens[0]}.{name}"].unit for name in names)

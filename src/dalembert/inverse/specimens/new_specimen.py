@@ -30,10 +30,13 @@ def new_specimen(values: np.ndarray, variances: np.ndarray, level: float) -> tup
     """
     centre, scale = values.mean(), np.sqrt(values.var(ddof=1) + variances.mean())
     likelihood = Likelihood((values[:, None] - centre) / scale, np.diag(variances) / scale**2)
-    found = [(likelihood.value_and_slope(one)[0], *likelihood.mean(one)) for one in SPREADS[:, None, None] ** 2]
-    heights = np.array([height for height, _, _ in found])
-    means = np.array([mean[0] for _, mean, _ in found])
-    deviations = np.sqrt(SPREADS**2 + np.array([known[0, 0] for _, _, known in found]))
+    likelihoods = [
+        (likelihood.value_and_slope(variance)[0], *likelihood.mean(variance))
+        for variance in SPREADS[:, None, None] ** 2
+    ]
+    heights = np.array([height for height, _, _ in likelihoods])
+    means = np.array([mean[0] for _, mean, _ in likelihoods])
+    deviations = np.sqrt(SPREADS**2 + np.array([known[0, 0] for _, _, known in likelihoods]))
     weights = np.exp(heights - heights.max()) * np.gradient(SPREADS)
     weights /= weights.sum()
 

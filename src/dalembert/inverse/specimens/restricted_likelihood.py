@@ -123,15 +123,15 @@ def most_likely(likelihood: Likelihood, form: SpreadForm) -> tuple[np.ndarray, f
     """
     k = form.parameters
     starts = [np.concatenate([np.full(k, size), np.zeros(form.unknowns - k)]) for size in (1.0, 0.2)]
-    found = [_climbed(likelihood, form, start, np.arange(form.unknowns)) for start in starts]
-    unknowns, best = max(found, key=lambda one: one[1])
+    ends = [_climbed(likelihood, form, start, np.arange(form.unknowns)) for start in starts]
+    unknowns, best = max(ends, key=lambda end: end[1])
     return np.concatenate([np.abs(unknowns[:k]), unknowns[k:]]), best  # the sign of a σ has no meaning
 
 
 def profiled(likelihood: Likelihood, form: SpreadForm, start: np.ndarray, number: int, size: float) -> float:
     """Return the largest restricted likelihood with a σ held, from unknowns near its maximum."""
-    held = np.where(np.arange(form.unknowns) == number, size, start)
-    return _climbed(likelihood, form, held, np.delete(np.arange(form.unknowns), number))[1]
+    fixed = np.where(np.arange(form.unknowns) == number, size, start)
+    return _climbed(likelihood, form, fixed, np.delete(np.arange(form.unknowns), number))[1]
 
 
 def _climbed(likelihood: Likelihood, form: SpreadForm, start: np.ndarray, free: np.ndarray) -> tuple[np.ndarray, float]:
@@ -149,5 +149,5 @@ def _climbed(likelihood: Likelihood, form: SpreadForm, start: np.ndarray, free: 
 
     if free.size == 0:
         return start, likelihood.value_and_slope(form.matrix(start))[0]
-    found = minimize(loss, start[free], jac=True, method="BFGS", options={"gtol": 1e-8})
-    return whole(found.x), -float(found.fun)
+    minimum = minimize(loss, start[free], jac=True, method="BFGS", options={"gtol": 1e-8})
+    return whole(minimum.x), -float(minimum.fun)

@@ -80,13 +80,13 @@ class AffineInvariant(Sampler):
 def _starts(modes: Modes, walkers: int, random: np.random.RandomState) -> np.ndarray:
     """Starts (walkers, parameters) that can be simulated, around the modes."""
     target, mode = modes.best.target, modes.of_chains(walkers)
-    found = _around(modes, mode, random.standard_normal((walkers, len(target.centre))))
+    starts = _around(modes, mode, random.standard_normal((walkers, len(target.centre))))
     for _ in range(TRIES):
-        failed = ~np.isfinite(target.evaluate(found))
+        failed = ~np.isfinite(target.evaluate(starts))
         if not np.any(failed):
-            return found
+            return starts
         closer = 0.5 * random.standard_normal((int(np.sum(failed)), len(target.centre)))
-        found[failed] = _around(modes, mode[failed], closer)
+        starts[failed] = _around(modes, mode[failed], closer)
     raise SolveError(
         f"the sampler AffineInvariant found no {walkers} starts that can be simulated. Narrow the bounds to where the "
         "model can be run"
@@ -95,10 +95,10 @@ def _starts(modes: Modes, walkers: int, random: np.random.RandomState) -> np.nda
 
 def _around(modes: Modes, mode: np.ndarray, places: np.ndarray) -> np.ndarray:
     """Places (walkers, parameters) around the mode (walkers,) of each, in the coordinates of the best one."""
-    found = places.copy()
+    result = places.copy()
     for k, target in enumerate(modes.targets):
-        found[mode == k] = moved(places[mode == k], target, modes.best.target)
-    return found
+        result[mode == k] = moved(places[mode == k], target, modes.best.target)
+    return result
 
 
 def _jumped(modes: Modes, places: np.ndarray, random: np.random.RandomState) -> tuple[np.ndarray, np.ndarray]:
@@ -111,8 +111,8 @@ def _jumped(modes: Modes, places: np.ndarray, random: np.random.RandomState) -> 
     sizes = np.array([np.linalg.slogdet(target.factor)[1] for target in targets])
     before = random.randint(count, size=len(places))
     after = (before + 1 + random.randint(count - 1, size=len(places))) % count
-    found = np.empty_like(places)
+    result = np.empty_like(places)
     for i, j in {*zip(before.tolist(), after.tolist(), strict=True)}:
         walkers = (before == i) & (after == j)
-        found[walkers] = moved(moved(places[walkers], best, targets[i]), targets[j], best)
-    return found, sizes[after] - sizes[before]
+        result[walkers] = moved(moved(places[walkers], best, targets[i]), targets[j], best)
+    return result, sizes[after] - sizes[before]

@@ -76,7 +76,10 @@ class DelayedAcceptance(Sampler):
             accepted = np.concatenate([part.statistics["accepted"] for part, _ in parts])
         cut = [finding for part, _ in parts for finding in part.findings]
         return Chains(
-            places, density, {"accepted": accepted}, findings=(_effort([one for _, one in parts], accepted), *cut)
+            places,
+            density,
+            {"accepted": accepted},
+            findings=(_effort([surrogate_target for _, surrogate_target in parts], accepted), *cut),
         )
 
     def _of_mode(
@@ -96,11 +99,11 @@ class DelayedAcceptance(Sampler):
         keep: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
         for _ in range(BURN + length.draws):
             proposed = walk.walked(states)
-            there = target.evaluate(proposed.places)
+            proposed_exact = target.evaluate(proposed.places)
             with np.errstate(invalid="ignore"):
-                ratio = (there - exact) - (proposed.density - states.density)
+                ratio = (proposed_exact - exact) - (proposed.density - states.density)
             taken = np.log(random.random(length.chains)) < np.nan_to_num(ratio, nan=-np.inf, posinf=np.inf)
-            states, exact = states.where(taken, proposed), np.where(taken, there, exact)
+            states, exact = states.where(taken, proposed), np.where(taken, proposed_exact, exact)
             keep.append((states.places, exact, taken))
             on_draws(length.chains, chains * (BURN + length.draws))
         places, density, accepted = (np.stack(part, axis=1)[:, BURN:] for part in zip(*keep, strict=True))
@@ -114,10 +117,10 @@ class _States:
     places: np.ndarray
     density: np.ndarray
 
-    def where(self, mask: np.ndarray, others: "_States") -> "_States":
+    def where(self, mask: np.ndarray, other: "_States") -> "_States":
         """Others where a mask (chains,) is true."""
-        places = np.where(mask[:, None], others.places, self.places)
-        return _States(places, np.where(mask, others.density, self.density))
+        places = np.where(mask[:, None], other.places, self.places)
+        return _States(places, np.where(mask, other.density, self.density))
 
 
 @dataclass
@@ -167,7 +170,10 @@ def _error(target: Target, cheap: Target, walk: _Walk, states: _States) -> tuple
     while len(pilot) * len(states.places) < PILOT:
         states = walk.walked(states)
         pilot.append(states)
-    places, density = np.concatenate([one.places for one in pilot]), np.concatenate([one.density for one in pilot])
+    places, density = (
+        np.concatenate([state.places for state in pilot]),
+        np.concatenate([state.density for state in pilot]),
+    )
     error = target.evaluate(places) - density
     if not np.all(np.isfinite(error)):
         return np.inf, 0.0
@@ -211,7 +217,9 @@ def _cuts(cheap: Target, places: np.ndarray) -> Iterator[Finding]:
     for k, name in enumerate(problem.model.parameters.names):
         cut = (polynomial.lower[k] > problem.search.lower[k], polynomial.upper[k] < problem.search.upper[k])
         near = (inside[..., k] < EDGE, inside[..., k] > 1 - EDGE)
-        share = max((float(np.mean(one)) for one, is_cut in zip(near, cut, strict=True) if is_cut), default=0.0)
+        share = max(
+            (float(np.mean(inside_edge)) for inside_edge, is_cut in zip(near, cut, strict=True) if is_cut), default=0.0
+        )
         if share > 0.001:
             yield Finding(
                 "surrogate-box",

@@ -72,29 +72,29 @@ class NUTS(Sampler):
         stop, several = Event(), range(length.chains)
         best = modes.best.target
         targets = [modes.targets[k] for k in modes.of_chains(length.chains)]
-        one = partial(_chain, self, length, on_draws, stop)
+        chain_of = partial(_chain, self, length, on_draws, stop)
         if on_several_machines(best.problem.model):
             problem = replace(best.problem, model=cast(Any, None), journal=Journal(best.problem.samples))
             alone = [target.of(problem) for target in targets]
             ahead = best.problem.prefetched(partial(_on_worker, alone, self, length), several)
-            found = [one(targets[chain], chain) for chain in ahead]
+            chains = [chain_of(targets[chain], chain) for chain in ahead]
         else:
-            found = list(ensemble(partial(_apart, targets, one), several, on_stop=stop.set))
-        placed = zip(found, targets, strict=True)
-        found = [replace(chain, places=moved(chain.places, target, best)) for chain, target in placed]
-        return _joined(found, self.max_depth)
+            chains = list(ensemble(partial(_apart, targets, chain_of), several, on_stop=stop.set))
+        placed = zip(chains, targets, strict=True)
+        chains = [replace(chain, places=moved(chain.places, target, best)) for chain, target in placed]
+        return _joined(chains, self.max_depth)
 
 
 def _silent(draws: int, of: int) -> None:
     """Take the number of draws and do nothing."""
 
 
-def _apart(targets: Sequence[Target], one: Callable[[Target, int], Chains], chain: int) -> Chains:
+def _apart(targets: Sequence[Target], chain_of: Callable[[Target, int], Chains], chain: int) -> Chains:
     """A chain with a separate journal, since several threads count."""
     target = targets[chain]
     problem = replace(target.problem, journal=Journal(target.problem.samples))
-    found = one(target.of(problem), chain)
-    return replace(found, simulations=problem.journal.simulations)
+    result = chain_of(target.of(problem), chain)
+    return replace(result, simulations=problem.journal.simulations)
 
 
 def _on_worker(targets: Sequence[Target], sampler: NUTS, length: Length, problem: Problem, chain: int) -> None:
@@ -142,11 +142,11 @@ def _chain(sampler: NUTS, length: Length, on_draws: OnDraws, stop: Event, target
     trace = _trace(nutpie, compiled, sampler, length, chain, errors)
     if errors:
         raise errors[0]
-    found = trace.sample_stats
+    sample_statistics = trace.sample_stats
     if trace.posterior["place"].shape[1] < length.draws:  # nutpie returns what it has when it is interrupted
         raise KeyboardInterrupt
-    statistics = {name: found[name].values.astype(kind) for name, kind in STATISTICS.items()}
-    return Chains(trace.posterior["place"].values, found["logp"].values, statistics)
+    statistics = {name: sample_statistics[name].values.astype(kind) for name, kind in STATISTICS.items()}
+    return Chains(trace.posterior["place"].values, sample_statistics["logp"].values, statistics)
 
 
 def _trace(nutpie: Any, compiled: Any, sampler: NUTS, length: Length, chain: int, errors: list[BaseException]) -> Any:
@@ -170,20 +170,20 @@ def _trace(nutpie: Any, compiled: Any, sampler: NUTS, length: Length, chain: int
         raise
 
 
-def _joined(found: list[Chains], max_depth: int) -> Chains:
+def _joined(chains: list[Chains], max_depth: int) -> Chains:
     """All chains as one, with what their statistics show."""
-    statistics = {name: np.concatenate([one.statistics[name] for one in found]) for name in STATISTICS}
+    statistics = {name: np.concatenate([part.statistics[name] for part in chains]) for name in STATISTICS}
     return Chains(
-        np.concatenate([one.places for one in found]),
-        np.concatenate([one.log_density for one in found]),
+        np.concatenate([part.places for part in chains]),
+        np.concatenate([part.log_density for part in chains]),
         statistics,
-        sum(one.simulations for one in found),
+        sum(part.simulations for part in chains),
         tuple(_findings(statistics, max_depth)),
     )
 
 
 def _findings(statistics: dict[str, np.ndarray], max_depth: int) -> list[Finding]:
-    found, draws = [], statistics["diverging"].size
+    findings, draws = [], statistics["diverging"].size
     diverging, deep = (int(np.sum(statistics[name])) for name in ("diverging", "maxdepth_reached"))
     if diverging:
         message = f"{diverging} of {draws} draws diverge: the sampler misses parts of the posterior near them."
@@ -192,9 +192,9 @@ def _findings(statistics: dict[str, np.ndarray], max_depth: int) -> list[Finding
             "parameters that the data do not determine."
         )
         values = {"divergences": diverging, "draws": draws}
-        found.append(Finding("divergent-draws", "warning", values, message, advice))
+        findings.append(Finding("divergent-draws", "warning", values, message, advice))
     if deep > 0.01 * draws:
         message = f"{deep} of {draws} draws end at the largest trajectory of 2^{max_depth} steps."
         advice = "Increase warmup, or max_depth."
-        found.append(Finding("long-trajectories", "warning", {"draws": deep, "depth": max_depth}, message, advice))
-    return found
+        findings.append(Finding("long-trajectories", "warning", {"draws": deep, "depth": max_depth}, message, advice))
+    return findings

@@ -106,8 +106,12 @@ class Firefly(Checked):
                 message = f"all {generation} generations done"
                 break
             away = places[brightest] - places
+            # η ← α η + β (brightest − x) of Zhang & Ding (2021). For the brightest one the second term is zero: it
+            # flies on by its memory alone.
             memory = self.randomness * memory + self._pull(away / width) * away
             trial = np.clip(places + memory, low, high)
+            # A place that the firefly tried before, or where it is, has a known fitness: the run ends where none is
+            # fresh.
             fresh = self._apart(trial, places, width) & self._apart(trial, tried, width)
             tried = np.where(fresh[:, None], trial, tried)
             generation += 1
@@ -117,6 +121,7 @@ class Firefly(Checked):
             fitness_values = np.full(len(places), np.inf)
             fitness_values[fresh] = fitness_of(objective, trial[fresh])
             evaluations += int(fresh.sum())
+            # Only downhill moves are taken, so the sequence of best values never rises.
             better = fitness_values < fitness
             places, fitness = np.where(better[:, None], trial, places), np.where(better, fitness_values, fitness)
         success = bool(np.isfinite(best))
@@ -129,5 +134,6 @@ class Firefly(Checked):
 
     def _pull(self, away: np.ndarray) -> np.ndarray:
         """β of fireflies that are so far away, in widths of the box: (fireflies, parameters) to (fireflies, 1)."""
+        # R² once, then (R²)^(ν/2) = Rᵛ: no root is taken for the usual ν = 2.
         square = np.sum(away**2, axis=1, keepdims=True)
         return self.attraction * np.exp(-self.absorption * square ** (self.exponent / 2))

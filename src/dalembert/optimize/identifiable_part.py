@@ -66,6 +66,7 @@ def identifiable_part(
     freedom = int(np.count_nonzero(residual)) - len(x)
     if problem.disturbance is None or freedom <= 0:
         return IdentifiablePart(slopes, np.empty((0, len(x))), np.inf)
+    # In widths of the bounds: a singular value compares a whole interval with the noise.
     left, singular, directions = np.linalg.svd(slopes * problem.widths, full_matrices=False)
     falls, reach = (left.T @ residual) ** 2, np.max(np.abs(directions), axis=1)
     variance = float(residual @ residual) / freedom
@@ -75,6 +76,8 @@ def identifiable_part(
         wide = (np.sqrt(variance + bias) * reach > UNIFORM * singular) | (singular <= UNSEEN * singular[0])
         return wide & (np.maximum(falls, fall) < explained + BIASED * bias)
 
+    # By the noise alone first. The error of the residuals, such as an integrator's, costs a simulation: only where
+    # noise decides nothing.
     out = lost(np.zeros(len(singular)))
     if not out.any() and (error := problem.disturbance.error(x)) is not None:
         out = lost((left.T @ error) ** 2)

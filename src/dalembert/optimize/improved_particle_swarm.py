@@ -94,19 +94,27 @@ class ImprovedParticleSwarm(Swarm):
 
     def move(self, state: SwarmState, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
         x = state.positions
+        # All groups draw the numbers of group 1 first, in this order, so that the bits of a seed do not depend on the
+        # sizes of the groups.
         velocities = self.steered(state, rng, self.inertia, self.c1, self.c2)
         if len(state.quality):
+            # c3 r3 (U − x), U the mean of a random 90 % of the quality set, another 90 % for each particle.
             velocities += pulled(rng, self.c3, subset_means(rng, state.quality, 0.9, len(x)), x)
 
         group = np.repeat([1, 2, 3], self.sizes)
+        # One draw decides for groups 2 and 3: a particle is in one of them only.
         special = rng.random(self.particles) < 0.5
+        # Group 2 leaves the best position: v ← (x − best of all) r α keeps the diversity that groups 1 and 3 lose.
         jump = (special & (group == 2))[:, None]
         velocities = np.where(jump, (x - state.best) * rng.random(x.shape) * self.alpha, velocities)
 
+        # The published limit applies to the jumps, too.
         limit = self.velocity_bound(state.lower, state.upper)
         velocities = np.clip(velocities, -limit, limit)
         positions = np.clip(x + velocities, state.lower, state.upper)
         if len(state.quality):
+            # Group 3 moves to the mean of a random half of the quality set; its velocity stays that of the iteration
+            # before.
             gather = (special & (group == 3))[:, None]
             positions = np.where(gather, subset_means(rng, state.quality, 0.5, len(x)), positions)
             velocities = np.where(gather, state.velocities, velocities)
@@ -123,6 +131,7 @@ class ImprovedParticleSwarm(Swarm):
 
 def subset_means(rng: np.random.Generator, rows: np.ndarray, fraction: float, count: int) -> np.ndarray:
     """Means of ``count`` random subsets of the rows, shape (count, columns), each of the given fraction of them."""
+    # The smallest of random keys choose a subset without replacement, for all particles in one partial sort.
     size = max(1, round(fraction * len(rows)))
     chosen = np.argpartition(rng.random((count, len(rows))), size - 1, axis=1)[:, :size]
     return rows[chosen].mean(axis=1)

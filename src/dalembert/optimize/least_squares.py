@@ -63,6 +63,7 @@ class LeastSquares(SquaresMinimiser):
     gain: float = reachable(1e-13)
 
     def descend(self, problem: SumOfSquares, start: np.ndarray) -> Minimum:
+        # A curved valley needs more trial points before it shows progress, the more, the more parameters there are.
         window = max(WINDOW, (10 if self.gain < COARSE else 4) * len(start))
         most = TRIALS * (1 + len(start)) if self.trials is None else self.trials
         path = Path(problem, start, Stopping(self.gain, window), most, type(self).__name__)
@@ -72,6 +73,7 @@ class LeastSquares(SquaresMinimiser):
             end = settle(path, at, Stopping(self.gain, window), self.tolerance)
         if end.success or self.gain >= COARSE or not np.isfinite(end.fitness):
             return end
+        # The valley is judged anew: the trial points of the trust region would end it at once.
         path.stopping = Stopping(self.gain, window)
         try:
             follow_valley(path, path.x, path.stopping, self.tolerance)

@@ -56,6 +56,8 @@ class LinearModel:
         from scipy.optimize import lsq_linear
 
         size = len(step)
+        # The same minimum from k + parameters rows, in place of all values: S = U diag(s) Vᵀ, and Uᵀ leaves norms as
+        # they are.
         matrix = np.vstack([full.singular[:, None] * full.directions, mu * np.eye(size)])
         right = np.concatenate([full.parts, np.zeros(size)])
         solution = lsq_linear(matrix, right, (self.down, self.up), method="bvls", tol=1e-14, max_iter=10 * (1 + size))

@@ -147,11 +147,13 @@ class Minimiser(Checked):
 
         bounds = so.Bounds(watched.low, watched.high)  # pyright: ignore[reportArgumentType]
         if self.batched:
+            # Deferred updating evaluates a generation as one batch.
             settings = {"updating": "deferred", "vectorized": True, **self.options}
             return so.differential_evolution(watched.columns, bounds, rng=seed, **settings)
         if self.name == "dual_annealing":
             return so.dual_annealing(watched.one, bounds, rng=seed, x0=x0, **self.options)
         if self.name == "basinhopping":
+            # Without bounds its local searches would leave the box.
             local = {"minimizer_kwargs": {"method": "L-BFGS-B", "bounds": bounds}, **self.options}
             return so.basinhopping(watched.one, x0, rng=seed, **local)
         return getattr(so, self.name)(watched.one, bounds, **self.options)

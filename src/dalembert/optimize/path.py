@@ -54,6 +54,7 @@ class Path:
     def residual_at(self, x: np.ndarray, *, ahead: bool = False) -> np.ndarray:
         if self.evaluations >= self.most:
             raise self.spent()
+        # Trial points that only look ahead need no slopes; a model may compute them with less effort.
         value = self.problem.ahead(x) if ahead else self.problem.residual(x)
         self.evaluations += 1
         if not np.all(np.abs(value) < LARGEST):

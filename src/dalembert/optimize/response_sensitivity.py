@@ -172,6 +172,8 @@ class _Descent:
         chosen = self.method.weight(problem)
         if np.isinf(chosen):
             raise Stopped("converged: what is left is within the noise")
+        # Whether there is anything to gain is judged by the step that μ alone chooses, before the trust region shortens
+        # it.
         wish = model.step(chosen)
         if np.linalg.norm(wish) < shortest:
             raise Stopped("converged: the parameters move no more", stationary=True)
@@ -184,16 +186,19 @@ class _Descent:
             if length < shortest:
                 raise Stopped("converged: the parameters move no more", stationary=True)
             point, trial = self.trial(step)
+            # ϱ = (‖r‖² − ‖r_new‖²)/(foreseen fall); as a product of sum and difference, without cancellation.
             agreement = float((self.r - trial) @ (self.r + trial)) / max(model.foreseen(step), np.finfo(float).tiny)
             if agreement >= self.method.agreement:
                 break
             if last:  # what there is to gain is lost in rounding
                 raise Stopped("converged: the sum of squares falls no more")
+            # Published: μ ← σ μ. Where σ alone takes many trials, the weight that halves the step is tried.
             mu = max(self.method.growth * mu, problem.weight_of(length / 2))
 
         tried = self.trials - before
         curve = problem.weights, problem.residual_norms(problem.weights), problem.step_norms(problem.weights)
         account = RegularisedStep(mu, chosen, agreement, tried, float(np.linalg.norm(self.r)), length, *curve)
+        # The limit follows the length that the linear model was good for.
         if tried > 1:
             self.radius = length
         elif agreement > 0.75:

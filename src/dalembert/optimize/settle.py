@@ -22,6 +22,7 @@ def settle(path: Path, at: Creeps, stopping: Stopping, shortest: float) -> Minim
     x, r, slopes, left_out = at.x, at.residual, at.slopes, np.empty((0, len(at.x)))
     try:
         while True:
+            # The directions turn as the point moves, so they are computed at each point.
             part = identifiable_part(problem, x, r, slopes)
             left_out = part.left_out * problem.unit
             down, up = (problem.low - x) / problem.unit, (problem.high - x) / problem.unit

@@ -100,6 +100,7 @@ class Swarm(Checked, ABC):
 
     def advance(self, state: SwarmState, objective: Objective) -> SwarmState:
         """The state one iteration later."""
+        # A generator for each iteration: a resumed swarm continues with the same bits from its state alone.
         rng = np.random.default_rng((state.seed, state.iteration))
         positions, velocities = self.move(state, rng)
         fitness = fitness_of(objective, positions)
@@ -150,6 +151,7 @@ class Swarm(Checked, ABC):
     ) -> np.ndarray:
         """Velocities ωv + c1 r1 (own best − x) + c2 r2 (best of all − x), ω falling linearly to its second value."""
         first, last = inertia
+        # ω(t) = first + (last − first) t/iterations: Shi & Eberhart (1998), linear in the number of the iteration.
         kept = (first + (last - first) * state.iteration / self.iterations) * state.velocities
         x = state.positions
         return kept + pulled(rng, c1, state.own, x) + pulled(rng, c2, state.best, x)

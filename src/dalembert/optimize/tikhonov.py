@@ -93,15 +93,18 @@ class Regularised:
     def curvature(self, mu: ArrayLike) -> np.ndarray:
         """Curvature of the L-curve, log ‖d‖ over log ‖A d − b‖, at each weight; positive at the corner of an L."""
         f = self._kept(mu)
+        # Hansen (1992): κ = (x′y″ − y′x″)/(x′² + y′²)^(3/2) with x = log ‖A d − b‖, y = log ‖d‖.
         g, squares, lengths = 1 - f, self.parts**2, self._full**2
         # Derivatives with respect to log μ, in which f' = −2 f (1 − f).
         none = np.finfo(float).tiny
+        # Logarithmic derivatives of ‖A d − b‖² and of ‖d‖² by log μ, first and second, in closed form.
         residual = np.sum(g**2 * squares, axis=-1) + self.outside**2 + none
         residual1 = 4 * np.sum(f * g**2 * squares, axis=-1) / residual
         residual2 = -8 * np.sum(f * g**2 * (1 - 3 * f) * squares, axis=-1) / residual
         step = np.sum(f**2 * lengths, axis=-1) + none
         step1 = -4 * np.sum(f**2 * g * lengths, axis=-1) / step
         step2 = 8 * np.sum(f**2 * g * (2 - 3 * f) * lengths, axis=-1) / step
+        # log ‖·‖ is half of log ‖·‖²; (log h)″ = h″/h − (h′/h)².
         x1, y1 = residual1 / 2, step1 / 2
         x2, y2 = (residual2 - residual1**2) / 2, (step2 - step1**2) / 2
         return (x1 * y2 - y1 * x2) / np.maximum(x1**2 + y1**2, none ** (1 / 4)) ** 1.5
@@ -133,6 +136,8 @@ class Regularised:
         """
 
         def score(mu: ArrayLike) -> np.ndarray:
+            # Values less the effective number of unknowns Σ f, each of which costs ϱ; kept above zero, where the score
+            # would change its sign.
             left = self.values - DEARER * np.sum(self._kept(mu), axis=-1)
             return (self.residual_norms(mu) / np.maximum(left, 1e-3 * self.values)) ** 2
 
@@ -160,6 +165,7 @@ class Regularised:
         low, high = self.least, float(self.singular[0])
         if excess(low) <= 0:
             return low
+        # The excess falls with μ: the bracket grows until it holds the zero, then Brent finds it in log μ.
         while excess(high) > 0:
             high *= 10
         place: Any = brentq(lambda at: excess(np.exp(at)), np.log(low), np.log(high))

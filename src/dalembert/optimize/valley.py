@@ -35,9 +35,11 @@ def follow_valley(path: Path, start: np.ndarray, stopping: Stopping, shortest: f
     while True:
         slopes, down, up = path.slopes_at(x), (low - x) / unit, (high - x) / unit
         stopping.at(r, slopes, down, up)
+        # Scales that never shrink (Moré 1978): a column that vanishes on a plateau would let its parameter run away.
         size = np.maximum(size, np.linalg.norm(slopes, axis=0))
         scale = np.where(size > 0, size, 1.0)
         slopes, down, up = slopes / scale, down * scale, up * scale
+        # Both damped systems have the matrix SᵀS + μ²: one triangular factor serves the step and its acceleration.
         q, factor = np.linalg.qr(slopes)
         largest = np.linalg.norm(factor, 2)
         while True:
@@ -48,13 +50,17 @@ def follow_valley(path: Path, start: np.ndarray, stopping: Stopping, shortest: f
             stopping.tried(path.best)
             ahead = path.residual_at(np.clip(x + AHEAD * unit * v / scale, low, high), ahead=True)
             if np.all(np.isfinite(ahead)):
+                # r″ along v from one residual more: 2/h ((r(x + h v) − r)/h − S v).
                 bend = 2 / AHEAD * ((ahead - r) / AHEAD - slopes @ v)
+                # The correction a/2, between what bounds leave after v.
                 half = _damped(q.T @ bend / 2, factor, mu, down - v, up - v)
                 if 4 * np.linalg.norm(half) <= BENT * np.linalg.norm(v):
                     point = np.clip(x + unit * (v + half) / scale, low, high)
                     residual = path.residual_at(point)
                     if residual @ residual < r @ r or (1 - _cosine(v, scale * last)) * (residual @ residual) <= least:
                         break
+            # Rejected: more damping turns the step to the gradient and shortens it. Delayed gratification: a little up,
+            # much down.
             weight *= HARDER
         x, r, weight, last = point, residual, weight / EASIER, v / scale
         least = min(least, float(r @ r))

@@ -82,6 +82,7 @@ class Adaptive(Checked):
         growth = Growth(runs.directions, self.basis)
         stalled, next_check, doubted = 0, 0, []
         while True:
+            # Terms in batches of one expected size: a batch is one call of the model, a term at a time would be serial.
             most, limit = self._most(runs)
             batch = growth.batch(scale() if growth.terms else None, max(1, most - runs.count), stalled)
             highest = max(map(max, batch))
@@ -93,6 +94,8 @@ class Adaptive(Checked):
             excess = held_out.difference_of(growth) - SHARE * wanted
             if full:
                 return self._fitted(growth, limit)
+            # 1. Terms that are expected to matter are added. 2. Where none is, but held-out runs disagree, terms
+            # elsewhere. 3. Then the decay of the coefficients has to agree.
             if np.any(tail > wanted):
                 stalled = 0
             elif np.any(excess > 0):
@@ -103,6 +106,7 @@ class Adaptive(Checked):
                 if not self.cautious:
                     return fitted
                 doubted.append(fitted.tail)
+                # The largest of the last three: the order may fall between two waves of the coefficients of a kink.
                 latest = np.max(doubted[-AGREED:], axis=0)
                 if np.all(latest <= wanted):
                     return replace(fitted, tail=latest)

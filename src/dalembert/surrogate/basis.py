@@ -37,6 +37,7 @@ def _ladder(x: np.ndarray, degree: int, derivative: int) -> np.ndarray:
     for m in range(1, degree):
         ladder[m + 1] = 2 * x * ladder[m] - ladder[m - 1]
         if below is not None:
+            # d^i: T⁽ⁱ⁾_{m+1} = 2η T⁽ⁱ⁾_m + 2 i T⁽ⁱ⁻¹⁾_m − T⁽ⁱ⁾_{m−1}.
             ladder[m + 1] += 2 * derivative * below.T[m]
     return ladder.T
 
@@ -56,6 +57,7 @@ def roots(number: int) -> np.ndarray:
     >>> roots(2).round(6).tolist()
     [-0.707107, 0.707107]
     """
+    # As a sine about the middle: −x and x are the same to the last bit, which cos is not.
     return np.sin(np.pi * (2 * np.arange(number) + 1 - number) / (2 * number))
 
 

@@ -71,6 +71,8 @@ def enclosures(
 
 def _lowest(cells: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     """Lower bounds (owners,) of polynomials given by their Bernstein forms (owners, n_1 + 1, …, n_d + 1)."""
+    # Coefficients at corners are values of the polynomial: no lower bound needs to be below the least of them by more
+    # than the gap.
     attained = np.min(_corners(cells), axis=1)
     bound = np.full(len(cells), np.inf)
     most = CHUNK // cells[0].size  # cells kept at once
@@ -79,6 +81,7 @@ def _lowest(cells: np.ndarray, wanted: np.ndarray) -> np.ndarray:
         depth, cells, owner = waiting.pop()
         least = cells.reshape(len(cells), -1).min(axis=1)
         open_ = least < attained[owner] - wanted[owner]
+        # Where the open parts of a box fill the memory, they are closed as they are: the bound is wider, never wrong.
         full = 2 * np.bincount(owner[open_], minlength=len(bound)) > most
         open_ &= ~full[owner] & (depth < DEPTH)
         np.minimum.at(bound, owner[~open_], least[~open_])
@@ -106,6 +109,7 @@ def _corners(cells: np.ndarray) -> np.ndarray:
 def _halved(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Both halves of each cell, along the direction in which its coefficients vary most between neighbours."""
     axes = tuple(range(1, cells.ndim))
+    # Derivatives in Bernstein form are n times differences of neighbours: the direction of the largest is halved.
     steps = [np.abs(np.diff(cells, axis=k)).max(axis=axes, initial=0) * (cells.shape[k] - 1) for k in axes]
     along = 1 + np.argmax(steps, axis=0)
     lower, upper = np.empty_like(cells), np.empty_like(cells)

@@ -117,6 +117,7 @@ def _searched(
     outputs = polynomial.coefficients.shape[1]
     points = 21 if points is None and method == "scan" else points
     spread = scan.spread(polynomial, points)
+    # In η of the polynomial, whose ends are exact; points on a side of a box are put back onto it afterwards.
     least, most = polynomial.eta(low), polynomial.eta(high)
     size = max(1, CHUNK // (len(spread.grid) * outputs))
     parts = []

@@ -44,6 +44,7 @@ def tail(shells: np.ndarray) -> np.ndarray:
     >>> tail(10.0 ** -np.arange(6)[:, None]).round(9).tolist()
     [1.111e-06]
     """
+    # Σ_{m≥1} a r^{2m} of pairs of shells two degrees apart.
     decay = _ratio(shells, len(shells) - 1)
     return _pair(shells, len(shells) - 1) * decay**2 / (1 - decay**2)
 
@@ -81,6 +82,7 @@ def slow_tail(shells: np.ndarray) -> np.ndarray:
     if order < SHORT:
         return np.zeros(shells.shape[1])
     degrees = np.arange((order + 1) // 2, order + 1)
+    # Trefethen, Approximation Theory, chapter 7: a jump in the derivative number ν decays as degree^−(ν+1).
     taken = np.minimum(p, STEEPEST)
     last = np.max(shells[degrees] * (degrees[:, None] / order) ** taken, axis=0)
     kink = (p <= np.clip(order / EACH_POWER, SMOOTH, SMOOTHEST)) & (_misfit_ratio(shells) >= GEOMETRIC)
@@ -131,6 +133,7 @@ def needed_order(shells: np.ndarray, tolerance: np.ndarray) -> tuple[int, bool]:
     power, reached = _power(shells, order), order
     while np.any(left > tolerance):
         reached += 1
+        # The tail of the order before, times the decay of one degree more.
         left = left * ratio * (order / reached) ** power
     return reached, True
 

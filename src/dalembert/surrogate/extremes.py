@@ -149,6 +149,7 @@ def _step(hessian, gradient, free, damping, factor, step):
                     rest -= factor[i, m] * factor[j, m]
             if i != j:
                 factor[i, j] = rest / factor[j, j]
+            # Not definite up to rounding: Cholesky fails, and the caller damps more.
             elif rest <= 1e-14 * (abs(hessian[i, i]) + damping):
                 return False
             else:
@@ -177,6 +178,7 @@ def _minimum(rows, low, high, small, room):
     for _ in range(ITERATIONS):
         reach = 0.0
         for k in range(size):
+            # Σ |∂f| · way to the side downhill: no point of the box is lower than that by the linear model.
             inward = (high[k] - eta[k]) if gradient[k] < 0 else (eta[k] - low[k])
             free[k] = inward > 0
             reach += abs(gradient[k]) * inward
@@ -186,6 +188,7 @@ def _minimum(rows, low, high, small, room):
         size_of_hessian = 0.0
         for k in range(size):
             size_of_hessian = max(size_of_hessian, abs(hessian[k, k]))
+        # Newton first; where H is not definite or the clipped step does not descend, Levenberg's damping grows.
         damping, lower = 0.0, value
         for _ in range(DAMPINGS):
             promised = 0.0
@@ -198,6 +201,7 @@ def _minimum(rows, low, high, small, room):
                 if promised > small:
                     _ladders(trial, rows.degrees, tables)
                     lower = _value_and_gradient(rows, tables, coefficients, trial_gradient)
+                # Armijo's condition with the descent that the gradient promises along the clipped step.
                 if lower < value - 1e-4 * promised or (promised <= small and not clipped):
                     break
             damping = max(4 * damping, 0.1 * size_of_hessian, reach)
@@ -280,6 +284,7 @@ def extremes(
                 sign = 1.0 - 2.0 * side
                 small = CONVERGED * _signed(rows.coefficients[o], sign, room.signed)
                 lowest = np.inf
+                # Several valleys: that of the extreme need not have the lowest point of the scan.
                 for start in range(_lowest_valleys(values[b, o], sides, sign, room.best, room.places)):
                     for k in range(size):
                         part = grid[room.places[start], k]

@@ -89,6 +89,7 @@ def _scale(runs: Runs, groups: ArrayLike | None) -> np.ndarray:
         raise SolveError(
             "all runs of the model for a surrogate failed; choose bounds of the parameters within which the model runs"
         )
+    # Relative to the variation, not to the size: an offset of an output asks for no accuracy.
     low, high = runs.range
     group = np.zeros(len(low), dtype=int) if groups is None else np.unique(groups, return_inverse=True)[1]
     if group.shape != low.shape:

@@ -55,6 +55,8 @@ class Growth:
         return [tuple(row) for row in np.concatenate([0 * unit[:1], unit, 2 * unit]).tolist()]
 
     def _chosen(self, candidates: list[Term], expected: np.ndarray) -> np.ndarray:
+        # "sparse" takes what is promising, "total-degree" the lowest degree, "tensor" a box of degrees that grows where
+        # it promises most.
         terms = np.array(candidates)
         promising = expected >= TOGETHER * expected.max()
         if self.basis == "sparse":
@@ -78,8 +80,11 @@ class Growth:
         # A term is foretold by terms below it alone, so the order within a batch is that of degrees.
         for term, value in sorted(zip(batch, values, strict=True), key=lambda pair: sum(pair[0])):
             expected = self._candidates.pop(term, None)
+            # Newton's form on Leja points: h_e vanishes at all points before its own, so a surplus is final once it is
+            # known.
             surplus = value - self._foretold(term, len(value))
             self._append(term, surplus)
+            # How far expectations were right in this batch scales the estimate of the tail.
             if expected is not None and expected.any():
                 sizes.append((float(np.sum(np.abs(surplus))), float(np.sum(expected))))
             self._admit(term)
@@ -104,6 +109,7 @@ class Growth:
             return np.zeros(outputs)
         exponents = self._exponents[: len(self.terms)]
         table = hierarchical(int(max(exponents.max(), *term)) + 1)[0]
+        # Π_k h_{e_k}(ζ_{t_k}): zero unless e ≤ t in all directions, so few terms count.
         weights = np.prod(table[exponents, np.array(term)], axis=1)
         below = np.flatnonzero(weights)
         return weights[below] @ self._surpluses[below]
@@ -115,6 +121,8 @@ class Growth:
     def _admit(self, term: Term) -> None:
         """Makes candidates of the terms above one, where nothing is missing below them."""
         for above in (_raised(term, k, 1) for k in range(self.directions)):
+            # Downward closed (Gerstner & Griebel 2003): a term needs all of its lower neighbours, else interpolation is
+            # not unique.
             below = [_raised(above, k, -1) for k in range(self.directions) if above[k]]
             if above not in self._surplus and all(entry in self._surplus for entry in below):
                 self._candidates[above] = None
@@ -127,6 +135,7 @@ class Growth:
             for k in range(self.directions):
                 if term[k]:
                     size = np.abs(self._surplus[_raised(term, k, -1)])
+                    # Odd or even functions have zero surpluses at every other degree: the one before it counts in part.
                     if term[k] > 2 or (term[k] > 1 and sum(term) > term[k]):
                         size = np.maximum(size, SKIPPED * np.abs(self._surplus[_raised(term, k, -2)]))
                     sizes.append(size)
@@ -142,6 +151,8 @@ class Growth:
 
     def tail(self) -> np.ndarray:
         """Estimate of what the terms left out would add, shape (outputs,)."""
+        # The margin of the set of terms stands for all that is left out: what is further out is smaller by another
+        # factor.
         expected = np.array([self._expected(term) for term in self._candidates])
         return self._ratio * np.sum(expected, axis=0)
 
@@ -151,6 +162,7 @@ class Growth:
         order = np.lexsort(exponents.T[::-1])
         exponents, surpluses = exponents[order], surpluses[order]
         series = hierarchical(int(exponents.max()) + 1)[1]
+        # From h to T in each direction; the product of the tables is the matrix of all terms.
         matrix = np.ones((len(exponents), len(exponents)))
         for k in range(self.directions):
             matrix *= series[exponents[:, None, k], exponents[None, :, k]]

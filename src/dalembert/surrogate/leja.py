@@ -65,7 +65,9 @@ def _sequence(number: int) -> np.ndarray:
     ends = np.sort(points)
     peaks = _peaks(points, ends[:-1], ends[1:], (ends[:-1] + ends[1:]) / 2, EXACT)
     while len(points) < number:
+        # In logarithms: the product of thousands of distances would underflow.
         size = np.sum(np.log(np.abs(peaks[:, None] - points)), axis=1)
+        # By symmetry two gaps may tie: within rounding the right one counts, on every machine.
         gap = int(np.flatnonzero(size > size.max() - 1e-9)[-1])
         here = slice(gap, gap + 1)
         chosen = _peaks(points, ends[here], ends[gap + 1 : gap + 2], peaks[here], EXACT)
@@ -84,6 +86,7 @@ def _peaks(points: np.ndarray, low: np.ndarray, high: np.ndarray, start: np.ndar
     """Where |Π_i (x − ζ_i)| is largest between neighbours: zeros of Σ_i 1/(x − ζ_i), by Newton's method kept inside."""
     peaks, low, high = start.copy(), low.copy(), high.copy()
     for _ in range(steps):
+        # d/dx ln |Π| = Σ 1/(x − ζ) falls between neighbours from +∞ to −∞: one zero, which bisection keeps enclosed.
         parts = 1 / (peaks[:, None] - points)
         slope, curvature = parts.sum(axis=1), np.sum(parts**2, axis=1)
         low, high = np.where(slope > 0, peaks, low), np.where(slope > 0, high, peaks)
@@ -101,5 +104,6 @@ def _tables(number: int) -> tuple[np.ndarray, np.ndarray]:
         below = points[:j]
         values[j, j:] = np.prod((points[j:, None] - below) / (points[j] - below), axis=1)
         at_nodes[j] = np.prod((nodes[:, None] - below) / (points[j] - below), axis=1)
+    # Values at Chebyshev roots to coefficients: the discrete orthogonality of T on them.
     to_series = (2.0 - (np.arange(number) == 0)) / number * chebyshev(nodes[:, None], np.array([number - 1]))[0]
     return values, np.tril(at_nodes @ to_series)

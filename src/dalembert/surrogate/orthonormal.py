@@ -62,12 +62,14 @@ def orthonormal(polynomial: ChebyshevPolynomial, rules: Sequence[Rule] = ()) -> 
     degrees = polynomial.degrees.tolist()
     changes = [change(degree, rule) for degree, rule in zip(degrees, rules or [uniform] * len(degrees), strict=True)]
     for direction, degree in enumerate(degrees):
+        # Terms that share their degrees in the other directions are one row, on which the change of basis acts.
         rest = np.delete(exponents, direction, axis=1)
         rows, row = np.unique(rest, axis=0, return_inverse=True)
         table = np.zeros((len(rows), degree + 1, coefficients.shape[1]))
         table[row.reshape(-1), exponents[:, direction]] = coefficients
         longest = np.zeros(len(rows), dtype=int)
         np.maximum.at(longest, row.reshape(-1), exponents[:, direction])
+        # M is lower triangular: a row of degree n has the polynomials 0 to n.
         at, lower = np.nonzero(np.arange(degree + 1) <= longest[:, None])
         exponents = np.insert(rows[at], direction, lower, axis=1)
         coefficients = np.einsum("nj,rno->rjo", changes[direction], table)[at, lower]

@@ -126,6 +126,7 @@ class ChebyshevPolynomial:
         """Coordinates η of points (..., d), in [−1, 1] inside the box and exact at its ends."""
         points = np.asarray(points, dtype=float)
         middle = (self.lower + self.upper) / 2
+        # From the nearer end: η is ±1 exactly at both ends, and no point of the box lies outside by rounding.
         eta = np.where(points > middle, 1 - (self.upper - points) * self.slope, (points - self.lower) * self.slope - 1)
         return np.where((self.slope == 0) | (points == middle), 0.0, eta)
 

@@ -41,6 +41,7 @@ def spread(polynomial: ChebyshevPolynomial, points: int | None) -> Scan:
     least = FEWEST if len(degrees) <= 3 else 0
     sides = np.where(degrees > 0, np.maximum(degrees + 2, least) if points is None else points, 1)
     if np.prod(sides.astype(float)) > MOST_POINTS:
+        # Extremes of smooth functions in many directions are often on sides: a quarter of the coordinates at each end.
         sobol = scipy.stats.qmc.Sobol(2 * len(degrees), scramble=False).random_base2(12)
         place, end = sobol[:, : len(degrees)], sobol[:, len(degrees) :]
         return Scan(np.where(end < 0.25, 0.0, np.where(end < 0.5, 1.0, place)), np.empty(0, dtype=int))

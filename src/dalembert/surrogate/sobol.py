@@ -119,6 +119,7 @@ def sobol_indices(
     error = np.ldexp(error, scale)
     if checks is not None:
         checks = Checks(checks.eta, np.ldexp(checks.errors, scale))
+    # Parseval: Var f = Σ c_α² over the terms that vary; what is rounding of the mean is none.
     squares = expansion.coefficients**2
     squares[:, squares[varying].sum(axis=0) <= (NOTHING * np.ldexp(mean, scale)) ** 2] = 0.0
     summed = squares @ member
@@ -128,6 +129,7 @@ def sobol_indices(
     if checks is not None:
         checked = _by_checks(expansion, masks, varying, member, checks)
         part, rest = (_narrower(of, *mine) for of, mine in zip((part, rest), checked, strict=True))
+    # V_u/(V_u + V_rest) rises with V_u and falls with V_rest: its ends are at opposite corners.
     ends = _ends(part, rest).reshape(2, 2, -1, len(variance))
     with np.errstate(invalid="ignore", divide="ignore"):
         first, total = (parts / variance).reshape(2, -1, len(variance))
@@ -153,6 +155,7 @@ def _by_norm(parts: np.ndarray, error: np.ndarray) -> _Range:
 
 def _narrower(known: _Range, change: np.ndarray, radius: np.ndarray, most: np.ndarray) -> _Range:
     """Range that is narrowed by V_u(s) + 2 (change ± radius) + what is between 0 and ``most``."""
+    # V_u(f) = V_u(s) + 2 E[P_u s e] + ‖P_u e‖², the last term between 0 and E[e²].
     lower = np.maximum(known.lower, known.value + 2 * (change - radius))
     upper = np.minimum(known.upper, known.value + 2 * (change + radius) + most)
     return _Range(known.value, np.minimum(lower, known.value), np.maximum(upper, known.value))

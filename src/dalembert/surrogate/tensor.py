@@ -91,6 +91,7 @@ def _transformed(values: np.ndarray, orders: tuple[int, ...]) -> np.ndarray:
     grid = values.reshape(*(order + 1 for order in orders), values.shape[1])
     for k, order in enumerate(orders):
         basis = chebyshev(roots(order + 1)[:, None], np.array([order]))[0]
+        # c = (2 − δ)/(n + 1) Σ f T: the discrete cosine transform as a small matrix, one direction at a time.
         weights = (2.0 - (np.arange(order + 1) == 0)) / (order + 1)
         grid = np.moveaxis(np.tensordot(weights[:, None] * basis.T, grid, axes=(1, k)), 0, k)
     return grid.reshape(values.shape)

@@ -65,6 +65,7 @@ class TotalDegree(Checked):
                 "many runs; raise TotalDegree(oversampling=...), or keep the box away from where the model fails"
             )
         matrix = _matrix(eta[kept], exponents)
+        # Least squares as published; the rank shows whether the runs that are left determine all terms.
         coefficients, _, rank, _ = lstsq(matrix, values[kept])  # pyright: ignore[reportGeneralTypeIssues]
         if rank < len(exponents):
             raise SolveError(
@@ -77,6 +78,7 @@ class TotalDegree(Checked):
     def points(self, directions: int, seed: int = 0) -> np.ndarray:
         """Coordinates η of the runs, shape (M, d); ``seed`` counts only where the grid is too large to search whole."""
         number = self.runs(directions)
+        # The smallest full grid with as many points; p + 1 in each direction determine the degree p.
         sides = max(self.order + 1, int(np.ceil(number ** (1 / max(directions, 1)) - 1e-9)))
         grid = _grid(sides, directions, MOST_CANDIDATES * number, seed)
         exponents = total_degree(directions, self.order)
@@ -84,6 +86,8 @@ class TotalDegree(Checked):
         chosen: list[int] = []
         left = np.arange(len(grid))
         while len(chosen) < number and len(left):
+            # Pivoting takes the row that is farthest from the span of the chosen ones: P points that determine P terms
+            # well.
             _, _, order = qr(matrix[left].T, mode="economic", pivoting=True)  # pyright: ignore
             first = order[: min(len(exponents), number - len(chosen))]
             chosen += left[first].tolist()

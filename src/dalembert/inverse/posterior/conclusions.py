@@ -68,6 +68,7 @@ def draw_findings(parameters: Parameters, draws: np.ndarray) -> Iterator[Finding
     inside = _between(parameters, draws)
     for k, item in enumerate(parameters):
         prior = item.distribution
+        # The deviation of the prior within the bounds, from quantiles of equal probability.
         quantiles = prior.within(np.linspace(0.005, 0.995, 100), item.lower, item.upper)
         before, after = float(np.std(quantiles)), float(np.std(draws[:, k]))
         if after**2 > ALONE * before**2:
@@ -126,6 +127,8 @@ def separate_modes(modes: Modes, places: np.ndarray, sampler: Sampler) -> Iterat
     visits = np.any(inside, axis=2)  # modes, chains
     mode, chain = np.nonzero(visits)
     count, chains = visits.shape
+    # A bipartite graph: modes and chains are nodes, visits are edges. Modes are joined where a path of chains connects
+    # them.
     joined = coo_array((np.ones(len(mode)), (mode, count + chain)), shape=(count + chains, count + chains))
     _, group = connected_components(joined, directed=False)
     if len(set(group[:count])) == 1:

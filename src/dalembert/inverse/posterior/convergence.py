@@ -41,6 +41,7 @@ def convergence(draws: np.ndarray) -> Convergence:
         return Convergence(*np.full((4, count), np.nan))
     arviz = package("arviz", "sample")
     columns = [np.ascontiguousarray(draws[:, :, k]) for k in range(count)]
+    # R-hat of a single chain compares its halves only; it is not shown as if chains agreed.
     several = len(draws) > 1
     return Convergence(
         np.array([float(arviz.rhat(column)) if several else np.nan for column in columns]),
@@ -69,6 +70,7 @@ def ended(names: Sequence[str], convergence_of_draws: Convergence, chains: int, 
     if few:
         worst = min(few, key=lambda k: np.nan_to_num(sizes[k]))
         least = float(np.nan_to_num(sizes[worst]))
+        # Effective sizes grow in proportion to the draws.
         factor = LEAST_DRAWS / max(least, 1.0)
         yield Finding(
             "few-draws",

@@ -155,6 +155,8 @@ def _apart(end: Centred, known: Centred) -> bool:
     first, last = (mode.target.centre for mode in (end, known))
     if min(np.linalg.norm(known.target.places(first)), np.linalg.norm(end.target.places(last))) < NEAR:
         return False
+    # On the straight line between the ends: a dip shows two modes. A curved ridge may be taken for two, which costs a
+    # chain.
     parts = np.linspace(0.0, 1.0, BETWEEN + 2)[:, None]
     density = end.target.evaluate(end.target.places(first + parts * (last - first)))
     return bool(np.min(density) < min(density[0], density[-1]) - DIP)
@@ -205,7 +207,9 @@ def local_maxima(target: Target, count: int, seed: int) -> np.ndarray:
     search = SearchCoordinates(parameters)
     positions = search.points(vectors[:, : len(parameters)]) / (search.upper - search.lower)
     near = min(count - 1, 2 * NEIGHBOURS * len(parameters))
+    # Törn & Viitanen (1992): a point of the graph of nearest neighbours without a higher neighbour is a local maximum.
     _, neighbours = KDTree(positions).query(positions, k=near + 1)
     largest = np.isfinite(density) & np.all(density[:, None] >= density[neighbours], axis=1)
+    # Highest first, as only the first few are climbed from.
     order = np.argsort(-density, kind="stable")
     return vectors[order[largest[order]]]

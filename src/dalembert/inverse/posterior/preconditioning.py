@@ -64,6 +64,7 @@ def centred(
         reason = failures[-1] if failures else "the likelihood is not finite there"
         raise SolveError(f"the posterior cannot be sampled from its start: {reason}. Change the start or the bounds")
     for number in range(SEARCHES):  # each one is in the coordinates of the end of the one before
+        # Fisher scoring: JᵀΣ⁻¹J takes the place of the Hessian. It needs no second derivatives and is never indefinite.
         information, _ = _information(target, point, gradients=gradients)
         target = replace(target, centre=point, factor=_factor(information))
         target = _narrowed(target) if local else target
@@ -109,9 +110,11 @@ def _searched(target: Target, reach: float, *, gradients: bool) -> np.ndarray:
         return bound - value if np.isfinite(value) else FAR + float(place @ place)
 
     if gradients:
+        # In units of standard deviations, so one box suits all parameters.
         limits = [(-reach, reach)] * len(origin)  # a search within what the curvature allows
         return minimize(squared, origin, jac=True, method="L-BFGS-B", bounds=limits, options={"maxiter": 100}).x
     size = len(origin)
+    # A first simplex of half a standard deviation.
     simplex = np.vstack([origin, 0.5 * np.eye(size)])
     options = {"maxfev": 100 * size, "initial_simplex": simplex, "xatol": 1e-3, "fatol": 1e-4}
     return minimize(plain, origin, method="Nelder-Mead", options=options).x
@@ -122,7 +125,9 @@ def _information(target: Target, point: np.ndarray, *, gradients: bool) -> tuple
     coordinates = target.coordinates
     vector, slope = coordinates.vectors(point), coordinates.slope(point)
     prior = prior_slopes(target.parameters, vector, slope)
+    # A uniform prior is ln u(1 − u) in z, with the curvature −2 u(1 − u). In |z|, which does not overflow.
     between = np.exp(-np.abs(point)) / (1 + np.exp(-np.abs(point))) ** 2  # u (1 − u)
+    # The information adds up: priors, the map to z, then the data.
     known = prior.T @ prior + np.diag(2 * between)
     if gradients:
         try:
@@ -140,10 +145,12 @@ def _curvatures(target: Target, point: np.ndarray) -> np.ndarray:
     moved = STEP * np.eye(len(point))
     vectors = target.vectors(np.concatenate([point[None], point + moved, point - moved]))
     middle, above, below = np.split(target.likelihood.evaluate(vectors), [1, 1 + len(point)])
+    # Convex directions count as not informed by the data: the priors alone give them a width.
     curvatures = -(above - 2 * middle + below) / STEP**2
     return np.where(np.isfinite(curvatures) & (curvatures > 0), curvatures, 0.0)
 
 
 def _factor(information: np.ndarray) -> np.ndarray:
     """L⁻ᵀ of the Cholesky factor L of an information."""
+    # With H = L Lᵀ, z = L⁻ᵀ y has the covariance H⁻¹ for a standard normal y.
     return np.linalg.inv(np.linalg.cholesky(information)).T

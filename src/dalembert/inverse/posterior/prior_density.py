@@ -40,6 +40,8 @@ class PriorDensity:
         for k in self._alone:
             density = density + self.parameters.items[k].distribution.log_density(vectors[..., k])
         for columns, mean, matrix in self._joint:
+            # Normal density of several parameters: −½ ‖W (p − μ)‖² + ln det W − n/2 ln 2π, with the triangular W = L⁻¹
+            # of Σ = L Lᵀ.
             white = (vectors[..., columns] - mean) @ matrix.T
             constant = np.sum(np.log(np.diag(matrix))) - len(mean) / 2 * np.log(2 * np.pi)
             density = density - 0.5 * np.sum(white**2, axis=-1) + constant
@@ -62,6 +64,7 @@ class PriorDensity:
             item = parameters.items[k]
             vectors[:, k] = item.distribution.within(random.random(count), item.lower, item.upper)
         for columns, mean, matrix in self._joint:
+            # Truncation by rejection: what falls outside of the bounds is drawn again.
             factor, missing = np.linalg.inv(matrix), np.arange(count)
             lower, upper = parameters.lower[columns], parameters.upper[columns]
             while len(missing):

@@ -36,6 +36,7 @@ class SurrogateModel(Wrapped):
     def evaluate(self, vectors: np.ndarray) -> Responses:
         """Responses of a batch; a vector outside the box is a failed sample."""
         points, polynomial = self.problem.search.points(np.atleast_2d(vectors)), self.surrogate.polynomial
+        # Outside of its box a polynomial grows fast: a proposal there fails, and is rejected.
         inside = np.all((points >= polynomial.lower) & (points <= polynomial.upper), axis=1)
         compared = np.zeros((len(points), *self.problem.weights.shape))
         flat = compared.reshape(len(points), -1)

@@ -78,7 +78,9 @@ class Target:
             value, gradient = self.likelihood.linearise(vector)
         except SolveError:
             return -np.inf, np.zeros(len(place))
+        # ln p(y) = ln p(data | p) + ln p(p) + Σ ln dp/dz; the constant ln det factor is left out.
         value = value + float(self.prior(vector)) + float(self.coordinates.log_slope(point))
+        # Chain rule from p to z, then to y = factor⁻¹ (z − centre).
         slope = self.coordinates.slope(point) * (gradient + self.prior.gradient(vector))
         result = self.factor.T @ (slope + self.coordinates.log_slope_gradient(point))
         return (

@@ -54,12 +54,14 @@ class UnboundedCoordinates:
     def slope(self, points: np.ndarray) -> np.ndarray:
         """dp/dz, both (..., parameters)."""
         lower, upper = self._ends
+        # du/dz = u (1 − u), without the cancellation of 1 − u.
         inside = (upper - lower) * expit(points) * expit(-points)
         return np.where(self.logarithmic, self.vectors(points), 1.0) * inside
 
     def log_slope(self, points: np.ndarray) -> np.ndarray:
         """Σ log dp/dz over the parameters, shape (...,): what makes a density of p one of z."""
         lower, upper = self._ends
+        # ln u(1 − u) = −|z| − 2 ln(1 + e^−|z|), finite for any z.
         size = -np.abs(points)
         inside = np.log(upper - lower) + size - 2 * np.log1p(np.exp(size))
         return np.sum(inside + np.where(self.logarithmic, lower + (upper - lower) * expit(points), 0.0), axis=-1)
@@ -68,4 +70,5 @@ class UnboundedCoordinates:
         """Derivative of :meth:`log_slope`, both (..., parameters)."""
         lower, upper = self._ends
         logs = np.where(self.logarithmic, (upper - lower) * expit(points) * expit(-points), 0.0)
+        # d/dz ln u(1 − u) = 1 − 2u; for logarithmic parameters d ln p/dz comes on top.
         return logs + expit(-points) - expit(points)

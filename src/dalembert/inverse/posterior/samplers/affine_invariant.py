@@ -59,9 +59,12 @@ class AffineInvariant(Sampler):
         """
         target = modes.best.target
         emcee, size = package("emcee", "the sampler AffineInvariant"), len(target.centre)
+        # A move along differences needs at least twice as many walkers as parameters, an even number for two halves.
         walkers = self.walkers or max(length.chains, 4 * size * len(modes.targets))
         walkers = max(walkers + walkers % 2, 2 * size + 2)
+        # ter Braak & Vrugt (2008): differential evolution with one snooker move in five.
         moves = [(emcee.moves.DEMove(), 0.8), (emcee.moves.DESnookerMove(), 0.2)]
+        # Differences of walkers in two modes hardly ever lead from one to the other: a map between them does.
         if len(modes.targets) > 1:
             moves = [(emcee.moves.DEMove(), 0.6), *moves[1:], (emcee.moves.MHMove(partial(_jumped, modes)), 0.2)]
         sampler = emcee.EnsembleSampler(walkers, size, target.evaluate, vectorize=True, moves=moves)
@@ -85,6 +88,7 @@ def _starts(modes: Modes, walkers: int, random: np.random.RandomState) -> np.nda
         failed = ~np.isfinite(target.evaluate(starts))
         if not np.any(failed):
             return starts
+        # Half as far away: the model fails far from the mode rather than near it.
         closer = 0.5 * random.standard_normal((int(np.sum(failed)), len(target.centre)))
         starts[failed] = _around(modes, mode[failed], closer)
     raise SolveError(
@@ -108,8 +112,10 @@ def _jumped(modes: Modes, places: np.ndarray, random: np.random.RandomState) -> 
     often. So the ratio of densities times the determinant of the map decides.
     """
     best, targets, count = modes.best.target, modes.targets, len(modes.targets)
+    # ln det of the map from mode i to mode j is ln det factor_j − ln det factor_i.
     sizes = np.array([np.linalg.slogdet(target.factor)[1] for target in targets])
     before = random.randint(count, size=len(places))
+    # Uniform among the other modes, so that the way back is proposed with the same probability.
     after = (before + 1 + random.randint(count - 1, size=len(places))) % count
     result = np.empty_like(places)
     for i, j in {*zip(before.tolist(), after.tolist(), strict=True)}:

@@ -89,6 +89,7 @@ class DelayedAcceptance(Sampler):
         random = np.random.default_rng(length.chain_seed(number))
         rows = target.coordinates.slope(target.centre)[:, None] * target.factor
         vector = target.coordinates.vectors(target.centre)
+        # The box of the surrogate follows from the linear deviations of the parameters at the mode.
         cheap = with_surrogate(target, vector, np.sqrt(np.sum(rows**2, axis=1)), self.scheme, length.seed)
         walk = _Walk(cheap, self.walk or 5 * len(target.centre), random)
         states = walk.started(length.chains, length.warmup)
@@ -101,6 +102,8 @@ class DelayedAcceptance(Sampler):
             proposed = walk.walked(states)
             proposed_exact = target.evaluate(proposed.places)
             with np.errstate(invalid="ignore"):
+                # ln of π(y) π*(x)/(π(x) π*(y)). The walk leaves π* invariant, so π* takes the place of the proposal
+                # density.
                 ratio = (proposed_exact - exact) - (proposed.density - states.density)
             taken = np.log(random.random(length.chains)) < np.nan_to_num(ratio, nan=-np.inf, posinf=np.inf)
             states, exact = states.where(taken, proposed), np.where(taken, proposed_exact, exact)
@@ -133,6 +136,7 @@ class _Walk:
     scale: float = field(init=False)
 
     def __post_init__(self) -> None:
+        # 2.4/√d suits a random walk on a normal density (Gelman, Roberts & Gilks 1996).
         self.scale = 2.4 / np.sqrt(len(self.target.centre))
 
     def started(self, chains: int, warmup: int) -> _States:
@@ -143,6 +147,7 @@ class _Walk:
         states = states.where(~np.isfinite(states.density), _States(origin, self.target.evaluate(origin)))
         for number in range(max(warmup, 100)):
             states, accepted = self._step(states)
+            # Robbins & Monro: steps ∝ 1/√n. Adaptation ends with the warm-up, else π* would not stay invariant.
             self.scale *= float(np.exp((accepted - WANTED) / np.sqrt(1 + number)))
         return states
 
@@ -178,6 +183,7 @@ def _error(target: Target, cheap: Target, walk: _Walk, states: _States) -> tuple
     if not np.all(np.isfinite(error)):
         return np.inf, 0.0
     spread = float(np.std(error))
+    # For e ~ N(0, s²) at both ends, E min(1, e^Δ) with Δ ~ N(−s², 2 s²) is erfc(s/2).
     return spread, float(erfc(spread / 2))
 
 

@@ -108,6 +108,7 @@ def _chain(sampler: NUTS, length: Length, on_draws: OnDraws, stop: Event, target
     kept, further calls return at once, and the error is raised at the end.
     """
     nutpie, count = package("nutpie", "the sampler NUTS"), len(target.centre)
+    # A density of −∞ ends a trajectory as divergent, so nutpie comes back soon after an error.
     errors: list[BaseException] = []
 
     def density(place: np.ndarray) -> tuple[float, np.ndarray]:

@@ -23,18 +23,10 @@ _TERMS = 1e-14  # of the known terms, which the rest of a derivative may be in e
 
 @dataclass(frozen=True, eq=False)
 class Pattern:
-    """Which numbers depend on which parameters.
+    """Which numbers depend on which parameters."""
 
-    Parameters
-    ----------
-    groups : tuple of array of int
-        Parameters that are moved together: no number depends on two of them.
-    owners : tuple of array of int, shape (numbers,)
-        For each group the parameter that a number depends on, -1 if none.
-    """
-
-    groups: tuple[np.ndarray, ...]
-    owners: tuple[np.ndarray, ...]
+    groups: tuple[np.ndarray, ...]  # parameters that are moved together: no number depends on two of them
+    owners: tuple[np.ndarray, ...]  # for each group the parameter that a number depends on, -1 if none
 
 
 def singly(count: int, numbers: int) -> Pattern:

@@ -17,19 +17,11 @@ BIASED, WHITE, OTHER = 4.0, 4.0, 1.0
 
 @dataclass(frozen=True, eq=False)
 class IdentifiablePart:
-    """Slopes without their changes along directions that are not identifiable.
+    """Slopes without their changes along directions that are not identifiable."""
 
-    Parameters
-    ----------
-    slopes : array, shape (values, parameters)
-    left_out : array, shape (directions, parameters)
-        Directions that are not identifiable, in units of the parameters.
-    offset : float
-        Foreseen fall of the sum of squares along the identifiable directions, relative to the variance of a residual.
-    """
-
-    slopes: np.ndarray
-    left_out: np.ndarray
+    slopes: np.ndarray  # (values, parameters)
+    left_out: np.ndarray  # (directions, parameters): directions that are not identifiable, in units of the parameters
+    # Foreseen fall of the sum of squares along the identifiable directions, relative to the variance of a residual.
     offset: float
 
     @property

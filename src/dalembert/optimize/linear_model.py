@@ -12,15 +12,6 @@ from dalembert.optimize.tikhonov import Regularised
 class LinearModel:
     """Residuals r + S d of a step d with down ≤ d ≤ up.
 
-    Parameters
-    ----------
-    residual : array, shape (values,)
-        r.
-    slopes : array, shape (values, parameters)
-        S.
-    down, up : array, shape (parameters,)
-        Room to the bounds, down ≤ 0 ≤ up.
-
     Examples
     --------
     What meets a bound stays there, and the others are chosen anew: clipped, the free step (3, 2) would be (3, 1).
@@ -31,8 +22,9 @@ class LinearModel:
     [3.2, 1.0]
     """
 
-    residual: np.ndarray
-    slopes: np.ndarray
+    residual: np.ndarray  # (values,): r
+    slopes: np.ndarray  # (values, parameters): S
+    # down, up (parameters,): room to the bounds, down ≤ 0 ≤ up.
     down: np.ndarray
     up: np.ndarray
 

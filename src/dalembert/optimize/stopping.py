@@ -27,21 +27,14 @@ class Stopped(Exception):
 
 @dataclass
 class Stopping:
-    """Judge of a descent's progress.
+    """Judge of a descent's progress."""
 
-    Parameters
-    ----------
-    gain : float
-        The descent has converged when the linear model foresees a fall of the sum of squares by less than this
-        fraction. This is the square of the relative offset of Bates & Watts, up to a factor of the degrees of freedom.
-        Source: Bates & Watts, A relative offset orthogonality convergence criterion for nonlinear least squares,
-        Technometrics 23 (1981).
-    window : int
-        Trial points after which progress is judged.
-    """
-
+    # The descent has converged when the linear model foresees a fall of the sum of squares by less than this fraction.
+    # This is the square of the relative offset of Bates & Watts, up to a factor of the degrees of freedom. Source:
+    # Bates & Watts, A relative offset orthogonality convergence criterion for nonlinear least squares, Technometrics 23
+    # (1981).
     gain: float
-    window: int
+    window: int  # trial points after which progress is judged
     foreseen: float = np.inf
     length: float = np.inf
     _trials: list[tuple[float, float]] = field(default_factory=list)

@@ -11,21 +11,12 @@ KEPT, ROUNDS = 16, 30  # places that are moved to where the empty box is larger,
 
 @dataclass(frozen=True)
 class Gaps:
-    """Parts of a box without a run.
+    """Parts of a box without a run."""
 
-    Parameters
-    ----------
-    all_together : float
-        Side of the largest box without a run, as a part of the sides of the whole box, the same in each direction.
-    each : tuple of float
-        Largest distance between neighbouring runs along each direction, as a part of its side.
-    relative : float
-        The same as ``all_together`` in units of the lengths over which the response varies.
-    """
-
+    # Side of the largest box without a run, as a part of the sides of the whole box, the same in each direction.
     all_together: float
-    each: tuple[float, ...]
-    relative: float
+    each: tuple[float, ...]  # largest distance between neighbouring runs along each direction, as a part of its side
+    relative: float  # the same as ``all_together`` in units of the lengths over which the response varies
 
 
 def gaps(eta: np.ndarray, lengths: np.ndarray | None = None) -> Gaps:

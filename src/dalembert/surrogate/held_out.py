@@ -17,16 +17,10 @@ FEWEST, EACH = 10, 2  # held-out runs in all and for each direction, the larger 
 
 @dataclass(eq=False)
 class HeldOut:
-    """Held-out runs that succeeded.
+    """Held-out runs that succeeded."""
 
-    Parameters
-    ----------
-    eta : array, shape (runs, f)
-    values : array, shape (runs, outputs)
-    """
-
-    eta: np.ndarray
-    values: np.ndarray
+    eta: np.ndarray  # (runs, f)
+    values: np.ndarray  # (runs, outputs)
     _table: list[np.ndarray] = field(default_factory=list, init=False)
     _seen: int = field(default=0, init=False)
     _predicted: np.ndarray | float = field(default=0.0, init=False)

@@ -24,19 +24,11 @@ def uniform(degree: int) -> tuple[np.ndarray, np.ndarray]:
 
 @dataclass(frozen=True, eq=False)
 class OrthonormalExpansion:
-    """A polynomial Σ c_α Π p_{α_k}(η_k), in which the p_j of a direction are orthonormal for the input's distribution.
+    """A polynomial Σ c_α Π p_{α_k}(η_k), the p_j of a direction orthonormal for the distribution of its input."""
 
-    Parameters
-    ----------
-    exponents : array of int, shape (terms, d)
-    coefficients : array, shape (terms, outputs)
-    changes : list of array, each of shape (degree + 1, degree + 1)
-        Of each direction, lower triangular: T_n = Σ_j M_nj p_j.
-    """
-
-    exponents: np.ndarray
-    coefficients: np.ndarray
-    changes: list[np.ndarray]
+    exponents: np.ndarray  # (terms, d)
+    coefficients: np.ndarray  # (terms, outputs)
+    changes: list[np.ndarray]  # (degree + 1, degree + 1): of each direction, lower triangular: T_n = Σ_j M_nj p_j
 
     def tables(self, eta: np.ndarray) -> Iterator[tuple[slice, np.ndarray]]:
         """Yield rows of points η (n, d), and the basis polynomials there, shape (rows, terms)."""

@@ -12,22 +12,12 @@ from dalembert.surrogate.runs import Runs
 
 @dataclass(frozen=True)
 class Fitted:
-    """A polynomial in η in [−1, 1]^f.
+    """A polynomial in η in [−1, 1]^f."""
 
-    Parameters
-    ----------
-    exponents : array of int, shape (terms, f)
-    coefficients : array, shape (terms, outputs)
-    tail : array, shape (outputs,)
-        Estimate of what the terms left out would add.
-    ended : str
-        Which limit ended the growth and how to raise it; empty if none did.
-    """
-
-    exponents: np.ndarray
-    coefficients: np.ndarray
-    tail: np.ndarray
-    ended: str = ""
+    exponents: np.ndarray  # (terms, f)
+    coefficients: np.ndarray  # (terms, outputs)
+    tail: np.ndarray  # (outputs,): estimate of what the terms left out would add
+    ended: str = ""  # which limit ended the growth and how to raise it; empty if none did
 
 
 @runtime_checkable

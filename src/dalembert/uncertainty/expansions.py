@@ -15,19 +15,11 @@ CHUNK = 2_000_000  # numbers in the largest array of Hessians at once
 
 @dataclass(frozen=True, eq=False)
 class Expansions:
-    """Runs at coordinates η in [−1, 1]^f, with their responses and gradients, all outputs at once.
+    """Runs at coordinates η in [−1, 1]^f, with their responses and gradients, all outputs at once."""
 
-    Parameters
-    ----------
-    points : array, shape (runs, f)
-    values : array, shape (runs, outputs)
-    slopes : array, shape (runs, outputs, f)
-        By η.
-    """
-
-    points: np.ndarray
-    values: np.ndarray
-    slopes: np.ndarray
+    points: np.ndarray  # (runs, f)
+    values: np.ndarray  # (runs, outputs)
+    slopes: np.ndarray  # (runs, outputs, f): by η
 
     def chunks(self) -> Iterator[np.ndarray]:
         """Numbers of outputs, so many at a time that their Hessians are no large array."""

@@ -55,19 +55,11 @@ class Tried:
 
 @dataclass
 class ExtremeSearch:
-    """All runs so far, in the coordinates η of the intervals that have a width.
-
-    Parameters
-    ----------
-    tolerance : float
-        Gains smaller than this part of the widest band of a channel are not looked for.
-    radius : float
-        How far an expansion is followed along each coordinate.
-    """
+    """All runs so far, in the coordinates η of the intervals that have a width."""
 
     runs: Runs
-    tolerance: float
-    radius: float
+    tolerance: float  # gains smaller than this part of the widest band of a channel are not looked for
+    radius: float  # how far an expansion is followed along each coordinate
     tried: list[np.ndarray] = field(default_factory=list)
     failed: list[bool] = field(default_factory=list)
     values: list[np.ndarray] = field(default_factory=list)

@@ -26,21 +26,11 @@ Distributions = Box | Mapping[str, Interval | tuple[float, float] | float | Prio
 
 @dataclass(frozen=True, eq=False)
 class Inputs:
-    """Independent random inputs.
+    """Independent random inputs."""
 
-    Parameters
-    ----------
-    box : Box
-        Interval of each input. Distributions are truncated by it.
-    priors : tuple of Prior or None, of length d
-        None for an input that is uniform.
-    lost : tuple of float, of length d
-        Part of the variance of each input that lies in the tails that are cut off.
-    """
-
-    box: Box
-    priors: tuple[Prior | None, ...]
-    lost: tuple[float, ...]
+    box: Box  # interval of each input. Distributions are truncated by it.
+    priors: tuple[Prior | None, ...]  # of length d: None for an input that is uniform
+    lost: tuple[float, ...]  # of length d: part of the variance of each input that lies in the tails that are cut off
 
     @property
     def texts(self) -> tuple[str, ...]:

@@ -12,23 +12,13 @@ from dalembert.uncertainty.events import Event, OnEvent, Ran
 
 @dataclass
 class Runs:
-    """A model over a box, and the account of its runs.
-
-    Parameters
-    ----------
-    box : Box
-        An interval for each parameter, in the model's order.
-    method : str
-        In whose name events are told.
-    most : int, optional
-        Runs that the method will make, where it knows.
-    """
+    """A model over a box, and the account of its runs."""
 
     model: ForwardModel
-    box: Box
-    method: str
+    box: Box  # an interval for each parameter, in the model's order
+    method: str  # in whose name events are told
     on_event: OnEvent | None = None
-    most: int | None = None
+    most: int | None = None  # runs that the method will make, where it knows
     count: int = 0
     failures: list[str] = field(default_factory=list)
 

@@ -21,21 +21,12 @@ Planned = NoiseModel | str | Mapping[str, NoiseModel | str] | EstimatedNoise
 
 @dataclass(frozen=True, eq=False)
 class PlannedChannels:
-    """Channels that can be measured, with their noise.
-
-    Parameters
-    ----------
-    columns : array of int, shape (channels,)
-        Their places in the model.
-    deviations : array, shape (channels,)
-        Known standard deviations; NaN where they are not given.
-    noises : tuple of (NoiseModel, mapping)
-        The noise of each channel, and the values of its parameters.
-    """
+    """Channels that can be measured, with their noise."""
 
     names: tuple[str, ...]
-    columns: np.ndarray
-    deviations: np.ndarray
+    columns: np.ndarray  # (channels,): their places in the model
+    deviations: np.ndarray  # (channels,): known standard deviations; NaN where they are not given
+    # The noise of each channel, and the values of its parameters.
     noises: tuple[tuple[NoiseModel, Mapping[str, np.ndarray]], ...]
     along: Coordinate
 

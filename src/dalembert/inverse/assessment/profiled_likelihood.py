@@ -18,22 +18,12 @@ from dalembert.parameters import Parameters
 
 @dataclass(frozen=True, eq=False)
 class ProfiledLikelihood:
-    """Restricted likelihood of model and noise, relative to its value at a fit.
-
-    Parameters
-    ----------
-    value : float
-        At the fit.
-    noise : array, shape (noise parameters,)
-        At the fit.
-    restriction : Restriction
-        At the fit, and kept: the fit is then the largest value.
-    """
+    """Restricted likelihood of model and noise, relative to its value at a fit."""
 
     likelihood: Likelihood
-    value: float
-    noise: np.ndarray
-    restriction: Restriction
+    value: float  # at the fit
+    noise: np.ndarray  # (noise parameters,): at the fit
+    restriction: Restriction  # at the fit, and kept: the fit is then the largest value
     _last: list[np.ndarray] = field(default_factory=list)
 
     def fresh(self) -> "ProfiledLikelihood":

@@ -18,19 +18,12 @@ class BandProblem:
     """Fitness F = Σ W ((lower − given lower)² + (upper − given upper)²) over samples and channels.
 
     Outputs are samples × channels, flat.
-
-    Parameters
-    ----------
-    columns : array of int, shape (channels,)
-        Where the bands' channels stand among the model's.
-    weights : array, shape (samples, channels)
-        W.
     """
 
     model: ForwardModel
     bands: Bands
-    columns: np.ndarray
-    weights: np.ndarray
+    columns: np.ndarray  # (channels,): where the bands' channels stand among the model's
+    weights: np.ndarray  # (samples, channels): W
     unknowns: Unknowns
     journal: Journal
 

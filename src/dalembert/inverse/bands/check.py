@@ -13,19 +13,11 @@ LOSS = 1e-6  # a bound may be checked at a point where the surrogate is this par
 
 @dataclass(frozen=True, eq=False)
 class Check:
-    """True runs at points (runs, d) of a box, those that failed left out.
+    """True runs at points (runs, d) of a box, those that failed left out."""
 
-    Parameters
-    ----------
-    points : array, shape (runs, d)
-    values : array, shape (runs, outputs)
-    error : array, shape (outputs,)
-        Largest difference between surrogate and true runs.
-    """
-
-    points: np.ndarray
-    values: np.ndarray
-    error: np.ndarray
+    points: np.ndarray  # (runs, d)
+    values: np.ndarray  # (runs, outputs)
+    error: np.ndarray  # (outputs,): largest difference between surrogate and true runs
 
     @property
     def lower(self) -> np.ndarray:
@@ -40,23 +32,15 @@ class Check:
 
 @dataclass(frozen=True, eq=False)
 class BandSolution:
-    """The best candidate, on the surrogate that bounds it.
-
-    Parameters
-    ----------
-    error : array, shape (outputs,)
-        Estimate of the surrogate's largest error on the candidate's box.
-    reached : int or None
-        Number of descents that ended there; None for a method without descents.
-    """
+    """The best candidate, on the surrogate that bounds it."""
 
     polynomial: ChebyshevPolynomial
     candidate: Candidate
-    error: np.ndarray
+    error: np.ndarray  # (outputs,): estimate of the surrogate's largest error on the candidate's box
     check: Check | None
     success: bool
     message: str
-    reached: int | None = None
+    reached: int | None = None  # number of descents that ended there; None for a method without descents
 
 
 def check(problem: BandProblem, polynomial: ChebyshevPolynomial, at: Candidate) -> Check | None:

@@ -16,13 +16,6 @@ from dalembert.parameters import Parameters
 class Unknowns:
     """Vectors x = (middles of all d parameters, radii of the k intervals), in search coordinates.
 
-    Parameters
-    ----------
-    intervals : tuple of str
-        Names of the parameters whose radius is unknown; that of the others is zero.
-    region : (array, array), optional
-        Corners, each (d,), of a part of the search box in which the boxes stay.
-
     Notes
     -----
     A box with middle m and radius r is cut at the bounds: its ends are max(m − r, lower) and min(m + r, upper). So
@@ -39,7 +32,8 @@ class Unknowns:
     """
 
     parameters: Parameters
-    intervals: tuple[str, ...]
+    intervals: tuple[str, ...]  # names of the parameters whose radius is unknown; that of the others is zero
+    # Corners, each (d,), of a part of the search box in which the boxes stay.
     region: tuple[np.ndarray, np.ndarray] | None = None
 
     @cached_property

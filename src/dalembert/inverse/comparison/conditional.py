@@ -26,24 +26,12 @@ FAR = 1.0  # largest move of a noise parameter, in its standard deviations, that
 
 @dataclass(frozen=True, eq=False)
 class Conditional:
-    """Normal noise of a known covariance, and the linearised model of its mean.
+    """Normal noise of a known covariance, and the linearised model of its mean."""
 
-    Parameters
-    ----------
-    whitening : csc_array, shape (whitened, values)
-        W with the precision WᵀW of the noise; values are flat from (samples, channels).
-    basis : array, shape (whitened, columns)
-        B, orthonormal with the rows of priors, which it leaves out; it spans W J.
-    white : array, shape (whitened,)
-        (I − B Bᵀ) W (data − R): what remains at the best parameters.
-    information : float
-        ½ log |I| of the information I on the parameters, priors included.
-    """
-
-    whitening: "csc_array"
-    basis: np.ndarray
-    white: np.ndarray
-    information: float
+    whitening: "csc_array"  # W with the precision WᵀW of the noise; values are flat from (samples, channels)
+    basis: np.ndarray  # (whitened, columns): B, orthonormal with the rows of priors, which it leaves out; it spans W J
+    white: np.ndarray  # (whitened,): (I − B Bᵀ) W (data − R): what remains at the best parameters
+    information: float  # ½ log |I| of the information I on the parameters, priors included
 
     @property
     def restricted(self) -> float:
@@ -79,18 +67,10 @@ class Conditional:
 
 @dataclass(frozen=True, eq=False)
 class WithNoise:
-    """The linearisation of a fit with a noise model, for the density of values that are left out.
+    """The linearisation of a fit with a noise model, for the density of values that are left out."""
 
-    Parameters
-    ----------
-    fit : Fit
-        Its values, Jacobian and noise are used.
-    weights : array, shape (samples, channels)
-        Positive where a value counts; 1/variance for known noise.
-    """
-
-    fit: Fit
-    weights: np.ndarray
+    fit: Fit  # its values, Jacobian and noise are used
+    weights: np.ndarray  # (samples, channels): positive where a value counts; 1/variance for known noise
 
     @property
     def noise(self) -> EstimatedNoise:

@@ -15,33 +15,16 @@ LEAST = 1e-12  # 1 − leverage below which a value is not predicted by the othe
 
 @dataclass(frozen=True, eq=False)
 class Linearised:
-    """Weighted residuals of a fit and its linearisation, flat from (samples, channels).
+    """Weighted residuals of a fit and its linearisation, flat from (samples, channels)."""
 
-    Parameters
-    ----------
-    residual : array, shape (values,)
-        W^½ (data − R); 0 where a value was not fitted.
-    basis : array, shape (values, columns)
-        Orthonormal with the rows of priors, which it leaves out.
-    roots : array, shape (values,)
-        W^½.
-    freedom : float
-        Number of fitted values and priors, less that of the columns.
-    squares : float
-        Sum of squares that the variance of a weighted residual follows from.
-    known : bool
-        Whether that variance is 1.
-    normal : bool
-        Whether densities are normal, with the variance that the other values have, as those of fits with a noise
-        model; otherwise Student's t where the variance is not known.
-    """
-
-    residual: np.ndarray
-    basis: np.ndarray
-    roots: np.ndarray
-    freedom: float
-    squares: float
-    known: bool
+    residual: np.ndarray  # (values,): W^½ (data − R); 0 where a value was not fitted
+    basis: np.ndarray  # (values, columns): orthonormal with the rows of priors, which it leaves out
+    roots: np.ndarray  # (values,): W^½
+    freedom: float  # number of fitted values and priors, less that of the columns
+    squares: float  # sum of squares that the variance of a weighted residual follows from
+    known: bool  # whether that variance is 1
+    # Whether densities are normal, with the variance that the other values have, as those of fits with a noise model;
+    # otherwise Student's t where the variance is not known.
     normal: bool = False
 
     @classmethod

@@ -22,27 +22,14 @@ _DIAGONAL = _ROWS == _COLUMNS
 
 @dataclass(frozen=True, eq=False)
 class ConsistentProblem:
-    """Minimise ½ ‖R θ − c‖² + ½ γ Σ D over unknowns z, ten a link, then one for each other parameter.
+    """Minimise ½ ‖R θ − c‖² + ½ γ Σ D over unknowns z, ten a link, then one for each other parameter."""
 
-    Parameters
-    ----------
-    triangle : array, shape (rows, parameters)
-    right : array, shape (rows,)
-    prior : array, shape (parameters,)
-    links : int
-        The first ten parameters are those of the first link, and so on.
-    positive : array of bool, shape (parameters,)
-        Other parameters that are positive; False for those of links.
-    regularisation : float
-        γ.
-    """
-
-    triangle: np.ndarray
-    right: np.ndarray
-    prior: np.ndarray
-    links: int
-    positive: np.ndarray
-    regularisation: float
+    triangle: np.ndarray  # (rows, parameters)
+    right: np.ndarray  # (rows,)
+    prior: np.ndarray  # (parameters,)
+    links: int  # the first ten parameters are those of the first link, and so on
+    positive: np.ndarray  # (parameters,): other parameters that are positive; False for those of links
+    regularisation: float  # γ
 
     @cached_property
     def factors(self) -> np.ndarray:

@@ -16,22 +16,14 @@ FEWEST = 4  # draws of a chain below which R-hat is not defined
 
 @dataclass(frozen=True, eq=False)
 class Convergence:
-    """Diagnostics of each parameter, shape (parameters,) each.
+    """Diagnostics of each parameter, shape (parameters,) each."""
 
-    Parameters
-    ----------
-    r_hat : array
-        Rank-normalised split R-hat: 1 if all chains, and both halves of each, have the same distribution.
-    bulk, tail : array
-        Effective sample sizes for the centre, and for the 5 % and 95 % quantiles.
-    error : array
-        Monte Carlo standard error of the mean.
-    """
-
+    # Rank-normalised split R-hat: 1 if all chains, and both halves of each, have the same distribution.
     r_hat: np.ndarray
+    # bulk, tail: effective sample sizes for the centre, and for the 5 % and 95 % quantiles.
     bulk: np.ndarray
     tail: np.ndarray
-    error: np.ndarray
+    error: np.ndarray  # Monte Carlo standard error of the mean
 
 
 def convergence(draws: np.ndarray) -> Convergence:

@@ -23,35 +23,19 @@ from dalembert.priors import AnyPrior, LogUniform
 
 @dataclass(frozen=True, eq=False)
 class PosedPosterior:
-    """The factors of a posterior density.
-
-    Parameters
-    ----------
-    likelihood : Likelihood
-    parameters : Parameters
-        Those of the model, then those of the noise, with their priors.
-    known_noise : bool
-        Whether weights or deviations of the data give the noise level.
-    usual_noise : bool
-        Whether the noise is that of the data, without a noise model.
-    """
+    """The factors of a posterior density."""
 
     likelihood: Likelihood
-    parameters: Parameters
-    known_noise: bool
-    usual_noise: bool
+    parameters: Parameters  # those of the model, then those of the noise, with their priors
+    known_noise: bool  # whether weights or deviations of the data give the noise level
+    usual_noise: bool  # whether the noise is that of the data, without a noise model
 
 
 @dataclass(frozen=True)
 class Length:
-    """How long chains are.
+    """How long chains are."""
 
-    Parameters
-    ----------
-    chains, draws, warmup : int
-        ``draws`` of each chain are kept, after ``warmup`` that are not.
-    """
-
+    # chains, draws, warmup: ``draws`` of each chain are kept, after ``warmup`` that are not.
     chains: int
     draws: int
     warmup: int

@@ -23,21 +23,13 @@ STEP = 0.05  # step of second differences in coordinates without bounds, for mod
 
 @dataclass(frozen=True, eq=False)
 class Centred:
-    """A target around its mode.
-
-    Parameters
-    ----------
-    vector : array, shape (parameters,)
-        Parameters at the mode of the density of the coordinates without bounds.
-    covariance : array, shape (parameters, parameters)
-        Of the parameters, from the linearised response and the priors.
-    data_information : array, shape (parameters, parameters), or None
-        Fisher information of the data about the coordinates at the mode; None without a jacobian.
-    """
+    """A target around its mode."""
 
     target: Target
-    vector: np.ndarray
-    covariance: np.ndarray
+    vector: np.ndarray  # (parameters,): parameters at the mode of the density of the coordinates without bounds
+    covariance: np.ndarray  # (parameters, parameters): of the parameters, from the linearised response and the priors
+    # (parameters, parameters), or None: Fisher information of the data about the coordinates at the mode; None without
+    # a jacobian.
     data_information: np.ndarray | None
 
     @property

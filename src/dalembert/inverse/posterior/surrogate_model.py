@@ -19,19 +19,11 @@ OUTSIDE = "outside the box of the surrogate"
 
 @dataclass(frozen=True)
 class SurrogateModel(Wrapped):
-    """A forward model whose compared values are polynomials; the others are 0.
+    """A forward model whose compared values are polynomials; the others are 0."""
 
-    Parameters
-    ----------
-    surrogate : Surrogate
-        Of the compared values, over search coordinates.
-    places : array of int, shape (values,)
-        Of the compared values in the response (samples, channels) of the data, flattened.
-    """
-
-    surrogate: Surrogate
+    surrogate: Surrogate  # of the compared values, over search coordinates
     problem: Problem
-    places: np.ndarray
+    places: np.ndarray  # (values,): of the compared values in the response (samples, channels) of the data, flattened
 
     def evaluate(self, vectors: np.ndarray) -> Responses:
         """Responses of a batch; a vector outside the box is a failed sample."""

@@ -15,20 +15,13 @@ from dalembert.parameters import Parameters
 
 @dataclass(frozen=True, eq=False)
 class Target:
-    """Log posterior density of y, with z = centre + factor y, and z the coordinates without bounds.
-
-    Parameters
-    ----------
-    parameters : Parameters
-        Those of the likelihood, with their priors.
-    centre : array, shape (parameters,)
-    factor : array, shape (parameters, parameters)
-        For a normal posterior with the covariance factor factorᵀ, y has independent standard normal components.
-    """
+    """Log posterior density of y, with z = centre + factor y, and z the coordinates without bounds."""
 
     likelihood: Likelihood
-    parameters: Parameters
-    centre: np.ndarray
+    parameters: Parameters  # those of the likelihood, with their priors
+    centre: np.ndarray  # (parameters,)
+    # (parameters, parameters): for a normal posterior with the covariance factor factorᵀ, y has independent standard
+    # normal components.
     factor: np.ndarray
 
     @cached_property

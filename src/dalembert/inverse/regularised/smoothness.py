@@ -28,15 +28,6 @@ def differences(places: np.ndarray, count: int, order: int) -> np.ndarray:
 class Smoothed:
     """All minima of ‖A z − b‖² + μ² ‖D z‖².
 
-    Parameters
-    ----------
-    matrix : array, shape (values, parameters)
-        A.
-    right : array, shape (values,)
-        b.
-    penalty : array, shape (rows, parameters)
-        D.
-
     Notes
     -----
     In standard form, z = D⁺_A y + z₀ with z₀ in the null space of D and D⁺_A its A-weighted pseudoinverse, it is
@@ -54,9 +45,9 @@ class Smoothed:
     [0.0, 1.2, 1.8, 3.0]
     """
 
-    matrix: np.ndarray
-    right: np.ndarray
-    penalty: np.ndarray
+    matrix: np.ndarray  # (values, parameters): A
+    right: np.ndarray  # (values,): b
+    penalty: np.ndarray  # (rows, parameters): D
 
     @cached_property
     def _free(self) -> np.ndarray:

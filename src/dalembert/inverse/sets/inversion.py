@@ -36,45 +36,24 @@ class Inversion:
 
     The method `zoomed` makes the surrogates, `paved` divides a box into boxes inside, outside and at the boundary of
     the set, `consistent` and `outside` check the result by runs of the model itself.
-
-    Parameters
-    ----------
-    run : callable
-        Returns the outputs (n, outputs) of runs of the model at points (n, d); NaN where a run failed. Points are
-        search coordinates: p/scale, or ln(p/lower) for parameters whose logarithm is searched (`SearchCoordinates`).
-    data, error : array, shape (outputs,)
-        In the units of the channels. NaN among the data for what was not measured.
-    wraps : array of bool, shape (outputs,)
-        Whether an output is an angle in rad that is compared modulo 2π.
-    shape : (int, int)
-        Samples and channels; outputs are samples × channels, flat.
-    scheme : Scheme
-        Which terms a surrogate has, and its tolerance.
-    most_boxes : int
-        Number of boxes after which a paving stops; the result then has the finding "paving-unfinished".
-    seed : int
-        All random numbers follow from it.
-    journal : Journal
-        Counts the runs and passes on events.
-    nearest : Nearest
-        The run so far that differs least from the data.
-    first : Surrogate
-        The surrogate on the whole search box, which decides which parts of it are left out.
-    members : list of arrays (d,)
-        Points of the runs that differ from the data by at most the error.
     """
 
+    # Returns the outputs (n, outputs) of runs of the model at points (n, d); NaN where a run failed. Points are search
+    # coordinates: p/scale, or ln(p/lower) for parameters whose logarithm is searched (`SearchCoordinates`).
     run: Callable[[np.ndarray], np.ndarray]
+    # data, error (outputs,): in the units of the channels. NaN among the data for what was not measured.
     data: np.ndarray
     error: np.ndarray
-    wraps: np.ndarray
-    shape: tuple[int, int]
-    scheme: Scheme
-    most_boxes: int
-    seed: int
-    journal: Journal
-    nearest: Nearest | None = field(default=None, init=False)
+    wraps: np.ndarray  # (outputs,): whether an output is an angle in rad that is compared modulo 2π
+    shape: tuple[int, int]  # samples and channels; outputs are samples × channels, flat
+    scheme: Scheme  # which terms a surrogate has, and its tolerance
+    most_boxes: int  # number of boxes after which a paving stops; the result then has the finding "paving-unfinished"
+    seed: int  # all random numbers follow from it
+    journal: Journal  # counts the runs and passes on events
+    nearest: Nearest | None = field(default=None, init=False)  # the run so far that differs least from the data
+    # The surrogate on the whole search box, which decides which parts of it are left out.
     first: Surrogate | None = field(default=None, init=False)
+    # (d,): points of the runs that differ from the data by at most the error.
     members: list[np.ndarray] = field(default_factory=list, init=False)
 
     def zoomed(self, lower: np.ndarray, upper: np.ndarray) -> tuple[Surrogate, Paving]:

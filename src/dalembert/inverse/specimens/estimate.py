@@ -24,20 +24,14 @@ WIDEST = 100.0  # largest upper end of a spread that is looked for, over the dev
 
 @dataclass(frozen=True, eq=False)
 class Estimates:
-    """Estimates of several specimens.
+    """Estimates of several specimens."""
 
-    Parameters
-    ----------
-    names, units : tuple of str, length parameters
-    values : array, shape (specimens, parameters)
-    covariance : array, shape (specimens · parameters, specimens · parameters)
-    """
-
+    # names, units: length parameters.
     names: tuple[str, ...]
     units: tuple[str, ...]
     specimens: tuple[str, ...]
-    values: np.ndarray
-    covariance: np.ndarray
+    values: np.ndarray  # (specimens, parameters)
+    covariance: np.ndarray  # (specimens · parameters, specimens · parameters)
 
 
 def population(

@@ -19,27 +19,13 @@ OnDraws: TypeAlias = Callable[[int, int], None]
 
 @dataclass(frozen=True, eq=False)
 class Chains:
-    """Draws of several chains.
+    """Draws of several chains."""
 
-    Parameters
-    ----------
-    places : array, shape (chains, draws, parameters)
-        In the coordinates of the target.
-    log_density : array, shape (chains, draws)
-        Of the target.
-    statistics : mapping of str to array, shape (chains, draws)
-        Of the sampler, by the names that ArviZ uses.
-    simulations : int
-        Those that the problem's journal has not counted.
-    findings : tuple of Finding
-        What only the sampler knows.
-    """
-
-    places: np.ndarray
-    log_density: np.ndarray
-    statistics: Mapping[str, np.ndarray] = field(default_factory=dict)
-    simulations: int = 0
-    findings: tuple[Finding, ...] = ()
+    places: np.ndarray  # (chains, draws, parameters): in the coordinates of the target
+    log_density: np.ndarray  # (chains, draws): of the target
+    statistics: Mapping[str, np.ndarray] = field(default_factory=dict)  # of the sampler, by the names that ArviZ uses
+    simulations: int = 0  # those that the problem's journal has not counted
+    findings: tuple[Finding, ...] = ()  # what only the sampler knows
 
 
 def moved(places: np.ndarray, target: Target, to: Target) -> np.ndarray:

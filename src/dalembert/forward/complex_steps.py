@@ -49,12 +49,9 @@ class Lost(NamedTuple):
 def lost_step(numbers: Callable[[complex], np.ndarray], scale: float) -> Lost | None:
     """The number that loses a complex step most, None if all carry it.
 
-    Parameters
-    ----------
-    numbers : callable
-        ``numbers(shift)`` -> vector of the numbers where the parameter is moved by a real or an imaginary ``shift``.
-    scale : float
-        Typical size of the parameter.
+    ``numbers``: ``numbers(shift)`` -> vector of the numbers where the parameter is moved by a real or an imaginary
+        ``shift``.
+    ``scale``: typical size of the parameter.
 
     Examples
     --------
@@ -243,17 +240,11 @@ def check_steps(
 
     Where the numbers cannot be computed they are not compared: the model itself will report it.
 
-    Parameters
-    ----------
-    vector : array (parameters,)
-        Where they are compared; moved inside the bounds, so that the differences stay there.
-    numbers : callable
-        Vector of the numbers at a real or complex vector of parameters.
-    place : callable
-        What an entry of the numbers is, for the message.
-    thorough : bool
-        Whether parameters are compared one by one, and rounding to few decimals is sought too, which needs wider
-        differences. If not, first all parameters are compared at once.
+    ``vector`` (parameters,): where they are compared; moved inside the bounds, so that the differences stay there.
+    ``numbers``: vector of the numbers at a real or complex vector of parameters.
+    ``place``: what an entry of the numbers is, for the message.
+    ``thorough``: whether parameters are compared one by one, and rounding to few decimals is sought too, which
+        needs wider differences. If not, first all parameters are compared at once.
     """
     _refuse_imaginary(numbers(vector), place)
     margin = np.minimum(DIFFERENCE * parameters.scale, (parameters.upper - parameters.lower) / 4)

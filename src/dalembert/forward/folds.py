@@ -83,16 +83,10 @@ class Fold:
 def summarised(model: ForwardModel, name: str, numbers: np.ndarray, compute: Callable[[], Arrays]) -> Arrays:
     """Return arrays that a method makes of a batch of responses; the checkpoint keeps them in place of the responses.
 
-    Parameters
-    ----------
-    model : ForwardModel
-        Without a checkpoint nothing is kept.
-    name : str
-        Of the method, with all other words that the arrays depend on.
-    numbers : ndarray
-        All numbers that they depend on.
-    compute : callable
-        Evaluates the model and makes the arrays.
+    ``model``: without a checkpoint nothing is kept.
+    ``name``: of the method, with all other words that the arrays depend on.
+    ``numbers``: all numbers that they depend on.
+    ``compute``: evaluates the model and makes the arrays.
     """
     recorded = recorded_in(model)
     if recorded is None:

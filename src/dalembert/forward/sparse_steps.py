@@ -37,14 +37,9 @@ def singly(count: int, numbers: int) -> Pattern:
 def sparse_jacobian(along: Along, count: int, pattern: Pattern | None = None) -> tuple[csc_array, Pattern]:
     """Return the Jacobian (numbers, parameters) of a function, and the pattern for the next point.
 
-    Parameters
-    ----------
-    along : callable
-        Derivative of the numbers along a direction.
-    count : int
-        Number of parameters.
-    pattern : Pattern, optional
-        Of an earlier point; it is confirmed by one more step, and sought anew where it no longer holds.
+    ``along``: derivative of the numbers along a direction.
+    ``count``: number of parameters.
+    ``pattern``: of an earlier point; it is confirmed by one more step, and sought anew where it no longer holds.
 
     Examples
     --------

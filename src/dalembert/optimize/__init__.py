@@ -6,8 +6,7 @@ from dalembert.optimize.least_squares import LeastSquares
 from dalembert.optimize.minimiser import Minimiser
 from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, RegularisedStep
 from dalembert.optimize.particle_swarm import ParticleSwarm
-from dalembert.optimize.response_sensitivity import ResponseSensitivity
-from dalembert.optimize.squares import Squares
+from dalembert.optimize.response_sensitivity import ResponseSensitivity, Squares
 from dalembert.optimize.sum_of_squares import SquaresMinimiser
 from dalembert.optimize.swarm import Swarm, SwarmState
 from dalembert.optimize.tikhonov import Regularised

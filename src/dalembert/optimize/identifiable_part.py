@@ -35,16 +35,11 @@ def identifiable_part(
 ) -> IdentifiablePart:
     """Return slopes without the directions that the data do not identify.
 
-    Parameters
-    ----------
-    problem : SumOfSquares
-        All directions are kept if its disturbance is not known.
-    x : array, shape (parameters,)
-    residual : array, shape (values,)
-    slopes : array, shape (values, parameters)
-        Relative to one unit a parameter.
-    fall : float
-        Last fall of the sum of squares.
+    ``problem``: all directions are kept if its disturbance is not known.
+    ``x`` (parameters,).
+    ``residual`` (values,).
+    ``slopes`` (values, parameters): relative to one unit a parameter.
+    ``fall``: last fall of the sum of squares.
 
     Notes
     -----

@@ -94,8 +94,7 @@ class ImprovedParticleSwarm(Swarm):
 
     def move(self, state: SwarmState, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
         x = state.positions
-        # All groups draw the numbers of group 1 first, in this order, so that the bits of a seed do not depend on the
-        # sizes of the groups.
+        # All particles draw the numbers of group 1 first: the random stream does not depend on the sizes of the groups.
         velocities = self.steered(state, rng, self.inertia, self.c1, self.c2)
         if len(state.quality):
             # c3 r3 (U − x), U the mean of a random 90 % of the quality set, another 90 % for each particle.

@@ -7,6 +7,7 @@ import numpy as np
 from dalembert.arguments import limited
 from dalembert.errors import InputError, require_known
 from dalembert.optimize.identifiable_part import creeps, identifiable_part
+from dalembert.optimize.least_squares import LeastSquares
 from dalembert.optimize.linear_model import LinearModel
 from dalembert.optimize.minimum import Minimum, Progress, RegularisedStep, reachable
 from dalembert.optimize.path import Creeps, Path
@@ -220,3 +221,8 @@ class _Descent:
     def spent(self, what: str, setting: str) -> Stopped:
         advice = f"allow more with ResponseSensitivity({setting}=...)"
         return Stopped(f"stopped after {what}, not converged; {advice}", success=False)
+
+
+Squares = LeastSquares | ResponseSensitivity
+"""``minimise(residual, jacobian, lower, upper, start, *, scale, on_iteration)``; settings ``trials``, ``tolerance``,
+``gain``."""

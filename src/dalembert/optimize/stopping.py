@@ -41,7 +41,7 @@ class Stopping:
 
     def at(self, residual: np.ndarray, slopes: np.ndarray, down: np.ndarray, up: np.ndarray) -> None:
         """Judge an accepted point by its linear model, the arguments of :class:`LinearModel`."""
-        # Columns of norm 1: the foreseen fall does not depend on the units of the parameters.
+        # Columns of norm 1: which directions count as unseen does not depend on the units of the parameters.
         size = np.linalg.norm(slopes, axis=0)
         size[size == 0] = 1.0
         # Its triangular factor has the same steps and falls, and is decomposed sooner.

@@ -1,4 +1,4 @@
-"""Chebyshev polynomials of one variable, and products of them."""
+"""Chebyshev polynomials of one variable, products of them, and powers of two that scale their coefficients."""
 
 from itertools import product
 from math import comb
@@ -90,3 +90,15 @@ def terms_of(directions: int, order: int) -> int:
 def full_tensor(orders: tuple[int, ...]) -> np.ndarray:
     """Exponents of all terms up to an order in each direction, shape (Π (order_k + 1), d)."""
     return np.array(list(product(*(range(order + 1) for order in orders))), dtype=int).reshape(-1, len(orders))
+
+
+def powers_of_two(*tables: np.ndarray) -> np.ndarray:
+    """Return the exponent of the largest magnitude of each column of tables (rows, outputs), as integers (outputs,).
+
+    Numbers x 2^-exponent are below 1, so that the sum of their squares is finite; the scaling does not round.
+
+    >>> powers_of_two(np.array([[3.0, 0.0], [-1.0, 0.0]])), powers_of_two(np.array([[1e200]]))
+    (array([2, 0]), array([665]))
+    """
+    largest = np.max([np.abs(table).max(axis=0, initial=0.0) for table in tables], axis=0)
+    return np.frexp(largest)[1].astype(int)

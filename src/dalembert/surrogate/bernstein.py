@@ -24,14 +24,12 @@ def enclosures(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Bounds (boxes, outputs) twice, that the polynomial does not leave on boxes (boxes, d) inside its own.
 
-    Parameters
-    ----------
-    low, high : array, shape (boxes, d)
-    gap : float
-        Halves boxes until no bound is further from a value of the polynomial than this part of the sum of its
-        |coefficients| without the constant one; infinite for the first coefficients as they are. Ends before that where
-        rounding hides the rest, after ``DEPTH`` halvings, or when the open parts of a box fill ``CHUNK``, as those of a
-        valley that is flat in several directions may: bounds are then guaranteed all the same, and wider.
+    ``low``, ``high`` (boxes, d).
+    ``gap``: halves boxes until no bound is further from a value of the polynomial than this part of the sum of its
+        |coefficients| without the constant one; infinite for the first coefficients as they are. Ends before that
+        where rounding hides the rest, after ``DEPTH`` halvings, or when the open parts of a box fill ``CHUNK``, as
+        those of a valley that is flat in several directions may: bounds are then guaranteed all the same, and
+        wider.
 
     Notes
     -----

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from dalembert.surrogate.basis import powers_of_two
 from dalembert.surrogate.leja import hierarchical, leja
-from dalembert.surrogate.powers_of_two import powers_of_two
 
 Term = tuple[int, ...]
 # Part of a surplus that is expected two degrees on, where the one between them is smaller: symmetry makes zeros.

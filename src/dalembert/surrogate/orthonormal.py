@@ -45,10 +45,7 @@ class OrthonormalExpansion:
 def orthonormal(polynomial: ChebyshevPolynomial, rules: Sequence[Rule] = ()) -> OrthonormalExpansion:
     """Return a polynomial in the orthonormal basis, direction after direction.
 
-    Parameters
-    ----------
-    rules : sequence of Rule, of length d
-        Of the distribution of each input; uniform if not given.
+    ``rules`` sequence of Rule, of length d: of the distribution of each input; uniform if not given.
     """
     exponents, coefficients = polynomial.exponents, polynomial.coefficients
     degrees = polynomial.degrees.tolist()

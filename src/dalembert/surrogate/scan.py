@@ -73,10 +73,7 @@ def values(polynomial: ChebyshevPolynomial, scan: Scan, low: np.ndarray, high: n
 def transformed(polynomial: ChebyshevPolynomial, bases: list[np.ndarray]) -> np.ndarray:
     """Coefficients taken to another basis, direction by direction: shape (boxes, outputs, Π n_k), the last one fastest.
 
-    Parameters
-    ----------
-    bases : list of d arrays, shape (boxes, n_k, degrees_k + 1)
-        What each Chebyshev polynomial of a direction is in the new basis.
+    ``bases`` (d arrays (boxes, n_k, degrees_k + 1)): what each Chebyshev polynomial of a direction is in the new basis.
     """
     size, outputs = polynomial.degrees + 1, polynomial.coefficients.shape[1]
     boxes = len(bases[0])

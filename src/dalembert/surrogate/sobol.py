@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from dalembert.surrogate.basis import powers_of_two
 from dalembert.surrogate.orthonormal import OrthonormalExpansion, Rule, orthonormal
-from dalembert.surrogate.powers_of_two import powers_of_two
 from dalembert.surrogate.surrogate import Surrogate
 
 NOTHING = 1e-12  # a standard deviation that is rounding, over the mean

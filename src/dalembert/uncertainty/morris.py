@@ -7,7 +7,7 @@ from dalembert.errors import InputError, SolveError
 from dalembert.findings import Finding
 from dalembert.forward import Executor, ForwardModel, findings_at, on_cluster, takes_executor
 from dalembert.forward.provenance import provenance
-from dalembert.surrogate.powers_of_two import powers_of_two
+from dalembert.surrogate.basis import powers_of_two
 from dalembert.uncertainty.events import Began, Ended, OnEvent
 from dalembert.uncertainty.inputs import Distributions, described, inputs_of
 from dalembert.uncertainty.runs import Runs

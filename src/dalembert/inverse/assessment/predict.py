@@ -113,11 +113,8 @@ def predict(model: ForwardModel | Experiment, fit: Fit, level: float = 0.95) -> 
 def band_end(half_widths: np.ndarray, response: np.ndarray, *, wraps: bool = False) -> int | None:
     """Return the sample at which a band becomes as wide on each side as the response's amplitude, or None.
 
-    Parameters
-    ----------
-    half_widths, response : array, shape (samples,)
-    wraps : bool
-        Whether the channel is an angle known up to whole turns, of an amplitude of at most half a turn.
+    ``half_widths``, ``response`` (samples,).
+    ``wraps``: whether the channel is an angle known up to whole turns, of an amplitude of at most half a turn.
 
     Notes
     -----

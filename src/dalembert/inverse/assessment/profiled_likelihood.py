@@ -55,12 +55,8 @@ class ProfiledLikelihood:
 def profiled_likelihood(problem: Problem, at: Linearisation, noise: EstimatedNoise) -> ProfiledLikelihood:
     """Return the likelihood of a fit whose noise was estimated.
 
-    Parameters
-    ----------
-    problem : Problem
-        With the weights of the fit.
-    at : Linearisation
-        At the identified values.
+    ``problem``: with the weights of the fit.
+    ``at``: at the identified values.
     """
     picked = {series: noise.models[series.name] for series in series_of(problem, fewest=1)}
     channels, _ = noises_of(problem, picked, known=True)

@@ -22,14 +22,10 @@ def corrected(
     A correction of low total degree, the highest that leaves two runs a term, takes away most of what a polynomial of
     high order lacks on a box much smaller than its own.
 
-    Parameters
-    ----------
-    at : Candidate
-        Its box.
-    points : array, shape (runs, d)
-    values : array, shape (runs, outputs)
-    taken : int
-        The last of the runs, at points where bounds are taken: they weigh more.
+    ``at``: its box.
+    ``points`` (runs, d).
+    ``values`` (runs, outputs).
+    ``taken``: the last of the runs, at points where bounds are taken: they weigh more.
     """
     width, thin = at.upper - at.lower, THIN * (polynomial.upper - polynomial.lower)
     margin = np.maximum(AROUND * width / 2, thin)

@@ -100,10 +100,8 @@ class FourierMotion:
 def largest_motion(shape: np.ndarray, period: float, limits: JointLimits) -> FourierMotion:
     """Return the largest motion of a shape that keeps the limits at all times.
 
-    Parameters
-    ----------
-    shape : array, shape (joints, 2 harmonics + 1)
-        From −1 to 1: sines and cosines of the velocity, and where the motion lies between the limits of the position.
+    ``shape`` (joints, 2 harmonics + 1): from −1 to 1: sines and cosines of the velocity, and where the motion lies
+        between the limits of the position.
 
     Notes
     -----

@@ -113,10 +113,7 @@ def separate_modes(modes: Modes, places: np.ndarray, sampler: Sampler) -> Iterat
     A chain visits a mode where one of its draws is within the distance √(number of parameters) of it, in standard
     deviations: about half of the draws of a normal mode are. Modes that one chain visits are connected.
 
-    Parameters
-    ----------
-    places : array, shape (chains, draws, parameters)
-        Draws, in the coordinates of the best mode.
+    ``places`` (chains, draws, parameters): draws, in the coordinates of the best mode.
     """
     if len(modes.targets) < 2:
         return

@@ -179,9 +179,7 @@ def over_prior(parameters: Parameters, count: int, seed: int) -> np.ndarray:
 def with_guessed_noise(likelihood: Likelihood, vectors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return vectors with noise by their residuals, and their log-likelihoods (batch,); −∞ where a simulation failed.
 
-    Parameters
-    ----------
-    vectors : array, shape (batch, parameters of the model)
+    ``vectors`` (batch, parameters of the model).
     """
     noise, problem = likelihood.noise_parameters, likelihood.problem
     responses = problem.responses(vectors)

@@ -16,13 +16,9 @@ def conclusions(
 ) -> Iterator[Finding]:
     """Yield the findings of an inversion.
 
-    Parameters
-    ----------
-    surrogate : Surrogate
-        The last one.
-    left_out : array, shape (n, d)
-        Consistent runs that lie in no box of the paving.
-    names : sequence of str, of length d
+    ``surrogate``: the last one.
+    ``left_out`` (n, d): consistent runs that lie in no box of the paving.
+    ``names`` sequence of str, of length d.
     """
     yield _unseen(inversion.first or surrogate, paving, names)
     share = float(np.max(surrogate.error / inversion.error))

@@ -26,16 +26,10 @@ def outcome(
 ) -> Iterator[Finding]:
     """Yield whether the set is empty, whether the paving was finished, and what the surrogate's error does.
 
-    Parameters
-    ----------
-    share : float
-        Largest error of the surrogate, in units of that of the data.
-    at : str
-        The nearest run's parameters as text.
-    believed : bool
-        Whether true runs at the corners of the inner box keep within the error.
-    failures : list of str
-        Reasons of failed simulations.
+    ``share``: largest error of the surrogate, in units of that of the data.
+    ``at``: the nearest run's parameters as text.
+    ``believed``: whether true runs at the corners of the inner box keep within the error.
+    ``failures``: reasons of failed simulations.
     """
     yield from _paved(data, paving, nearest, at)
     yield from failed_simulations(failures)

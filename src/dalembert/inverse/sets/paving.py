@@ -66,14 +66,9 @@ def pave(
     A box is outside where a Bernstein enclosure leaves the limits by more than the error, inside where it keeps them by
     more than the error, and halved otherwise.
 
-    Parameters
-    ----------
-    resolution : float
-        Boxes are halved until their sides are no longer than this part of the polynomial's box.
-    most_boxes : int
-        Boxes to look at.
-    tell : callable
-        Called with the numbers of boxes inside, on the boundary and waiting, after each halving.
+    ``resolution``: boxes are halved until their sides are no longer than this part of the polynomial's box.
+    ``most_boxes``: boxes to look at.
+    ``tell``: called with the numbers of boxes inside, on the boundary and waiting, after each halving.
 
     Examples
     --------

@@ -23,10 +23,7 @@ FARTHEST = 1e4  # end of the search for a quantile, over the same
 def new_specimen(values: np.ndarray, variances: np.ndarray, level: float) -> tuple[float, float]:
     """Return the interval that contains the value of a parameter in a new specimen.
 
-    Parameters
-    ----------
-    values, variances : array, shape (specimens,)
-        Identified values and the squares of their standard deviations.
+    ``values``, ``variances`` (specimens,): identified values and the squares of their standard deviations.
     """
     centre, scale = values.mean(), np.sqrt(values.var(ddof=1) + variances.mean())
     likelihood = Likelihood((values[:, None] - centre) / scale, np.diag(variances) / scale**2)

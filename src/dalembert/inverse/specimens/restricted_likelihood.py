@@ -116,10 +116,7 @@ def most_likely(likelihood: Likelihood, form: SpreadForm) -> tuple[np.ndarray, f
 
     At σ = 0 the slope is zero: a descent may end there that is not at the maximum. The better of two starts counts.
 
-    Parameters
-    ----------
-    likelihood : Likelihood
-        Of values that are scaled to a size of about 1.
+    ``likelihood``: of values that are scaled to a size of about 1.
     """
     k = form.parameters
     starts = [np.concatenate([np.full(k, size), np.zeros(form.unknowns - k)]) for size in (1.0, 0.2)]

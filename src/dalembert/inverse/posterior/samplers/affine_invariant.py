@@ -62,7 +62,7 @@ class AffineInvariant(Sampler):
         # A move along differences needs at least twice as many walkers as parameters, an even number for two halves.
         walkers = self.walkers or max(length.chains, 4 * size * len(modes.targets))
         walkers = max(walkers + walkers % 2, 2 * size + 2)
-        # ter Braak & Vrugt (2008): differential evolution with one snooker move in five.
+        # Differential evolution and its snooker variant, as ter Braak & Vrugt (2008) combine them.
         moves = [(emcee.moves.DEMove(), 0.8), (emcee.moves.DESnookerMove(), 0.2)]
         # Differences of walkers in two modes hardly ever lead from one to the other: a map between them does.
         if len(modes.targets) > 1:

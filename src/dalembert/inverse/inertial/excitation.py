@@ -9,7 +9,7 @@ import numpy as np
 from dalembert.errors import InputError, require_known
 from dalembert.findings import Finding
 from dalembert.inverse.inertial.base_estimate import joint_names
-from dalembert.inverse.inertial.base_parameters import base_parameters
+from dalembert.inverse.inertial.base_parameters import BaseParameters, base_parameters
 from dalembert.inverse.inertial.fourier_motion import FINE, FourierMotion, JointLimits, largest_motion
 from dalembert.inverse.inertial.stacked import checked_deviations
 from dalembert.results import EndedResult, fact_lines, text_table
@@ -161,46 +161,12 @@ def exciting_trajectory(
     count = max(SAMPLES * harmonics, 2 * len(names) // limits.joints + 1)
     times = np.arange(count) * period / count
     rng = np.random.default_rng(seed)
-    size = (limits.joints, 2 * harmonics + 1)
-    shapes = [rng.uniform(-1.0, 1.0, size) for _ in range(random)]
+    shapes = [rng.uniform(-1.0, 1.0, (limits.joints, 2 * harmonics + 1)) for _ in range(random)]
     tables = [regressor(*largest_motion(shape, period, limits).motion(times)) for shape in shapes]
     base = base_parameters(np.concatenate(tables), names)
-
-    def scores(table: np.ndarray) -> tuple[float, float]:
-        """Score and condition number of a regressor."""
-        rows = (np.asarray(table, dtype=float)[..., base.independent] / noise[:, None]).reshape(-1, base.rank)
-        norms = np.linalg.norm(rows, axis=0)
-        if not np.all(np.isfinite(norms)) or not np.all(norms > 0):
-            return np.inf, np.inf
-        singular = np.linalg.svd(rows / norms, compute_uv=False)
-        if not singular[-1] > 0:
-            return np.inf, np.inf
-        condition = float(singular[0] / singular[-1])
-        if criterion == "condition":
-            return float(np.log(condition)), condition
-        return float(-np.mean(np.log(singular)) - np.mean(np.log(norms))), condition
-
-    scored = [scores(table) for table in tables]
-    best = int(np.argmin([score for score, _ in scored]))
-    shape, (score, condition) = shapes[best], scored[best]
-    history, step, slow = (
-        list(np.minimum.accumulate([value for value, _ in scored])),
-        FIRST,
-        1 / np.sqrt(shape.size + 1),
-    )
-    parent, least = shape, score
-    for _ in range(evaluations):
-        child = np.clip(parent + step * rng.standard_normal(size), -1.0, 1.0)
-        child_score = scores(regressor(*largest_motion(child, period, limits).motion(times)))
-        better = child_score[0] < least
-        step *= np.exp(slow if better else -slow / 4)  # constant at one success in five
-        if better:
-            parent, least = child, child_score[0]
-        if least < score:
-            shape, (score, condition) = child, child_score
-        if step < SMALLEST:
-            parent, least, step = rng.uniform(-1.0, 1.0, size), np.inf, FIRST
-        history.append(score)
+    judge = _Judge(regressor, limits, period, times, base, noise, criterion)
+    scored = [judge.scores(table) for table in tables]
+    shape, (score, condition), history = _evolved(judge, shapes, scored, evaluations, rng)
     usual = np.median(np.array(scored), axis=0)
     message = (
         f"The condition number of the scaled columns is {condition:.3g}, that of random motions {usual[1]:.3g} "
@@ -216,7 +182,68 @@ def exciting_trajectory(
         float(usual[0]),
         condition,
         float(usual[1]),
-        np.array(history),
+        history,
         seed,
         (Finding("exciting-trajectory", "note", values, message),),
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _Judge:
+    """Scores of regressors by a criterion, lower ones better."""
+
+    regressor: Regressor
+    limits: JointLimits
+    period: float
+    times: np.ndarray
+    base: BaseParameters
+    noise: np.ndarray
+    criterion: str
+
+    def of_shape(self, shape: np.ndarray) -> tuple[float, float]:
+        """Scores of the largest motion of a shape (joints, 2 harmonics + 1) that keeps the limits."""
+        return self.scores(self.regressor(*largest_motion(shape, self.period, self.limits).motion(self.times)))
+
+    def scores(self, table: np.ndarray) -> tuple[float, float]:
+        """Score and condition number of a regressor (samples, joints, parameters)."""
+        rows = np.asarray(table, dtype=float)[..., self.base.independent] / self.noise[:, None]
+        rows = rows.reshape(-1, self.base.rank)
+        norms = np.linalg.norm(rows, axis=0)
+        if not np.all(np.isfinite(norms)) or not np.all(norms > 0):
+            return np.inf, np.inf
+        singular = np.linalg.svd(rows / norms, compute_uv=False)
+        if not singular[-1] > 0:
+            return np.inf, np.inf
+        condition = float(singular[0] / singular[-1])
+        if self.criterion == "condition":
+            return float(np.log(condition)), condition
+        # log det(RᵀR) = 2 Σ log(singular values of scaled columns) + 2 Σ log(norms): units only add a constant.
+        return float(-np.mean(np.log(singular)) - np.mean(np.log(norms))), condition
+
+
+def _evolved(
+    judge: _Judge,
+    shapes: Sequence[np.ndarray],
+    scored: Sequence[tuple[float, float]],
+    evaluations: int,
+    rng: np.random.Generator,
+) -> tuple[np.ndarray, tuple[float, float], np.ndarray]:
+    """Return the best shape, its scores, and the best score after each evaluation, the random ones included."""
+    best = int(np.argmin([score for score, _ in scored]))
+    shape, (score, condition) = shapes[best], scored[best]
+    history = list(np.minimum.accumulate([value for value, _ in scored]))
+    step, slow = FIRST, 1 / np.sqrt(shape.size + 1)
+    parent, least = shape, score
+    for _ in range(evaluations):
+        child = np.clip(parent + step * rng.standard_normal(shape.shape), -1.0, 1.0)
+        child_score = judge.of_shape(child)
+        better = child_score[0] < least
+        step *= np.exp(slow if better else -slow / 4)  # constant at one success in five
+        if better:
+            parent, least = child, child_score[0]
+        if least < score:
+            shape, (score, condition) = child, child_score
+        if step < SMALLEST:
+            parent, least, step = rng.uniform(-1.0, 1.0, shape.shape), np.inf, FIRST
+        history.append(score)
+    return shape, (score, condition), np.array(history)

@@ -15,13 +15,13 @@ from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.markers import direction, spin, spin_rate
 from dalembert.multibody.components.planar.prismatic_joint import PRISMATIC
 from dalembert.multibody.components.planar.revolute_joint import REVOLUTE
+from dalembert.multibody.kernels.block_table import Blocks, Model
 from dalembert.multibody.kernels.elementary import sin_cos
 from dalembert.multibody.kernels.kind import Kind
-from dalembert.multibody.kernels.model import Blocks, Model
 from dalembert.multibody.kernels.records import RESIDUAL, TANGENT
 from dalembert.multibody.kernels.reduction import reduction
-from dalembert.multibody.lowered import Lowered
-from dalembert.multibody.lowering import lower
+from dalembert.multibody.model.lowered import Lowered
+from dalembert.multibody.model.lowering import lower
 
 COUNT = 500  # joints that one call of a kernel loops over
 CALLS = 200  # of the kernel, for one reading of the clock

@@ -3,7 +3,7 @@
 import numpy as np
 
 import dalembert.multibody as mb
-from dalembert.multibody.integrators.integrator import Integrator
+from dalembert.multibody.integrators.shared.integrator import Integrator
 from mechanisms import SECTION
 
 TIMES = np.array([0.0, 0.02, 0.05, 0.08])

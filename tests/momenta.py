@@ -3,7 +3,7 @@
 import numpy as np
 
 import dalembert as da
-from dalembert.multibody.evaluate import energies
+from dalembert.multibody.model.evaluate import energies
 
 
 def momenta(trajectory: da.Trajectory) -> np.ndarray:

@@ -7,7 +7,7 @@ import numpy as np
 import dalembert.multibody as mb
 from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import stack
-from dalembert.multibody.components.body import POSITION, with_points
+from dalembert.multibody.components.base_body import POSITION, with_points
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.planar import markers
 from dalembert.multibody.components.planar.body import GRADIENT, Body, Marker

@@ -64,7 +64,7 @@ from dataclasses import dataclass
 from dalembert.kernels.kernel import inner
 from dalembert.multibody import Kind
 from dalembert.multibody.components.fields import Number, number, pair
-from dalembert.multibody.components.body import with_points
+from dalembert.multibody.components.base_body import with_points
 from dalembert.multibody.components.planar.rigid import Rigid
 from dalembert.multibody.components.points import Place
 

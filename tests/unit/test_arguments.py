@@ -152,7 +152,7 @@ def calls(run: Callable[[], object]) -> int:
 
 
 def test_checks_need_less_than_a_fifth_of_the_calls_of_a_preparation() -> None:
-    from dalembert.multibody.assemble import assembled
+    from dalembert.multibody.start.assemble import assembled
 
     def chain() -> mb.System:
         system = mb.System()

@@ -46,7 +46,7 @@ from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.orientation import Orientation
 from dalembert.multibody.components.spatial.pairs import push_pair, separation
-from dalembert.multibody.components.spatial.points import Side
+from dalembert.multibody.components.spatial.ground_points import Side
 from dalembert.multibody.components.spatial.vectors import times
 
 

@@ -68,5 +68,5 @@ def test_a_study_loads_nothing_heavy_that_it_does_not_name(tmp_path: Path, study
     names = loaded(["run", "study.toml", "--out", "run"], tmp_path)
     assert names & HEAVY == set()
     assert names & MINIMISING == (set() if study == SWING else MINIMISING)
-    expected = {"dalembert.multibody.integrators.generalized_alpha"} if study == SWING else set()
+    expected = {"dalembert.multibody.integrators.generalized_alpha.generalized_alpha"} if study == SWING else set()
     assert names & INTEGRATORS == expected

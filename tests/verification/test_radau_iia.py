@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import dalembert as da
-from dalembert.multibody.integrators.integrator import Integrator
+from dalembert.multibody.integrators.shared.integrator import Integrator
 from damped_slider_crank import damped_slider_crank
 from flexible_pendulum import pendulum
 from rigid_mechanisms import andrews, n_four_bar, read, two_link_arm

@@ -6,7 +6,7 @@ import numpy as np
 
 from dalembert.export.vtu import Mesh, chosen
 from dalembert.multibody import Trajectory
-from dalembert.multibody.drawing import draw
+from dalembert.multibody.model.drawing import draw
 
 STEP = 1e-30
 """Of the complex step from places to velocities."""

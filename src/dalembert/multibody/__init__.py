@@ -8,17 +8,17 @@ from dalembert.component_index import HOMES
 from dalembert.lazy import lazy_names
 
 _NAMES = {
-    "campbell_diagram": "campbell",
-    "compare_integrators": "WorkPrecision work_precision",
-    "drawing": "Drawing",
+    "steady.campbell_diagram": "campbell",
+    "motion.compare_integrators": "WorkPrecision work_precision",
+    "model.drawing": "Drawing",
     "kernels.debugging": "in_python",
     "kernels.kind": "Kind",
-    "simulation": "simulate",
-    "small_vibrations": "Modes modes",
-    "statics": "Equilibrium equilibrium",
-    "system": "System",
-    "time_response": "TimeResponse",
-    "trajectory": "Trajectory",
+    "motion.simulation": "simulate",
+    "steady.small_vibrations": "Modes modes",
+    "start.statics": "Equilibrium equilibrium",
+    "model.system": "System",
+    "motion.time_response": "TimeResponse",
+    "motion.trajectory": "Trajectory",
 }
 _HOMES = {name: f"{__name__}.{module}" for module, names in _NAMES.items() for name in names.split()}
 _HOMES |= {name: f"{__name__}.{module}" for name, module in HOMES.items()}

@@ -12,6 +12,8 @@ from dalembert.multibody.components.spatial.fixed_joint import FixedJoint as Fix
 from dalembert.multibody.components.spatial.force import Force as Force
 from dalembert.multibody.components.spatial.force import Torque as Torque
 from dalembert.multibody.components.spatial.friction import Friction as Friction
+from dalembert.multibody.components.spatial.ground_points import Ground as Ground
+from dalembert.multibody.components.spatial.ground_points import GroundPoint as GroundPoint
 from dalembert.multibody.components.spatial.inertia import Inertia as Inertia
 from dalembert.multibody.components.spatial.inertial_sensor import InertialSensor as InertialSensor
 from dalembert.multibody.components.spatial.joint import Joint as Joint
@@ -24,8 +26,6 @@ from dalembert.multibody.components.spatial.orientation import Pose as Pose
 from dalembert.multibody.components.spatial.planar_joint import PlanarJoint as PlanarJoint
 from dalembert.multibody.components.spatial.point_mass import PointMass as PointMass
 from dalembert.multibody.components.spatial.point_on_line_joint import PointOnLineJoint as PointOnLineJoint
-from dalembert.multibody.components.spatial.points import Ground as Ground
-from dalembert.multibody.components.spatial.points import GroundPoint as GroundPoint
 from dalembert.multibody.components.spatial.prescribed_motion import PrescribedMotion as PrescribedMotion
 from dalembert.multibody.components.spatial.prismatic_joint import PrismaticJoint as PrismaticJoint
 from dalembert.multibody.components.spatial.relative_sensor import RelativeSensor as RelativeSensor
@@ -40,4 +40,4 @@ from dalembert.multibody.components.spatial.torsion_spring import TorsionSpring 
 from dalembert.multibody.components.spatial.universal_joint import ConstantVelocityJoint as ConstantVelocityJoint
 from dalembert.multibody.components.spatial.universal_joint import UniversalJoint as UniversalJoint
 from dalembert.multibody.components.spatial.user_force import UserForce as UserForce
-from dalembert.multibody.spatial_system import SpatialSystem as SpatialSystem
+from dalembert.multibody.model.spatial_system import SpatialSystem as SpatialSystem

@@ -7,7 +7,7 @@ import gc
 import typer  # each process imports the program that was started
 
 import dalembert.inverse
-import dalembert.multibody.sketch
+import dalembert.multibody.motion.sketch
 import dalembert.report.charts.identification.responses
 import dalembert.report.sections.motion.trajectory
 import dalembert.studio.data.examined

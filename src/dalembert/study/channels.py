@@ -9,7 +9,7 @@ from dalembert.study.tables.study import Study
 def channel_lines(study: Study) -> Iterator[str]:
     """Yield lines on the channels of a study's mechanism, a body, joint or load each; none for another model."""
     if study.has_system:
-        from dalembert.multibody.observe import channel_names
+        from dalembert.multibody.model.observe import channel_names
 
         yield from grouped(channel_names(study.system()))
 
@@ -18,7 +18,7 @@ def channel_units(study: Study) -> dict[str, str]:
     """Return the channels of a study's mechanism with their SI units; none for another model."""
     if not study.has_system:
         return {}
-    from dalembert.multibody.observe import channel_units as units
+    from dalembert.multibody.model.observe import channel_units as units
 
     return units(study.system())
 

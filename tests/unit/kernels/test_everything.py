@@ -11,7 +11,8 @@ from dalembert.kernels import packaged
 from dalembert.kernels.everything import package_kernels
 from dalembert.kernels.kernel import find
 from dalembert.multibody.components.planar.cable_element import CABLE
-from dalembert.multibody.integrators import generalized_alpha, radau_loop
+from dalembert.multibody.integrators.generalized_alpha import generalized_alpha
+from dalembert.multibody.integrators.radau import radau_loop
 from installed_wheel import install_wheel
 
 MOVE = """

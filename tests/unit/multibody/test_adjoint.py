@@ -11,7 +11,7 @@ import dalembert.multibody.spatial as sp
 from dalembert.errors import InputError
 from dalembert.forward import prefers_adjoint, pullback
 from dalembert.multibody.adjoint.checkpoints import Checkpoints
-from dalembert.multibody.adjoint.motion import stored_motion
+from dalembert.multibody.adjoint.recorded_motion import stored_motion
 from mechanisms import compiled_wind
 from planar_scenes import SCENES, SHORT, SOLVER, loop, pinned, response, slack
 from refusals import refused
@@ -96,7 +96,7 @@ def test_checkpoints_take_the_place_of_the_states_of_all_steps(
         model = motion(response(*SCENES[mb.Step]), times=BETWEEN, solver=solver)
     vector, cotangent = model.parameters.start, np.ones((4, len(model.channels)))
     response_, pull = model.pullback(vector)
-    monkeypatch.setattr("dalembert.multibody.adjoint.motion.ROOM", 1000)
+    monkeypatch.setattr("dalembert.multibody.adjoint.recorded_motion.ROOM", 1000)
     again, pull_again = model.pullback(vector)
     np.testing.assert_array_equal(again, response_)
     gradient = pull(cotangent)
@@ -106,7 +106,7 @@ def test_checkpoints_take_the_place_of_the_states_of_all_steps(
 
 def test_checkpoints_are_as_many_as_the_root_of_the_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     model = pushed_model("spline", 20)
-    monkeypatch.setattr("dalembert.multibody.adjoint.motion.ROOM", 1000)
+    monkeypatch.setattr("dalembert.multibody.adjoint.recorded_motion.ROOM", 1000)
     lowered = model.lowered_at(model.parameters.start, 0.0, closed=True)
     kept = stored_motion(lowered, mb.GeneralizedAlpha(1e-3), model.problem, model.times)
     assert isinstance(kept.keeper, Checkpoints)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import dalembert.multibody.spatial as sp
-from dalembert.multibody.sketch import sketch
+from dalembert.multibody.motion.sketch import sketch
 from dalembert.report.pictures.canvas import Canvas
 from dalembert.report.pictures.mechanism import draw_mechanism
 from dalembert.report.pictures.projection import Projection

@@ -8,15 +8,15 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.kernels.preparation import prepare
-from dalembert.multibody.integrators.adjoint_sweep import Path, Steps
-from dalembert.multibody.integrators.consistent import accelerate, consistency
-from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
-from dalembert.multibody.integrators.problem import DONE, Models, Problem
-from dalembert.multibody.integrators.replay import ReplayRoom, replay, replay_room
-from dalembert.multibody.integrators.run import cut_down, explain
-from dalembert.multibody.kernels.model import Call
-from dalembert.multibody.kernels.motion import MotionState, resting
-from dalembert.multibody.lowered import Lowered
+from dalembert.multibody.integrators.generalized_alpha.adjoint_sweep import Path, Steps
+from dalembert.multibody.integrators.generalized_alpha.generalized_alpha import GeneralizedAlpha
+from dalembert.multibody.integrators.generalized_alpha.replay import ReplayRoom, replay, replay_room
+from dalembert.multibody.integrators.shared.consistent import accelerate, consistency
+from dalembert.multibody.integrators.shared.problem import DONE, Models, Problem
+from dalembert.multibody.integrators.shared.run import cut_down, explain
+from dalembert.multibody.kernels.block_table import Call
+from dalembert.multibody.kernels.states import MotionState, resting
+from dalembert.multibody.model.lowered import Lowered
 
 
 class Stretch(NamedTuple):

@@ -6,12 +6,12 @@ from functools import cached_property
 
 import numpy as np
 
-from dalembert.multibody.integrators.adjoint_sweep import Pulls
+from dalembert.multibody.integrators.generalized_alpha.adjoint_sweep import Pulls
+from dalembert.multibody.kernels.block_table import Model
 from dalembert.multibody.kernels.kind import Kind
-from dalembert.multibody.kernels.model import Model
 from dalembert.multibody.kernels.pullbacks import PULL, PULL_SIGNALS, SIGNAL_PULL
-from dalembert.multibody.lowered import Lowered
-from dalembert.multibody.observe import Observer
+from dalembert.multibody.model.lowered import Lowered
+from dalembert.multibody.model.observe import Observer
 
 
 def numbers_of(lowered: Lowered, observer: Observer) -> np.ndarray:

@@ -8,12 +8,12 @@ from dalembert.errors import InputError
 from dalembert.kernels.kernel import Compiled
 from dalembert.kernels.preparation import prepare
 from dalembert.multibody.adjoint.checkpoints import Stretch
-from dalembert.multibody.adjoint.matrices import matrices_of
-from dalembert.multibody.adjoint.motion import StoredMotion, stored_motion
+from dalembert.multibody.adjoint.matrix_parts import matrices_of
 from dalembert.multibody.adjoint.numbers import NumberGradient, NumberPulls, kernels_of
 from dalembert.multibody.adjoint.readings import pull_readings, refuse_energies
-from dalembert.multibody.adjoint.start import SecondRates, accelerations_back
-from dalembert.multibody.integrators.adjoint_sweep import (
+from dalembert.multibody.adjoint.recorded_motion import StoredMotion, stored_motion
+from dalembert.multibody.adjoint.start_adjoint import SecondRates, accelerations_back
+from dalembert.multibody.integrators.generalized_alpha.adjoint_sweep import (
     Cotangents,
     Path,
     Steps,
@@ -22,16 +22,16 @@ from dalembert.multibody.integrators.adjoint_sweep import (
     pull_once,
     sweep,
 )
-from dalembert.multibody.integrators.consistent import accelerate
-from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
-from dalembert.multibody.integrators.integrator import Integrator
-from dalembert.multibody.integrators.problem import SINGULAR, Problem
-from dalembert.multibody.integrators.run import cut_down, explain
-from dalembert.multibody.kernels.model import Model
-from dalembert.multibody.kernels.motion import MotionState, resting
+from dalembert.multibody.integrators.generalized_alpha.generalized_alpha import GeneralizedAlpha
+from dalembert.multibody.integrators.shared.consistent import accelerate
+from dalembert.multibody.integrators.shared.integrator import Integrator
+from dalembert.multibody.integrators.shared.problem import SINGULAR, Problem
+from dalembert.multibody.integrators.shared.run import cut_down, explain
+from dalembert.multibody.kernels.block_table import Model
+from dalembert.multibody.kernels.states import MotionState, resting
 from dalembert.multibody.kernels.transposed import transposed
-from dalembert.multibody.lowered import Lowered
-from dalembert.multibody.observe import Observer, beside
+from dalembert.multibody.model.lowered import Lowered
+from dalembert.multibody.model.observe import Observer, beside
 
 DIRECT = "take derivative='direct'"
 

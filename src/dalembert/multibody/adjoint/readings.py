@@ -4,11 +4,11 @@ import numpy as np
 
 from dalembert.errors import InputError
 from dalembert.multibody.adjoint.numbers import NumberGradient, readers
+from dalembert.multibody.kernels.block_table import Model
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.kind import Kind
-from dalembert.multibody.kernels.model import Model
-from dalembert.multibody.kernels.motion import MotionState
-from dalembert.multibody.observe import Observer, OutputBlock, beside, columns_of
+from dalembert.multibody.kernels.states import MotionState
+from dalembert.multibody.model.observe import Observer, OutputBlock, beside, columns_of
 
 
 def refuse_energies(observer: Observer) -> None:

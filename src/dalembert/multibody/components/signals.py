@@ -13,7 +13,7 @@ import numpy as np
 from dalembert.arguments import Checked
 from dalembert.errors import InputError, require_known
 from dalembert.multibody.components.fields import Number
-from dalembert.multibody.kernels import signals as kinds
+from dalembert.multibody.kernels import signal_values as kinds
 
 
 @dataclass(frozen=True)

@@ -6,17 +6,17 @@ from dataclasses import dataclass, replace
 
 from dalembert.arguments import limited
 from dalembert.errors import SolveError
-from dalembert.multibody.assemble import redundancy
-from dalembert.multibody.integrators.batch import Batch
-from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
-from dalembert.multibody.integrators.integrator import Integrator
-from dalembert.multibody.integrators.ode_solver import OdeSolver
-from dalembert.multibody.integrators.radau_iia import RadauIIA
-from dalembert.multibody.integrators.run import Run
-from dalembert.multibody.integrators.stabilisation import Partitioning
-from dalembert.multibody.lowered import Lowered
-from dalembert.multibody.scales import slip_scale
-from dalembert.multibody.singular_positions import SingularPositionError
+from dalembert.multibody.integrators.generalized_alpha.generalized_alpha import GeneralizedAlpha
+from dalembert.multibody.integrators.index1.ode_solver import OdeSolver
+from dalembert.multibody.integrators.index1.stabilisation import Partitioning
+from dalembert.multibody.integrators.radau.radau_iia import RadauIIA
+from dalembert.multibody.integrators.shared.batch import Batch
+from dalembert.multibody.integrators.shared.integrator import Integrator
+from dalembert.multibody.integrators.shared.run import Run
+from dalembert.multibody.model.lowered import Lowered
+from dalembert.multibody.model.scales import slip_scale
+from dalembert.multibody.start.assemble import redundancy
+from dalembert.multibody.start.singular_positions import SingularPositionError
 
 _FIRST = 1e-3  # of the motion: the first step of an adaptive one
 _STIFF = 1e-4  # 1/s: slip rate in parts of the extent; GeneralizedAlpha holds a beam at 1e-3, and at 1e-5 not always

@@ -24,7 +24,7 @@ from dalembert.multibody.kernels.declaration import Declaration
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.loops import made
 from dalembert.multibody.kernels.records import Inputs, block_at, call_at, model_at
-from dalembert.multibody.kernels.signals import HELD, PIECEWISE, TABLE_HEAD, evaluate_one, segment
+from dalembert.multibody.kernels.signal_values import HELD, PIECEWISE, TABLE_HEAD, evaluate_one, segment
 
 
 def _record(names: str) -> np.dtype:

@@ -21,7 +21,7 @@ from dalembert.multibody.components.spatial.shapes import Shape
 from dalembert.multibody.trees.omissions import Omission, omission_findings
 
 if TYPE_CHECKING:
-    from dalembert.multibody.spatial_system import SpatialSystem
+    from dalembert.multibody.model.spatial_system import SpatialSystem
     from dalembert.multibody.trees.build import Limits
 
 REVOLUTE, PRISMATIC, FIXED = KINDS = "revolute", "prismatic", "fixed"

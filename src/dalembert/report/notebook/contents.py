@@ -8,7 +8,7 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.multibody import Trajectory
-from dalembert.multibody.system import Mechanism
+from dalembert.multibody.model.system import Mechanism
 from dalembert.report.charts.motion.diagnostics import energies
 from dalembert.report.charts.motion.mechanism import mechanism
 from dalembert.report.contents import contents

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from dalembert.multibody.components.joint import BaseJoint
-from dalembert.multibody.sketch import Sketch, is_grounded
+from dalembert.multibody.components.base_joint import BaseJoint
+from dalembert.multibody.motion.sketch import Sketch, is_grounded
 from dalembert.report.charts.motion.outlines import NAMED_BODIES
 from dalembert.report.pictures.canvas import COLOURS, INK, SIZE, Canvas, between, moved
 from dalembert.report.pictures.projection import Projection

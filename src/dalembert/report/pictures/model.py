@@ -3,8 +3,8 @@
 from functools import singledispatch
 from typing import Any
 
-from dalembert.multibody.sketch import Sketch, sketch
-from dalembert.multibody.system import Mechanism
+from dalembert.multibody.model.system import Mechanism
+from dalembert.multibody.motion.sketch import Sketch, sketch
 from dalembert.report.pictures.canvas import SIZE
 from dalembert.report.pictures.mechanism import mechanism_picture
 from dalembert.report.pictures.structure import structure_picture

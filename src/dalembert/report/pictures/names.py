@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from dalembert.multibody.sketch import Sketch
+from dalembert.multibody.motion.sketch import Sketch
 from dalembert.report.pictures.canvas import COLOURS, INK, Canvas
 from dalembert.report.pictures.projection import Projection
 

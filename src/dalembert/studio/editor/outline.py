@@ -53,7 +53,7 @@ def channels_of(study: "Study") -> tuple[str, ...]:
     """Return all channels of a study's mechanism; none of another model, or where it cannot be built."""
     if not study.has_system:
         return ()
-    from dalembert.multibody.observe import channel_names
+    from dalembert.multibody.model.observe import channel_names
 
     try:
         return tuple(channel_names(study.system()))

@@ -16,7 +16,7 @@ from dalembert.studio.model.parts import absent_parts, places_of, shown_channels
 from dalembert.studio.worker import Kept
 
 if TYPE_CHECKING:
-    from dalembert.multibody.sketch import Sketch
+    from dalembert.multibody.motion.sketch import Sketch
     from dalembert.study import Study
 
 MOST = 150
@@ -145,7 +145,7 @@ def model_picture(
 def _mechanism(
     study: "Study", system: Any, places: dict[str, Place], measured: Positions, box: np.ndarray | None
 ) -> Picture:
-    from dalembert.multibody.sketch import sketch
+    from dalembert.multibody.motion.sketch import sketch
     from dalembert.report.pictures.canvas import Canvas
     from dalembert.report.pictures.mechanism import draw_measured, draw_mechanism
     from dalembert.report.pictures.names import draw_names

@@ -12,7 +12,7 @@ from dalembert.report.pictures.mechanism import turns
 from dalembert.report.pictures.structure import ends_of, node_of, role_of
 
 if TYPE_CHECKING:
-    from dalembert.multibody.sketch import Sketch
+    from dalembert.multibody.motion.sketch import Sketch
     from dalembert.vibration import VibrationSystem
 
 Scene = dict[str, Any]
@@ -37,7 +37,7 @@ def mechanism_scene(
     the drives of a robot would crowd its joints.
     """
     from dalembert.multibody.components.points import Point
-    from dalembert.multibody.sketch import is_grounded
+    from dalembert.multibody.motion.sketch import is_grounded
 
     drawing, shapes, names = sketch.drawing, [], []
     for number, (name, line) in enumerate(drawing.lines.items()):

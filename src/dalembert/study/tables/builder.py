@@ -15,8 +15,8 @@ from dalembert.study.text.places import JointName, Place
 from dalembert.study.text.table import placed
 
 if TYPE_CHECKING:
+    from dalembert.multibody.model.system import Mechanism
     from dalembert.multibody.spatial import SpatialSystem
-    from dalembert.multibody.system import Mechanism
     from dalembert.multibody.trees import Tree
 
 Values = Mapping[str, Any]
@@ -148,7 +148,7 @@ class FunctionBuilder:
             from dalembert.vibration import VibrationSystem
 
             return VibrationSystem
-        from dalembert.multibody.system import Mechanism
+        from dalembert.multibody.model.system import Mechanism
 
         return Mechanism
 

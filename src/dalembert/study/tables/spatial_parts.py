@@ -16,9 +16,9 @@ from dalembert.arguments import Checked
 from dalembert.errors import InputError
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.spatial.friction import ALONG, Friction
+from dalembert.multibody.components.spatial.ground_points import GroundPoint
 from dalembert.multibody.components.spatial.inertia import Inertia
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose, Vector
-from dalembert.multibody.components.spatial.points import GroundPoint
 from dalembert.study.tables.dataclass_tables import KindTable, Written, one_of, table_of
 from dalembert.study.text.numbers import read_number
 from dalembert.study.text.places import place

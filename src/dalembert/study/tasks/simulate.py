@@ -107,7 +107,7 @@ class Simulate(ResultTask):
 
     def parts(self, study: Study) -> Iterable[Callable[[], object]]:
         """The checks of the simulation, which has no checkpoint to end it."""
-        from dalembert.multibody.simulation import posed
+        from dalembert.multibody.motion.simulation import posed
 
         times = study.table.times
         return (

@@ -10,7 +10,7 @@ import trimesh
 from dalembert.multibody import RungeKutta4, simulate
 from dalembert.multibody.components.spatial import mesh_files
 from dalembert.multibody.components.spatial.mesh_files import CORNERS, simplified
-from dalembert.multibody.sketch import sketch
+from dalembert.multibody.motion.sketch import sketch
 from dalembert.multibody.spatial import Orientation, Pose
 from dalembert.multibody.trees import read_urdf
 from dalembert.report.charts import mechanism

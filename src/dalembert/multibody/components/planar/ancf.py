@@ -7,7 +7,7 @@ from typing import Any, cast
 import numpy as np
 
 from dalembert.errors import InputError
-from dalembert.multibody.components.body import POSITION
+from dalembert.multibody.components.base_body import POSITION
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.planar.body import GRADIENT, Body, turned
 from dalembert.multibody.components.points import Place, Point

@@ -8,9 +8,8 @@ import numpy as np
 
 from dalembert.errors import require_known
 from dalembert.findings import Finding
-from dalembert.multibody.components.body import with_points
+from dalembert.multibody.components.base_body import with_points
 from dalembert.multibody.components.fields import Number, number, pair
-from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import markers
 from dalembert.multibody.components.planar.ancf import Ancf
 from dalembert.multibody.components.planar.body import Marker
@@ -18,6 +17,7 @@ from dalembert.multibody.components.planar.continuum_beam import CONTINUUM
 from dalembert.multibody.components.planar.slenderness import continuum_findings
 from dalembert.multibody.components.planar.structural_beam import STRUCTURAL
 from dalembert.multibody.components.points import Place
+from dalembert.multibody.components.rows import Lowering
 
 LAWS = ("plane-stress", "plane-strain", "uncoupled")
 FORMULATIONS = ("structural", "continuum")

@@ -7,15 +7,15 @@ from dataclasses import InitVar, dataclass, field
 import numpy as np
 
 from dalembert.findings import Finding
-from dalembert.multibody.components.body import with_points
+from dalembert.multibody.components.base_body import with_points
 from dalembert.multibody.components.fields import Number, number, pair
-from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import markers
 from dalembert.multibody.components.planar.ancf import Ancf
 from dalembert.multibody.components.planar.body import Marker
 from dalembert.multibody.components.planar.cable_element import CABLE
 from dalembert.multibody.components.planar.slenderness import cable_findings
 from dalembert.multibody.components.points import Place
+from dalembert.multibody.components.rows import Lowering
 
 
 @with_points("start", "end")

@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.body import ANGLE
+from dalembert.multibody.components.base_body import ANGLE
 from dalembert.multibody.components.fields import Number
-from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar.body import Body, Marker
 from dalembert.multibody.components.planar.markers import NODE
 from dalembert.multibody.components.planar.pairs import COORDINATES, pair_kind, relative_angle, twist_pair
 from dalembert.multibody.components.points import Point, Side
+from dalembert.multibody.components.rows import Lowering
 from dalembert.multibody.kernels.elementary import wrapped
 
 _OWN, _FORCE = COORDINATES, COORDINATES + 1

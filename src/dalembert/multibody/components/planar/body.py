@@ -8,12 +8,12 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from dalembert.multibody.components.body import ANGLE, POSITION, BaseBody
+from dalembert.multibody.components.base_body import ANGLE, POSITION, BaseBody
 from dalembert.multibody.components.fields import Number
-from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import markers
 from dalembert.multibody.components.planar.sensor import DIRECTIONAL, SENSOR
 from dalembert.multibody.components.points import Place
+from dalembert.multibody.components.rows import Lowering
 from dalembert.multibody.kernels.kind import Kind
 
 GRADIENT = "gradient"

@@ -7,7 +7,6 @@ from typing import Any
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
-from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar.angle_coordinate import AngleCoordinate, counted_angle
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.markers import direction, spin, twist
@@ -22,6 +21,7 @@ from dalembert.multibody.components.planar.pairs import (
     twist_pair,
 )
 from dalembert.multibody.components.points import Side, require_direction
+from dalembert.multibody.components.rows import Lowering
 from dalembert.multibody.kernels.kind import Kind
 
 

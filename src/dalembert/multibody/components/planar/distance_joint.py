@@ -9,9 +9,9 @@ import numpy as np
 from dalembert.errors import ModelError
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
-from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar.joint import Joint, joint_kind, observe_joint
 from dalembert.multibody.components.planar.pairs import push_pair, separation
+from dalembert.multibody.components.rows import Lowering
 from dalembert.multibody.kernels.elementary import root
 
 

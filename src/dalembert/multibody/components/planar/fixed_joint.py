@@ -5,9 +5,9 @@ __all__ = ["FixedJoint"]
 from dataclasses import dataclass
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar.joint import Joint, joint_kind, observe_joint
 from dalembert.multibody.components.planar.pairs import push_pair, relative_angle, separation, twist_pair
+from dalembert.multibody.components.rows import Lowering
 from dalembert.multibody.kernels.elementary import sin_cos
 
 

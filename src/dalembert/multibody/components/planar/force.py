@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import number
-from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.markers import direction, push, velocity
 from dalembert.multibody.components.points import Side, require_direction
+from dalembert.multibody.components.rows import Lowering
 from dalembert.multibody.components.signals import Course
 from dalembert.multibody.kernels.kind import Kind
 

@@ -9,10 +9,10 @@ import numpy as np
 from dalembert.errors import InputError, ModelError
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
-from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
 from dalembert.multibody.components.planar.markers import angle
 from dalembert.multibody.components.planar.pairs import pair_kind
+from dalembert.multibody.components.rows import Lowering
 
 
 @inlined

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from dalembert.kernels.kernel import inlined
+from dalembert.multibody.components.base_joint import BaseJoint
 from dalembert.multibody.components.fields import Number
-from dalembert.multibody.components.joint import BaseJoint
-from dalembert.multibody.components.lowering import Lowering, Pair
 from dalembert.multibody.components.planar import markers
 from dalembert.multibody.components.planar.pairs import INTEGERS, pair_kind, relative_angle, relative_spin
 from dalembert.multibody.components.points import Side, require_direction
+from dalembert.multibody.components.rows import Lowering, Pair
 from dalembert.multibody.kernels.kind import Kind
 
 OUTPUTS = (("angle", "rad"), ("rate", "rad/s"), ("force_x", "N"), ("force_y", "N"), ("torque", "N*m"))

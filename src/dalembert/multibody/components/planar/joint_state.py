@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar.joint import Joint
 from dalembert.multibody.components.planar.markers import angle, direction
 from dalembert.multibody.components.planar.pairs import pair_kind, relative_angle, separation
 from dalembert.multibody.components.points import Point
+from dalembert.multibody.components.rows import Lowering
 from dalembert.multibody.components.signals import Signal
 from dalembert.multibody.kernels.elementary import angle_of, wrapped
 from dalembert.multibody.kernels.time_inputs import signal

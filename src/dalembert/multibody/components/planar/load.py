@@ -5,8 +5,8 @@ __all__ = ["Load"]
 from abc import abstractmethod
 from dataclasses import dataclass
 
-from dalembert.multibody.components.load import BaseLoad
-from dalembert.multibody.components.lowering import Lowering
+from dalembert.multibody.components.base_load import BaseLoad
+from dalembert.multibody.components.rows import Lowering
 
 
 @dataclass(frozen=True)

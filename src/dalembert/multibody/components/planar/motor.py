@@ -5,9 +5,9 @@ __all__ = ["Motor"]
 from dataclasses import dataclass
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.lowering import Lowering
-from dalembert.multibody.components.motor_law import MotorNumbers
+from dalembert.multibody.components.laws.motor_law import MotorNumbers
 from dalembert.multibody.components.planar.motor_law import Drive, drive_kind
+from dalembert.multibody.components.rows import Lowering
 
 
 @inlined

@@ -6,8 +6,7 @@ from typing import Any
 
 from dalembert.errors import ModelError
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.lowering import Lowering, Pair
-from dalembert.multibody.components.motor_law import INTEGERS, NUMBERS, DriveNumbers, Turning, drive_properties
+from dalembert.multibody.components.laws.motor_law import INTEGERS, NUMBERS, DriveNumbers, Turning, drive_properties
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.pairs import (
     pair_kind,
@@ -17,6 +16,7 @@ from dalembert.multibody.components.planar.pairs import (
     twist_pair,
 )
 from dalembert.multibody.components.points import Side, require_direction
+from dalembert.multibody.components.rows import Lowering, Pair
 from dalembert.multibody.kernels.kind import Kind
 
 

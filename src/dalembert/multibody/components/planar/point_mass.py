@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.body import POSITION, with_points
+from dalembert.multibody.components.base_body import POSITION, with_points
 from dalembert.multibody.components.fields import Number, number, pair
-from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import markers
 from dalembert.multibody.components.planar.body import Body, Marker
 from dalembert.multibody.components.points import Place
+from dalembert.multibody.components.rows import Lowering
 from dalembert.multibody.kernels.kind import Kind
 
 

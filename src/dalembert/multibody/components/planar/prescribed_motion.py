@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 from dalembert.errors import require_known
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar.joint import Joint, joint_kind, observe_joint
 from dalembert.multibody.components.planar.pairs import push_pair, relative_angle, separation, twist_pair
+from dalembert.multibody.components.rows import Lowering
 from dalembert.multibody.components.signals import Course, as_signal, refuse_jumps
 from dalembert.multibody.kernels.elementary import wrapped
 from dalembert.multibody.kernels.time_inputs import signal

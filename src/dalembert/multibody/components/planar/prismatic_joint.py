@@ -5,10 +5,9 @@ __all__ = ["PrismaticJoint"]
 from dataclasses import dataclass
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components import friction
+from dalembert.multibody.components.base_joint import Smoothing
 from dalembert.multibody.components.fields import Number, number
-from dalembert.multibody.components.joint import Smoothing
-from dalembert.multibody.components.lowering import Lowering
+from dalembert.multibody.components.laws import friction_law as friction
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, joint_kind, observe_joint
 from dalembert.multibody.components.planar.markers import direction, twist
 from dalembert.multibody.components.planar.pairs import (
@@ -19,6 +18,7 @@ from dalembert.multibody.components.planar.pairs import (
     separation_rate,
     twist_pair,
 )
+from dalembert.multibody.components.rows import Lowering
 from dalembert.multibody.kernels.elementary import root, sin_cos
 from dalembert.multibody.kernels.kind import Kind
 

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined, inner
-from dalembert.multibody.components import friction
+from dalembert.multibody.components.base_joint import Smoothing
 from dalembert.multibody.components.fields import Number, number
-from dalembert.multibody.components.joint import Smoothing
-from dalembert.multibody.components.lowering import Lowering
+from dalembert.multibody.components.laws import friction_law as friction
 from dalembert.multibody.components.planar.joint import Joint, joint_kind, observe_joint
 from dalembert.multibody.components.planar.markers import GROUND, RIGID
 from dalembert.multibody.components.planar.pairs import pair_kind, push_pair, relative_spin, separation, twist_pair
+from dalembert.multibody.components.rows import Lowering
 from dalembert.multibody.kernels.elementary import root
 from dalembert.multibody.kernels.kind import Kind
 

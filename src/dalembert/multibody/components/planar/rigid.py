@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.body import ANGLE, POSITION
+from dalembert.multibody.components.base_body import ANGLE, POSITION
 from dalembert.multibody.components.fields import Number
-from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import markers
 from dalembert.multibody.components.planar.body import Body, Marker, turned
+from dalembert.multibody.components.rows import Lowering
 from dalembert.multibody.kernels.kind import Kind
 
 

@@ -5,7 +5,7 @@ __all__ = ["RigidBar"]
 from dataclasses import InitVar, dataclass, field
 from typing import Any
 
-from dalembert.multibody.components.body import with_points
+from dalembert.multibody.components.base_body import with_points
 from dalembert.multibody.components.fields import Number, number, pair
 from dalembert.multibody.components.planar.rigid import Rigid
 from dalembert.multibody.components.points import Place

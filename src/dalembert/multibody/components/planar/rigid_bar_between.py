@@ -8,7 +8,7 @@ import numpy as np
 
 from dalembert.elementary import atan2, hypot
 from dalembert.errors import InputError
-from dalembert.multibody.components.body import with_points
+from dalembert.multibody.components.base_body import with_points
 from dalembert.multibody.components.fields import Number, number, pair
 from dalembert.multibody.components.planar.rigid_bar import Bar
 

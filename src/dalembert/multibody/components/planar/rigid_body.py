@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from dalembert.errors import InputError, require_known
-from dalembert.multibody.components.body import with_points
+from dalembert.multibody.components.base_body import with_points
 from dalembert.multibody.components.fields import Number, number, pair
 from dalembert.multibody.components.planar.rigid import Rigid
 from dalembert.multibody.components.points import Place

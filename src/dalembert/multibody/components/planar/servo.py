@@ -8,11 +8,11 @@ from typing import Any
 from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
-from dalembert.multibody.components.lowering import Lowering
-from dalembert.multibody.components.motor_law import INTEGERS, NUMBERS, Turning, clipped, drive_properties
+from dalembert.multibody.components.laws.motor_law import INTEGERS, NUMBERS, Turning, clipped, drive_properties
 from dalembert.multibody.components.planar.angle_coordinate import AngleCoordinate, counted_angle
 from dalembert.multibody.components.planar.motor_law import Drive, drive_kind
 from dalembert.multibody.components.planar.pairs import relative_angle, relative_spin
+from dalembert.multibody.components.rows import Lowering
 from dalembert.multibody.components.signals import Course
 from dalembert.multibody.kernels.kind import Kind
 

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
-from dalembert.multibody.components.lowering import Lowering
+from dalembert.multibody.components.laws.spring_law import tension
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.pairs import push_pair, separation, separation_rate
 from dalembert.multibody.components.planar.spring_law import spring_kind
 from dalembert.multibody.components.points import Side
-from dalembert.multibody.components.spring_law import tension
+from dalembert.multibody.components.rows import Lowering
 from dalembert.multibody.kernels.elementary import root
 
 _TINY = 1e-30  # keeps the direction of a spring of no length defined, m^2

@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
+from dalembert.multibody.components.laws.spring_law import NUMBERS, law_functions
 from dalembert.multibody.components.planar.pairs import pair_kind
-from dalembert.multibody.components.spring_law import NUMBERS, law_functions
 from dalembert.multibody.kernels.kind import Kind
 
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import number
-from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.pairs import pair_kind, relative_spin, twist_pair
 from dalembert.multibody.components.points import Side, require_direction
+from dalembert.multibody.components.rows import Lowering
 from dalembert.multibody.components.signals import Course
 
 

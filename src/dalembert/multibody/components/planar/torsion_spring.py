@@ -8,13 +8,13 @@ import numpy as np
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
-from dalembert.multibody.components.lowering import Lowering
+from dalembert.multibody.components.laws.spring_law import NUMBERS, law_functions, tension
 from dalembert.multibody.components.planar.angle_coordinate import AngleCoordinate, counted_angle
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.pairs import relative_angle, relative_spin, twist_pair
 from dalembert.multibody.components.planar.spring_law import spring_kind
 from dalembert.multibody.components.points import Side, require_direction
-from dalembert.multibody.components.spring_law import NUMBERS, law_functions, tension
+from dalembert.multibody.components.rows import Lowering
 from dalembert.multibody.kernels.kind import Kind
 
 _OUTPUTS = (("elongation", "rad"), ("force", "N*m"))

@@ -12,12 +12,12 @@ from typing import Any
 
 from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import call_with, stack
-from dalembert.multibody.callbacks import Sizes
-from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.markers import angle, position, spin, velocity
 from dalembert.multibody.components.planar.pairs import pair_kind, push_pair, twist_pair
 from dalembert.multibody.components.points import Side
+from dalembert.multibody.components.rows import Lowering
+from dalembert.multibody.kernels.callbacks import Sizes
 
 _TIME = 0  # signal that holds the time
 _SIZES = Sizes(state=6, answer=3, words="three finite numbers (fx, fy, torque)")

@@ -8,12 +8,12 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from dalembert.multibody.components.body import BaseBody
+from dalembert.multibody.components.base_body import BaseBody
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.spatial import markers
-from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Orientation, turned
 from dalembert.multibody.components.spatial.sensor import AXIAL, SENSOR
+from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
 
 DIRECTOR = "director"
 FREE = None, None, None

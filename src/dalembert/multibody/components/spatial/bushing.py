@@ -14,9 +14,9 @@ from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import stack
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.points import require_direction
+from dalembert.multibody.components.spatial.ground_points import Side
 from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.load import Load
-from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.markers import axis_rate
 from dalembert.multibody.components.spatial.pairs import (
     A_AXES,
@@ -35,8 +35,8 @@ from dalembert.multibody.components.spatial.pairs import (
     separation_rate,
     twist_pair,
 )  # fmt: skip
-from dalembert.multibody.components.spatial.points import Side
 from dalembert.multibody.components.spatial.rotations import rotation_vector, vector_rate, vector_torque
+from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
 from dalembert.multibody.components.spatial.vectors import at, combined, dot, times
 
 _ROUNDING = 1e-9  # of the smallest eigenvalue

@@ -11,8 +11,8 @@ from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.spatial.conditions import Condition
 from dalembert.multibody.components.spatial.joint import Joint, joint_kind
-from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.pairs import push_pair, separation
+from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
 from dalembert.multibody.components.spatial.vectors import dot, times
 
 

@@ -8,9 +8,9 @@ from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import number
 from dalembert.multibody.components.points import require_direction
 from dalembert.multibody.components.signals import Course
+from dalembert.multibody.components.spatial.ground_points import Side
 from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.load import Load
-from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.pairs import (
     e1,
     e2,
@@ -20,7 +20,7 @@ from dalembert.multibody.components.spatial.pairs import (
     separation_rate,
     twist_pair,
 )
-from dalembert.multibody.components.spatial.points import Side
+from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
 from dalembert.multibody.components.spatial.vectors import combined, dot
 from dalembert.multibody.kernels.kind import Kind
 

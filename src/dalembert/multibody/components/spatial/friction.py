@@ -8,9 +8,9 @@ from typing import Any
 from dalembert.arguments import Checked
 from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components import friction
+from dalembert.multibody.components.base_joint import Smoothing
 from dalembert.multibody.components.fields import Number, number
-from dalembert.multibody.components.joint import Smoothing
+from dalembert.multibody.components.laws import friction_law as friction
 from dalembert.multibody.components.spatial.joint import joint_rate, joint_speed
 from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.pairs import COORDINATES, e3, push_pair, twist_pair

@@ -13,12 +13,12 @@ import numpy as np
 
 from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import stack
-from dalembert.multibody.components.joint import BaseJoint
+from dalembert.multibody.components.base_joint import BaseJoint
 from dalembert.multibody.components.points import Point, require_direction
 from dalembert.multibody.components.spatial import markers, pairs
 from dalembert.multibody.components.spatial.conditions import Condition, constraint_of, forces_of
+from dalembert.multibody.components.spatial.ground_points import Side
 from dalembert.multibody.components.spatial.kinds import pair_kind
-from dalembert.multibody.components.spatial.lowering import Pair, SpatialLowering
 from dalembert.multibody.components.spatial.markers import BODY, GROUND, SLOTS, position
 from dalembert.multibody.components.spatial.orientation import Orientation, Vector, direction
 from dalembert.multibody.components.spatial.pairs import (
@@ -31,7 +31,7 @@ from dalembert.multibody.components.spatial.pairs import (
     separation,
     separation_rate,
 )  # fmt: skip
-from dalembert.multibody.components.spatial.points import Side
+from dalembert.multibody.components.spatial.spatial_rows import Pair, SpatialLowering
 from dalembert.multibody.components.spatial.vectors import at, cross, dot, minus, plus, times
 from dalembert.multibody.kernels.elementary import angle_of
 from dalembert.multibody.kernels.kind import Kind

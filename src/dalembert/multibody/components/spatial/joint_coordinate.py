@@ -12,13 +12,13 @@ import numpy as np
 
 from dalembert.errors import InputError, listed
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.body import ANGLE, DISPLACEMENT
+from dalembert.multibody.components.base_body import ANGLE, DISPLACEMENT
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.spatial import pairs
 from dalembert.multibody.components.spatial.body import FREE, Body
 from dalembert.multibody.components.spatial.joint import Joint, joint_displacement
-from dalembert.multibody.components.spatial.lowering import Pair, SpatialLowering
 from dalembert.multibody.components.spatial.pairs import e1, e2, e3, f1, push_a_axis, push_b_axis, push_pair, separation
+from dalembert.multibody.components.spatial.spatial_rows import Pair, SpatialLowering
 from dalembert.multibody.components.spatial.vectors import dot, minus, times
 from dalembert.multibody.kernels.charts import flat
 from dalembert.multibody.kernels.elementary import sin_cos

@@ -10,10 +10,10 @@ from dalembert.multibody.components.points import Point
 from dalembert.multibody.components.signals import Signal
 from dalembert.multibody.components.spatial.joint import Joint, joint_angle, joint_displacement
 from dalembert.multibody.components.spatial.kinds import pair_kind
-from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Orientation
 from dalembert.multibody.components.spatial.pairs import LENGTHS, along_axes, f1, f2, f3, separation
 from dalembert.multibody.components.spatial.rotations import rotation_vector
+from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
 from dalembert.multibody.kernels.elementary import angle_of, root, wrapped
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.time_inputs import signal

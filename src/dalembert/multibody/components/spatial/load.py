@@ -5,8 +5,8 @@ __all__ = ["Load"]
 from abc import abstractmethod
 from dataclasses import dataclass
 
-from dalembert.multibody.components.load import BaseLoad
-from dalembert.multibody.components.spatial.lowering import SpatialLowering
+from dalembert.multibody.components.base_load import BaseLoad
+from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
 
 
 @dataclass(frozen=True)

@@ -5,16 +5,16 @@ __all__ = ["Motor"]
 from dataclasses import dataclass
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.motor_law import INTEGERS, NUMBERS, MotorNumbers, Turning, drive_properties
+from dalembert.multibody.components.laws.motor_law import INTEGERS, NUMBERS, MotorNumbers, Turning, drive_properties
 from dalembert.multibody.components.points import require_direction
+from dalembert.multibody.components.spatial.ground_points import Side
 from dalembert.multibody.components.spatial.joint import joint_angle, joint_rate, observe_turn, turned_to
 from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.load import Load
-from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Vector
 from dalembert.multibody.components.spatial.pairs import e3, relative_spin, twist_pair
-from dalembert.multibody.components.spatial.points import Side
 from dalembert.multibody.components.spatial.rotor import TURNING_ROTOR
+from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
 from dalembert.multibody.components.spatial.vectors import dot, times
 
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from dalembert.multibody.components.spatial.conditions import level, perpendicular
 from dalembert.multibody.components.spatial.joint import Joint, joint_kind
-from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Vector
+from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
 
 KIND = joint_kind("planar_joint", __name__, level(3), perpendicular(3, 1), perpendicular(3, 2), angle=True)
 

@@ -21,9 +21,9 @@ from dalembert.multibody.components.spatial.joint import (
     observe_turn,
 )  # fmt: skip
 from dalembert.multibody.components.spatial.kinds import pair_kind
-from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Vector
 from dalembert.multibody.components.spatial.pairs import COORDINATES, LENGTHS, e1, e2, f1
+from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
 from dalembert.multibody.components.spatial.vectors import dot
 from dalembert.multibody.kernels.constraints import forces_of
 from dalembert.multibody.kernels.elementary import angle_of, sin_cos

@@ -4,12 +4,12 @@ __all__ = ["PrismaticJoint"]
 
 from dataclasses import dataclass, field
 
-from dalembert.multibody.components.joint import Smoothing
+from dalembert.multibody.components.base_joint import Smoothing
 from dalembert.multibody.components.spatial.conditions import level, perpendicular
 from dalembert.multibody.components.spatial.friction import Friction, friction_kind
 from dalembert.multibody.components.spatial.joint import Joint, joint_kind
-from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Vector
+from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
 from dalembert.multibody.kernels.kind import Kind
 
 KIND = joint_kind(

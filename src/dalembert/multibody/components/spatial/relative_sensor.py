@@ -8,9 +8,9 @@ from itertools import permutations
 from dalembert.errors import require_known
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.points import require_direction
+from dalembert.multibody.components.spatial.ground_points import Side
 from dalembert.multibody.components.spatial.kinds import sensor_kind
 from dalembert.multibody.components.spatial.load import Load
-from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.markers import spin
 from dalembert.multibody.components.spatial.pairs import (
     along_axes,
@@ -21,8 +21,8 @@ from dalembert.multibody.components.spatial.pairs import (
     separation,
     separation_rate,
 )
-from dalembert.multibody.components.spatial.points import Side
 from dalembert.multibody.components.spatial.rotations import euler_angles, quaternion, rotation_vector
+from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
 from dalembert.multibody.components.spatial.vectors import cross, dot, minus
 from dalembert.multibody.kernels.elementary import reciprocal, root
 

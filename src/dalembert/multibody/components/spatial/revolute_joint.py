@@ -4,12 +4,12 @@ __all__ = ["RevoluteJoint"]
 
 from dataclasses import dataclass
 
-from dalembert.multibody.components.joint import Smoothing
+from dalembert.multibody.components.base_joint import Smoothing
 from dalembert.multibody.components.spatial.conditions import MEETS, perpendicular
 from dalembert.multibody.components.spatial.friction import Friction, friction_kind
 from dalembert.multibody.components.spatial.joint import Joint, joint_kind
-from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Vector
+from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
 from dalembert.multibody.kernels.kind import Kind
 
 KIND = joint_kind("revolute_in_space", __name__, MEETS, perpendicular(1, 3), perpendicular(2, 3), angle=True)

@@ -8,13 +8,13 @@ import numpy as np
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
+from dalembert.multibody.components.laws.spring_law import NUMBERS, law_functions, tension
+from dalembert.multibody.components.spatial.ground_points import Side
 from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.load import Load
-from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.pairs import push_pair, separation, separation_rate
-from dalembert.multibody.components.spatial.points import Side
+from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
 from dalembert.multibody.components.spatial.vectors import dot, times
-from dalembert.multibody.components.spring_law import NUMBERS, law_functions, tension
 from dalembert.multibody.kernels.elementary import reciprocal, root
 
 _TINY = 1e-30  # keeps the direction of a spring of no length defined, m^2

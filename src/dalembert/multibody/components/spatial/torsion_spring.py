@@ -8,14 +8,14 @@ import numpy as np
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
+from dalembert.multibody.components.laws.spring_law import NUMBERS, law_functions, tension
 from dalembert.multibody.components.points import require_direction
+from dalembert.multibody.components.spatial.ground_points import Side
 from dalembert.multibody.components.spatial.joint import turned_to
 from dalembert.multibody.components.spatial.joint_coordinate import JointCoordinate
 from dalembert.multibody.components.spatial.load import Load
-from dalembert.multibody.components.spatial.lowering import Pair, SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Vector
-from dalembert.multibody.components.spatial.points import Side
-from dalembert.multibody.components.spring_law import NUMBERS, law_functions, tension
+from dalembert.multibody.components.spatial.spatial_rows import Pair, SpatialLowering
 from dalembert.multibody.kernels.kind import Kind
 
 

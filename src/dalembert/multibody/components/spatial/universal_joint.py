@@ -9,7 +9,6 @@ import numpy as np
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.spatial.conditions import MEETS, Condition, forces_of, perpendicular
 from dalembert.multibody.components.spatial.joint import REACTIONS, Joint, joint_kind, observed
-from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Orientation, Vector
 from dalembert.multibody.components.spatial.pairs import (
     COORDINATES,
@@ -23,6 +22,7 @@ from dalembert.multibody.components.spatial.pairs import (
     push_b_axis,
     relative_spin,
 )
+from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
 from dalembert.multibody.components.spatial.vectors import dot, times
 from dalembert.multibody.kernels.elementary import angle_of
 

@@ -12,10 +12,9 @@ from typing import Any
 
 from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import call_with, stack
-from dalembert.multibody.callbacks import Sizes
+from dalembert.multibody.components.spatial.ground_points import Side
 from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.load import Load
-from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.markers import SLOTS, position, position_rate, spin
 from dalembert.multibody.components.spatial.pairs import (
     a_point,
@@ -31,8 +30,9 @@ from dalembert.multibody.components.spatial.pairs import (
     separation_rate,
     twist_pair,
 )
-from dalembert.multibody.components.spatial.points import Side
+from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
 from dalembert.multibody.components.spatial.vectors import at, dot
+from dalembert.multibody.kernels.callbacks import Sizes
 
 _TIME = 0  # signal that holds the time
 _SIZES = Sizes(state=18, answer=6, words="six finite numbers (fx, fy, fz, tx, ty, tz)")

@@ -1,0 +1,1 @@
+"""Laws that components in the plane and in space share."""

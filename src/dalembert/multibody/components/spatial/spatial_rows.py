@@ -1,0 +1,58 @@
+"""What spatial components call while a system is lowered."""
+
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from dalembert.multibody.components.fields import Number
+from dalembert.multibody.components.rows import Rows
+from dalembert.multibody.components.spatial.ground_points import Side
+
+
+class Pair(NamedTuple):
+    """Two markers as kernels see them, and how they are placed at the start.
+
+    Parameters
+    ----------
+    slots : list of int or None
+        Coordinates of a and of b, 24; None on the side of the ground.
+    data : list of numbers
+    integers : list of int
+    separation : array (3,)
+        Position of b relative to a, in the fixed axes.
+    axes : (array, array), each (3, 3)
+        Axes of both markers, as columns, in the fixed axes.
+    """
+
+    slots: list[int | None]
+    data: list[Number]
+    integers: list[int]
+    separation: np.ndarray
+    axes: tuple[np.ndarray, np.ndarray]
+
+    @property
+    def angle(self) -> Any:
+        """Angle of b relative to a about the third axes; complex-safe."""
+        e, f = self.axes
+        c, s = e[:, 0] @ f[:, 0], e[:, 1] @ f[:, 0]
+        angle = np.arctan2(np.real(s), np.real(c))
+        slope = (np.real(c) * np.imag(s) - np.real(s) * np.imag(c)) / (np.real(c) ** 2 + np.real(s) ** 2)
+        return angle + 1j * slope if np.iscomplexobj(e) or np.iscomplexobj(f) else angle
+
+    @property
+    def displacement(self) -> Any:
+        """Displacement of b relative to a along the third axis of a."""
+        return self.axes[0][:, 2] @ self.separation
+
+
+class SpatialLowering(Rows, Protocol):
+    """Collects the rows of the kernels of a mechanism in space."""
+
+    gravity: tuple[Number, Number, Number]
+
+    def pair(self, a: Side, b: Side | None, owner: str, turned: tuple[np.ndarray, np.ndarray] | None = None) -> Pair:
+        """The markers of two sides; a bare ground stands where the other side is.
+
+        ``turned``: rotation matrices that turn the axes of both markers into those of the joint.
+        """
+        ...

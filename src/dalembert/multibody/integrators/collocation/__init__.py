@@ -1,0 +1,1 @@
+"""Collocation as a minimisation."""

@@ -1,0 +1,1 @@
+"""The generalized-alpha method, and its discrete adjoint."""

@@ -1,0 +1,292 @@
+"""The adjoint of generalized-alpha: its steps in reverse order, one transposed solution each.
+
+A step solves r(q, v, a, lambda; numbers) = 0, with q and v by the linear formulas of the step from the old state and a.
+The adjoint of the new state goes in, that of the old state comes out (`docs/theory/adjoint.md`).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dalembert.kernels.kernel import inlined, kernel
+from dalembert.kernels.views import address_of, call
+from dalembert.kernels.words import Address, Integers, Integers2, Reals, Reals2
+from dalembert.multibody.integrators.shared.problem import Problem
+from dalembert.multibody.kernels.assembly import set_signals
+from dalembert.multibody.kernels.linear import Factors, Layout, factorise, storage
+from dalembert.multibody.kernels.records import BLOCK_SIZE, TANGENT, block_at, call_at, model_at
+from dalembert.multibody.kernels.states import MotionState, clear, coefficients
+from dalembert.multibody.kernels.transposed import solve_transposed, transposed
+
+
+class Steps(NamedTuple):
+    """Steps of a motion: length, end, and the time that says on which side of a jump the end lies, s, (steps,)."""
+
+    lengths: Reals
+    ends: Reals
+    sides: Reals
+
+
+class Path(NamedTuple):
+    """Unknowns, velocities and accelerations of several states, (states, N + 1)."""
+
+    x: Reals2
+    v: Reals2
+    a: Reals2
+
+
+class Cotangents(NamedTuple):
+    """Cotangents of sampled states, (samples, N + 1), the step that each lies in, and the share of it, (samples,)."""
+
+    x: Reals2
+    v: Reals2
+    a: Reals2
+    steps: Integers
+    shares: Reals
+
+
+class Pulls(NamedTuple):
+    """What takes the gradients by the numbers of a model.
+
+    ``blocks`` (blocks, 3): addresses of a block, of its kernel and of its record. ``signals``: address of the kernel of
+    the signals, 0 if none matters, with that of its record. ``bars`` (signals, 3): adjoints of the signals.
+    """
+
+    blocks: Integers2
+    signals: Address
+    signal_record: Address
+    bars: Reals2
+
+
+class Part(NamedTuple):
+    """Derivatives of the residuals of some blocks, each entry once.
+
+    ``blocks``: their numbers, with the ``slots`` of their entries. ``rows``, ``columns`` and ``values`` of the entries,
+    and their ``places`` in the matrix that is factorised.
+    """
+
+    blocks: Integers
+    slots: Integers
+    rows: Integers
+    columns: Integers
+    places: Integers
+    values: Reals
+
+
+class SweepRoom(NamedTuple):
+    """Work of the sweep: a call in complex numbers, the matrix with its transposed solution, parts of it, vectors.
+
+    ``masses`` are those that do not change, in the places of the matrix. ``by_x``, ``by_v`` and ``by_a`` are the parts
+    along coordinates, velocities (of blocks that depend on them), and accelerations (of blocks whose masses vary).
+    """
+
+    work: Address
+    factors: Factors
+    solve: Address
+    masses: Reals
+    by_x: Part
+    by_v: Part
+    by_a: Part
+    right: Reals
+    mu: Reals
+    of_q: Reals
+    of_v: Reals
+    past: MotionState
+
+
+def sweep_room(layout: Layout, width: int, work: int, parts: tuple[Part, Part, Part]) -> SweepRoom:
+    """Room for a sweep over vectors of ``width``, without the masses."""
+    right, mu, of_q, of_v, *past = np.zeros((8, width))
+    factors = storage(layout)
+    return SweepRoom(
+        work, factors, transposed(layout).address, np.zeros(len(factors.matrix)), *parts, right, mu, of_q, of_v,
+        MotionState(*past),
+    )  # fmt: skip
+
+
+@inlined
+def _fill(model, n, x, v, a, by, room, part):
+    """Fill the values of a part with the derivative along ``by[0] dq + by[1] dv + by[2] da``, and the multipliers."""
+    own, values = call_at(room.work), part.values
+    for k in range(len(values)):
+        values[k] = 0.0
+    own.x, own.v, own.a = address_of(x), address_of(v), address_of(a)
+    own.matrix, own.entries, own.mode = address_of(values), len(values), TANGENT
+    own.increments, own.last_row = n, len(x) - 1
+    own.by_x, own.by_v, own.by_a = by
+    own.motion, own.constraint = 1.0, 1.0
+    for k in range(len(part.blocks)):
+        block = model_at(model).blocks + part.blocks[k] * BLOCK_SIZE
+        own.slots = part.slots[k]
+        call(block_at(block).tangent, room.work, block)
+
+
+@inlined
+def _add(n, part, factor, matrix):
+    """Add a part, times a factor, to the matrix: the columns of coordinates alone."""
+    for k in range(len(part.values)):
+        if part.columns[k] < n:
+            matrix[part.places[k]] += factor * part.values[k]
+
+
+@inlined
+def _fill_matrix(model, n, c, x, v, a, room):
+    """Fill the matrix of a step, M + dv C + dq K beside the constraints, and its parts."""
+    matrix, by_x = room.factors.matrix, room.by_x
+    for k in range(len(matrix)):
+        matrix[k] = room.masses[k]
+    _fill(model, n, x, v, a, (1.0, 0.0, 0.0), room, by_x)
+    for k in range(len(by_x.values)):
+        scale = c.dq if by_x.rows[k] < n and by_x.columns[k] < n else 1.0
+        matrix[by_x.places[k]] += scale * by_x.values[k]
+    if len(room.by_v.blocks) > 0:
+        _fill(model, n, x, v, a, (0.0, 1.0, 0.0), room, room.by_v)
+        _add(n, room.by_v, c.dv, matrix)
+    if len(room.by_a.blocks) > 0:
+        _fill(model, n, x, v, a, (0.0, 0.0, 1.0), room, room.by_a)
+        _add(n, room.by_a, 1.0, matrix)
+
+
+@kernel
+def fixed_masses(model: Address, n: int, x: Reals, v: Reals, a: Reals, part: Part, room: SweepRoom) -> None:
+    """Fill the masses of the blocks of a part, which do not change, in the places of the matrix."""
+    clear(room.masses)
+    if len(part.blocks) > 0:
+        _fill(model, n, x, v, a, (0.0, 0.0, 1.0), room, part)
+        _add(n, part, 1.0, room.masses)
+
+
+@inlined
+def _take_samples(n, h, k, given, left, bar, past):
+    """Add the cotangents of the samples in step ``k`` to those of its ends; return how many samples are left."""
+    while left > 0 and given.steps[left - 1] == k:
+        left -= 1
+        s, cx, cv, ca = given.shares[left], given.x[left], given.v[left], given.a[left]
+        if s > 1.0 - 1e-9:
+            for i in range(len(cx)):
+                bar.x[i] += cx[i]
+                bar.v[i] += cv[i]
+                bar.a[i] += ca[i]
+            continue
+        s0, s1 = 1 - 3 * s * s + 2 * s**3, 3 * s * s - 2 * s**3
+        t0, t1 = h * (s - 2 * s * s + s**3), h * (s**3 - s * s)
+        for i in range(n):
+            bar.x[i] += s1 * cx[i]
+            bar.v[i] += t1 * cx[i] + s1 * cv[i]
+            bar.a[i] += t1 * cv[i] + s * ca[i]
+            past.x[i] += s0 * cx[i]
+            past.v[i] += t0 * cx[i] + s0 * cv[i]
+            past.a[i] += t0 * cv[i] + (1 - s) * ca[i]
+        for i in range(n, len(cx)):
+            bar.x[i] += s * cx[i]
+            past.x[i] += (1 - s) * cx[i]
+    return left
+
+
+@inlined
+def _multiply_transposed(part, mu, answer):
+    """Product of a transposed part with mu."""
+    clear(answer)
+    for k in range(len(part.values)):
+        answer[part.columns[k]] += part.values[k] * mu[part.rows[k]]
+
+
+@inlined
+def _step_back(n, c, bar, past):
+    """Take the adjoint through the linear formulas of the step, from its end to its start."""
+    h = c.step
+    scale = 1.0 / (1.0 - c.alpha_m)
+    old_a, lag = c.alpha_f * scale, c.alpha_m * scale
+    half, beta = h * h * (0.5 - c.beta), h * h * c.beta
+    early, late = h * (1.0 - c.gamma), h * c.gamma
+    for i in range(n):
+        q, v, w = bar.x[i], bar.v[i], bar.w[i]
+        total = beta * q + late * v + w
+        bar.x[i] = q + past.x[i]
+        bar.v[i] = h * q + v + past.v[i]
+        bar.a[i] = old_a * total + past.a[i]
+        bar.w[i] = half * q + early * v - lag * total
+    for i in range(n, len(bar.x)):
+        bar.x[i] = past.x[i]
+
+
+@kernel
+def sweep(
+    problem: Problem, model: Address, radius: float, steps: Steps, first: int, path: Path, given: Cotangents,
+    pulls: Pulls, bar: MotionState, room: SweepRoom,
+) -> int:  # fmt: skip
+    """Run the adjoint over steps in reverse order; return -1, or the number of a step whose matrix is singular.
+
+    Parameters
+    ----------
+    model : address
+        In complex numbers without imaginary parts, with the kernels of tangents.
+    radius : float
+        Spectral radius of the method.
+    steps : Steps
+    first : int
+        Number of the first of these steps in the whole motion, as the cotangents count.
+    path : Path
+        States at the ends of the steps, (steps, N + 1).
+    given : Cotangents
+        In the order of time; those of these steps.
+    bar : MotionState
+        Adjoint of the last state; overwritten with that of the state before the first step.
+    """
+    n, size, layout, past, mu = problem.n, len(bar.x) - 1, problem.exact_layout, room.past, room.mu
+    left = len(given.steps)
+    for k in range(len(steps.ends) - 1, -1, -1):
+        c = coefficients(steps.lengths[k], radius)
+        share = (1.0 - c.alpha_f) / (1.0 - c.alpha_m)
+        x, v, a = path.x[k], path.v[k], path.a[k]
+        clear(past.x)
+        clear(past.v)
+        clear(past.a)
+        left = _take_samples(n, c.step, first + k, given, left, bar, past)
+        set_signals(model, steps.ends[k], steps.sides[k], room.work)
+        _fill_matrix(model, n, c, x, v, a, room)
+        if not factorise(layout, room.factors):
+            return k
+        for i in range(n):
+            room.right[i] = bar.a[i] + share * bar.w[i] + c.dv * bar.v[i] + c.dq * bar.x[i]
+        for i in range(n, size):
+            room.right[i] = bar.x[i]
+        solve_transposed(room.solve, layout, room.factors, room.right, mu)
+        for i in range(n, size):
+            mu[i] /= c.dq
+        _multiply_transposed(room.by_x, mu, room.of_q)
+        for i in range(n):
+            bar.x[i] -= room.of_q[i]
+        if len(room.by_v.blocks) > 0:
+            _multiply_transposed(room.by_v, mu, room.of_v)
+            for i in range(n):
+                bar.v[i] -= room.of_v[i]
+        pull(model, pulls, room.mu, room.work)
+        _step_back(n, c, bar, past)
+    return -1
+
+
+@inlined
+def pull(model, pulls, mu, work):
+    """Add mu^T times the derivatives of the residual to the gradients, at the state and the time of the call."""
+    own = call_at(work)
+    own.r = address_of(mu)
+    for k in range(len(pulls.blocks)):
+        own.slots = pulls.blocks[k, 2]
+        call(pulls.blocks[k, 1], work, pulls.blocks[k, 0])
+    if pulls.signals != 0:
+        call(pulls.signals, work, pulls.signal_record)
+        for s in range(len(pulls.bars)):
+            for rate in range(3):
+                pulls.bars[s, rate] = 0.0
+
+
+@kernel
+def pull_once(
+    model: Address, t: float, within: float, x: Reals, v: Reals, a: Reals, mu: Reals, pulls: Pulls, work: Address
+) -> None:
+    """Add mu^T times the derivatives of the residual of one state to the gradients."""
+    set_signals(model, t, within, work)
+    own = call_at(work)
+    own.x, own.v, own.a = address_of(x), address_of(v), address_of(a)
+    pull(model, pulls, mu, work)

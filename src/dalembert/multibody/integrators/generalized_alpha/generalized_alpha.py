@@ -1,0 +1,320 @@
+"""Generalized-alpha for the index-3 equations, with the derivatives of its discrete solution."""
+
+__all__ = ["GeneralizedAlpha"]
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from dalembert.arguments import limited
+from dalembert.errors import require_known
+from dalembert.kernels.kernel import Compiled, inlined, inner, kernel
+from dalembert.kernels.words import Address, Integers, Integers2, Reals2
+from dalembert.multibody.integrators.generalized_alpha.derivatives import (
+    Differentiation,
+    differentiate,
+    differentiation,
+)
+from dalembert.multibody.integrators.generalized_alpha.newton import Newton, converge, keep_slope, newton
+from dalembert.multibody.integrators.shared.batch import Batch, restarts
+from dalembert.multibody.integrators.shared.consistent import Consistency, accelerate, accelerate_along, consistency
+from dalembert.multibody.integrators.shared.integrator import Integrator
+from dalembert.multibody.integrators.shared.problem import (
+    DONE,
+    NEWTON_FAILED,
+    SINGULAR,
+    TOO_MANY_STEPS,
+    Log,
+    Models,
+    Problem,
+    note_step,
+)
+from dalembert.multibody.integrators.shared.run import Run, explain
+from dalembert.multibody.kernels.assembly import set_signals
+from dalembert.multibody.kernels.block_table import Call, addresses
+from dalembert.multibody.kernels.states import (
+    Histories,
+    MotionState,
+    MotionStates,
+    clear,
+    coefficients,
+    copy,
+    interpolate,
+    resting,
+    row,
+    rows,
+)
+from dalembert.multibody.model.structure import Structure
+from dalembert.multibody.model.turns import STEP_END, count_turns
+
+STARTS = ("consistent", "zero")
+_HALVINGS = 16  # of a fixed step that Newton does not converge on
+_UNITS = 1 << _HALVINGS
+
+
+@dataclass(frozen=True)
+class GeneralizedAlpha(Integrator):
+    """Generalized-alpha integrator for index 3 (Arnold and Bruels 2007), of second order.
+
+    Parameters
+    ----------
+    step : float
+        Step in s; the first one when ``adaptive``.
+    spectral_radius : float
+        At infinity, in [0, 1]: 1 damps nothing, 0 damps the highest frequencies in one step. At 1 the index-3 method
+        would keep an error of the multipliers for ever, with alternating sign; there velocities and accelerations are
+        projected on the constraints after each step, which doubles its price.
+    initial_acceleration : {"consistent", "zero"}
+        Accelerations and multipliers at the start: those that satisfy the equations of motion, or none (a start of
+        first order).
+    adaptive : bool
+        Choose the step by the estimated local error.
+    tolerance : float
+        Of the local error, relative to each coordinate's scale (the extent of the mechanism for positions, 1 for angles
+        and gradients); for ``adaptive``.
+    newton_tolerance : float
+        Of the coordinates at each step, relative to their scale. An error of a coordinate is 2 / step times as large in
+        the velocity and adds up over the steps; so the default is rounding.
+    most_steps : int
+        After which an adaptive run gives up.
+
+    Examples
+    --------
+    >>> GeneralizedAlpha(step=1e-3).spectral_radius
+    0.8
+    """
+
+    step: float = limited(unit="s", above=0)
+    spectral_radius: float = limited(0.8, unit="", least=0, most=1)
+    initial_acceleration: str = "consistent"
+    adaptive: bool = False
+    tolerance: float = limited(1e-6, unit="", above=0)
+    newton_tolerance: float = limited(2e-15, unit="", above=0)
+    most_steps: int = 1_000_000
+
+    def __post_init__(self) -> None:
+        require_known("initial_acceleration", self.initial_acceleration, STARTS, "GeneralizedAlpha")
+
+    @property
+    def convergence(self) -> int:
+        """Order in the step: 2; 1 without accelerations at the start."""
+        return 2 if self.initial_acceleration == "consistent" else 1
+
+    @property
+    def fixed_step(self) -> float | None:
+        """The step in s, None if adaptive."""
+        return None if self.adaptive else self.step
+
+    def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
+        """The loop with its linear systems, and what differentiates a step."""
+        along = [differentiate, accelerate_along] * derivatives
+        return [integrate, *structure.full.linear_kernels, *structure.reduced_kernels(derivatives), *along]
+
+    def run(self, batch: Batch) -> list[Run]:
+        """Runs of samples in one compiled loop that leaves the interpreter's lock free."""
+        # at spectral radius 1 velocities leave the constraints and nothing damps what grows from there
+        problem = batch.problem._replace(projected=self.spectral_radius == 1.0)
+        samples, perturbed = batch.samples, batch.perturbed
+        out, dout = resting(len(samples), *batch.shape), batch.derivatives()
+        log = batch.log(self.step_ends(batch.end, samples[0].jumps))
+        steps = self.step, self.spectral_radius, self.initial_acceleration == "consistent", self.adaptive
+        settings = Settings(*steps, self.tolerance, self.newton_tolerance, self.most_steps)
+        ends = np.zeros((len(samples), 3))
+        real = [entry.real.need("rates").reduced() for entry in samples]
+        complex_models = [entry.tangents.reduced(nodes=len(perturbed) > 0) for entry in samples]
+        directions = addresses(entry.complex_model.need("rates").reduced() for entry in perturbed)
+        calls = real[0].call(), complex_models[0].call()
+        integrate(
+            problem, restarts(samples, problem), settings, addresses(real), addresses(complex_models),
+            directions, batch.begin_counting(), batch.states, batch.dstates, out, dout, log, ends,
+            _workspace(problem, *calls, len(perturbed)),
+        )  # fmt: skip
+        runs, shortened = [], f"the step of {self.step:g} s was cut down {'' if self.adaptive else 'to 1/256 '}for it"
+        for number, (lowered, (status, time, moved)) in enumerate(zip(samples, ends, strict=True)):
+            given = lowered, int(status), time, int(moved), shortened, self.most_steps
+            reason = None if status == DONE else explain(*given)
+            runs.append(batch.result(reason, row(out, number), dout, log))
+        return runs
+
+
+class Settings(NamedTuple):
+    """What the compiled loop needs of `GeneralizedAlpha`."""
+
+    step: float
+    spectral_radius: float
+    consistent: bool
+    adaptive: bool
+    tolerance: float
+    newton_tolerance: float
+    most_steps: int
+
+
+class Workspace(NamedTuple):
+    """States of a step, Newton's iteration, consistent accelerations, derivatives.
+
+    ``differentiate``: address of the kernel for the derivatives of a step, 0 if there are none.
+    """
+
+    old: MotionState
+    new: MotionState
+    dolds: MotionStates
+    newton: Newton
+    consistency: Consistency
+    differentiation: Differentiation
+    differentiate: Address
+
+
+def _workspace(problem: Problem, call: Call, complex_call: Call, directions: int) -> Workspace:
+    width, work, complex_work = len(problem.scale), call.address, complex_call.address
+    along = differentiate.address if directions else 0
+    return Workspace(
+        resting(width), resting(width), resting(directions, width), newton(problem, work, complex_work),
+        consistency(problem, work, complex_work, directions), differentiation(problem, complex_work), along,
+    )  # fmt: skip
+
+
+@kernel
+def integrate(
+    problem: Problem, opens: Integers2, settings: Settings, models: Integers, complex_models: Integers,
+    directions: Integers, turns: Integers, states: MotionStates, dstates: MotionStates, out: Histories,
+    dout: Histories, log: Log, ends: Reals2, room: Workspace,
+) -> None:  # fmt: skip
+    """Run a stack of samples from ``problem.edges[sample, 0]`` to the last edge; fill the states at the output times.
+
+    Parameters
+    ----------
+    problem, settings : Problem, Settings
+    opens : array (samples, -)
+        Whether each stretch starts anew; else the motion goes on, and held tables have their mean where it begins.
+    models, complex_models : array of addresses, shape (samples,)
+        Models in real and in complex numbers.
+    directions : array of addresses
+        Complex models, one a direction of differentiation; empty if there is more than one sample.
+    turns : array of addresses, shape (samples,)
+        What counts the turns of angles, 0 for none.
+    states : MotionStates
+        At the start, (samples, N + 1); overwritten.
+    dstates : MotionStates
+        Derivatives at the start, (directions, N + 1); overwritten.
+    out, dout : Histories
+        Arrays (samples, times, N + 1) and (directions, times, N + 1); ``w`` is not used.
+    log : Log
+        Of the last sample.
+    ends : array, shape (samples, 3)
+        Status (`DONE`, or the reason), time reached, unknown that moved most.
+    """
+    for sample in range(len(models)):
+        clear(log.counts)
+        edges = problem.edges[sample, : problem.stretches[sample] + 1]
+        ends[sample, 0], ends[sample, 1], ends[sample, 2] = _integrate(
+            problem, edges, opens[sample], settings,
+            Models(models[sample], complex_models[sample], directions, turns[sample]), row(states, sample), dstates,
+            rows(out, sample), dout, log, room,
+        )  # fmt: skip
+
+
+@inner
+def _integrate(problem, edges, opens, settings, models, state, dstates, out, dout, log, room):
+    """Run one sample: status, time reached, and the unknown that moved most."""
+    n, width = problem.n, len(state.x)
+    old, new, dolds, own = room.old, room.new, room.dolds, room.newton
+    copy(state, new)
+    own.memory[0], own.memory[1] = 0.0, 0.0
+    differentiated = len(models.directions) > 0
+    due = 0
+    length = settings.step
+    for stretch in range(len(edges) - 1):
+        begin, end = edges[stretch], edges[stretch + 1]
+        within = 0.5 * (begin + end)
+        fresh, ends = opens[stretch] == 1, stretch + 2 == len(edges) or opens[stretch + 1] == 1
+        if fresh:
+            clear(own.slope)
+        if fresh and (stretch > 0 or settings.consistent):
+            if not accelerate(problem, models, begin, within, new, dstates, room.consistency):
+                return SINGULAR, begin, 0
+        if stretch == 0:
+            count_turns(models.turns, begin, new, STEP_END)
+            while due < len(problem.times) and problem.times[due] <= begin:
+                _record(n, 1.0, 1.0, new, new, dstates, dstates, out, dout, due)
+                due += 1
+        steps = max(1, int(np.ceil((end - begin) / settings.step - 1e-6)))
+        nominal = (end - begin) / steps
+        unit, level = 0, 0
+        t = begin
+        if not settings.adaptive:
+            length = nominal
+        while (settings.adaptive and t < end) or (not settings.adaptive and unit < steps * _UNITS):
+            if settings.adaptive:
+                if t + length * 1.0001 >= end:
+                    length = end - t
+                target = t + length if length < end - t else end
+            else:
+                stride = _UNITS >> level
+                length = nominal / (1 << level)
+                target = end if unit + stride == steps * _UNITS else begin + nominal * ((unit + stride) / _UNITS)
+            copy(new, old)
+            c = coefficients(length, settings.spectral_radius)
+            side = within if ends or target < end else end
+            set_signals(models.real, target, side, own.work)
+            status, detail = converge(
+                problem, models.real, models.complex, c, target, side, settings.newton_tolerance, old, new, own, log
+            )
+            error = 0.0
+            if status == DONE and settings.adaptive:  # estimated local error: h^2 |beta - 1/6| |w_{n+1} - w_n|
+                for i in range(n):
+                    gap = abs(c.beta - 1 / 6) * length * length * abs(new.w[i] - old.w[i])
+                    error = max(error, gap / (settings.tolerance * problem.scale[i]))
+            if status != DONE or error > 1.0:
+                log.counts[3] += 1
+                copy(old, new)
+                clear(own.slope)
+                if settings.adaptive:
+                    length *= max(0.2, 0.9 * error ** (-1 / 3)) if status == DONE else 0.25
+                    if length < 1e-12 * (end - begin):
+                        return NEWTON_FAILED, t, detail
+                elif level == _HALVINGS:
+                    return status, t, detail
+                else:
+                    level += 1
+                continue
+            note_step(log, detail, target)
+            keep_slope(n, c, old, new, own.slope)
+            if differentiated and not _differentiate_at(
+                room.differentiate, problem, models.complex, models.directions, c, target, side, new, dolds, dstates,
+                room.differentiation,
+            ):  # fmt: skip
+                return SINGULAR, target, 0
+            if problem.projected and width - 1 > n:
+                if not accelerate(problem, models, target, side, new, dstates, room.consistency):
+                    return SINGULAR, target, 0
+            while due < len(problem.times) and problem.times[due] <= target + 1e-9 * length:
+                share = min(1.0, (problem.times[due] - t) / length)
+                _record(n, length, share, old, new, dolds, dstates, out, dout, due)
+                count_turns(models.turns, problem.times[due], row(out, due), due)
+                due += 1
+            count_turns(models.turns, target, new, STEP_END)
+            t = target
+            if settings.adaptive:
+                if log.counts[0] >= settings.most_steps:
+                    return TOO_MANY_STEPS, t, 0
+                growth = min(2.0, 0.9 * (error + 1e-30) ** (-1 / 3))
+                if growth < 1.0 or growth > 1.2:
+                    length *= growth
+            else:
+                unit += stride
+                if level > 0 and unit % (2 * stride) == 0:
+                    level -= 1
+    copy(new, state)
+    return DONE, edges[-1], 0
+
+
+_differentiate_at = differentiate.at
+
+
+@inlined
+def _record(n, length, share, old, new, dolds, dnews, out, dout, due):
+    """Write the states at an output time."""
+    interpolate(n, length, share, old, new, out.x[due], out.v[due], out.a[due])
+    for d in range(len(dnews.x)):
+        interpolate(n, length, share, row(dolds, d), row(dnews, d), dout.x[d, due], dout.v[d, due], dout.a[d, due])

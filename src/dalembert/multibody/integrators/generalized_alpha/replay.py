@@ -1,0 +1,66 @@
+"""Known steps of generalized-alpha once more, from a state between them: what checkpoints of an adjoint need."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dalembert.kernels.kernel import kernel
+from dalembert.multibody.integrators.generalized_alpha.adjoint_sweep import Path, Steps
+from dalembert.multibody.integrators.generalized_alpha.newton import Newton, converge, keep_slope, newton
+from dalembert.multibody.integrators.shared.problem import DONE, Log, Models, Problem
+from dalembert.multibody.kernels.assembly import set_signals
+from dalembert.multibody.kernels.states import MotionState, clear, coefficients, copy, resting
+
+
+class ReplayRoom(NamedTuple):
+    """States of a step, and Newton's iteration."""
+
+    old: MotionState
+    new: MotionState
+    newton: Newton
+    log: Log
+
+
+def replay_room(problem: Problem, work: int, complex_work: int) -> ReplayRoom:
+    """Room for a replay, with calls in real and in complex numbers."""
+    width, none = len(problem.scale), np.zeros(0)
+    log = Log(np.zeros(4, np.int64), none.astype(np.int64), none)
+    return ReplayRoom(resting(width), resting(width), newton(problem, work, complex_work), log)
+
+
+@kernel
+def replay(
+    problem: Problem, models: Models, radius: float, tolerance: float, steps: Steps, state: MotionState, path: Path,
+    room: ReplayRoom,
+) -> int:  # fmt: skip
+    """Take the steps from a state, which is overwritten with the last one; return the status, or the reason.
+
+    Parameters
+    ----------
+    radius, tolerance : float
+        Spectral radius, and tolerance of Newton's iteration.
+    steps : Steps
+    state : MotionState
+        (N + 1,).
+    path : Path
+        Filled with the states at the ends of the steps, (steps, N + 1); with none of them, (0, N + 1).
+    """
+    n, old, new, own = problem.n, room.old, room.new, room.newton
+    copy(state, new)
+    clear(own.slope)
+    own.memory[0], own.memory[1] = 0.0, 0.0
+    for k in range(len(steps.ends)):
+        copy(new, old)
+        c = coefficients(steps.lengths[k], radius)
+        set_signals(models.real, steps.ends[k], steps.sides[k], own.work)
+        status, _ = converge(
+            problem, models.real, models.complex, c, steps.ends[k], steps.sides[k], tolerance, old, new, own, room.log
+        )
+        if status != DONE:
+            return status
+        keep_slope(n, c, old, new, own.slope)
+        if len(path.x) > 0:
+            for i in range(len(new.x)):
+                path.x[k, i], path.v[k, i], path.a[k, i] = new.x[i], new.v[i], new.a[i]
+    copy(new, state)
+    return DONE

@@ -1,0 +1,1 @@
+"""Methods for the equations of index 1."""

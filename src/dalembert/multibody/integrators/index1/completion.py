@@ -1,0 +1,111 @@
+"""Whole states from coordinates and velocities: onto the constraints, then what the equations of index 1 demand."""
+
+import numpy as np
+
+from dalembert.kernels.kernel import Compiled, inner, kernel
+from dalembert.kernels.words import Address
+from dalembert.multibody.integrators.index1.index1 import (
+    PARTITIONED,
+    PROJECTED,
+    Terms,
+    Tools,
+    demand,
+    demand_along,
+)
+from dalembert.multibody.integrators.index1.least_squares import surplus_room
+from dalembert.multibody.integrators.index1.projection import project, project_along
+from dalembert.multibody.integrators.shared.partitioning import (
+    DEPENDENT,
+    Partition,
+    choose,
+    dependence,
+    invert,
+    linearise,
+    room,
+    settle,
+    settle_along,
+)
+from dalembert.multibody.integrators.shared.problem import (
+    DIVERGED,
+    DONE,
+    NEWTON_FAILED,
+    SINGULAR,
+    VELOCITY,
+    Models,
+    Problem,
+)
+from dalembert.multibody.kernels.assembly import set_signals
+from dalembert.multibody.kernels.linear import storage
+from dalembert.multibody.kernels.states import MotionState, MotionStates, resting
+
+
+def make_tools(problem: Problem, terms: Terms, work: int, complex_work: int, directions: int) -> Tools:
+    """Work for a model, with derivatives if there are any directions."""
+    width, parted, projected = problem.exact_layout.size + 1, terms.way == PARTITIONED, terms.way == PROJECTED
+    vector = np.zeros((4, width))
+    return Tools(
+        work, complex_work, storage(problem.exact_layout), np.zeros((7, width), np.complex128), vector[0], vector[1],
+        vector[2], vector[3], room(problem, directions if parted else 0),
+        surplus_room(problem, terms.redundant, directions), resting(width), resting(width),
+        demand_along.address if directions else 0, partition.address if parted else 0, settle.address if parted else 0,
+        project.address if projected else 0, project_along.address if projected and directions else 0,
+    )  # fmt: skip
+
+
+def kernels(way: int, derivatives: bool) -> list[Compiled]:
+    """Kernels that complete states under a stabilisation, and those for derivatives; but for redundant constraints."""
+    own = {PARTITIONED: [partition, settle], PROJECTED: [project]}.get(way, [])
+    along = {PARTITIONED: [settle_along], PROJECTED: [project_along]}.get(way, [])
+    return [complete, *own, *[demand_along, *along] * derivatives]
+
+
+@kernel
+def partition(
+    problem: Problem, terms: Terms, complex_model: Address, t: float, within: float, state: MotionState, work: Address,
+    own: Partition,
+) -> bool:  # fmt: skip
+    """Choose the independent coordinates if that is needed: at first, or where the present ones have become bad.
+
+    Whether there are now other dependent ones; never without constraints. ``work``: address of a call in complex
+    numbers.
+    """
+    set_signals(complex_model, t, within, work)
+    linearise(problem, complex_model, state, work, own)
+    if own.rank[0] > 0 and invert(problem, own) and dependence(problem, own) <= terms.limit:
+        return False
+    choose(problem, own, DEPENDENT)
+    return own.rank[0] > 0
+
+
+@inner
+def _finite(n, state):
+    for i in range(n):
+        if not abs(state.x[i]) + abs(state.v[i]) < 1e100:
+            return False
+    return True
+
+
+@kernel
+def complete(
+    problem: Problem, terms: Terms, models: Models, state: MotionState, dstates: MotionStates, tools: Tools, t: float,
+    within: float, projected: bool,
+) -> int:  # fmt: skip
+    """Bring a state to the constraints as its stabilisation has it, then find what it demands: status.
+
+    ``projected``: whether a projection is due. What changes from call to call stands last, for `Field`.
+    """
+    if not _finite(problem.n, state):
+        return DIVERGED
+    if terms.way == PARTITIONED:
+        if not _settle_at(
+            tools.settle, problem, models, t, within, VELOCITY, state, dstates, tools.work, tools.complex_work,
+            tools.complex_state, tools.partition,
+        ):  # fmt: skip
+            return NEWTON_FAILED
+    if projected:
+        if not _project_at(tools.project, problem, terms, models, t, within, state, dstates, tools):
+            return NEWTON_FAILED
+    return DONE if demand(problem, terms, models, t, within, state, dstates, tools) else SINGULAR
+
+
+_settle_at, _project_at = settle.at, project.at

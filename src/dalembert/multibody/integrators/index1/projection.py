@@ -1,0 +1,136 @@
+"""Coordinates and velocities moved onto the constraints by the smallest kinetic energy.
+
+q - w with M w + J^T m = 0 and Phi(q - w) = 0, by Newton's iteration; velocities alike (`docs/theory/index-1.md`).
+"""
+
+from dalembert.kernels.kernel import inner, kernel
+from dalembert.kernels.words import Integers
+from dalembert.multibody.integrators.index1.index1 import Terms, Tools, factorise_motion
+from dalembert.multibody.integrators.shared.partitioning import fill_gap
+from dalembert.multibody.integrators.shared.problem import POSITION, VELOCITY, Models, Problem
+from dalembert.multibody.integrators.shared.settling import largest, weigh_along
+from dalembert.multibody.kernels.assembly import set_signals
+from dalembert.multibody.kernels.elementary import STEP
+from dalembert.multibody.kernels.linear import solve
+from dalembert.multibody.kernels.states import MotionState, MotionStates, clear, row
+
+_MOST_ITERATIONS = 15
+# Corrections that stop to shrink are rounding, which a nearly singular position magnifies up to this size.
+_MAGNIFIED = 1e-9
+_NOTHING = 1e-16
+
+
+@inner
+def _move(problem, level, tools, state, change):
+    """Add the correction in ``tools.answer`` to the whole change, and take it off the state; its size."""
+    n, answer, values, largest = problem.n, tools.answer, state.x if level == POSITION else state.v, 0.0
+    for i in range(n):
+        size = abs(answer[i]) / problem.scale[i]
+        if largest == largest and not size <= largest:
+            largest = size
+        change.a[i] += answer[i]
+        values[i] -= answer[i]
+    for i in range(n, len(answer) - 1):
+        change.x[i] += answer[i]
+    return largest
+
+
+@kernel
+def project_along(
+    problem: Problem, level: int, directions: Integers, t: float, within: float, state: MotionState,
+    dstates: MotionStates, tools: Tools,
+) -> None:  # fmt: skip
+    """Derivatives of the projection of coordinates or of velocities (``level``), along all directions."""
+    for d in range(len(dstates.x)):
+        _follow(problem, level, directions[d], t, within, state, row(dstates, d), tools, tools.change)
+
+
+@inner
+def _follow(problem, level, model, t, within, state, dstate, tools, change):
+    """The derivative of a projection along one direction.
+
+    ``dstate`` holds the derivative of the state before the projection, and that of the one after it when done. The
+    equations are those of the projection in complex numbers: M w + J^T m = 0 in the coordinates before, and the
+    constraints after.
+    """
+    n, last, complex_state, work = problem.n, len(state.x) - 1, tools.complex_state, tools.complex_work
+    base, gap, answer = tools.base, tools.gap, tools.answer
+    x, v, f, weighed = complex_state[0], complex_state[1], complex_state[3], complex_state[4]
+    dweighed, before = complex_state[5], complex_state[6]  # derivatives of w and m; coordinates before, which stay
+    set_signals(model, t, within, work)
+    for i in range(last + 1):
+        dweighed[i] = 0.0
+        before[i] = complex(base.x[i], STEP * dstate.x[i]) if i < n else 0.0
+    for _ in range(3):  # the matrix is that of the coordinates before
+        for i in range(last + 1):
+            weighed[i] = complex(change.a[i] if i < n else change.x[i], dweighed[i].imag)
+        weigh_along(model, n, before, weighed, work, complex_state, f)
+        for i in range(n):
+            gap[i] = f[i].imag / STEP
+            shift = dweighed[i].imag
+            x[i] = complex(state.x[i], STEP * dstate.x[i] - (shift if level == POSITION else 0.0))
+            v[i] = complex(state.v[i], STEP * dstate.v[i] - (shift if level == VELOCITY else 0.0))
+        fill_gap(model, n, level, x, v, complex_state[2], work, f, weighed)
+        for i in range(n, last):
+            gap[i] = -f[i].imag / STEP
+        solve(problem.exact_layout, tools.exact, gap, answer)
+        for i in range(last):
+            dweighed[i] = complex(0.0, dweighed[i].imag - STEP * answer[i])
+    values = dstate.x if level == POSITION else dstate.v
+    for i in range(n):
+        values[i] -= dweighed[i].imag / STEP
+
+
+@kernel
+def project(
+    problem: Problem, terms: Terms, models: Models, t: float, within: float, state: MotionState, dstates: MotionStates,
+    tools: Tools,
+) -> bool:  # fmt: skip
+    """Move coordinates, then velocities, onto the constraints in place; return True if both iterations converged.
+
+    With the state's mass matrix M and Jacobian J, the coordinates move to q - w with M w + J^T m = 0 and
+    Phi(q - w) = 0, by Newton's iteration with J kept. The velocities then move to v - w with M w + J^T m = 0 and
+    J (v - w) + Phi_t = 0, which is linear.
+
+    Parameters
+    ----------
+    problem, terms, models
+        The mechanism, see their classes.
+    t : float
+        Time, s.
+    within : float
+        A time in the smooth interval of the motion to which ``t`` belongs, s: it decides on which side of a jump
+        the signals are evaluated.
+    state : MotionState
+        Coordinates and velocities, which are moved.
+    dstates : MotionStates
+        Derivatives of the state, which are moved with it; of length 0 if there are none.
+    tools : Tools
+        Matrices and vectors to work in.
+    """
+    n, last, base, change = problem.n, len(state.x) - 1, tools.base, tools.change
+    set_signals(models.real, t, within, tools.work)
+    for level in (POSITION, VELOCITY):
+        set_signals(models.complex, t, within, tools.complex_work)
+        for i in range(last + 1):  # at rest and unloaded: the forces of friction are none
+            base.x[i] = state.x[i] if i < n else 0.0
+            change.x[i], change.a[i] = 0.0, 0.0
+        if not factorise_motion(problem, terms, models.complex, base, tools):
+            return False
+        before = 1e300
+        for _ in range(_MOST_ITERATIONS):
+            fill_gap(models.real, n, level, state.x, state.v, state.a, tools.work, tools.gap, tools.second)
+            clear(tools.gap[:n])
+            solve(problem.exact_layout, tools.exact, tools.gap, tools.answer)
+            moved = _move(problem, level, tools, state, change)
+            if moved <= _NOTHING or (moved <= _MAGNIFIED and moved > 0.1 * before) or not moved < 1e100:
+                break
+            before = moved
+        if not moved <= _MAGNIFIED * (1.0 if level == POSITION else 1.0 + largest(state.v, 0, n)):
+            return False
+        if len(dstates.x) > 0:
+            _project_along_at(tools.project_along, problem, level, models.directions, t, within, state, dstates, tools)
+    return True
+
+
+_project_along_at = project_along.at

@@ -1,0 +1,1 @@
+"""Midpoint methods: energy-momentum and variational."""

@@ -1,0 +1,233 @@
+"""The force that balances the energy of a midpoint step without touching momenta: Gonzalez's correction.
+
+A force c M v' resists the step, with v' the velocities in its middle less the rigid motions that the surroundings leave
+free: it does no work on them, so the momenta stay. c is such that the energy at the end is that of the first start and
+what loads and losses have worked in the middles of the steps.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from dalembert.kernels.kernel import inner, kernel
+from dalembert.kernels.words import Address, Complexes, Complexes2, Complexes3, Integers, Reals, Reals2
+from dalembert.multibody.integrators.midpoint import midpoint_step as midpoint
+from dalembert.multibody.integrators.midpoint.midpoint_step import Along, Step
+from dalembert.multibody.integrators.shared.matrices import Matrices, add_product
+from dalembert.multibody.integrators.shared.problem import Problem
+from dalembert.multibody.integrators.shared.settling import weigh_along
+from dalembert.multibody.kernels.assembly import energies
+from dalembert.multibody.kernels.block_table import Model
+from dalembert.multibody.kernels.elementary import STEP, reciprocal
+from dalembert.multibody.kernels.states import MotionState
+from dalembert.multibody.model import evaluate
+from dalembert.multibody.model.lowered import Lowered
+
+_ROUNDING = 1e-15  # of the energies' sizes
+_MOST = 12  # strengths that are tried
+_STRONGEST = 0.5  # part of the velocities that the force may take or give in a step
+
+
+class Rigid(NamedTuple):
+    """Rigid motions that are free, as velocities ``spin`` sign x[partner] + shift of the coordinates.
+
+    ``partner`` and ``sign`` (n,), ``spin`` (motions,), ``shift`` (motions, n), ``shifts`` (directions, motions, n): the
+    same with the imaginary step along the directions of differentiation.
+    """
+
+    partner: Integers
+    sign: Reals
+    spin: Reals
+    shift: Reals2
+    shifts: Complexes3
+
+
+class Balance(NamedTuple):
+    """Rigid motions; room for them, their momenta, the direction of the force and sums of energies; kernels.
+
+    The room is in real and in complex numbers. ``converge`` and ``converge_along`` are the addresses of these kernels:
+    both are 0 if the energy is not balanced, the second one is 0 if there are no directions, too.
+    """
+
+    rigid: Rigid
+    motions: Reals2
+    weighed: Reals2
+    force: Reals
+    totals: Reals
+    complex_motions: Complexes2
+    complex_weighed: Complexes2
+    complex_force: Complexes
+    complex_totals: Complexes
+    converge: Address
+    converge_along: Address
+
+
+def balance_room(width: int, rigid: Rigid | None = None) -> Balance:
+    """Room for the balance of steps of N + 1 = ``width`` unknowns; without rigid motions the energy is not balanced."""
+    addresses = (converge.address, converge_along.address if len(rigid.shifts) else 0) if rigid else (0, 0)
+    none = np.zeros(0)
+    own = rigid or Rigid(np.zeros(0, np.int64), none, none, np.zeros((0, 0)), np.zeros((0, 0, 0), complex))
+    motions, complex_motions = np.zeros((2, len(own.spin), width)), np.zeros((2, len(own.spin), width), complex)
+    return Balance(
+        own, motions[0], motions[1], np.zeros(width), np.zeros(3), complex_motions[0], complex_motions[1],
+        np.zeros(width, complex), np.zeros(3, complex), *addresses,
+    )  # fmt: skip
+
+
+def first_energies(
+    lowered: Lowered, perturbed: Sequence[Lowered], start: MotionState, dstarts: MotionState, within: float
+) -> tuple[float, np.ndarray]:
+    """Energy in J at the start (N + 1,), and its derivatives (directions,); ``within`` the first smooth stretch."""
+    energy = _energy_at_start(lowered.real, start.x, start.v, within).real
+    derivatives = np.zeros(len(perturbed))
+    for d, entry in enumerate(perturbed):
+        x, v = start.x + 1j * STEP * dstarts.x[d], start.v + 1j * STEP * dstarts.v[d]
+        derivatives[d] = _energy_at_start(entry.complex_model, x, v, within).imag / STEP
+    return energy, derivatives
+
+
+def _energy_at_start(model: Model, x: np.ndarray, v: np.ndarray, within: float) -> complex:
+    totals = evaluate.energies(model, x[None], v[None], np.zeros(1), np.array([within]))
+    return totals[0, 0] + totals[0, 1]
+
+
+@inner
+def _fill_motions(n, rigid, shift, x, motions):
+    for j in range(len(rigid.spin)):
+        for i in range(n):
+            motions[j, i] = rigid.spin[j] * rigid.sign[i] * x[rigid.partner[i]] + shift[j, i]
+
+
+@inner
+def _product(n, a, b):
+    whole = a[0] * b[0]
+    for i in range(1, n):
+        whole += a[i] * b[i]
+    return whole
+
+
+@inner
+def _remove(n, motions, weighed, force):
+    """Take the momenta of rigid motions out of the momentum ``force``; motions become orthogonal."""
+    for j in range(len(motions)):
+        whole = _product(n, motions[j], weighed[j]).real
+        for i in range(j):
+            own = _product(n, motions[i], weighed[i])
+            if own.real > 0.0:
+                share = _product(n, motions[i], weighed[j]) * reciprocal(own)
+                for k in range(n):
+                    motions[j, k] -= share * motions[i, k]
+                    weighed[j, k] -= share * weighed[i, k]
+        own = _product(n, motions[j], weighed[j])
+        if own.real <= 1e-10 * whole:  # the same as those before: a point does not turn
+            for k in range(n):
+                motions[j, k], weighed[j, k] = 0.0, 0.0
+        else:
+            share = _product(n, motions[j], force) * reciprocal(own)
+            for k in range(n):
+                force[k] -= share * weighed[j, k]
+
+
+@inner
+def _direct(n, matrices, s, e):
+    """Fill the direction of the force; its power."""
+    rigid, motions, weighed, force, mass = e.rigid, e.motions, e.weighed, e.force, matrices.mass
+    _fill_motions(n, rigid, rigid.shift, s[midpoint.XM], motions)
+    for i in range(n):
+        force[i] = 0.0
+        for j in range(len(weighed)):
+            weighed[j, i] = 0.0
+    for j in range(len(weighed)):
+        add_product(n, matrices, mass, motions[j], 1.0, weighed[j])
+    add_product(n, matrices, mass, s[midpoint.VM], 1.0, force)
+    _remove(n, motions, weighed, force)
+    return _product(n, s[midpoint.VM], force)
+
+
+@inner
+def _energy(model, h, at, middle, end, totals):
+    """Energy at the end of a step, and the work of loads and losses in it; ``totals`` are those of the end."""
+    energies(model, at[midpoint.XM], at[midpoint.VM], middle, totals)
+    gain = h * totals[2]
+    energies(model, at[midpoint.X1], at[midpoint.V1], end, totals)
+    return totals[0] + totals[1], gain
+
+
+@kernel
+def converge(
+    problem: Problem, matrices: Matrices, model: Address, h: float, goal: float, step: Step, balance: Balance,
+    tolerance: float, least: float,
+) -> tuple[bool, int, float, int, float, float]:  # fmt: skip
+    """A step whose energy is ``goal`` and the work in it.
+
+    Answers whether it converged, iterations, contraction, unknown that moved most, strength of the force, the work.
+    """
+    n, s, push, middle, end = problem.n, step.rows, step.push, step.middle, step.end
+    force, totals = balance.force, balance.totals
+    strength, gain, before, iterations, rate, worst = 0.0, 0.0, 1e300, 0, 1.0, 0
+    converged, free = False, False
+    for attempt in range(_MOST):
+        power = _direct(n, matrices, s, balance)
+        for k in range(n):
+            push[k] = strength * force[k]
+        converged, more, contraction, worst = midpoint.converge(problem, matrices, model, h, step, tolerance, least)
+        iterations += more
+        rate = contraction if attempt == 0 else rate
+        if not converged:
+            break
+        energy, gain = _energy(model, h, s, middle, end, totals)
+        excess = energy - (goal + gain)
+        near = abs(excess) <= _ROUNDING * (abs(totals[0]) + abs(totals[1]))
+        if free or near or power == 0.0 or (attempt > 3 and abs(excess) > 0.5 * before):
+            break
+        before = abs(excess)
+        strength += excess / (h * power)
+        if not abs(h * strength) < _STRONGEST:  # at a standstill; the next steps make up for it
+            strength, free = 0.0, True
+    return converged, iterations, rate, worst, strength, gain
+
+
+@inner
+def _direct_along(perturbed, n, shift, at, middle, buffers, e):
+    """The direction of the force in complex numbers."""
+    motions, weighed, force = e.complex_motions, e.complex_weighed, e.complex_force
+    _fill_motions(n, e.rigid, shift, at[midpoint.XM], motions)
+    for j in range(len(weighed)):
+        weigh_along(perturbed, n, at[midpoint.XM], motions[j], middle, buffers, weighed[j])
+    weigh_along(perturbed, n, at[midpoint.XM], at[midpoint.VM], middle, buffers, force)
+    _remove(n, motions, weighed, force)
+
+
+@kernel
+def converge_along(
+    problem: Problem, matrices: Matrices, perturbed: Address, d: int, strength: float, h: float, dgoal: float,
+    step: Step, along: Along, balance: Balance,
+) -> float:  # fmt: skip
+    """Derivative of the step along direction ``d``; the derivative of the work in it."""
+    n, s, ds, at, push = problem.n, step.rows, along.rows, along.complex_state, along.push
+    middle, end, buffers = along.middle, along.end, along.vectors[4:]
+    shift, force, totals = balance.rigid.shifts[d], balance.complex_force, balance.complex_totals
+    slope, dgain, before = 0.0, 0.0, 1e300
+    for attempt in range(2 * _MOST):
+        power = 0.0
+        if strength != 0.0:
+            midpoint.perturb_step(s, ds, at)
+            _direct_along(perturbed, n, shift, at, middle, buffers, balance)
+            for k in range(n):
+                push[k] = (complex(strength, STEP * slope) * force[k]).imag / STEP
+                power += s[midpoint.VM, k] * force[k].real
+        else:
+            for k in range(n):
+                push[k] = 0.0
+        midpoint.converge_along(problem, matrices, perturbed, h, step, along)
+        midpoint.perturb_step(s, ds, at)
+        energy, gain = _energy(perturbed, h, at, middle, end, totals)
+        dgain = gain.imag / STEP
+        excess = energy.imag / STEP - (dgoal + dgain)
+        size = (abs(totals[0].imag) + abs(totals[1].imag)) / STEP + abs(dgoal)
+        if strength == 0.0 or abs(excess) <= 1e-14 * size or (attempt > 3 and abs(excess) > 0.5 * before):
+            break
+        before = abs(excess)
+        slope += excess / (h * power)
+    return dgain

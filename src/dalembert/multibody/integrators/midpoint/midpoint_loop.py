@@ -1,0 +1,237 @@
+"""The compiled loop of the constrained midpoint rule over the steps of a motion."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from dalembert.kernels.kernel import inner, kernel
+from dalembert.kernels.words import Address, Complexes2, Integers, Reals, Reals2, Reals3
+from dalembert.multibody.integrators.midpoint import energy_balance as balancing
+from dalembert.multibody.integrators.midpoint import midpoint_step as midpoint
+from dalembert.multibody.integrators.midpoint.energy_balance import Balance
+from dalembert.multibody.integrators.midpoint.midpoint_step import Along, Step
+from dalembert.multibody.integrators.shared.consistent import Consistency, accelerate, consistency
+from dalembert.multibody.integrators.shared.ends import append
+from dalembert.multibody.integrators.shared.matrices import Matrices, Pattern, factorise_real, renew, room, weigh_masses
+from dalembert.multibody.integrators.shared.outputs import Outputs, outputs, record
+from dalembert.multibody.integrators.shared.problem import (
+    DONE,
+    NEWTON_FAILED,
+    SINGULAR,
+    VELOCITY,
+    Log,
+    Models,
+    Problem,
+    note_step,
+)
+from dalembert.multibody.integrators.shared.settling import settle, settle_along
+from dalembert.multibody.kernels.assembly import set_signals
+from dalembert.multibody.kernels.block_table import Call
+from dalembert.multibody.kernels.states import Histories, MotionState, MotionStates, clear, copy, resting, row
+from dalembert.multibody.model.turns import STEP_END, count_turns
+
+_AGED = 0.05  # contraction at which the next step begins with new matrices
+_ENDS = 2  # of steps, between which outputs are interpolated
+_HALVINGS = 16  # of a step that Newton's iteration does not converge on
+
+
+class Settings(NamedTuple):
+    """What the compiled loop needs of an integrator; whether forces may be ``damped``; the ``energy`` at the start."""
+
+    step: float
+    newton_tolerance: float
+    damped: bool
+    energy: float
+
+
+class Derivatives(NamedTuple):
+    """Work of the derivatives along directions.
+
+    ``slopes`` (directions, 2, N + 1); ``energies`` (directions,) are derivatives of the energy, at the start and then
+    of the balanced one. ``differentiate`` is the address of the kernel, 0 if there are no directions.
+    """
+
+    along: Along
+    slopes: Reals3
+    energies: Reals
+    old: MotionState
+    complex_state: Complexes2
+    differentiate: Address
+
+
+class Workspace(NamedTuple):
+    """Work of one sample; ``slope`` (2, N + 1) is what a step missed.
+
+    The loop takes each part by itself: a record of them all triples its compilation.
+    """
+
+    matrices: Matrices
+    consistency: Consistency
+    step: Step
+    balance: Balance
+    slope: Reals2
+    outputs: Outputs
+    derivatives: Derivatives
+
+
+def workspace(
+    problem: Problem, pattern: Pattern, calls: Sequence[Call], complex_calls: Sequence[Call], balance: Balance,
+    denergies: np.ndarray, dstates: MotionState,
+) -> Workspace:  # fmt: skip
+    """Room for one sample; two calls in real numbers, and two in complex ones, for the middle and the end of a step."""
+    directions, width = dstates.x.shape
+    works, complex_works = [call.address for call in calls], [call.address for call in complex_calls]
+    out = outputs(_ENDS, dstates, works[0], complex_works[0])
+    derivatives = Derivatives(
+        midpoint.along_room(width, *complex_works), np.zeros((directions, 2, width)), denergies, resting(width),
+        out.complex_state, differentiate.address if directions else 0,
+    )  # fmt: skip
+    return Workspace(
+        room(pattern, 0), consistency(problem, works[0], complex_works[0], directions),
+        midpoint.step_room(width, *works), balance, np.zeros((2, width)), out, derivatives,
+    )  # fmt: skip
+
+
+@inner
+def _read(n, s, new):
+    """State at the end of a step; accelerations and multipliers to start from."""
+    for k in range(s.shape[1]):
+        new.x[k] = s[midpoint.X1, k]
+        if k < n:
+            new.v[k], new.a[k] = s[midpoint.V1, k], s[midpoint.B, k]
+
+
+@kernel
+def differentiate(
+    problem: Problem, matrices: Matrices, directions: Integers, step: Step, balance: Balance, strength: float, h: float,
+    t: float, target: float, within: float, new: MotionState, dnews: MotionStates, moved: Reals2, room: Derivatives,
+) -> None:  # fmt: skip
+    """Derivatives of a step along all directions."""
+    n, along, dold, slopes, energies = problem.n, room.along, room.old, room.slopes, room.energies
+    middle, end, ds = along.middle, along.end, along.rows
+    for d in range(len(directions)):
+        perturbed, dnew = directions[d], row(dnews, d)
+        copy(dnew, dold)
+        set_signals(perturbed, t + 0.5 * h, within, middle)
+        set_signals(perturbed, target, within, end)
+        midpoint.begin(n, h, dold, slopes[d], ds)
+        if balance.converge_along == 0:
+            midpoint.converge_along(problem, matrices, perturbed, h, step, along)
+        else:
+            energies[d] += _balance_along_at(
+                balance.converge_along, problem, matrices, perturbed, d, strength, h, energies[d], step, along, balance
+            )
+        midpoint.keep_missed(n, dold, ds, slopes[d])
+        _read(n, ds, dnew)
+        settle_along(problem, matrices, perturbed, new, dnew, moved, end, room.complex_state, VELOCITY)
+
+
+_balance_at, _balance_along_at = balancing.converge.at, balancing.converge_along.at
+_differentiate_at = differentiate.at
+
+
+@inner
+def _clear(array):
+    """Fill a matrix with zeros."""
+    for i in range(len(array)):
+        clear(array[i])
+
+
+@kernel
+def integrate(
+    problem: Problem, edges: Reals, settings: Settings, models: Models, new: MotionState, dnews: MotionStates,
+    out: MotionStates, dout: Histories, log: Log, matrices: Matrices, consistent: Consistency, step: Step,
+    balance: Balance, slope: Reals2, outputs: Outputs, derivatives: Derivatives,
+) -> tuple[int, float, int]:  # fmt: skip
+    """Run one sample between ``edges`` (s): status, time reached, and the unknown that moved most.
+
+    ``new`` (N + 1), the state at the start, and its derivatives ``dnews`` (directions, N + 1) are overwritten; ``out``
+    (times, N + 1) and ``dout`` (directions, times, N + 1) are filled at ``problem.times``.
+    """
+    n, times, scale, counts, s = problem.n, problem.times, problem.scale, log.counts, step.rows
+    between, moved, last = outputs.between, outputs.moved, outputs.last
+    slopes, complex_work = derivatives.slopes, derivatives.along.middle
+    energy, due = settings.energy, 0
+    strength, gain = 0.0, 0.0
+    speed, h = 1.0 / (edges[-1] - edges[0]), 0.0
+    for stretch in range(len(edges) - 1):
+        t, end = edges[stretch], edges[stretch + 1]
+        within = 0.5 * (t + end)
+        if not accelerate(problem, models, t, within, new, dnews, consistent):
+            return SINGULAR, t, 0
+        if stretch == 0:
+            set_signals(models.complex, t, within, complex_work)  # those of a direction would count as masses
+            weigh_masses(matrices, models.complex, n, new, complex_work)
+        steps = max(1, int(np.ceil((end - t) / settings.step - 1e-6)))
+        begin, nominal, number, level = t, (end - t) / steps, 0, 0
+        stale, fresh, made = True, True, 0.0
+        _clear(slope)
+        for d in range(len(models.directions)):
+            _clear(slopes[d])
+        last.known[0] = 0
+        arrived = True
+        while True:
+            if arrived:  # in one place: what is inlined twice is compiled twice
+                append(t, new, dnews, True, last)
+                count_turns(models.turns, t, new, STEP_END)
+            while due < len(times) and times[due] <= t + 1e-9 * h:
+                if not record(problem, matrices, False, models, outputs, within, out, dout, due):
+                    return NEWTON_FAILED, times[due], 0
+                due += 1
+            if number == steps:
+                break
+            if stale:
+                if not renew(problem, matrices, models.complex, settings.damped, t, within, new, complex_work):
+                    return SINGULAR, t, 0
+                stale, fresh, made = False, True, 0.0
+            goal = end if number == steps - 1 else begin + nominal * (number + 1)
+            target = goal if level == 0 else t + (goal - t) / (1 << level)
+            h = target - t
+            if not abs(h - made) <= 1e-10 * h:
+                counts[2] += 1
+                made = h
+                if not factorise_real(n, matrices, 2.0 / h):
+                    return SINGULAR, t, 0
+            set_signals(models.real, t + 0.5 * h, within, step.middle)
+            set_signals(models.real, target, within, step.end)
+            midpoint.begin(n, h, new, slope, s)
+            if balance.converge == 0:
+                converged, iterations, rate, worst = midpoint.converge(
+                    problem, matrices, models.real, h, step, settings.newton_tolerance, h * speed
+                )
+            else:
+                converged, iterations, rate, worst, strength, gain = _balance_at(
+                    balance.converge, problem, matrices, models.real, h, energy, step, balance,
+                    settings.newton_tolerance, h * speed,
+                )  # fmt: skip
+            counts[1] += iterations
+            if converged:
+                _read(n, s, between)
+                converged = settle(problem, matrices, models.real, between, moved, step.end, VELOCITY)
+            if not converged:
+                counts[3] += 1
+                h, arrived = 0.0, False
+                _clear(slope)
+                if not fresh:  # once more with matrices of this place
+                    stale = True
+                elif level == _HALVINGS:
+                    return NEWTON_FAILED, t, worst
+                else:
+                    level += 1
+                continue
+            midpoint.keep_missed(n, new, s, slope)
+            copy(between, new)
+            energy += gain
+            for k in range(n):
+                speed = max(speed, abs(s[midpoint.VM, k]) / scale[k])
+            if len(models.directions) > 0:
+                _differentiate_at(
+                    derivatives.differentiate, problem, matrices, models.directions, step, balance, strength, h, t,
+                    target, within, new, dnews, moved, derivatives,
+                )  # fmt: skip
+            note_step(log, iterations, target)
+            number += 1 if level == 0 else 0
+            level -= 1 if level > 0 else 0
+            t, fresh, stale, arrived = target, False, rate > _AGED, True
+    return DONE, edges[-1], 0

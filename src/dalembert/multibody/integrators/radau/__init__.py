@@ -1,0 +1,1 @@
+"""Radau IIA with adaptive steps."""

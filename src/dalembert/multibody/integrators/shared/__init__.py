@@ -1,0 +1,1 @@
+"""What integrators share: problems, batches, consistent starts, matrices, outputs."""

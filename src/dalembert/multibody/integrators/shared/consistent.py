@@ -1,0 +1,145 @@
+"""States that satisfy the equations of motion and the constraints at the levels of velocity and acceleration.
+
+Accelerations and multipliers solve M a + J^T l = Q together with Phi'' = 0: the system of `docs/theory/index-1.md`
+without feedback, for starts, jumps of loads, and projected velocities.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dalembert.kernels.kernel import inner, kernel
+from dalembert.kernels.words import Address, Complexes2, Integers, Reals, Reals2
+from dalembert.multibody.integrators.shared.problem import Models, Problem
+from dalembert.multibody.integrators.shared.settling import weigh_along
+from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals, tangent
+from dalembert.multibody.kernels.elementary import STEP
+from dalembert.multibody.kernels.linear import Factors, factorise, solve, storage
+from dalembert.multibody.kernels.states import MotionState, MotionStates, clear, perturb, row, subtract
+
+
+class Consistency(NamedTuple):
+    """Work of consistent accelerations: calls in real and in complex numbers, a matrix, and vectors.
+
+    ``along``: address of the kernel for the derivatives, 0 if there are none.
+    """
+
+    work: Address
+    complex_work: Address
+    exact: Factors
+    constraints: Reals
+    vectors: Reals2
+    complex_state: Complexes2
+    along: Address
+
+
+def consistency(problem: Problem, work: int, complex_work: int, directions: int) -> Consistency:
+    """Room for consistent accelerations."""
+    exact, width = storage(problem.exact_layout), problem.exact_layout.size + 1
+    along = accelerate_along.address if directions else 0
+    constraints, vectors = np.zeros(len(exact.matrix)), np.zeros((4, width))
+    return Consistency(work, complex_work, exact, constraints, vectors, np.zeros((9, width), complex), along)
+
+
+@inner
+def fill_motion(problem, complex_model, state, work, constraints, matrix):
+    """Fill ``matrix`` with that of motion beside the Jacobian of the constraints, which ``constraints`` then holds.
+
+    It is taken at the time that the signals in ``work``, a call in complex numbers, hold.
+    """
+    slots, n, x, v, a = problem.exact_slots, problem.n, state.x, state.v, state.a
+    tangent(complex_model, slots, n, x, v, a, (1.0, 0.0, 0.0), (0.0, 1.0), work, constraints)
+    add_masses(problem, complex_model, state, work, constraints, matrix)
+
+
+@inner
+def add_masses(problem, complex_model, state, work, constraints, matrix):
+    """Fill ``matrix`` with that of motion beside the Jacobian in ``constraints``."""
+    slots, n, x, v, a = problem.exact_slots, problem.n, state.x, state.v, state.a
+    tangent(complex_model, slots, n, x, v, a, (0.0, 0.0, 1.0), (1.0, 0.0), work, matrix)
+    for i in range(len(constraints)):
+        matrix[i] += constraints[i]
+
+
+@kernel
+def accelerate(
+    problem: Problem, models: Models, t: float, within: float, state: MotionState, dstates: MotionStates, c: Consistency
+) -> bool:
+    """Accelerations and multipliers that satisfy the equations of motion, and their derivatives.
+
+    Where the problem says so, the velocities are first moved onto the constraints, by the smallest kinetic energy:
+    v - w with M w + J^T m = 0 and J w = rate of the constraints.
+    """
+    n = problem.n
+    delta, answer, rate, w = c.vectors[0], c.vectors[1], c.vectors[2], c.vectors[3]
+    set_signals(models.real, t, within, c.work)
+    set_signals(models.complex, t, within, c.complex_work)
+    for iteration in range(6):  # linear but for friction that depends on the multipliers
+        # The last correction is rounding: the derivatives below are taken with the matrix of the state that it leaves.
+        if iteration < 5:
+            fill_motion(problem, models.complex, state, c.complex_work, c.constraints, c.exact.matrix)
+            if not factorise(problem.exact_layout, c.exact):
+                return False
+        if iteration == 0 and problem.projected:
+            clear(rate)
+            constraint_rates(models.real, n, state.x, state.v, state.a, c.work, rate, delta)
+            solve(problem.exact_layout, c.exact, rate, w)
+            for i in range(n):
+                state.v[i] -= w[i]
+            if len(models.directions) > 0:
+                _along_at(c.along, problem, models.directions, t, within, state, dstates, c, True)
+        residual(models.real, n, state.x, state.v, state.a, c.work, 1.0, delta)
+        constraint_rates(models.real, n, state.x, state.v, state.a, c.work, rate, delta)
+        solve(problem.exact_layout, c.exact, delta, answer)
+        subtract(n, answer, state)
+    if len(models.directions) > 0:
+        _along_at(c.along, problem, models.directions, t, within, state, dstates, c, False)
+    return True
+
+
+@kernel
+def accelerate_along(
+    problem: Problem, directions: Integers, t: float, within: float, state: MotionState, dstates: MotionStates,
+    c: Consistency, projects: bool,
+) -> None:  # fmt: skip
+    """Derivatives of consistent accelerations, or (``projects``) of the projected velocities, along all directions."""
+    for d in range(len(directions)):
+        set_signals(directions[d], t, within, c.complex_work)
+        if projects:
+            _project_along(problem, directions[d], state, row(dstates, d), c)
+        else:
+            differentiate_acceleration(problem, directions[d], state, row(dstates, d), c)
+
+
+_along_at = accelerate_along.at
+
+
+@inner
+def differentiate_acceleration(problem, perturbed, state, dstate, c):
+    """Derivative of accelerations and multipliers along one direction, by the matrix in ``c``."""
+    n, complex_state, delta, answer = problem.n, c.complex_state, c.vectors[0], c.vectors[1]
+    x, v, a, r = complex_state[0], complex_state[1], complex_state[2], complex_state[3]
+    perturb(n, state, dstate, complex_state)
+    residual(perturbed, n, x, v, a, c.complex_work, 1.0, r)
+    constraint_rates(perturbed, n, x, v, a, c.complex_work, complex_state[4], r)
+    for i in range(len(state.x) - 1):
+        delta[i] = r[i].imag / STEP
+    solve(problem.exact_layout, c.exact, delta, answer)
+    subtract(n, answer, dstate)
+
+
+@inner
+def _project_along(problem, perturbed, state, dstate, c):
+    """The derivative of v - w, by the equations of the projection in complex numbers."""
+    n, complex_state, answer, rate, w = problem.n, c.complex_state, c.vectors[1], c.vectors[2], c.vectors[3]
+    x, drate, f, weighed = complex_state[0], complex_state[3], complex_state[4], complex_state[5]
+    perturb(n, state, dstate, complex_state)
+    constraint_rates(perturbed, n, x, complex_state[1], complex_state[2], c.complex_work, drate, f)
+    for i in range(len(w)):
+        weighed[i] = w[i]
+    weigh_along(perturbed, n, x, weighed, c.complex_work, complex_state[6:], f)
+    for i in range(len(w) - 1):
+        answer[i] = (f[i].imag if i < n else -drate[i].imag) / STEP
+    solve(problem.exact_layout, c.exact, answer, rate)
+    for i in range(n):
+        dstate.v[i] += rate[i]

@@ -1,0 +1,190 @@
+"""Models as kernels see them: tables of blocks, made by NumPy, kept alive by Python, known by their address."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from dalembert.kernels.kernel import BlockKernel
+from dalembert.multibody.kernels.kind import Kind
+from dalembert.multibody.kernels.nodes import CHANGE, RESTORE, SPREAD
+from dalembert.multibody.kernels.records import BLOCK, CALL, MODEL
+from dalembert.multibody.kernels.reduction import Reduction
+from dalembert.multibody.kernels.signal_values import evaluators
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """Components of each kind: unknowns (count, width), integers (count, -), numbers (count, -)."""
+
+    index: Mapping[Kind, np.ndarray]
+    integers: Mapping[Kind, np.ndarray]
+    numbers: Mapping[Kind, np.ndarray]
+
+
+@dataclass(frozen=True)
+class Signals:
+    """Functions of time, see :mod:`signals`."""
+
+    index: np.ndarray
+    knots: np.ndarray
+    data: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """A whole model in real numbers, or in complex ones as a direction of differentiation.
+
+    Parameters
+    ----------
+    blocks : Blocks
+    signals : Signals
+    callbacks : int array
+    size : int
+        Unknowns.
+    coordinates : int
+        Unknowns that are no multipliers.
+    dtype : float or complex
+    reduction : Reduction
+        Rows of the reduced system.
+    roles : tuple of str
+        Kernels that it needs at once: in real numbers the residuals, in complex ones the tangents, too, or alone.
+    """
+
+    blocks: Blocks
+    signals: Signals
+    callbacks: np.ndarray
+    size: int
+    coordinates: int
+    dtype: type
+    reduction: Reduction
+    roles: tuple[str, ...] = ("residual",)
+    _words: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray] = field(init=False, repr=False)
+    _kernels: list[Any] = field(default_factory=list, init=False, repr=False)  # kept alive
+    _real_numbers: dict[Kind, np.ndarray] = field(default_factory=dict, init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        head, own = np.zeros(1, MODEL), self.reduction
+        for kind, numbers in self.blocks.numbers.items():
+            self._real_numbers[kind] = np.ascontiguousarray(np.real(numbers))
+        full = self._table(self.blocks.index, self.blocks.index)
+        reduced = self._table(own.index, own.index) if own.nodes else full
+        nodes = self._table(own.nodes, own.nodes)
+        table = head[0]
+        table["blocks"], table["block_count"] = full.ctypes.data, len(self.blocks.index)
+        table["reduced"], table["reduced_count"] = reduced.ctypes.data, len(own.index)
+        table["nodes"], table["node_count"] = nodes.ctypes.data, len(own.nodes)
+        table["rows"] = own.rows.ctypes.data
+        table["signal_count"], table["signal_index"] = len(self.signals.index), self.signals.index.ctypes.data
+        table["knots"], table["signal_data"] = self.signals.knots.ctypes.data, self.signals.data.ctypes.data
+        table["knot_count"], table["number_count"] = len(self.signals.knots), len(self.signals.data)
+        table["callbacks"], table["callback_count"] = self.callbacks.ctypes.data, len(self.callbacks)
+        table["evaluate"] = self._evaluator.address
+        object.__setattr__(self, "_words", (head, full, reduced, nodes))
+        self.need(*self.roles)
+
+    def _table(self, kinds: Iterable[Kind], rows: Mapping[Kind, np.ndarray]) -> np.ndarray:
+        """Blocks of kinds with the rows of their residuals, without kernels."""
+        kinds = list(kinds)
+        table = np.zeros(max(len(kinds), 1), BLOCK)
+        for block, kind in zip(table, kinds, strict=False):
+            block["count"], block["joins"] = len(self.blocks.index[kind]), kind.multipliers > 0
+            block["index"], block["rows"] = self.blocks.index[kind].ctypes.data, rows[kind].ctypes.data
+            block["row_count"] = rows[kind].shape[1]
+            block["integers"] = self.blocks.integers[kind].ctypes.data
+            block["numbers"] = self.blocks.numbers[kind].ctypes.data
+            block["real_numbers"] = self._real_numbers[kind].ctypes.data
+        return table
+
+    def need(self, *roles: str) -> "Model":
+        """Load the kernels of these roles, and hand the model back."""
+        for block, kind in zip(self._words[1], self.blocks.index, strict=False):
+            for role in roles:
+                if block[role] == 0 and kind.has(role):
+                    block[role] = self._load(kind, role, self.dtype)
+        return self
+
+    def reduced(self, nodes: bool = True) -> "Model":
+        """Load the kernels of the reduced system, those of its ``nodes`` unless only tangents are wanted."""
+        if self.reduction.nodes:
+            head = self._words[0]
+            for block, kind in zip(self._words[2], self.reduction.index, strict=False):
+                for role in self.roles:
+                    block[role] = self._load(kind, role, self.dtype)
+            if nodes:
+                role, whole = ("change", CHANGE) if self.dtype is float else ("spread", SPREAD)
+                head[role], head["restore"] = whole.address, RESTORE[self.dtype].address
+                for node, kind in zip(self._words[3], self.reduction.nodes, strict=False):
+                    node[role] = self._load(kind, role, float)
+                    node["restore"] = self._load(kind, "restore", self.dtype)
+        return self
+
+    def _load(self, kind: Kind, role: str, dtype: type) -> int:
+        kernel = kind.kernel(role, dtype)
+        self._kernels.append(kernel)
+        return kernel.address
+
+    @property
+    def _evaluator(self) -> BlockKernel:
+        return evaluators(self.signals.index)[self.dtype]
+
+    @property
+    def address(self) -> int:
+        """Address of the table."""
+        return self._words[0].ctypes.data
+
+    def block(self, number: int) -> int:
+        """Address of a block by its number among the kinds."""
+        return self._words[1][number : number + 1].ctypes.data
+
+    def evaluate(self, call: "Call", t: float, within: float) -> None:
+        """Evaluate the signals of a call."""
+        self._evaluator(call.set(t=t, within=within).address, self.address)
+
+    def each(self, role: str, call: "Call", slots: np.ndarray | None = None, only: Kind | None = None) -> None:
+        """Call the kernels of a role, block by block, or those of one kind."""
+        self.need(role)
+        for k, kind in enumerate(self.blocks.index):
+            if kind.has(role) and only in (None, kind):
+                if slots is not None:
+                    call.set(slots=slots[k])
+                kernel: Any = kind.kernel(role, self.dtype)
+                kernel(call.address, self.block(k))
+
+    def call(self) -> "Call":
+        """A call in the arithmetic of the model."""
+        return Call(self.size, self.coordinates, len(self.signals.index), self.dtype, self.callbacks)
+
+
+class Call:
+    """The record of a call, with room for the signals."""
+
+    def __init__(
+        self, size: int, coordinates: int, signals: int, dtype: type, callbacks: np.ndarray | None = None
+    ) -> None:
+        self.signals = np.zeros((signals, 3), dtype)
+        self._callbacks = np.zeros(1, np.int64) if callbacks is None else callbacks
+        self._words = np.zeros(1, CALL)
+        own = self._words[0]
+        own["last"], own["coordinates"] = own["last_row"], own["increments"] = size, coordinates
+        own["signals"], own["signal_count"] = self.signals.ctypes.data, signals
+        own["callbacks"], own["callback_count"] = self._callbacks.ctypes.data, len(self._callbacks)
+
+    @property
+    def address(self) -> int:
+        return self._words.ctypes.data
+
+    def set(self, **fields: Any) -> "Call":
+        """Write fields of the record; contiguous arrays by their addresses."""
+        for name, value in fields.items():
+            if isinstance(value, np.ndarray):
+                assert value.flags.c_contiguous, name
+                value = value.ctypes.data
+            self._words[name][0] = value
+        return self
+
+
+def addresses(models: Iterable[Model]) -> np.ndarray:
+    """Addresses of models, which the caller keeps alive."""
+    return np.array([model.address for model in models], dtype=np.int64)

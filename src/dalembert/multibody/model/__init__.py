@@ -1,0 +1,1 @@
+"""Systems of components, and their arrays for the kernels."""

@@ -1,0 +1,35 @@
+"""Rates of bodies that are placed at points of others: a velocity that is not stated is that of the point."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from dalembert.multibody.components.base_body import BaseBody
+from dalembert.multibody.components.points import Point
+
+
+def carried_rates(
+    bodies: Sequence[BaseBody], coordinates: Sequence[np.ndarray], modes: Sequence[np.ndarray], chosen: np.ndarray
+) -> np.ndarray:
+    """Rates of the frames (bodies, rates, k) from chosen ones (bodies, rates, k), in the order of the bodies.
+
+    The chosen velocity of a body that states none is relative to the point that the body is placed at.
+
+    Parameters
+    ----------
+    bodies : sequence of BaseBody
+    coordinates : sequence of array (size,)
+        Of each undeformed body.
+    modes : sequence of array (size, rates)
+        Their derivatives by the frames.
+    chosen : array, shape (bodies, rates, k)
+    """
+    number = {body.name: k for k, body in enumerate(bodies)}
+    rates = chosen.astype(np.result_type(chosen, *modes))
+    for k, body in enumerate(bodies):
+        if isinstance(body.place, Point) and body.motion[0] is None:
+            carrier = bodies[number[body.place.body.name]]
+            own = number[carrier.name]
+            marker = carrier.marker(body.place.name)
+            rates[k, : body.dimension] += carrier.point_rates(marker, coordinates[own], modes[own]) @ rates[own]
+    return rates

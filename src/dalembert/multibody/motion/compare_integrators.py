@@ -1,0 +1,296 @@
+"""Integrators compared on one motion: error against run time."""
+
+import hashlib
+import json
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+
+from dalembert.arguments import names_of, takes_checked
+from dalembert.errors import DalembertError, InputError
+from dalembert.forward import Checkpoint
+from dalembert.multibody.integrators.shared.integrator import Integrator
+from dalembert.multibody.integrators.shared.run import make_problem
+from dalembert.multibody.kernels.callbacks import in_complex_numbers
+from dalembert.multibody.model.fingerprint import fingerprint
+from dalembert.multibody.model.lowering import lower
+from dalembert.multibody.model.system import Mechanism
+from dalembert.multibody.motion.simulation import prepared, simulate
+from dalembert.multibody.motion.trajectory import Trajectory
+from dalembert.results import Result
+from dalembert.stored_fields import Source, Store
+
+OnRow = Callable[["Row"], None]
+
+
+@dataclass(frozen=True)
+class Row:
+    """One run of one integrator.
+
+    Parameters
+    ----------
+    method : str
+        Name of the integrator's series.
+    settings : str
+        The integrator with its settings.
+    error : float
+        Largest distance of any channel from the reference at any output time, relative to the channel's range.
+    seconds : float
+        Run time of the integration alone, the smallest of the repetitions.
+    steps : int
+    position, velocity, acceleration : float
+        Largest constraint violations (m or rad, and per s and s^2).
+    energy : float
+        Largest energy imbalance relative to the range of the kinetic energy; NaN where nothing moves.
+    failure : str
+        Why the run ended early; empty if it did not.
+    """
+
+    method: str
+    settings: str
+    error: float = np.nan
+    seconds: float = np.nan
+    steps: int = 0
+    position: float = np.nan
+    velocity: float = np.nan
+    acceleration: float = np.nan
+    energy: float = np.nan
+    failure: str = ""
+
+
+class _Rows:
+    """Rows as variables over the dimension ``run``."""
+
+    def store(self, to: Store, settings: dict[str, Any], name: str, value: Sequence[Row]) -> None:
+        for part in Row.__dataclass_fields__:
+            to.variables[part] = ("run", [getattr(row, part) for row in value])
+
+    def load(self, source: Source, settings: Mapping[str, Any], name: str) -> tuple[Row, ...]:
+        columns = (source.arrays[part].tolist() for part in Row.__dataclass_fields__)
+        return tuple(map(Row, *columns))
+
+
+@dataclass(frozen=True, eq=False)
+class WorkPrecision(Result):
+    """Errors and run times of integrators on one motion, as :func:`work_precision` returns them.
+
+    Parameters
+    ----------
+    channels : tuple of str
+    end : float
+        s.
+    reference : str
+        The integrator that the errors are measured against, with its settings.
+    apart : float
+        Distance of the reference from a run of the reference with other settings, in the same measure as the errors:
+        an error near it says nothing.
+    rows : tuple of Row
+    """
+
+    FORMAT: ClassVar[str] = "dalembert work and precision 1"
+
+    channels: tuple[str, ...]
+    end: float
+    reference: str
+    apart: float
+    rows: Annotated[tuple[Row, ...], _Rows()]
+
+    @property
+    def methods(self) -> tuple[str, ...]:
+        """Names of the series, in their order."""
+        return tuple(dict.fromkeys(row.method for row in self.rows))
+
+    @property
+    def success(self) -> bool:
+        """Whether any integrator came to the end of the motion."""
+        return any(not row.failure for row in self.rows)
+
+    @property
+    def status(self) -> str:
+        """What is compared and how far it can be trusted, in a sentence."""
+        failed = [row.settings for row in self.rows if row.failure]
+        told = f"; {len(failed)} of {len(self.rows)} runs ended early, see the table" if failed else ""
+        return (
+            f"{len(self.rows)} runs of {len(self.methods)} integrators to {self.end:g} s beside {self.reference}, "
+            f"which is itself known to about {self.apart:.1e}{told}"
+        )
+
+    def fastest(self, error: float) -> Row | None:
+        """The fastest run whose error is at most ``error``; None if there is none."""
+        good = [row for row in self.rows if row.error <= error]
+        return min(good, key=lambda row: row.seconds, default=None)
+
+    def summary(self) -> str:
+        """The runs as a text table."""
+        width = max((len(row.settings) for row in self.rows), default=0)
+        lines = [f"{'integrator':{width}}     error  run time/s    steps  position  velocity  energy"]
+        for row in self.rows:
+            told = (
+                row.failure
+                or f"{row.error:9.1e} {row.seconds:11.4f} {row.steps:8d} {row.position:9.1e} {row.velocity:9.1e} "
+                f"{row.energy:7.0e}"
+            )
+            lines.append(f"{row.settings:{width}} {told}")
+        return "\n".join([*lines, "", self.status])
+
+
+@takes_checked()
+def work_precision(
+    system: Mechanism,
+    end: float,
+    channels: Sequence[str],
+    solvers: Mapping[str, Sequence[Integrator]],
+    *,
+    reference: Sequence[Integrator],
+    samples: int = 41,
+    repeats: int = 3,
+    checkpoint: Checkpoint | None = None,
+    on_row: OnRow | None = None,
+) -> WorkPrecision:
+    """Errors and run times of integrators on one motion.
+
+    Parameters
+    ----------
+    system : Mechanism
+    end : float
+        s.
+    channels : sequence of str
+        What the errors are measured on.
+    solvers : mapping of str to sequence of Integrator
+        Series of integrators by name, such as one method at several steps or tolerances.
+    reference : two integrators
+        The first gives the motion that errors are measured from, the second says how well it is known; choose two
+        different methods, or settings, that are both finer than what is compared.
+    samples : int
+        Output times, evenly from 0 to ``end``.
+    repeats : int
+        Runs of each, after one that is not timed (it may compile); the fastest counts, because other load on the
+        machine only ever adds.
+    checkpoint : Checkpoint, optional
+        Where the references and the rows are kept as they are found, with their times; begun again with the same file
+        the comparison goes on with those that are missing.
+    on_row : callable, optional
+        Is called with each `Row` when it is there.
+
+    Returns
+    -------
+    WorkPrecision
+
+    Raises
+    ------
+    InputError
+        For a reference that is not two integrators, or no series.
+    SolveError
+        Where a reference ends early. An integrator that is compared and ends early has a row that says why.
+
+    Examples
+    --------
+    >>> from dalembert.multibody import DistanceJoint, GeneralizedAlpha, PointMass, System, work_precision
+    >>> system = System()
+    >>> bob = system.add(PointMass("bob", mass=1.0, position=(-1.0, 0.0)))
+    >>> rod = system.add(DistanceJoint("rod", system.ground.point(0.0, 0.0), bob.centre))
+    >>> fine = [GeneralizedAlpha(step=1e-4), GeneralizedAlpha(step=2e-4)]
+    >>> series = {"generalized-alpha": [GeneralizedAlpha(step=1e-2), GeneralizedAlpha(step=1e-3)]}
+    >>> found = work_precision(system, 0.5, ["bob.centre.x"], series, reference=fine)
+    >>> errors = [row.error for row in found.rows]
+    >>> errors[1] < 0.02 * errors[0]  # second order
+    True
+    """
+    channels = names_of(channels, "work_precision", "channels")
+    if not channels:
+        raise InputError("work_precision: no channels were given; name at least one, such as 'AB.end.x'")
+    if len(reference) != 2:
+        given = "1 reference was" if len(reference) == 1 else f"{len(reference)} references were"
+        raise InputError(
+            f"work_precision: {given} given; expected two, the second of which says how well the first is known"
+        )
+    if not any(solvers.values()):
+        raise InputError("work_precision: no integrators were given; expected at least one series of them")
+    times = np.linspace(0.0, end, samples)
+    compared = _Comparison(system, end, times, channels, reference[0], repeats, checkpoint)
+    known, beside = map(compared.motion, reference)
+    rows = []
+    for method, series in solvers.items():
+        for solver in series:
+            rows.append(compared.row(method, solver, known))
+            if on_row:
+                on_row(rows[-1])
+    return WorkPrecision(channels, float(end), str(reference[0]), _distance(beside, known), tuple(rows))
+
+
+@dataclass(frozen=True)
+class _Comparison:
+    """A motion whose runs are kept where there is a checkpoint."""
+
+    system: Mechanism
+    end: float
+    times: np.ndarray
+    channels: tuple[str, ...]
+    reference: Integrator
+    repeats: int
+    checkpoint: Checkpoint | None
+
+    def motion(self, solver: Integrator) -> np.ndarray:
+        """Channels of a run, (samples, channels)."""
+        return self._once(lambda: self._simulated(solver).channels(self.channels), "motion", solver)
+
+    def row(self, method: str, solver: Integrator, known: np.ndarray) -> Row:
+        """An integrator beside the channels of the reference."""
+
+        def compute() -> np.ndarray:
+            return np.frombuffer(json.dumps(asdict(self._row(method, solver, known))).encode(), np.uint8)
+
+        return Row(**json.loads(self._once(compute, "row", method, solver, self.repeats).tobytes()))
+
+    def _simulated(self, solver: Integrator) -> Trajectory:
+        return simulate(self.system, self.end, solver, self.times)
+
+    def _row(self, method: str, solver: Integrator, known: np.ndarray) -> Row:
+        try:
+            motion = self._simulated(solver)
+            seconds = _seconds(self.system, self.end, solver, self.times, self.repeats)
+        except DalembertError as error:  # it ended early, or is not made for this mechanism
+            return Row(method, str(solver), failure=str(error))
+        worst: Any = {level: float(np.max(values)) for level, values in motion.violations.items()}
+        error, steps = _distance(motion.channels(self.channels), known), int(motion.run.counts[0])
+        return Row(method, str(solver), error, seconds, steps, **worst, energy=_imbalance(motion))
+
+    def _once(self, compute: Callable[[], np.ndarray], *what: object) -> np.ndarray:
+        """What the checkpoint holds of this, or what is computed now."""
+        if self.checkpoint is None:
+            return compute()
+        key = hashlib.sha256(repr((self._mechanism, *what)).encode()).digest()
+        return self.checkpoint.once(key, lambda: (compute(),))[0]
+
+    @cached_property
+    def _mechanism(self) -> str:
+        with in_complex_numbers(strict=False):
+            return fingerprint(lower(self.system), self.times, self.end, self.channels, self.reference)
+
+
+def _seconds(system: Mechanism, end: float, solver: Integrator, times: np.ndarray, repeats: int) -> float:
+    """Shortest time of the integration alone, to the output times and no others."""
+    lowered, chosen = prepared(system, end, solver)
+    problem = make_problem(lowered, times)
+    best = np.inf
+    with in_complex_numbers(strict=False):
+        for _ in range(repeats):
+            began = time.perf_counter()
+            chosen.integrate([lowered], (), problem, end, logged=False)
+            best = min(best, time.perf_counter() - began)
+    return best
+
+
+def _distance(values: np.ndarray, known: np.ndarray) -> float:
+    """Largest distance of any channel, relative to its range; 1 is taken where a channel does not move."""
+    span = np.ptp(known, axis=0)
+    return float(np.max(np.abs(values - known) / np.where(span > 0, span, 1.0)))
+
+
+def _imbalance(motion: Trajectory) -> float:
+    kinetic = float(np.ptp(motion.energies["kinetic"]))
+    return float(np.max(np.abs(motion.energies["balance"]))) / kinetic if kinetic > 0 else np.nan

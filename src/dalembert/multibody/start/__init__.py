@@ -1,0 +1,1 @@
+"""Initial states: assembly, equilibrium, velocities, and findings about them."""

@@ -1,0 +1,186 @@
+"""Small vibrations about a state of rest or a steady rotation."""
+
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+from scipy.linalg import eig, eigh, null_space
+
+from dalembert.arguments import takes_checked
+from dalembert.errors import InputError, require_known
+from dalembert.forward.complex_steps import SAFE
+from dalembert.multibody.kernels.states import MotionState
+from dalembert.multibody.model.evaluate import tangent
+from dalembert.multibody.model.lowered import Lowered
+from dalembert.multibody.model.observe import Observer
+from dalembert.multibody.model.scales import scales
+from dalembert.multibody.model.system import Mechanism
+from dalembert.multibody.motion.complex_steps import Along, check_forces
+from dalembert.multibody.start.lost_freedom import refuse_locked
+from dalembert.multibody.start.statics import Equilibrium, placed_at_start, resting
+from dalembert.multibody.steady.steady_motion import FIXED, FRAMES, ROTATING, moves, steady_equations
+
+_FREE = 3e-8
+"""Frequency, as part of the largest one, that rounding of squares gives a motion without stiffness."""
+
+
+@dataclass(frozen=True, eq=False)
+class Modes:
+    """Small vibrations about a state of rest or a steady rotation, as :func:`modes` returns them.
+
+    Parameters
+    ----------
+    frequencies : array, shape (modes,)
+        Hz, ascending; of the damped vibration, seen in the frame.
+    damping_ratios : array, shape (modes,)
+        Relative to critical damping.
+    shapes : complex array, shape (N + 1, modes)
+        Rows as in ``x`` of the :class:`Equilibrium`: the coordinates of all bodies in their order in the system, from
+        row ``equilibrium.lowered.structure.first[name]`` on those of a body; the rows of multipliers and the last row
+        are zero. Each shape is scaled so that its entry of largest magnitude is 1 + 0j. About a rotation: at the
+        time 0, in the fixed axes; in a rotating frame the shape turns with the frame.
+    roots : complex array, shape (modes,)
+        1/s: decay rate and angular frequency.
+    growth : float
+        Largest growth rate of any motion, 1/s, also of those that do not oscillate; 0 about a stable state.
+    speed : float
+        Angular velocity of the fastest body, rad/s; 0 at rest.
+    frame : {"fixed", "rotating"}
+        Where the frequencies are observed: in the fixed axes, or in axes that turn with a body.
+    frame_speed : float
+        Angular velocity of the frame, rad/s.
+    whirl : array, shape (modes,)
+        1 for a mode whose bodies move forward on circles about the axis of the fastest body, -1 for backward, 0 for a
+        motion along a line, and in between for ellipses; 0 at rest.
+    """
+
+    frequencies: np.ndarray
+    damping_ratios: np.ndarray
+    shapes: np.ndarray
+    roots: np.ndarray
+    growth: float
+    speed: float
+    frame: str
+    frame_speed: float
+    whirl: np.ndarray
+
+
+@takes_checked()
+def modes(state: Mechanism | Equilibrium, count: int | None = None, *, frame: str | None = None) -> Modes:
+    """Frequencies, damping ratios and shapes of small vibrations that satisfy the joints.
+
+    The equations of motion are linearised about the state, with damping and with the stiffness of the joint forces
+    there, and projected on the motions that the joints leave free. Motions without stiffness, such as the rotation of
+    a body about a vertical axis on a ball joint, are left out. Dense: for models to some thousand coordinates.
+
+    Where bodies of a system move at the start, the modes are those about its steady rotation, with gyroscopic and
+    centrifugal terms: bodies keep their rates, and springs deflect until all forces are in balance. The equations have
+    to be constant in the fixed frame, as those of axisymmetric rotors on any supports are, or in a frame that turns
+    with a body, as those of any rotor on supports that are alike in all directions are.
+
+    Parameters
+    ----------
+    state : Mechanism or Equilibrium
+        A system stands for its equilibrium, or for its steady rotation where bodies move at the start.
+    count : int, optional
+        How many, from the lowest; all if not given.
+    frame : {"fixed", "rotating"}, optional
+        Where frequencies about a rotation are observed; the fixed frame if not given, if equations are constant there.
+
+    Returns
+    -------
+    Modes
+
+    Raises
+    ------
+    ModelError
+        Where the joints leave no freedom, or a motion at the start is not steady.
+    InputError
+        Where the force of a function of the user's cannot run in complex numbers, or loses the imaginary part of the
+        state: its stiffness and damping would be wrong.
+
+    Examples
+    --------
+    >>> from dalembert.multibody import PointMass, Spring, System, modes
+    >>> system = System(gravity=(0.0, 0.0))
+    >>> bob = system.add(PointMass("bob", mass=1.0, position=(1.0, 0.0)))
+    >>> for name, place in (("right", (2.0, 0.0)), ("top", (1.0, 1.0))):
+    ...     _ = system.add(Spring(name, system.ground.point(*place), bob.centre, stiffness=400.0))
+    >>> modes(system).frequencies.round(4)  # sqrt(400) rad/s
+    array([3.1831, 3.1831])
+    """
+    if frame is not None:
+        require_known("frame", frame, FRAMES, "modes")
+    if isinstance(state, Mechanism):
+        placed = placed_at_start(state)
+        if moves(placed):
+            return _about_rotation(placed, count, frame)
+        state = resting(state, placed)
+    if frame == ROTATING:
+        raise InputError("modes: frame is 'rotating', but no body turns; leave it out")
+    lowered, x, n = state.lowered, state.x, state.lowered.structure.n
+    refuse_locked(lowered)
+    still = np.zeros_like(x)
+    at_rest = still[None]
+    along = Along(Observer((), ()), np.zeros(1), MotionState(x[None], at_rest, at_rest, at_rest))
+    check_forces(lowered, along, scales(lowered), SAFE)  # else stiffness or damping would be wrong
+    stiffness = tangent(lowered, x, still, (1.0, 0.0, 0.0)).toarray()
+    damping = tangent(lowered, x, still, (0.0, 1.0, 0.0)).toarray()[:n, :n]
+    mass = tangent(lowered, x, still, (0.0, 0.0, 1.0)).toarray()[:n, :n]
+    free = null_space(stiffness[n:, :n] / scales(lowered)[n:-1, None]) if lowered.structure.size > n else np.eye(n)
+    k, c, m = (free.T @ matrix @ free for matrix in (stiffness[:n, :n], damping, mass))
+    roots, vectors = (
+        _undamped(k, m) if not c.any() and np.allclose(k, k.T, 0, 1e-9 * abs(k).max()) else _damped(k, c, m)
+    )
+    largest = np.abs(roots).max(initial=0.0)
+    growth = float(np.real(roots).max(initial=0.0))
+    kept = np.flatnonzero(np.imag(roots) > _FREE * largest)
+    kept = kept[np.argsort(np.imag(roots[kept]))][:count]
+    shapes = np.zeros((len(x), len(kept)), dtype=complex)
+    shapes[:n] = free @ vectors[:, kept]
+    shapes /= shapes[np.argmax(np.abs(shapes), axis=0), np.arange(len(kept))]
+    growth = growth if growth > _FREE * largest else 0.0
+    return _modes(roots[kept], shapes, growth, 0.0, FIXED, 0.0, np.zeros(len(kept)))
+
+
+def _about_rotation(lowered: Lowered, count: int | None, frame: str | None) -> Modes:
+    """Modes about the steady motion nearest to the start."""
+    from dalembert.structure.complex_modes import complex_modes, whirl
+
+    refuse_locked(lowered)
+    equations = steady_equations(lowered, frame)
+    found = complex_modes(equations.mass, equations.damping, equations.stiffness)
+    kept = slice(count)
+    shapes = equations.shapes @ found.shapes[:, kept]
+    shapes = shapes / shapes[np.argmax(np.abs(shapes), axis=0), np.arange(shapes.shape[1])]
+    direction = whirl(found.shapes[:, kept], equations.mass, equations.turn)
+    return _modes(
+        found.roots[kept], shapes, found.growth, equations.speed, equations.frame, equations.frame_speed, direction
+    )
+
+
+def _modes(
+    roots: np.ndarray,
+    shapes: np.ndarray,
+    growth: float,
+    speed: float,
+    frame: str,
+    frame_speed: float,
+    whirl: np.ndarray,
+) -> Modes:
+    frequencies, ratios = np.imag(roots) / (2 * np.pi), -np.real(roots) / np.abs(roots)
+    return Modes(frequencies, ratios, shapes, roots, growth, speed, frame, frame_speed, whirl)
+
+
+def _undamped(k: np.ndarray, m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Roots and shapes of M x'' + K x = 0 with symmetric matrices, many times faster than the general problem."""
+    squares, vectors = eigh((k + k.T) / 2, (m + m.T) / 2)
+    return np.emath.sqrt(-squares), vectors
+
+
+def _damped(k: np.ndarray, c: np.ndarray, m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Roots and shapes of M x'' + C x' + K x = 0."""
+    size = len(k)
+    state_matrix = np.block([[np.zeros((size, size)), np.eye(size)], [-np.linalg.solve(m, np.hstack([k, c]))]])
+    roots, vectors = cast(tuple[np.ndarray, np.ndarray], eig(state_matrix))
+    return roots, vectors[:size]

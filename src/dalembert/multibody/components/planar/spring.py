@@ -2,17 +2,17 @@
 
 __all__ = ["Spring"]
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.fields import Number, number
-from dalembert.multibody.components.laws.spring_law import tension
+from dalembert.multibody.components.laws.spring_law import NUMBERS, LineSpring, law_functions, tension
 from dalembert.multibody.components.planar.load import Load
-from dalembert.multibody.components.planar.pairs import push_pair, separation, separation_rate
-from dalembert.multibody.components.planar.spring_law import spring_kind
+from dalembert.multibody.components.planar.pairs import pair_kind, push_pair, separation, separation_rate
 from dalembert.multibody.components.points import Side
-from dalembert.multibody.components.rows import Lowering
 from dalembert.multibody.kernels.elementary import root
+from dalembert.multibody.kernels.kind import Kind
 
 _TINY = 1e-30  # keeps the direction of a spring of no length defined, m^2
 
@@ -36,11 +36,19 @@ def _residual(x, v, a, p, m, inputs, r):
     push_pair(x, p, m, per_length * dx, per_length * dy, r)
 
 
+def spring_kind(name: str, stretch: Callable[..., Any], residual: Callable[..., Any], **properties: Any) -> Kind:
+    """Kind of a spring, from ``stretch(x, v, p, m)``, which returns elongation and rate, and its residual."""
+    energy, observe = law_functions(stretch)
+    law: dict[str, Any] = {"residual": residual, "energy": energy, "observe": observe}
+    common: dict[str, Any] = {"outputs": (("elongation", "m"), ("force", "N")), "dissipates": "damping", "holds": True}
+    return pair_kind(name, NUMBERS, **common | law | properties)
+
+
 SPRING = spring_kind("spring", _stretch, _residual, holds_frame=False)
 
 
 @dataclass(frozen=True)
-class Spring(Load):
+class Spring(LineSpring, Load):
     """A spring with damper along the connection of two points.
 
     Tension = stiffness x elongation + cubic x elongation^3 + damping x rate of elongation.
@@ -61,15 +69,5 @@ class Spring(Load):
 
     a: Side
     b: Side
-    stiffness: Number = number("N/m")
-    damping: Number = number("N*s/m", 0.0)
-    free_length: Number | None = number("m", None, least=0)
-    cubic: Number = number("N/m**3", 0.0)
 
     kind = SPRING
-
-    def lower(self, lowering: Lowering) -> None:
-        pair = lowering.pair(self.a, self.b, self.name)
-        free = pair.distance if self.free_length is None else self.free_length
-        numbers = [*pair.data, free, self.stiffness, self.damping, self.cubic]
-        lowering.add(SPRING, pair.slots, numbers, pair.integers, self.name)

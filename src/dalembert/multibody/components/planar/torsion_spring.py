@@ -8,14 +8,13 @@ import numpy as np
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
-from dalembert.multibody.components.laws.spring_law import NUMBERS, law_functions, tension
+from dalembert.multibody.components.laws.spring_law import TwistSpring, counted_spring, tension
 from dalembert.multibody.components.planar.angle_coordinate import AngleCoordinate, counted_angle
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.pairs import relative_angle, relative_spin, twist_pair
-from dalembert.multibody.components.planar.spring_law import spring_kind
+from dalembert.multibody.components.planar.spring import spring_kind
 from dalembert.multibody.components.points import Side, require_direction
 from dalembert.multibody.components.rows import Lowering
-from dalembert.multibody.kernels.kind import Kind
 
 _OUTPUTS = (("elongation", "rad"), ("force", "N*m"))
 
@@ -35,28 +34,11 @@ def _residual(x, v, a, p, m, inputs, r):
 
 TORSION_SPRING = spring_kind("torsion_spring", _stretch, _residual, outputs=_OUTPUTS)
 
-
-@inlined
-def _counted_stretch(x, v, p, m):
-    """Counted angle less the free one, and its rate."""
-    return x[0] - p.rest, v[0]
-
-
-@inlined
-def _counted_residual(x, v, a, p, m, inputs, r):
-    twisted, rate = _counted_stretch(x, v, p, m)
-    r[0] += tension(twisted, rate, p)
-
-
-_energy, _observe = law_functions(_counted_stretch)
-COUNTED_TORSION_SPRING = Kind(
-    "counted_torsion_spring", coordinates=1, numbers=NUMBERS, residual=_counted_residual, energy=_energy,
-    outputs=_OUTPUTS, observe=_observe, dissipates="damping",
-)  # fmt: skip
+COUNTED_TORSION_SPRING = counted_spring("counted_torsion_spring", __name__, _OUTPUTS)
 
 
 @dataclass(frozen=True)
-class TorsionSpring(Load):
+class TorsionSpring(TwistSpring, Load):
     """A torsional spring with damper between the directions of two points.
 
     Torque = stiffness x twist + cubic x twist^3 + damping x rate of twist. The twist, the channel ``elongation``, is
@@ -81,10 +63,6 @@ class TorsionSpring(Load):
 
     a: Side
     b: Side
-    stiffness: Number = number("N*m/rad")
-    damping: Number = number("N*m*s/rad", 0.0)
-    free_angle: Number | None = number("rad", None)
-    cubic: Number = number("N*m/rad**3", 0.0)
     near: float | None = number("rad", None)
 
     kind = TORSION_SPRING

@@ -65,7 +65,7 @@ class DistanceJoint(Joint):
 
     def lower(self, lowering: SpatialLowering) -> None:
         pair = self.pair(lowering)
-        length = np.sqrt(pair.separation @ pair.separation) if self.length is None else self.length
+        length = pair.distance if self.length is None else self.length
         if not np.real(length) > 0.0:
             raise ModelError(
                 f"distance joint {self.name!r}: its points coincide at the start. Give a length, or use a spherical "

@@ -12,16 +12,8 @@ from dalembert.multibody.components.spatial.ground_points import Side
 class Pair(NamedTuple):
     """Two markers as kernels see them, and how they are placed at the start.
 
-    Parameters
-    ----------
-    slots : list of int or None
-        Coordinates of a and of b, 24; None on the side of the ground.
-    data : list of numbers
-    integers : list of int
-    separation : array (3,)
-        Position of b relative to a, in the fixed axes.
-    axes : (array, array), each (3, 3)
-        Axes of both markers, as columns, in the fixed axes.
+    ``slots``: coordinates of a and of b, 24; None on the side of the ground; ``separation`` (3,): position of b
+    relative to a, in the fixed axes; ``axes`` (array, array): axes of both markers, as columns, in the fixed axes.
     """
 
     slots: list[int | None]
@@ -29,6 +21,12 @@ class Pair(NamedTuple):
     integers: list[int]
     separation: np.ndarray
     axes: tuple[np.ndarray, np.ndarray]
+
+    @property
+    def distance(self) -> Any:
+        """Distance of the markers; complex-safe."""
+        square = self.separation @ self.separation
+        return np.sqrt(square) if np.real(square) > 0 else 0.0
 
     @property
     def angle(self) -> Any:

@@ -4,16 +4,12 @@ __all__ = ["Spring"]
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.fields import Number, number
-from dalembert.multibody.components.laws.spring_law import NUMBERS, law_functions, tension
+from dalembert.multibody.components.laws.spring_law import NUMBERS, LineSpring, law_functions, tension
 from dalembert.multibody.components.spatial.ground_points import Side
 from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.pairs import push_pair, separation, separation_rate
-from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
 from dalembert.multibody.components.spatial.vectors import dot, times
 from dalembert.multibody.kernels.elementary import reciprocal, root
 
@@ -45,38 +41,14 @@ SPRING = pair_kind(
 
 
 @dataclass(frozen=True)
-class Spring(Load):
+class Spring(LineSpring, Load):
     """A spring with damper along the connection of two points.
 
-    Tension = stiffness x elongation + cubic x elongation^3 + damping x rate of elongation.
-
-    Parameters
-    ----------
-    name : str
-    a, b : Point or ground
-    stiffness : float
-        N/m.
-    damping : float
-        N s/m.
-    free_length : float, optional
-        m; the initial distance of the points if not given.
-    cubic : float
-        N/m^3.
+    Tension = stiffness x elongation + cubic x elongation^3 + damping x rate of elongation. The parameters are those of
+    :class:`dalembert.multibody.Spring`.
     """
 
     a: Side
     b: Side
-    stiffness: Number = number("N/m")
-    damping: Number = number("N*s/m", 0.0)
-    free_length: Number | None = number("m", None, least=0)
-    cubic: Number = number("N/m**3", 0.0)
 
     kind = SPRING
-
-    def lower(self, lowering: SpatialLowering) -> None:
-        pair = lowering.pair(self.a, self.b, self.name)
-        square = pair.separation @ pair.separation
-        distance = np.sqrt(square) if np.real(square) > 0 else 0.0
-        rest = distance if self.free_length is None else self.free_length
-        numbers = [*pair.data, rest, self.stiffness, self.damping, self.cubic]
-        lowering.add(SPRING, pair.slots, numbers, pair.integers, self.name)

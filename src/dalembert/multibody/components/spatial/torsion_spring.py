@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.fields import Number, number
-from dalembert.multibody.components.laws.spring_law import NUMBERS, law_functions, tension
+from dalembert.multibody.components.fields import number
+from dalembert.multibody.components.laws.spring_law import TwistSpring, counted_spring
 from dalembert.multibody.components.points import require_direction
 from dalembert.multibody.components.spatial.ground_points import Side
 from dalembert.multibody.components.spatial.joint import turned_to
@@ -16,30 +15,12 @@ from dalembert.multibody.components.spatial.joint_coordinate import JointCoordin
 from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.orientation import Vector
 from dalembert.multibody.components.spatial.spatial_rows import Pair, SpatialLowering
-from dalembert.multibody.kernels.kind import Kind
 
-
-@inlined
-def _twist(x, v, p, m):
-    """Counted angle less the free one, and its rate."""
-    return x[0] - p.rest, v[0]
-
-
-@inlined
-def _residual(x, v, a, p, m, inputs, r):
-    twist, rate = _twist(x, v, p, m)
-    r[0] += tension(twist, rate, p)
-
-
-_energy, _observe = law_functions(_twist)
-TORSION_SPRING = Kind(
-    "torsion_spring_in_space", coordinates=1, numbers=NUMBERS, residual=_residual, energy=_energy,
-    outputs=(("twist", "rad"), ("torque", "N*m")), observe=_observe, dissipates="damping",
-)  # fmt: skip
+TORSION_SPRING = counted_spring("torsion_spring_in_space", __name__, (("twist", "rad"), ("torque", "N*m")))
 
 
 @dataclass(frozen=True)
-class TorsionSpring(Load):
+class TorsionSpring(TwistSpring, Load):
     """A torsion spring with damper about the axis of a joint.
 
     Torque = stiffness x twist + cubic x twist^3 + damping x rate of twist. The twist is the angle of b relative to a
@@ -47,16 +28,8 @@ class TorsionSpring(Load):
 
     Parameters
     ----------
-    name : str
-    a, b : Point or ground
-    stiffness : float
-        N m/rad.
-    damping : float
-        N m s/rad.
-    free_angle : float, optional
-        Angle of b relative to a without torque, rad; the initial one if not given.
-    cubic : float
-        N m/rad^3.
+    name, a, b, stiffness, damping, free_angle, cubic
+        As those of :class:`dalembert.multibody.TorsionSpring`.
     axis : (float, float, float)
         Direction of the axis, the same in the axes of both markers.
     near : float, optional
@@ -85,10 +58,6 @@ class TorsionSpring(Load):
 
     a: Side
     b: Side
-    stiffness: Number = number("N*m/rad")
-    damping: Number = number("N*m*s/rad", 0.0)
-    free_angle: Number | None = number("rad", None)
-    cubic: Number = number("N*m/rad**3", 0.0)
     axis: Vector = (0.0, 0.0, 1.0)
     near: float | None = number("rad", None)
 

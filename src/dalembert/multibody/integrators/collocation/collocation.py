@@ -110,7 +110,7 @@ class Collocation(Integrator):
         """The loop, or the parts that a search calls, with what differentiates a state by the unknown accelerations."""
         own = [march] if isinstance(self.minimiser, GaussNewton) else [begin, measure, squares, finish]
         roles = "residual", "rates"
-        rates = [kind.kernel(role, complex) for role in roles for kind in structure.index if kind.has(role)]
+        rates = [kind.kernel(role, complex) for role in roles for kind in structure.index if role in kind.roles]
         linear = [*structure.full.linear_kernels, *DENSE_KERNELS]
         return [*own, settle_along, *rates, *linear, *[respond, accelerate_along] * derivatives]
 

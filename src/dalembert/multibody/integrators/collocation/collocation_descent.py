@@ -56,6 +56,7 @@ def _square(n, rule, gaps, slopes, unknowns, count, matrix, lead, right):
     for j in range(len(right)):
         clear(right[j])
     for s in range(len(rule.nodes)):
+        # slopes^T W slopes for the unknowns, slopes^T W (slopes along directions) for the derivatives, slopes^T W gaps.
         for k in range(unknowns):
             for j in range(count):
                 product = 0.0
@@ -92,6 +93,7 @@ def descend(
         largest = 0.0
         for k in range(unknowns):
             walk.c[k] -= change[k]
+            # What the change of an acceleration moves its coordinate over the step.
             column = int(own.columns[rank + k % (n - rank)])
             moved = h * h * abs(change[k]) / problem.scale[column]
             if largest == largest and not moved <= largest:
@@ -115,6 +117,8 @@ def respond(problem: Problem, rule: Rule, models: Models, step: Step, walk: Walk
         if not measure(problem, rule, models, step, walk, True, s):
             return False
     _square(n, rule, walk.gaps, walk.slopes, unknowns, count, normal.matrix, layout.lead, right)
+    # With more Gauss points than powers something remains at the minimum: its gradient, slopes^T W gaps = 0, changes by
+    # the second derivatives too, sum_i gaps_i d(slopes_i).
     if len(rule.nodes) > len(rule.powers):
         remaining = room.remaining
         for s in range(len(rule.nodes)):
@@ -124,6 +128,7 @@ def respond(problem: Problem, rule: Rule, models: Models, step: Step, walk: Walk
         rank = own.rank[0]
         for k in range(unknowns):
             here = walk.c[k]
+            # An acceleration that moves its coordinate by 1e-5 of its scale over the step.
             push = _DIFFERENCE * problem.scale[own.columns[rank + k % (n - rank)]] / (h * h)
             for side in range(2):
                 walk.c[k] = here + (2 * side - 1) * push
@@ -145,6 +150,7 @@ def respond(problem: Problem, rule: Rule, models: Models, step: Step, walk: Walk
     for d in range(count - unknowns):
         solve(layout, normal, right[1 + d], change)
         for k in range(unknowns):
+            # d(gradient)/dc dc + d(gradient)/dp = 0.
             walk.dc[d, k] = -change[k]
     return True
 
@@ -163,6 +169,8 @@ def march(
     """
     for number in range(len(schedule.begins)):
         step, taken, worst = step_of(schedule, number), 0, 0
+        # Gauss and Newton may diverge from an extrapolation over an event; the accelerations at the start are never
+        # far.
         for _ in range(2):  # from extrapolated accelerations; where that fails, from those at the step's beginning
             status = begin(problem, rule, models, step, walk)
             if status == DONE:

@@ -26,6 +26,7 @@ def _drive(problem, model, complex_model, t, within, state, linear, constraints,
     n, given, answer, rate = problem.n, c.vectors[0], c.vectors[1], c.vectors[2]
     set_signals(complex_model, t, within, c.complex_work)
     for iteration in range(2 if linear else 6):
+        # M a + J^T l = Q and J a = -(second rates without a) are linear in a and l, unless friction depends on l.
         if iteration == 0 or not linear:
             add_masses(problem, complex_model, state, c.complex_work, constraints, c.exact.matrix)
             if not factorise(problem.exact_layout, c.exact):
@@ -33,6 +34,7 @@ def _drive(problem, model, complex_model, t, within, state, linear, constraints,
         residual(model, n, state.x, state.v, state.a, c.work, 1.0, given)
         constraint_rates(model, n, state.x, state.v, state.a, c.work, rate, given)
         solve(problem.exact_layout, c.exact, given, answer)
+        # A second iteration without a new matrix is for rounding.
         subtract(n, answer, state)
     return True
 
@@ -54,6 +56,7 @@ def _perturb(columns, h, s, shape, unknowns, dolds, dstates):
         for i in range(len(dstate.x)):
             dstate.x[i], dstate.v[i], dstate.a[i], dstate.w[i] = 0.0, 0.0, 0.0, 0.0
         if d < unknowns:
+            # The unknowns are ordered by powers, then by coordinates.
             k, own = d // len(columns), columns[d % len(columns)]
             dstate.x[own], dstate.v[own], dstate.a[own] = h * h * shape[0, k], h * shape[1, k], shape[2, k]
         else:
@@ -79,6 +82,8 @@ def measure(problem: Problem, rule: Rule, models: Models, step: Step, walk: Walk
         problem, models, t, within, ACCELERATION, state, dstates, c.work, c.complex_work, c.complex_state, own
     ):
         return False
+    # First the accelerations by the polynomial, with the dependent ones by the constraints; then those by the equations
+    # of motion are taken off.
     for i in range(n):
         walk.gaps[s, i] = state.a[i]
         for d in range(len(dstates.x)):

@@ -103,6 +103,8 @@ def prepare(problem: Problem, rule: Rule, call: Call, complex_call: Call, direct
 @inner
 def _choose(problem, own, chosen):
     """Keep the independent coordinates, or choose others; whether there are as many as at first."""
+    # The choice is kept as long as dependent coordinates follow the independent ones well: a new one needs complete
+    # pivoting, and starts without extrapolation.
     if chosen[0] > 0.0 and invert(problem, own) and dependence(problem, own) <= chosen[0]:
         return True
     choose(problem, own, DEPENDENT)
@@ -121,6 +123,8 @@ def _predict(ahead, columns, a, chosen, last, c):
     """
     count, independent = len(ahead), len(columns)
     for i in range(independent):
+        # Extrapolated accelerations of the polynomial before, with the weight of the consistent ones at the start of
+        # the step.
         now = a[columns[i]]
         for k in range(count):
             last[k] = c[k * independent + i]
@@ -150,6 +154,8 @@ def place(columns, h, s, shape, old, c, state):
     independent = len(columns)
     for i in range(independent):
         own = columns[i]
+        # The polynomial is that of the accelerations: coordinates and velocities are its exact integrals, so that
+        # positions of a step join to those before without conditions.
         x, v, a = 0.0, 0.0, 0.0
         for k in range(shape.shape[1]):
             x += shape[0, k] * c[k * independent + i]
@@ -165,6 +171,7 @@ def _shape(powers, s, shape):
     """The double and the single integral of Lagrange's polynomials, and themselves, at s."""
     for k in range(len(powers)):
         shape[0, k], shape[1, k], shape[2, k] = 0.0, 0.0, 0.0
+        # l_k(s) = sum_j powers[k, j] s^j; each power is integrated once and twice.
         power = 1.0
         for j in range(len(powers)):
             shape[0, k] += powers[k, j] * power * s * s / ((j + 1) * (j + 2))
@@ -177,6 +184,7 @@ def _shape(powers, s, shape):
 def begin(problem: Problem, rule: Rule, models: Models, step: Step, walk: Walk) -> int:
     """Begin a step: accelerations at a jump of the loads, independent coordinates, a prediction."""
     t, within = step.begin, step.within
+    # Behind a jump the accelerations before it say nothing.
     if step.opens:
         walk.chosen[1] = 0.0
         if not accelerate(problem, models, t, within, walk.old, walk.dold, walk.consistency):
@@ -184,12 +192,14 @@ def begin(problem: Problem, rule: Rule, models: Models, step: Step, walk: Walk) 
         count_turns(models.turns, t, walk.old, STEP_END)
     old, own, work = walk.old, walk.partition, walk.consistency.complex_work
     set_signals(models.complex, t, within, work)
+    # Independent coordinates are chosen by the Jacobian at the start of the step.
     linearise(problem, models.complex, old, work, own)
     if not _choose(problem, own, walk.chosen):
         return SINGULAR
     _predict(rule.ahead, own.columns[own.rank[0] : problem.n], old.a, walk.chosen, walk.shape[0], walk.c)
     points, nodes = walk.points, rule.nodes
     for s in range(len(nodes)):
+        # All coordinates, the dependent ones too: the start of Newton's iteration at each Gauss point.
         _guess(problem.n, nodes[s] * (step.end - t), old, row(points, s))
     return DONE
 
@@ -207,6 +217,8 @@ def _reach(problem, rule, models, step, walk, share):
         dold, dnew = row(walk.dold, d), row(dnews, d)
         copy(dold, dnew)
         place(columns, h, share, shape, dold, walk.dc[d], dnew)
+    # Dependent coordinates and velocities by the constraints, then accelerations and multipliers by the equations of
+    # motion: outputs satisfy all levels.
     if not settle(problem, models, t, step.within, VELOCITY, new, dnews, c.work, c.complex_work, c.complex_state, own):
         return NEWTON_FAILED
     return DONE if accelerate(problem, models, t, step.within, new, dnews, c) else SINGULAR

@@ -53,6 +53,7 @@ def keep(walk: Walk, kept: Kept, s: int) -> None:
     unknowns = len(walk.c)
     own = slice(s * unknowns, (s + 1) * unknowns)
     for target, source in zip(kept.points, walk.points, strict=True):
+        # The gap is a - w: accelerations by the equations of motion are the measured ones less it.
         target[s] = source[s]
     kept.points.a[s] += walk.gaps[s]
     kept.slopes.x[own], kept.slopes.v[own], kept.slopes.w[own] = walk.dpoint.x, walk.dpoint.v, walk.dpoint.a
@@ -66,6 +67,7 @@ def _start(base, kept, s, trial, state):
     """State of a trial, to first order."""
     copy(base, state)
     for k in range(len(trial)):
+        # First order in the distance from the prediction; the iterations below correct the rest.
         change, own = trial[k] - kept.middle[k], s * len(trial) + k
         for i in range(len(state.x)):
             state.x[i] += change * kept.slopes.x[own, i]
@@ -82,6 +84,7 @@ def _judge(iteration, largest, before):
     if largest <= _CLOSED:
         return 1
     if iteration > 0:
+        # A simplified Newton iteration converges linearly: the sum of the corrections to come decides.
         rate = largest / before
         if rate < 1.0 and largest * rate / (1.0 - rate) <= _CLOSED:
             return 1
@@ -95,6 +98,7 @@ def _follow(model, n, scale, partition, layout, inverse, level, state, values, w
     """Dependent entries of a level, with a kept inverse; whether they were found."""
     before = 1.0
     for iteration in range(_MOST_ITERATIONS):
+        # Independent entries stay; the kept inverse of the dependent part gives the correction of the others.
         fill_gap(model, n, level, state.x, state.v, state.a, work, gap, spare)
         for i in range(layout.size):
             change[i] = gap[n + partition.rows[i]]
@@ -141,6 +145,7 @@ def _drive(problem, model, inverse, state, work, gap, change, spare):
 def _solve(problem, model, partition, layout, dependent, exact, state, work, gap, change, spare):
     """Dependent entries of all levels, and the accelerations ``w``; whether they were found."""
     n, scale = problem.n, problem.scale
+    # Each level needs those before: rates of the constraints depend on the coordinates.
     for level in range(POSITION, ACCELERATION + 1):
         values = state.x if level == POSITION else (state.v if level == VELOCITY else state.a)
         if not _follow(model, n, scale, partition, layout, dependent, level, state, values, work, gap, change, spare):
@@ -163,6 +168,7 @@ def squares(
         t = step.begin + rule.nodes[s] * h
         set_signals(model, t, step.within, c.work)
         base = row(kept.points, s)
+        # Point by point, all trials: the signals and the factorisations of a point are loaded once.
         dependent = Factors(kept.dependent[s], own.dependent.pivots, own.dependent.tops, own.dependent.buffer)
         exact = Factors(kept.exact[s], c.exact.pivots, c.exact.tops, c.exact.buffer)
         for b in range(len(trials)):

@@ -137,6 +137,8 @@ def _fill_matrix(model, n, c, x, v, a, room):
         matrix[k] = room.masses[k]
     _fill(model, n, x, v, a, (1.0, 0.0, 0.0), room, by_x)
     for k in range(len(by_x.values)):
+        # K is weighed by dq; J^T and J stay: the rows of the constraints are divided by dq after the solution, as the
+        # forward step divides them before.
         scale = c.dq if by_x.rows[k] < n and by_x.columns[k] < n else 1.0
         matrix[by_x.places[k]] += scale * by_x.values[k]
     if len(room.by_v.blocks) > 0:
@@ -168,6 +170,8 @@ def _take_samples(n, h, k, given, left, bar, past):
                 bar.v[i] += cv[i]
                 bar.a[i] += ca[i]
             continue
+        # The transpose of the cubic interpolation of `states.interpolate`: what a sample reads from both ends of the
+        # step, it gives back to their adjoints with the same weights.
         s0, s1 = 1 - 3 * s * s + 2 * s**3, 3 * s * s - 2 * s**3
         t0, t1 = h * (s - 2 * s * s + s**3), h * (s**3 - s * s)
         for i in range(n):
@@ -199,6 +203,8 @@ def _step_back(n, c, bar, past):
     old_a, lag = c.alpha_f * scale, c.alpha_m * scale
     half, beta = h * h * (0.5 - c.beta), h * h * c.beta
     early, late = h * (1.0 - c.gamma), h * c.gamma
+    # The transpose of `states.advance`: w_{n+1} enters q_{n+1}, v_{n+1} and the next step, so its adjoint is the sum of
+    # all three, and is passed on to a_n and w_n.
     for i in range(n):
         q, v, w = bar.x[i], bar.v[i], bar.w[i]
         total = beta * q + late * v + w
@@ -217,24 +223,15 @@ def sweep(
 ) -> int:  # fmt: skip
     """Run the adjoint over steps in reverse order; return -1, or the number of a step whose matrix is singular.
 
-    Parameters
-    ----------
-    model : address
-        In complex numbers without imaginary parts, with the kernels of tangents.
-    radius : float
-        Spectral radius of the method.
-    steps : Steps
-    first : int
-        Number of the first of these steps in the whole motion, as the cotangents count.
-    path : Path
-        States at the ends of the steps, (steps, N + 1).
-    given : Cotangents
-        In the order of time; those of these steps.
-    bar : MotionState
-        Adjoint of the last state; overwritten with that of the state before the first step.
+    ``model``: in complex numbers without imaginary parts, with the kernels of tangents; ``radius``: spectral radius of
+    the method; ``first``: number of the first of these steps in the whole motion, as the cotangents count; ``path``:
+    states at the ends of the steps, (steps, N + 1); ``given``: in the order of time; those of these steps; ``bar``:
+    adjoint of the last state; overwritten with that of the state before the first step.
     """
     n, size, layout, past, mu = problem.n, len(bar.x) - 1, problem.exact_layout, room.past, room.mu
     left = len(given.steps)
+    # From the last step to the first one. The residual of the step, r(q, v, a, l; numbers) = 0, defines a and l; the
+    # formulas of the step define q, v and w from a.
     for k in range(len(steps.ends) - 1, -1, -1):
         c = coefficients(steps.lengths[k], radius)
         share = (1.0 - c.alpha_f) / (1.0 - c.alpha_m)
@@ -247,6 +244,8 @@ def sweep(
         _fill_matrix(model, n, c, x, v, a, room)
         if not factorise(layout, room.factors):
             return k
+        # All adjoints of the new state by the accelerations, through the formulas of the step: the right side of (M +
+        # dv C + dq K, J)^T mu = ...
         for i in range(n):
             room.right[i] = bar.a[i] + share * bar.w[i] + c.dv * bar.v[i] + c.dq * bar.x[i]
         for i in range(n, size):
@@ -254,6 +253,7 @@ def sweep(
         solve_transposed(room.solve, layout, room.factors, room.right, mu)
         for i in range(n, size):
             mu[i] /= c.dq
+        # What is left for q and v of the state at the end of the step: their own adjoint less r_q^T mu and r_v^T mu.
         _multiply_transposed(room.by_x, mu, room.of_q)
         for i in range(n):
             bar.x[i] -= room.of_q[i]
@@ -261,6 +261,7 @@ def sweep(
             _multiply_transposed(room.by_v, mu, room.of_v)
             for i in range(n):
                 bar.v[i] -= room.of_v[i]
+        # Gradients by numbers before the state is left, while the call has its x, v and a.
         pull(model, pulls, room.mu, room.work)
         _step_back(n, c, bar, past)
     return -1

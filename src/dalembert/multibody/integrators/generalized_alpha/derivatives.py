@@ -81,10 +81,14 @@ def differentiate(
         return False
     for d in range(len(directions)):
         dold, dnew = row(dolds, d), row(dnews, d)
+        # A prediction with the accelerations of the start; as the equations are linear, its choice changes nothing but
+        # rounding.
         copy(dnew, dold)
         advance(n, c, dold, dnew)
         if has_nodes(directions[d]):
             _restore(n, c, directions[d], new, dnew, room)
+        # One evaluation gives r_q dq + r_v dv + r_a da + r_p dp, the derivative by the parameters included: they are in
+        # the numbers of the perturbed model.
         perturb(n, new, dnew, complex_state)
         set_signals(directions[d], t, within, room.complex_work)
         reduced_residual(
@@ -93,6 +97,7 @@ def differentiate(
         )  # fmt: skip
         for i in range(len(r) - 1):
             right[i] = r[i].imag / STEP
+        # The tangent is exact and of the converged state, so that one solution is the result, not an iteration.
         solve(own.exact_layout, factors, right, delta)
         spread(complex_model, new.x, delta, room.complex_work, change)
         subtract(n, change, dnew)

@@ -19,6 +19,7 @@ from dalembert.multibody.integrators.generalized_alpha.derivatives import (
 from dalembert.multibody.integrators.generalized_alpha.newton import Newton, converge, keep_slope, newton
 from dalembert.multibody.integrators.shared.batch import Batch, restarts
 from dalembert.multibody.integrators.shared.consistent import Consistency, accelerate, accelerate_along, consistency
+from dalembert.multibody.integrators.shared.convergence import HALVINGS
 from dalembert.multibody.integrators.shared.integrator import Integrator
 from dalembert.multibody.integrators.shared.problem import (
     DONE,
@@ -49,8 +50,7 @@ from dalembert.multibody.model.structure import Structure
 from dalembert.multibody.model.turns import STEP_END, count_turns
 
 STARTS = ("consistent", "zero")
-_HALVINGS = 16  # of a fixed step that Newton does not converge on
-_UNITS = 1 << _HALVINGS
+_UNITS = 1 << HALVINGS
 
 
 @dataclass(frozen=True)
@@ -116,7 +116,8 @@ class GeneralizedAlpha(Integrator):
         # at spectral radius 1 velocities leave the constraints and nothing damps what grows from there
         problem = batch.problem._replace(projected=self.spectral_radius == 1.0)
         samples, perturbed = batch.samples, batch.perturbed
-        out, dout = resting(len(samples), *batch.shape), batch.derivatives()
+        dout = batch.derivatives()
+        out = resting(len(samples), *dout.x.shape[1:])
         log = batch.log(self.step_ends(batch.end, samples[0].jumps))
         steps = self.step, self.spectral_radius, self.initial_acceleration == "consistent", self.adaptive
         settings = Settings(*steps, self.tolerance, self.newton_tolerance, self.most_steps)
@@ -182,27 +183,13 @@ def integrate(
 ) -> None:  # fmt: skip
     """Run a stack of samples from ``problem.edges[sample, 0]`` to the last edge; fill the states at the output times.
 
-    Parameters
-    ----------
-    problem, settings : Problem, Settings
-    opens : array (samples, -)
-        Whether each stretch starts anew; else the motion goes on, and held tables have their mean where it begins.
-    models, complex_models : array of addresses, shape (samples,)
-        Models in real and in complex numbers.
-    directions : array of addresses
-        Complex models, one a direction of differentiation; empty if there is more than one sample.
-    turns : array of addresses, shape (samples,)
-        What counts the turns of angles, 0 for none.
-    states : MotionStates
-        At the start, (samples, N + 1); overwritten.
-    dstates : MotionStates
-        Derivatives at the start, (directions, N + 1); overwritten.
-    out, dout : Histories
-        Arrays (samples, times, N + 1) and (directions, times, N + 1); ``w`` is not used.
-    log : Log
-        Of the last sample.
-    ends : array, shape (samples, 3)
-        Status (`DONE`, or the reason), time reached, unknown that moved most.
+    ``opens`` (samples, -): whether each stretch starts anew; else the motion goes on, and held tables have their mean
+    where it begins; ``models``, ``complex_models`` (samples,): models in real and in complex numbers; ``directions``:
+    complex models, one a direction of differentiation; empty if there is more than one sample; ``turns`` (samples,):
+    what counts the turns of angles, 0 for none; ``states``: at the start, (samples, N + 1); overwritten; ``dstates``:
+    derivatives at the start, (directions, N + 1); overwritten; ``out``, ``dout``: arrays (samples, times, N + 1) and
+    (directions, times, N + 1); ``w`` is not used; ``log``: of the last sample; ``ends`` (samples, 3): status (`DONE`,
+    or the reason), time reached, unknown that moved most.
     """
     for sample in range(len(models)):
         clear(log.counts)
@@ -230,6 +217,9 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
         fresh, ends = opens[stretch] == 1, stretch + 2 == len(edges) or opens[stretch + 1] == 1
         if fresh:
             clear(own.slope)
+        # At the start and behind a jump of the loads the accelerations satisfy M a + J^T l = Q with the second rates of
+        # the constraints. Within a held table they do not: the step passes its changes with the mean of both sides, and
+        # w keeps its memory.
         if fresh and (stretch > 0 or settings.consistent):
             if not accelerate(problem, models, begin, within, new, dstates, room.consistency):
                 return SINGULAR, begin, 0
@@ -238,6 +228,8 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
             while due < len(problem.times) and problem.times[due] <= begin:
                 _record(n, 1.0, 1.0, new, new, dstates, dstates, out, dout, due)
                 due += 1
+        # Fixed steps are counted in units of 2^-16 of the nominal one, so that halved steps end where the grid of
+        # output times expects them, without sums of rounded lengths.
         steps = max(1, int(np.ceil((end - begin) / settings.step - 1e-6)))
         nominal = (end - begin) / steps
         unit, level = 0, 0
@@ -255,12 +247,15 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
                 target = end if unit + stride == steps * _UNITS else begin + nominal * ((unit + stride) / _UNITS)
             copy(new, old)
             c = coefficients(length, settings.spectral_radius)
+            # The signals of a step that ends at a jump are those before the jump.
             side = within if ends or target < end else end
             set_signals(models.real, target, side, own.work)
             status, detail = converge(
                 problem, models.real, models.complex, c, target, side, settings.newton_tolerance, old, new, own, log
             )
             error = 0.0
+            # The quadrature of Newmark, q_{n+1} = ... + h^2 ((1/2 - beta) w_n + beta w_{n+1}), differs from the Taylor
+            # polynomial with the third derivative (w_{n+1} - w_n) / h by h^2 (beta - 1/6) (w_{n+1} - w_n).
             if status == DONE and settings.adaptive:  # estimated local error: h^2 |beta - 1/6| |w_{n+1} - w_n|
                 for i in range(n):
                     gap = abs(c.beta - 1 / 6) * length * length * abs(new.w[i] - old.w[i])
@@ -270,10 +265,11 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
                 copy(old, new)
                 clear(own.slope)
                 if settings.adaptive:
+                    # The local error is of third order in the step.
                     length *= max(0.2, 0.9 * error ** (-1 / 3)) if status == DONE else 0.25
                     if length < 1e-12 * (end - begin):
                         return NEWTON_FAILED, t, detail
-                elif level == _HALVINGS:
+                elif level == HALVINGS:
                     return status, t, detail
                 else:
                     level += 1
@@ -285,6 +281,8 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
                 room.differentiation,
             ):  # fmt: skip
                 return SINGULAR, target, 0
+            # At spectral radius 1 errors of the multipliers alternate without decay: accelerations and multipliers are
+            # solved for again, and velocities move onto the constraints.
             if problem.projected and width - 1 > n:
                 if not accelerate(problem, models, target, side, new, dstates, room.consistency):
                     return SINGULAR, target, 0
@@ -298,11 +296,13 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
             if settings.adaptive:
                 if log.counts[0] >= settings.most_steps:
                     return TOO_MANY_STEPS, t, 0
+                # Small changes of the step would cost a factorisation each and gain little.
                 growth = min(2.0, 0.9 * (error + 1e-30) ** (-1 / 3))
                 if growth < 1.0 or growth > 1.2:
                     length *= growth
             else:
                 unit += stride
+                # After a halving the step doubles again as soon as it ends on the coarser grid.
                 if level > 0 and unit % (2 * stride) == 0:
                     level -= 1
     copy(new, state)

@@ -16,7 +16,7 @@ import numpy as np
 
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.kernels.words import Address, Reals
-from dalembert.multibody.integrators.shared.imbalance import BALANCED, largest_entry
+from dalembert.multibody.integrators.shared.convergence import BALANCED, MAGNIFIED, NOISE, ROUNDING, largest_entry
 from dalembert.multibody.integrators.shared.problem import DONE, NEWTON_FAILED, SINGULAR, Problem
 from dalembert.multibody.kernels.assembly import displace, reduced_residual, reduced_tangent, restore, set_signals
 from dalembert.multibody.kernels.linear import Factors, factorise, solve, storage
@@ -25,10 +25,6 @@ from dalembert.multibody.kernels.states import advance, shift
 _MOST_ITERATIONS = 12
 _SLOW = 0.3  # contraction at which an iteration is not worth going on with the kept factorisation
 _AGED = 0.02  # contraction at which the next step begins with a new one
-# Relative corrections that stop to shrink are rounding below the first size, and below the second one if a nearly
-# singular position magnifies it, and if the forces are in balance.
-_ROUNDING, _MAGNIFIED = 1e-12, 1e-9
-_NOISE = 1e-13  # below this size the ratio of two corrections says nothing of the factorisation
 
 
 class Newton(NamedTuple):
@@ -60,6 +56,8 @@ def newton(problem: Problem, work: int, complex_work: int) -> Newton:
 @inner
 def _renew(problem, complex_model, c, t, within, new, newton):
     set_signals(complex_model, t, within, newton.complex_work)
+    # The derivative of the residual along da, with dv = c.dv da and dq = c.dq da of the formulas of the step: M + dv C
+    # + dq K. The constraint rows are divided by dq, so that their columns J^T and rows J have one scale.
     own = problem.reduced
     reduced_tangent(
         complex_model, own.slots, own.increments, own.layout.size, new.x, new.v, new.a, (c.dq, c.dv, 1.0),
@@ -73,11 +71,15 @@ def _renew(problem, complex_model, c, t, within, new, newton):
 def _predict(n, c, model, old, newton, new):
     """Accelerations and multipliers of the new state, by those of the old one and their last change."""
     slope, change = newton.slope, newton.change
+    # Linear extrapolation of what Newton solves for. Coordinates and velocities follow from the formulas of the step,
+    # never by themselves, so that they hold exactly at each iteration.
     for i in range(n):
         new.a[i] = old.a[i] + c.step * slope[i]
     for i in range(n, len(old.x) - 1):
         new.x[i] = old.x[i] + c.step * slope[i]
     advance(n, c, old, new)
+    # The predicted coordinates of a rotation are no rotation matrix: they are first moved onto the internal
+    # constraints, which the reduced system does not contain.
     if restore(model, c.dq, new.x, newton.work, change):
         shift(n, c, change, new)
 
@@ -111,6 +113,8 @@ def converge(problem, model, complex_model, c, t, within, tolerance, old, new, n
     """Newton iteration on new accelerations and multipliers: status, and iterations or the unknown that moved most."""
     n, own, memory = problem.n, problem.reduced, newton.memory
     _predict(n, c, model, old, newton, new)
+    # The matrix of an earlier step serves while the step is about as long and the last contraction was good: in a
+    # smooth motion one factorisation lasts for many steps.
     fresh = not (0.8 * memory[0] < c.step < 1.25 * memory[0]) or memory[1] > _AGED
     if fresh:
         log.counts[2] += 1
@@ -122,22 +126,28 @@ def converge(problem, model, complex_model, c, t, within, tolerance, old, new, n
         reduced_residual(model, own.increments, new.x, new.v, new.a, newton.work, 1.0 / c.dq, newton.r)
         if iteration == 1:  # of the prediction, and of the constraints
             force = max(largest_entry(newton.r, 0, own.increments), largest_entry(new.x, n, len(old.x) - 1))
+        # In the order of Newton: increments by the kept matrix, what they change of the coordinates by the chart of
+        # each node, then the step by its formulas.
         solve(own.layout, newton.factors, newton.r, newton.delta)
         displace(model, c.dq, new.x, newton.delta, newton.work, newton.change)
         log.counts[1] += 1
         norm, worst = _correct(n, c, problem.scale, newton.change, old, new)
         if not norm < 1e100 or norm <= tolerance:
             break
+        # Of a linear contraction rate, norm rate / (1 - rate) bounds the sum of all corrections to come. So an
+        # iteration can end without the one that would only confirm it.
         rate = memory[1] if iteration == 1 else norm / before
         left = norm * rate / (1.0 - rate) if rate < 1.0 else norm
         if left <= tolerance:
             break
-        if iteration > 2 and rate > 0.5 and norm <= _ROUNDING:
+        # Small corrections that do not shrink are rounding only if the forces are in balance.
+        if iteration > 2 and rate > 0.5 and norm <= ROUNDING:
             if largest_entry(newton.r, 0, own.increments) <= BALANCED * force:
                 break
-        if iteration > 1 and norm > _NOISE:
+        if iteration > 1 and norm > NOISE:
             memory[1] = rate
         if iteration > 1 and rate > _SLOW:
+            # A new matrix that diverges helps no more: the step must be shorter.
             if fresh and rate > 2.0:
                 break
             log.counts[2] += 1
@@ -146,7 +156,8 @@ def converge(problem, model, complex_model, c, t, within, tolerance, old, new, n
             fresh = True
         before = norm
     done = norm <= tolerance or left <= tolerance
-    if done or (norm <= _MAGNIFIED and largest_entry(newton.r, 0, own.increments) <= BALANCED * force):
+    if done or (norm <= MAGNIFIED and largest_entry(newton.r, 0, own.increments) <= BALANCED * force):
         return DONE, iteration
+    # The matrix belongs to a state that the step does not reach.
     memory[0] = 0.0
     return NEWTON_FAILED, worst

@@ -35,15 +35,8 @@ def replay(
 ) -> int:  # fmt: skip
     """Take the steps from a state, which is overwritten with the last one; return the status, or the reason.
 
-    Parameters
-    ----------
-    radius, tolerance : float
-        Spectral radius, and tolerance of Newton's iteration.
-    steps : Steps
-    state : MotionState
-        (N + 1,).
-    path : Path
-        Filled with the states at the ends of the steps, (steps, N + 1); with none of them, (0, N + 1).
+    ``radius``, ``tolerance``: spectral radius, and tolerance of Newton's iteration; ``state``: (N + 1,); ``path``:
+    filled with the states at the ends of the steps, (steps, N + 1); with none of them, (0, N + 1).
     """
     n, old, new, own = problem.n, room.old, room.new, room.newton
     copy(state, new)

@@ -28,14 +28,7 @@ class Field:
     The vectors hold coordinates (n,) and velocities (n,), then those of each direction. The state that was asked for
     last is kept: its accelerations and multipliers are the first guess of the next.
 
-    Parameters
-    ----------
-    problem, terms : Problem, Terms
-    sample : Sample
-    dstates : MotionState
-        Derivatives of the state at the start; overwritten.
-    implicit : bool
-        Whether the `jacobian` is needed.
+    ``dstates``: derivatives of the state at the start; overwritten; ``implicit``: whether the `jacobian` is needed.
     """
 
     def __init__(self, problem: Problem, terms: Terms, sample: Sample, dstates: MotionState, implicit: bool) -> None:

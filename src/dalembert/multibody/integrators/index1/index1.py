@@ -88,6 +88,8 @@ def _fill_gap(model, n, terms, x, v, a, work, gap, rate, second):
     residual(model, n, x, v, a, work, 1.0, gap)
     constraint_rates(model, n, x, v, a, work, rate, second)
     for i in range(n, len(gap) - 1):
+        # Baumgarte's feedback: errors of the constraints decay as those of a damped oscillator. Without feedback both
+        # factors are zero.
         gap[i] = second[i] + 2.0 * terms.alpha * rate[i] + terms.beta * terms.beta * gap[i]
 
 
@@ -113,9 +115,11 @@ def demand(
     set_signals(models.complex, t, within, tools.complex_work)
     moved = 1.0
     for iteration in range(_MOST_ITERATIONS if nonlinear else 2):  # linear: once more for rounding
+        # Friction that depends on the multipliers changes the matrix at each iteration.
         if (iteration == 0 or nonlinear) and not factorise_motion(problem, terms, models.complex, state, tools):
             return False
         if iteration == 0 and terms.redundant:
+            # Multipliers of least norm: the part of the first guess that redundant constraints do not see is removed.
             keep_in_range(problem, tools.surplus, state)
         _fill_gap(models.real, n, terms, state.x, state.v, state.a, tools.work, tools.gap, tools.answer, tools.second)
         solve_linear(problem.exact_layout, tools.exact, tools.gap, tools.answer)
@@ -124,6 +128,7 @@ def demand(
             largest(tools.answer, 0, n) / (largest(state.a, 0, n) + 1e-300),
             largest(tools.answer, n, last) / (largest(state.x, n, last) + 1e-300),
         )
+        # The iteration is quadratic: what is left after this correction is its square.
         if iteration > 0 and moved <= _QUADRATIC:
             break
     if not largest(state.a, 0, n) + largest(state.x, n, last) < 1e100:

@@ -6,6 +6,7 @@ q - w with M w + J^T m = 0 and Phi(q - w) = 0, by Newton's iteration; velocities
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Integers
 from dalembert.multibody.integrators.index1.index1 import Terms, Tools, factorise_motion
+from dalembert.multibody.integrators.shared.convergence import MAGNIFIED
 from dalembert.multibody.integrators.shared.partitioning import fill_gap
 from dalembert.multibody.integrators.shared.problem import POSITION, VELOCITY, Models, Problem
 from dalembert.multibody.integrators.shared.settling import largest, weigh_along
@@ -15,8 +16,6 @@ from dalembert.multibody.kernels.linear import solve
 from dalembert.multibody.kernels.states import MotionState, MotionStates, clear, row
 
 _MOST_ITERATIONS = 15
-# Corrections that stop to shrink are rounding, which a nearly singular position magnifies up to this size.
-_MAGNIFIED = 1e-9
 _NOTHING = 1e-16
 
 
@@ -92,21 +91,10 @@ def project(
     Phi(q - w) = 0, by Newton's iteration with J kept. The velocities then move to v - w with M w + J^T m = 0 and
     J (v - w) + Phi_t = 0, which is linear.
 
-    Parameters
-    ----------
-    problem, terms, models
-        The mechanism, see their classes.
-    t : float
-        Time, s.
-    within : float
-        A time in the smooth interval of the motion to which ``t`` belongs, s: it decides on which side of a jump
-        the signals are evaluated.
-    state : MotionState
-        Coordinates and velocities, which are moved.
-    dstates : MotionStates
-        Derivatives of the state, which are moved with it; of length 0 if there are none.
-    tools : Tools
-        Matrices and vectors to work in.
+    ``problem``, ``terms``, ``models``: the mechanism, see their classes; ``t``: time, s; ``within``: a time in the
+    smooth interval of the motion to which ``t`` belongs, s: it decides on which side of a jump the signals are
+    evaluated; ``state``: coordinates and velocities, which are moved; ``dstates``: derivatives of the state, which are
+    moved with it; of length 0 if there are none; ``tools``: matrices and vectors to work in.
     """
     n, last, base, change = problem.n, len(state.x) - 1, tools.base, tools.change
     set_signals(models.real, t, within, tools.work)
@@ -123,10 +111,10 @@ def project(
             clear(tools.gap[:n])
             solve(problem.exact_layout, tools.exact, tools.gap, tools.answer)
             moved = _move(problem, level, tools, state, change)
-            if moved <= _NOTHING or (moved <= _MAGNIFIED and moved > 0.1 * before) or not moved < 1e100:
+            if moved <= _NOTHING or (moved <= MAGNIFIED and moved > 0.1 * before) or not moved < 1e100:
                 break
             before = moved
-        if not moved <= _MAGNIFIED * (1.0 if level == POSITION else 1.0 + largest(state.v, 0, n)):
+        if not moved <= MAGNIFIED * (1.0 if level == POSITION else 1.0 + largest(state.v, 0, n)):
             return False
         if len(dstates.x) > 0:
             _project_along_at(tools.project_along, problem, level, models.directions, t, within, state, dstates, tools)

@@ -135,6 +135,7 @@ def _push(n, share, weight, old, stage, total):
     """Add a stage's rates times ``weight`` to the total; from the old state go along them by ``share`` for the next."""
     for d in range(len(stage.x)):
         for i in range(n):
+            # Derivatives along directions go the same way as the states: one stack.
             v, a = stage.v[d, i], stage.a[d, i]
             total.x[d, i] += weight * v
             total.v[d, i] += weight * a
@@ -184,20 +185,9 @@ def integrate(
 ) -> tuple[int, float]:  # fmt: skip
     """Run one sample: status and time reached.
 
-    Parameters
-    ----------
-    problem : Problem
-    edges : array
-        Of the smooth stretches, s.
-    step : float
-    terms : Terms
-    models : Models
-    out : Histories
-        At the output times, (1 + directions, times, N + 1): states, then their derivatives.
-    counts : array (4,)
-        Steps, and zeros.
-    room : Workspace
-        With the state at the start, and its derivatives, in ``stage``; overwritten.
+    ``edges``: of the smooth stretches, s; ``out``: at the output times, (1 + directions, times, N + 1): states, then
+    their derivatives; ``counts`` (4,): steps, and zeros; ``room``: with the state at the start, and its derivatives, in
+    ``stage``; overwritten.
     """
     n, tools, stage, between = problem.n, room.tools, room.stage, room.between
     projects = terms.way == PROJECTED and len(stage.state.x) - 1 > n
@@ -228,6 +218,8 @@ def integrate(
                 if last:
                     _take(n, room.total, stage.stack)
                     _choose(problem, terms, models, target, within, stage.state, tools)
+                # Times of the stages: t, t + h/2, t + h/2, t + h; the loop completes the state at the time of the next
+                # one.
                 now = target if last else t + share * h
                 status = complete(
                     problem, terms, models, stage.state, stage.dstates, tools, now, within, last and projects
@@ -237,6 +229,7 @@ def integrate(
             counts[0] += 1
             while due < len(problem.times) and problem.times[due] <= target + 1e-9 * h:
                 share = min(1.0, (problem.times[due] - t) / h)
+                # Cubic between both ends, by coordinates and rates there: of the order of the method.
                 _interpolate(n, h, share, room.old, stage.stack, between.stack)
                 if share < 1.0 - 1e-9:
                     status = complete(

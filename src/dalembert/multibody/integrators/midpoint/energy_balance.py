@@ -114,6 +114,8 @@ def _remove(n, motions, weighed, force):
         whole = _product(n, motions[j], weighed[j]).real
         for i in range(j):
             own = _product(n, motions[i], weighed[i])
+            # Gram and Schmidt with the masses as metric; in complex numbers the derivative of the motions is carried
+            # along.
             if own.real > 0.0:
                 share = _product(n, motions[i], weighed[j]) * reciprocal(own)
                 for k in range(n):
@@ -138,6 +140,7 @@ def _direct(n, matrices, s, e):
         force[i] = 0.0
         for j in range(len(weighed)):
             weighed[j, i] = 0.0
+    # M times each rigid motion, and M times the velocities of the middle: their momenta.
     for j in range(len(weighed)):
         add_product(n, matrices, mass, motions[j], 1.0, weighed[j])
     add_product(n, matrices, mass, s[midpoint.VM], 1.0, force)
@@ -148,6 +151,7 @@ def _direct(n, matrices, s, e):
 @inner
 def _energy(model, h, at, middle, end, totals):
     """Energy at the end of a step, and the work of loads and losses in it; ``totals`` are those of the end."""
+    # Work of loads and losses by the midpoint rule, as the step itself weighs them.
     energies(model, at[midpoint.XM], at[midpoint.VM], middle, totals)
     gain = h * totals[2]
     energies(model, at[midpoint.X1], at[midpoint.V1], end, totals)
@@ -168,6 +172,7 @@ def converge(
     strength, gain, before, iterations, rate, worst = 0.0, 0.0, 1e300, 0, 1.0, 0
     converged, free = False, False
     for attempt in range(_MOST):
+        # The direction is that of the last solution, so the balance is a fixed point over both.
         power = _direct(n, matrices, s, balance)
         for k in range(n):
             push[k] = strength * force[k]
@@ -182,6 +187,7 @@ def converge(
         if free or near or power == 0.0 or (attempt > 3 and abs(excess) > 0.5 * before):
             break
         before = abs(excess)
+        # A force c M v' takes the energy h c v'^T M v' in the step, to first order: a secant in the strength.
         strength += excess / (h * power)
         if not abs(h * strength) < _STRONGEST:  # at a standstill; the next steps make up for it
             strength, free = 0.0, True
@@ -229,5 +235,6 @@ def converge_along(
         if strength == 0.0 or abs(excess) <= 1e-14 * size or (attempt > 3 and abs(excess) > 0.5 * before):
             break
         before = abs(excess)
+        # The same secant for the derivative of the strength.
         slope += excess / (h * power)
     return dgain

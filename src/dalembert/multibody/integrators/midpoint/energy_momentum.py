@@ -58,7 +58,7 @@ class EnergyMomentum(Variational):
         """Those of `Variational`, of the balance, and of the components' energies."""
         own = [*super().kernels(structure, derivatives), converge, energy_history, *[converge_along] * derivatives]
         arithmetics = (float, complex) if derivatives else (float,)
-        kinds = [kind for kind in structure.index if kind.has("energy")]
+        kinds = [kind for kind in structure.index if "energy" in kind.roles]
         return [*own, *(kind.kernel("energy", dtype) for dtype in arithmetics for kind in kinds)]
 
     def _balance(

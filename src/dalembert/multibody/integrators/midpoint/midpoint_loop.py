@@ -12,6 +12,7 @@ from dalembert.multibody.integrators.midpoint import midpoint_step as midpoint
 from dalembert.multibody.integrators.midpoint.energy_balance import Balance
 from dalembert.multibody.integrators.midpoint.midpoint_step import Along, Step
 from dalembert.multibody.integrators.shared.consistent import Consistency, accelerate, consistency
+from dalembert.multibody.integrators.shared.convergence import HALVINGS
 from dalembert.multibody.integrators.shared.ends import append
 from dalembert.multibody.integrators.shared.matrices import Matrices, Pattern, factorise_real, renew, room, weigh_masses
 from dalembert.multibody.integrators.shared.outputs import Outputs, outputs, record
@@ -33,7 +34,6 @@ from dalembert.multibody.model.turns import STEP_END, count_turns
 
 _AGED = 0.05  # contraction at which the next step begins with new matrices
 _ENDS = 2  # of steps, between which outputs are interpolated
-_HALVINGS = 16  # of a step that Newton's iteration does not converge on
 
 
 class Settings(NamedTuple):
@@ -158,12 +158,15 @@ def integrate(
     for stretch in range(len(edges) - 1):
         t, end = edges[stretch], edges[stretch + 1]
         within = 0.5 * (t + end)
+        # Consistent accelerations and multipliers at the start and behind each jump are the prediction of the first
+        # step.
         if not accelerate(problem, models, t, within, new, dnews, consistent):
             return SINGULAR, t, 0
         if stretch == 0:
             set_signals(models.complex, t, within, complex_work)  # those of a direction would count as masses
             weigh_masses(matrices, models.complex, n, new, complex_work)
         steps = max(1, int(np.ceil((end - t) / settings.step - 1e-6)))
+        # Steps of one length: a symmetric method keeps its invariants only then.
         begin, nominal, number, level = t, (end - t) / steps, 0, 0
         stale, fresh, made = True, True, 0.0
         _clear(slope)
@@ -185,14 +188,17 @@ def integrate(
                 if not renew(problem, matrices, models.complex, settings.damped, t, within, new, complex_work):
                     return SINGULAR, t, 0
                 stale, fresh, made = False, True, 0.0
+            # A step that fails is halved towards the end of its nominal one, and doubled again afterwards.
             goal = end if number == steps - 1 else begin + nominal * (number + 1)
             target = goal if level == 0 else t + (goal - t) / (1 << level)
             h = target - t
+            # The matrix of the midpoint rule depends on h, that of the projection does not.
             if not abs(h - made) <= 1e-10 * h:
                 counts[2] += 1
                 made = h
                 if not factorise_real(n, matrices, 2.0 / h):
                     return SINGULAR, t, 0
+            # Forces are those of the middle, prescribed motions and their rates those of the end.
             set_signals(models.real, t + 0.5 * h, within, step.middle)
             set_signals(models.real, target, within, step.end)
             midpoint.begin(n, h, new, slope, s)
@@ -208,6 +214,8 @@ def integrate(
             counts[1] += iterations
             if converged:
                 _read(n, s, between)
+                # The end of the step fulfils the constraints to the tolerance of Newton; settled, to rounding, at the
+                # level of velocities, so that nothing drifts.
                 converged = settle(problem, matrices, models.real, between, moved, step.end, VELOCITY)
             if not converged:
                 counts[3] += 1
@@ -215,13 +223,15 @@ def integrate(
                 _clear(slope)
                 if not fresh:  # once more with matrices of this place
                     stale = True
-                elif level == _HALVINGS:
+                elif level == HALVINGS:
                     return NEWTON_FAILED, t, worst
                 else:
                     level += 1
                 continue
+            # What this prediction missed is added to the next one: a forecast of second order without a stored history.
             midpoint.keep_missed(n, new, s, slope)
             copy(between, new)
+            # The energy that the next step must have: that of the start and the work since.
             energy += gain
             for k in range(n):
                 speed = max(speed, abs(s[midpoint.VM, k]) / scale[k])

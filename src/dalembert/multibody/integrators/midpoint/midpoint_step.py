@@ -16,7 +16,14 @@ import numpy as np
 
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Complexes2, Reals, Reals2
-from dalembert.multibody.integrators.shared.imbalance import BALANCED, largest_entry
+from dalembert.multibody.integrators.shared.convergence import (
+    BALANCED,
+    CLOSED,
+    MAGNIFIED,
+    NOISE,
+    ROUNDING,
+    largest_entry,
+)
 from dalembert.multibody.integrators.shared.matrices import Matrices, add_product
 from dalembert.multibody.integrators.shared.problem import Problem
 from dalembert.multibody.integrators.shared.settling import weigh_along
@@ -28,11 +35,6 @@ from dalembert.multibody.kernels.states import clear
 # Rows of a step (8, N + 1): unknowns at its start, in its middle and at its end, velocities there, both accelerations.
 X0, XM, X1, V0, VM, V1, A, B = range(8)
 ROWS = 8
-_CLOSED = 1e-15  # violation against the largest scale that is rounding
-_NOISE = 1e-13  # part of a step's way below which the ratio of two corrections says nothing
-# Relative corrections that stop to shrink are rounding below the first size, and below the second one if a nearly
-# singular position magnifies it, and if the forces are in balance.
-_ROUNDING, _MAGNIFIED = 1e-12, 1e-9
 _MOST_ITERATIONS = 20
 
 
@@ -76,6 +78,8 @@ def place(n, h, s):
     `docs/theory/structure-preserving.md`.
     """
     for k in range(n):
+        # Coordinates move with the velocity of the middle for the whole step: the rule is symmetric, so its order is
+        # two.
         way = h * (s[V0, k] + 0.5 * h * s[A, k])
         s[VM, k] = s[V0, k] + 0.5 * h * s[A, k]
         s[V1, k] = s[V0, k] + 0.5 * h * (s[A, k] + s[B, k])
@@ -94,6 +98,8 @@ def begin(n, h, start, slope, s):
             s[V0, k] = start.v[k]
             s[A, k], s[B, k] = start.a[k] + slope[0, k], start.a[k] + slope[1, k]
         else:
+            # Multipliers of both ends are unknowns of the step: those of its start are not those of the end of the step
+            # before.
             s[X0, k], s[X1, k] = start.x[k] + slope[0, k], start.x[k] + slope[1, k]
     place(n, h, s)
 
@@ -115,12 +121,15 @@ def _balance(model, n, at, middle, end, f, gap, rate, second):
     ``f``: M a + F + J^T l at the start. ``gap``: J^T l at the end less that at the start, constraints at the end.
     ``rate``: their rates.
     """
+    # M a + F(q_m, v_m) + J(q_m)^T l_m from one call of the kernels, less its constraint forces: what is left is M a +
+    # F.
     residual(model, n, at[XM], at[VM], at[A], middle, 1.0, f)
     clear(gap)
     constraint_forces(model, at[XM], at[VM], at[A], middle, gap)
     for k in range(n):
         f[k] -= gap[k]
     clear(gap)
+    # Constraint forces of the start, then of the end; the constraints of the end come with the latter.
     constraint_forces(model, at[X0], at[V0], at[A], middle, gap)
     for k in range(len(gap)):
         if k < n:
@@ -139,10 +148,12 @@ def _correct(n, size, matrices, h, f, gap, rate, first, other, s):
     Two systems: [M + h/2 C + h^2/4 K, J^T; J, 0] for ``A``, and the same without C and K for ``B`` - ``A``: in the
     difference of both equations the forces cancel.
     """
+    # Constraints at the end change by h^2/2 J a, their rates by h/2 J (a + b): scaled to accelerations.
     square = 2.0 / (h * h)
     for k in range(n, size):
         f[k] = square * gap[k]
         gap[k] = 2.0 / h * rate[k] - 2.0 * f[k]
+    # First the implicit midpoint rule, then the projection of the velocities with the masses alone.
     solve(matrices.pattern.layout, matrices.real, f, first)
     solve(matrices.pattern.layout, matrices.rigid, gap, other)
     for k in range(size):
@@ -161,6 +172,7 @@ def _sizes(n, h, scale, f, gap, s):
     """Largest correction of a coordinate and largest way of one in the step, against its scale; which moved most."""
     norm, way, worst = 0.0, 0.0, 0
     for k in range(n):
+        # What a correction of both accelerations moves a coordinate at most.
         moved = 0.25 * h * h * (abs(f[k]) + abs(gap[k])) / scale[k]
         way = max(way, h * abs(s[VM, k]) / scale[k])
         if norm == norm and not moved <= norm:  # the first that is not a number stays
@@ -183,7 +195,7 @@ def converge(
     before, norm, contraction, worst = 0.0, 1.0, 1.0, 0
     closed, force, remaining = 0.0, 0.0, 0.0
     for k in range(n):
-        closed = max(closed, _CLOSED * scale[k])
+        closed = max(closed, CLOSED * scale[k])
     for iteration in range(1, _MOST_ITERATIONS + 1):
         _balance(model, n, s, middle, end, f, gap, rate, second)
         for k in range(n):
@@ -195,21 +207,23 @@ def converge(
         remaining = largest_entry(f, 0, n)
         if iteration == 1:  # of the prediction, and of the constraints
             force = max(remaining, largest_entry(s[A], n, size))
+        # The difference of both equations: M (b - a) + (J(q_1)^T l_1 - J(q_0)^T l_0) = 0.
         add_product(n, matrices, mass, first, 1.0, gap)
         _correct(n, size, matrices, h, f, gap, rate, first, other, s)
         norm, way, worst = _sizes(n, h, scale, f, gap, s)
         way = max(least, way)
-        if iteration > 1 and norm > _NOISE * way:
+        if iteration > 1 and norm > NOISE * way:
             contraction = norm / before
         if not norm < 1e100 or (iteration > 2 and contraction > 2.0 and norm > 1e-9):
             break
+        # The sum of the corrections to come, by the contraction seen.
         left = norm * contraction / (1.0 - contraction) if contraction < 1.0 else norm
         if min(norm, left) <= tolerance * way:
             return True, iteration, contraction, worst
-        if iteration > 2 and norm <= _ROUNDING and norm > 0.5 * before and remaining <= BALANCED * force:
+        if iteration > 2 and norm <= ROUNDING and norm > 0.5 * before and remaining <= BALANCED * force:
             return True, iteration, contraction, worst
         before = norm
-    return norm <= _MAGNIFIED and remaining <= BALANCED * force, iteration, contraction, worst
+    return norm <= MAGNIFIED and remaining <= BALANCED * force, iteration, contraction, worst
 
 
 @inner
@@ -248,6 +262,7 @@ def converge_along(
                 first[k] = ds[B, k] - ds[A, k]
         add_product(n, matrices, mass, first, 1.0, gap)
         _correct(n, size, matrices, h, f, gap, rate, first, other, ds)
+        # Against the derivatives of the end, which may grow from step to step.
         norm = _sizes(n, h, scale, f, gap, ds)[0]
         length = 0.0
         for k in range(n):

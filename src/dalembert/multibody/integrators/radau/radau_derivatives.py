@@ -47,6 +47,8 @@ def _converge_along(problem, method, matrices, perturbed, works, h, s, dstart, d
     """Derivatives ``ds`` of the converged stages along a direction, by the same iteration on imaginary parts."""
     n, size, count = problem.n, len(dstart.x) - 1, len(method.c)
     at = b.complex_state
+    # The derivative of the stages solves the same linear system for every direction. Its exact matrix couples all
+    # stages, so the split iteration of the step serves again, with the matrices that the step has.
     begin(n, h, method, dstart, ds)
     integrate_stages(n, h, method, dstart, ds)
     before = 0.0
@@ -59,6 +61,8 @@ def _converge_along(problem, method, matrices, perturbed, works, h, s, dstart, d
                 at[3, k] = complex(s.u[i, k] - s.v[i, k], STEP * (ds.u[i, k] - ds.v[i, k]))
                 if k >= n:
                     at[3, k] = complex(s.m[i, k], STEP * ds.m[i, k])
+            # Exact residuals along the direction by the complex step: the matrices only decide how fast the iteration
+            # converges.
             residual(perturbed, n, at[0], at[1], at[2], works[i], 1.0, at[4])
             weigh_along(perturbed, n, at[0], at[3], works[i], at[7:], at[5])
             for k in range(size + 1):
@@ -75,6 +79,7 @@ def _converge_along(problem, method, matrices, perturbed, works, h, s, dstart, d
         take_velocities(n, size, method, matrices, h, dstart, b, ds)
         norm = largest(n, problem.scale, b.moved)[0]
         length = largest(n, problem.scale, ds.dx)[0]
+        # Relative to the derivatives of the coordinates; corrections that stop to shrink below 1e-10 are rounding.
         if norm <= 1e-14 * length or not norm < 1e100 or (norm <= 1e-10 * length and norm > 0.5 * before):
             break
         before = norm

@@ -9,6 +9,7 @@ from dalembert.multibody.integrators.radau.radau_derivatives import differentiat
 from dalembert.multibody.integrators.radau.radau_step import attempt, speed_of
 from dalembert.multibody.integrators.radau.radau_workspace import Along, Settings, Step
 from dalembert.multibody.integrators.shared.consistent import Consistency, accelerate
+from dalembert.multibody.integrators.shared.convergence import HALVINGS
 from dalembert.multibody.integrators.shared.ends import append, support
 from dalembert.multibody.integrators.shared.matrices import Matrices, renew, weigh_masses
 from dalembert.multibody.integrators.shared.outputs import Outputs, record
@@ -31,12 +32,12 @@ from dalembert.multibody.model.turns import STEP_END, count_turns
 
 _AGED = 0.003  # contraction at which the next step begins with new matrices, and outputs have their own
 _SHORTEST = 0.2  # of a step: the one after it (Hairer and Wanner 1996, IV.8); what is foreseen may vanish in the time
-_HALVINGS = 16  # of a fixed step that Newton's iteration does not converge on
 
 
 @inner
 def _first_step(n, scale, span, tolerance, order, state):
     """A step in which coordinates move by a small part of their scales."""
+    # From velocities and from accelerations: at rest only the latter tell how fast the motion will be.
     rate = max(speed_of(n, scale, state.v), np.sqrt(speed_of(n, scale, state.a)))
     return min(0.1 * span, 0.3 * tolerance ** (1.0 / order) / (rate + 1e-300))
 
@@ -93,6 +94,8 @@ def integrate(
     for stretch in range(len(edges) - 1):
         t, end = edges[stretch], edges[stretch + 1]
         within = 0.5 * (t + end)
+        # Each smooth stretch begins with consistent accelerations: they are the prediction of its first step, and part
+        # of its estimated error.
         if not accelerate(problem, models, t, within, new, dstates, consistency):
             return SINGULAR, t, 0, 0.0
         if stretch == 0:
@@ -111,6 +114,8 @@ def integrate(
                 count_turns(models.turns, t, new, STEP_END)
             arrived, settled, ready = False, False, False
             while due < len(times) and times[due] <= t + 1e-9 * taken:
+                # Outputs interpolate through states at the ends of steps, which must satisfy the constraints at all
+                # levels. They are settled only where an output needs them.
                 ready = ready or _settle_ends(
                     problem, matrices, apart, far, models, settings.damped, within, outputs, along.settle_end
                 )
@@ -123,6 +128,7 @@ def integrate(
             goal = end if number == steps - 1 else begin + nominal * (number + 1)
             if not adaptive:
                 length = (goal - t) / (1 << level)
+            # A step that would leave less than a ten-thousandth of itself takes the rest with it.
             reached = (level == 0 and not adaptive) or t + length * 1.0001 >= goal
             target = goal if reached else t + length
             h = target - t
@@ -139,16 +145,18 @@ def integrate(
             if not converged or not error <= 1.0:
                 counts[3] += 1
                 earlier = 0.0
+                # A new matrix is tried before a shorter step: it costs one factorisation, a shorter step at least two.
                 stale = not converged  # so that matrices are not those of a place that the step does not reach
                 if stale and not fresh:  # once more, as long
                     continue
                 if adaptive:
+                    # The estimated error is of order `order` in the step; 0.9 keeps the next one below the tolerance.
                     shorter = max(0.1, 0.9 * error ** (-1.0 / order)) if converged and error < 1e100 else 0.25
                     length = h * shorter
                     least = min(least, error) if converged else least
                     if length < 1e-12 * (end - begin):
                         return (INEXACT if converged else NEWTON_FAILED), t, worst, least
-                elif level == _HALVINGS:
+                elif level == HALVINGS:
                     return NEWTON_FAILED, t, worst, 0.0
                 else:
                     level += 1
@@ -169,6 +177,8 @@ def integrate(
                     return TOO_MANY_STEPS, t, 0, 0.0
                 error = max(error, 1e-30)
                 length = h * min(3.0, 0.9 * error ** (-1.0 / order))
+                # Gustafsson's predictive control (Hairer and Wanner 1996, IV.8): the trend of the errors of two steps
+                # foresees that of the next one. It may only shorten the step that the last error allows.
                 if former > 0.0:
                     foreseen = 0.9 * h * (h / earlier) * (former / (error * error)) ** (1.0 / order)
                     length = min(length, max(foreseen, _SHORTEST * h))

@@ -9,7 +9,14 @@ and Wanner 1996, IV.8), and the velocities then follow by a projection at each s
 
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.multibody.integrators.radau.radau_stages import combine, integrate_stages, integrate_velocities
-from dalembert.multibody.integrators.shared.imbalance import BALANCED, largest_entry
+from dalembert.multibody.integrators.shared.convergence import (
+    BALANCED,
+    CLOSED,
+    MAGNIFIED,
+    NOISE,
+    ROUNDING,
+    largest_entry,
+)
 from dalembert.multibody.integrators.shared.matrices import (
     add_inertia,
     add_product,
@@ -23,11 +30,6 @@ from dalembert.multibody.integrators.shared.settling import weigh
 from dalembert.multibody.kernels.assembly import constraint_rates, residual
 from dalembert.multibody.kernels.linear import solve
 
-_CLOSED = 1e-15  # violation against the largest scale that is rounding
-_NOISE = 1e-13  # part of a step's way below which the ratio of two corrections says nothing
-# Relative corrections that stop to shrink are rounding below the first size, and below the second one if a nearly
-# singular position magnifies it, and if the forces are in balance.
-_ROUNDING, _MAGNIFIED = 1e-12, 1e-9
 MOST_ITERATIONS = 14
 _VISIBLE = 0.03  # part of the tolerance from which corrections hardly change the estimated error
 
@@ -59,6 +61,8 @@ def correct_coordinates(n, size, method, matrices, h, b):
     """
     given, answer, change_x, change_u, change_a = b.given, b.answer, b.change_x, b.change_u, b.change_a
     pairs = method.pairs
+    # Along the eigenvectors of D the stages are no longer coupled: one real eigenvalue, and pairs of complex ones, of
+    # which one of each is enough.
     combine(method.back, 1.0, b.motion, size, change_x)
     combine(method.back, 1.0, b.weighed, n, change_u)
     real = method.real / h
@@ -71,6 +75,7 @@ def correct_coordinates(n, size, method, matrices, h, b):
             change_x[0, k], change_u[0, k], change_a[0, k] = answer[k] / square, answer[k] / real, answer[k]
         else:
             change_x[0, k] = answer[k]
+    # Real and imaginary part of a complex unknown are kept in the rows of two stages.
     for p in range(len(pairs)):
         pair, i, j = _scaled(pairs[p], h), 2 * p + 1, 2 * p + 2
         double, back = product(pair, pair), inverse(pair)
@@ -93,6 +98,8 @@ def correct_coordinates(n, size, method, matrices, h, b):
 def take_coordinates(n, size, h, method, start, b, s):
     """Take the corrections off the stages; ``moved`` becomes that of the coordinates."""
     change_x, change_u, moved, x, u, a = b.change_x, b.change_u, b.moved, s.x, s.u, s.a
+    # Back from the eigenvectors to the stages. Rates are corrected, not coordinates: their integrals by A keep a
+    # rounding that is h times smaller.
     combine(method.t, 1.0, change_x, size, moved)
     combine(method.t, 1.0, change_u, n, change_x)
     combine(method.t, 1.0, b.change_a, n, change_u)
@@ -113,6 +120,7 @@ def take_velocities(n, size, method, matrices, h, start, b, s):
     """
     given, answer, change_x, change_u, moved = b.given, b.answer, b.change_x, b.change_u, b.moved
     weighed, rate, x, a, m = b.weighed, b.rate, s.x, s.a, s.m
+    # The stages are not coupled at the level of velocities: one system with the masses alone each.
     for i in range(len(x)):
         for k in range(size):
             given[k] = -weighed[i, k] if k < n else rate[i, k]
@@ -123,6 +131,8 @@ def take_velocities(n, size, method, matrices, h, start, b, s):
                 moved[i, k] = abs(moved[i, k]) + h * abs(answer[k])
             else:
                 m[i, k] += answer[k]
+    # What the projection changes of the velocities, as a change of the rates of their polynomial and of the
+    # multipliers, D w.
     combine(method.inverse, 1.0 / h, change_x, size, change_u)
     for i in range(len(x)):
         for k in range(n):
@@ -157,9 +167,10 @@ def converge(n, scale, method, matrices, model, damped, works, h, start, s, b, t
     before, norm, rate, worst = 0.0, 1.0, 1.0, 0
     closed, seen, converged, error, rate_error, force = 0.0, False, False, 0.0, 0.0, 0.0
     for k in range(n):
-        closed = max(closed, _CLOSED * scale[k])
+        closed = max(closed, CLOSED * scale[k])
     given, motion, x, v, a, u, m = b.given, b.motion, s.x, s.v, s.a, s.u, s.m
     for iteration in range(1, MOST_ITERATIONS + 1):
+        # First half: positions. The residuals of all stages by the kernels, then their solution along the eigenvectors.
         for i in range(count):
             residual(model, n, x[i], v[i], a[i], works[i], 1.0, motion[i])
             if iteration == 1:  # of the prediction, and of the constraints
@@ -174,21 +185,27 @@ def converge(n, scale, method, matrices, model, damped, works, h, start, s, b, t
             weigh(model, n, matrices, x[i], given, works[i], b.weighed[i], b.answer)
         correct_coordinates(n, size, method, matrices, h, b)
         take_coordinates(n, size, h, method, start, b, s)
+        # Second half: velocities, at the coordinates that the first half has just moved.
         for i in range(count):
             constraint_rates(model, n, x[i], v[i], a[i], works[i], b.rate[i], given)
         take_velocities(n, size, method, matrices, h, start, b, s)
         norm, worst = largest(n, scale, b.moved)
         way = max(h * speed, largest(n, scale, s.dx)[0])
-        if iteration > 1 and norm > _NOISE * way:
+        if iteration > 1 and norm > NOISE * way:
             rate = norm / before
+        # Not a number, or it diverges while far from rounding.
         lost = not norm < 1e100 or (iteration > 2 and rate > 2.0 and norm > 1e-9)
+        # The sum of the corrections to come, as a part of the way of the step: an error of a coordinate is compared
+        # with what the step moves it.
         done = not lost and (norm <= tolerance * way or (rate < 1.0 and norm * rate / (1.0 - rate) <= tolerance * way))
-        stalled = iteration > 2 and norm <= _ROUNDING and norm > 0.5 * before
-        if not done and (stalled or (iteration == MOST_ITERATIONS and norm <= _MAGNIFIED)):
+        stalled = iteration > 2 and norm <= ROUNDING and norm > 0.5 * before
+        if not done and (stalled or (iteration == MOST_ITERATIONS and norm <= MAGNIFIED)):
             done = True
             for i in range(count):
                 done = done and largest_entry(motion[i], 0, n) <= BALANCED * force
         ended, converged = lost or done or iteration == MOST_ITERATIONS, done
+        # Once corrections are small against the tolerance, the estimate will not change much: a step that is certain to
+        # be refused ends here, which saves its last iterations.
         visible = not lost and not done and not seen and norm <= _VISIBLE * limit * min(1.0, h * speed)
         if visible or (converged and limit > 0.0):
             seen = True
@@ -212,6 +229,8 @@ def estimate(n, scale, method, matrices, damped, h, start, s, b):
     """
     size, a = len(start.x) - 1, s.a
     real = method.real / h
+    # The embedded formula is y_0 weighed by 1/gamma_0 with the stages, filtered by the real system of the step, so that
+    # stiff components do not dominate it.
     q, v, given, answer = b.weighed[0], b.weighed[1], b.given, b.answer
     for k in range(n):
         q[k], v[k] = start.v[k], start.a[k]
@@ -224,6 +243,7 @@ def estimate(n, scale, method, matrices, damped, h, start, s, b):
         given[k] = 0.0
         if k < n:
             v[k] = v[k] / real + q[k]
+    # Coordinates: [M + C/s + K/s^2, J^T; J, 0] with M (v/s + q) + C q/s, s the real eigenvalue over h.
     add_inertia(matrices, v, given)
     if damped:
         add_product(n, matrices, matrices.damping, q, 1.0 / real, given)
@@ -231,6 +251,7 @@ def estimate(n, scale, method, matrices, damped, h, start, s, b):
     error, rate_error = 0.0, 0.0
     for k in range(n):
         error = max(error, abs(answer[k]) / scale[k])
+        # Velocities: what the same formula gives for them, projected onto the constraints by the masses.
         v[k] = real * (answer[k] - q[k])
         given[k] = 0.0
     add_inertia(matrices, v, given)

@@ -82,6 +82,8 @@ def combine(weights, factor, source, count, target):
 @inner
 def begin(n, h, method, start, s):
     """Stages of a start: coordinates and velocities by their rates, multipliers held."""
+    # Without a step before, the motion continues with constant acceleration. The second multipliers are zero on a
+    # solution.
     c, x, u, a, m = method.c, s.x, s.u, s.a, s.m
     for i in range(len(c)):
         t = c[i] * h
@@ -104,6 +106,7 @@ def recall(x, u, a, s):
 @inner
 def _extrapolation(c, h, before, earlier, more, nodes, weights):
     """Weights (stages, stages + more) of the stages before, and of the last ``more`` of those earlier."""
+    # Times of the stages before, measured from the start of the new step; its own stages are at c h.
     count = len(c)
     for j in range(count):
         nodes[j] = (c[j] - 1.0) * before
@@ -111,6 +114,7 @@ def _extrapolation(c, h, before, earlier, more, nodes, weights):
         nodes[count + j] = (c[count - more + j] - 1.0) * earlier - before
     for i in range(count):
         for j in range(count + more):
+            # Lagrange polynomials through all these nodes, evaluated at the new stages.
             weight = 1.0
             for k in range(count + more):
                 if k != j:
@@ -141,6 +145,7 @@ def extrapolate(n, h, method, before, earlier, past, s, b, weights):
                 change_x[i, k] += weight * own_x[k]
                 change_u[i, k] += weight * own_u[k]
                 change_a[i, k] += weight * own_a[k]
+    # Kept before they are overwritten: if the step is refused, the next try extrapolates from the same stages.
     recall(x, u, a, past)
     recall(change_x, change_u, change_a, s)
 
@@ -148,6 +153,7 @@ def extrapolate(n, h, method, before, earlier, past, s, b, weights):
 @inner
 def integrate_velocities(n, h, method, start, s):
     """Velocities of the stages by their rates: v_i = v_0 + h sum_j A_ij v'_j."""
+    # The integral is kept apart from the start, ``dv``: the sum would lose its last digits, which the estimate needs.
     v, ahead = s.v, s.dv
     combine(method.a, h, s.a, n, ahead)
     for i in range(len(v)):

@@ -42,6 +42,7 @@ def attempt(
         stages.begin(n, h, method, new, s)
     stages.integrate_stages(n, h, method, new, s)
     if stale:
+        # The matrices are those of the middle stage, which is nearest to all of them.
         m = len(method.c) // 2
         middle, place = t + method.c[m] * h, MotionState(s.x[m], s.v[m], s.a[m], s.a[m])
         if not renew(problem, matrices, models.complex, settings.damped, middle, within, place, room.complex_work):
@@ -58,9 +59,12 @@ def attempt(
     error, end = 0.0, len(method.c) - 1
     if converged and settings.step == 0.0:
         speed = max(speed, speed_of(n, scale, s.v[end]))
+        # An error of velocities counts as one of coordinates after the time that the motion takes for a scale.
         error = max(gap, rate_error / min(speed, settings.slow)) / settings.tolerance
     if converged and error <= 1.0:
         stages.read(n, s, new)
+        # Accelerations at the end by one solution: they serve as a prediction and for outputs, which settle them
+        # exactly.
         accelerate_roughly(problem, matrices, models.real, new, works[end], room.moved)
     else:
         stages.recall(past.x, past.u, past.a, s)

@@ -35,23 +35,11 @@ class Sample(NamedTuple):
 class Batch:
     """Samples of one structure, with what every integrator needs of them before its first step.
 
-    Parameters
-    ----------
-    samples : sequence of Lowered
-    perturbed : sequence of Lowered
-        The model along each direction of differentiation; empty if there is more than one sample.
-    problem : Problem
-        With the smooth stretches of each sample's motion.
-    end : float
-        s.
-    logged : bool
-        Keep what happened at each step.
-    states : MotionState of arrays (samples, N + 1)
-        At the start; integrators may overwrite them.
-    dstates : MotionState of arrays (directions, N + 1)
-        Derivatives of the states at the start; integrators may overwrite them.
-    counters : sequence of TurnCounter
-        One a sample, of the turns of angles; empty if none are counted.
+    ``perturbed``: the model along each direction of differentiation; empty if there is more than one sample;
+    ``problem``: with the smooth stretches of each sample's motion; ``end``: s; ``logged``: keep what happened at each
+    step; ``states`` (samples, N + 1): at the start; integrators may overwrite them; ``dstates`` (directions, N + 1):
+    derivatives of the states at the start; integrators may overwrite them; ``counters``: one a sample, of the turns of
+    angles; empty if none are counted.
     """
 
     samples: Sequence[Lowered]

@@ -48,6 +48,7 @@ def fill_motion(problem, complex_model, state, work, constraints, matrix):
     It is taken at the time that the signals in ``work``, a call in complex numbers, hold.
     """
     slots, n, x, v, a = problem.exact_slots, problem.n, state.x, state.v, state.a
+    # The constraint rows alone, by the coordinates: J, and with the multipliers of the motion rows J^T by symmetry.
     tangent(complex_model, slots, n, x, v, a, (1.0, 0.0, 0.0), (0.0, 1.0), work, constraints)
     add_masses(problem, complex_model, state, work, constraints, matrix)
 
@@ -56,6 +57,7 @@ def fill_motion(problem, complex_model, state, work, constraints, matrix):
 def add_masses(problem, complex_model, state, work, constraints, matrix):
     """Fill ``matrix`` with that of motion beside the Jacobian in ``constraints``."""
     slots, n, x, v, a = problem.exact_slots, problem.n, state.x, state.v, state.a
+    # The motion rows alone, by the accelerations and multipliers: M and J^T.
     tangent(complex_model, slots, n, x, v, a, (0.0, 0.0, 1.0), (1.0, 0.0), work, matrix)
     for i in range(len(constraints)):
         matrix[i] += constraints[i]
@@ -81,6 +83,7 @@ def accelerate(
             if not factorise(problem.exact_layout, c.exact):
                 return False
         if iteration == 0 and problem.projected:
+            # The right side has no forces: only the rates of the constraints, J v + Phi_t.
             clear(rate)
             constraint_rates(models.real, n, state.x, state.v, state.a, c.work, rate, delta)
             solve(problem.exact_layout, c.exact, rate, w)
@@ -88,6 +91,7 @@ def accelerate(
                 state.v[i] -= w[i]
             if len(models.directions) > 0:
                 _along_at(c.along, problem, models.directions, t, within, state, dstates, c, True)
+        # Rows of motion from the residual, rows of constraints from their second rates: the system of index 1.
         residual(models.real, n, state.x, state.v, state.a, c.work, 1.0, delta)
         constraint_rates(models.real, n, state.x, state.v, state.a, c.work, rate, delta)
         solve(problem.exact_layout, c.exact, delta, answer)

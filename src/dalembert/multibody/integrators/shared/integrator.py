@@ -121,11 +121,12 @@ class Integrator(Checked, ABC):
 
     def step_ends(self, end: float, jumps: tuple[float, ...] = ()) -> np.ndarray | None:
         """Ends of the fixed steps in s, 0 included, (samples,); each smooth stretch between jumps is cut evenly."""
-        if self.fixed_step is None:
+        step = self.fixed_step
+        if step is None:
             return None
         edges = smooth_stretches(jumps, end)
         lasting = np.diff(edges)
-        counts = np.maximum(1, np.ceil(lasting / self.fixed_step - 1e-6)).astype(int)
+        counts = np.maximum(1, np.ceil(lasting / step - 1e-6)).astype(int)
         places = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts) + 1
         return np.append(0.0, np.repeat(edges[:-1], counts) + np.repeat(lasting / counts, counts) * places)
 

@@ -75,6 +75,8 @@ def choose(problem: Problem, partition: Partition, dependent: float) -> None:
         columns[j] = j
     for i in range(m):
         rows[i] = i
+        # Each column in the unit of its coordinate, each row with its largest entry one: pivots compare independent of
+        # units.
         largest = 0.0
         for j in range(n):
             a[i, j] = partition.matrix[j * lead + n + i] * problem.scale[j]
@@ -85,6 +87,8 @@ def choose(problem: Problem, partition: Partition, dependent: float) -> None:
     partition.rank[0] = 0
     for k in range(min(m, n)):
         p, q = k, k
+        # Complete pivoting (Wehage and Haug 1982): the largest entry left says which coordinate follows best from which
+        # constraint.
         for i in range(k, m):
             for j in range(k, n):
                 if abs(a[i, j]) > abs(a[p, q]):
@@ -99,6 +103,7 @@ def choose(problem: Problem, partition: Partition, dependent: float) -> None:
             a[k, j], a[p, j] = a[p, j], a[k, j]
         for i in range(m):
             a[i, k], a[i, q] = a[i, q], a[i, k]
+        # Gaussian elimination below the pivot.
         for i in range(k + 1, m):
             factor = a[i, k] / a[k, k]
             for j in range(k, n):
@@ -132,6 +137,7 @@ def dependence(problem, partition):
         own = partition.columns[k]
         for i in range(rank):
             partition.gap[i] = partition.matrix[own * lead + problem.n + partition.rows[i]]
+        # A column of J_d^-1 J_u.
         solve(resized(problem.exact_layout, rank), partition.dependent, partition.gap, partition.change)
         for i in range(rank):
             largest = max(largest, abs(partition.change[i]) * scale[own] / scale[partition.columns[i]])
@@ -176,6 +182,7 @@ def _close(problem, model, complex_model, state, work, complex_work, partition):
             return False
         fill_gap(model, problem.n, POSITION, state.x, state.v, state.a, work, partition.second, partition.gap)
         moved = _shift(problem, partition, POSITION, state)
+        # The next correction would be the square of this one.
         if moved <= _CLOSED:
             return True
         if not moved < 1e100:
@@ -221,6 +228,7 @@ def settle_along(
         perturbed, dstate = directions[d], row(dstates, d)
         set_signals(perturbed, t, within, complex_work)
         for level in range(POSITION, levels + 1):
+            # J_d is exact, so the first solution is the derivative; the second one takes its rounding.
             for _ in range(2):
                 perturb(n, state, dstate, complex_state)
                 fill_gap(

@@ -15,19 +15,10 @@ from dalembert.multibody.model.scales import scales
 class Run:
     """What a run of an integrator left.
 
-    Parameters
-    ----------
-    reason : SolveError or None
-        Why the run ended early.
-    times : array (samples,)
-    states : MotionState of arrays (samples, N + 1)
-    derivatives : MotionState of arrays (directions, samples, N + 1)
-    counts : array (4,)
-        Steps, Newton iterations, factorisations, rejected steps.
-    iterations, ends : array
-        Newton iterations of each step, and the step's end, s.
-    turns : array (samples, angles)
-        Whole turns of the angles that were counted.
+    ``reason``: why the run ended early; ``times`` (samples,); ``states`` (samples, N + 1); ``derivatives`` (directions,
+    samples, N + 1); ``counts`` (4,): steps, Newton iterations, factorisations, rejected steps; ``iterations``,
+    ``ends``: Newton iterations of each step, and the step's end, s; ``turns`` (samples, angles): whole turns of the
+    angles that were counted.
     """
 
     reason: SolveError | None

@@ -36,6 +36,8 @@ def weigh(model, n, matrices, x, w, work, f, at):
 @inner
 def weigh_along(model, n, x, w, work, buffers, f):
     """The same in complex numbers: what inertia and constraint forces change in the residual of the system at rest."""
+    # M w + J^T m from the residual of the system at rest with the accelerations w and multipliers m, less that without
+    # both.
     still, at = buffers[0], buffers[1]
     for i in range(len(f)):
         still[i] = 0.0
@@ -79,8 +81,10 @@ def _finished(iteration, norm, before, size):
         return True
     if iteration == 0:
         return False
+    # It converges linearly at best, by the age of the factorisation; half of that and it is rounding.
     if norm >= 0.5 * before:
         return iteration > 1 and norm <= _LOOSE * size
+    # norm rate / (1 - rate) with rate = norm / before, without a division.
     return norm * norm <= (before - norm) * _ROUNDING * size
 
 
@@ -106,6 +110,7 @@ def balanced(model, n, state, work, f, unheld, at, still):
         at[i], still[i] = state.x[i] if i < n else 0.0, 0.0
     residual(model, n, at, state.v, state.a, work, 1.0, unheld)
     moving = largest(unheld, 0, n)
+    # At zero velocity: a drive that turns steadily has no forces left with its dampers.
     residual(model, n, at, still, still, work, 1.0, unheld)
     return largest(f, 0, n) <= _LOOSE * max(moving, largest(unheld, 0, n))
 

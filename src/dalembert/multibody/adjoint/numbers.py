@@ -109,7 +109,7 @@ class NumberPulls:
         for number, kind in enumerate(lowered.data):
             columns = np.ascontiguousarray(np.argwhere(gradient.active_kind(kind)))
             reads = readers(None if kind.quadratic else lowered.structure.meta[kind], signals)
-            if len(columns) + len(reads) and kind.has("pullback"):
+            if len(columns) + len(reads) and "pullback" in kind.roles:
                 own = np.zeros(len(columns))
                 self._parts[kind] = columns, own
                 record = self._record(
@@ -153,4 +153,4 @@ def readers(integers: np.ndarray | None, signals: np.ndarray) -> np.ndarray:
 
 def kernels_of(kinds: Mapping[Kind, np.ndarray]) -> list:
     """Kernels that collect gradients by the numbers of these kinds."""
-    return [kind.kernel("pullback", complex) for kind in kinds if kind.has("pullback")] + [PULL_SIGNALS]
+    return [kind.kernel("pullback", complex) for kind in kinds if "pullback" in kind.roles] + [PULL_SIGNALS]

@@ -39,10 +39,7 @@ DIRECT = "take derivative='direct'"
 def refuse(lowered: Lowered, solver: Integrator, observer: Observer) -> GeneralizedAlpha:
     """Return the integrator if a motion by it has an adjoint.
 
-    Raises
-    ------
-    InputError
-        With what has no adjoint.
+    Raises InputError: with what has no adjoint.
     """
     if not isinstance(solver, GeneralizedAlpha):
         raise InputError(f"{type(solver).__name__} has no adjoint. Use GeneralizedAlpha, or {DIRECT}")
@@ -65,7 +62,7 @@ def refuse(lowered: Lowered, solver: Integrator, observer: Observer) -> Generali
 def adjoint_kernels(lowered: Lowered, observer: Observer) -> list[Compiled]:
     """Kernels that only the adjoint needs."""
     layout = lowered.structure.full.fresh[1]
-    rates = [kind.kernel("rates", complex) for kind in lowered.data if kind.has("rates")]
+    rates = [kind.kernel("rates", complex) for kind in lowered.data if "rates" in kind.roles]
     return [
         sweep, pull_once, fixed_masses, accelerate, transposed(layout), *kernels_of(lowered.data), *rates,
         *observer.kernels(lowered, True),
@@ -76,13 +73,7 @@ def adjoint_kernels(lowered: Lowered, observer: Observer) -> list[Compiled]:
 class MotionPullback:
     """The gradient of any weighted sum of a response, by the numbers of the model.
 
-    Parameters
-    ----------
-    lowered : Lowered
-    solver : GeneralizedAlpha
-    observer : Observer
-    motion : StoredMotion
-    times : array (samples,)
+    ``times`` (samples,).
     """
 
     lowered: Lowered
@@ -101,10 +92,7 @@ class MotionPullback:
     def gradient(self, cotangent: np.ndarray, active: np.ndarray) -> np.ndarray:
         """Derivative of the sum of cotangent * response by all numbers of the model that are active, (numbers,).
 
-        Parameters
-        ----------
-        cotangent : array (samples, channels)
-        active : array of bool (numbers,)
+        ``cotangent`` (samples, channels); ``active`` (numbers,).
         """
         prepare(adjoint_kernels(self.lowered, self.observer))
         lowered, motion, model = self.lowered, self.motion, self.lowered.model(complex, "tangent")

@@ -14,10 +14,7 @@ from dalembert.multibody.model.observe import Observer, OutputBlock, beside, col
 def refuse_energies(observer: Observer) -> None:
     """Raise for channels of the whole system, which have no adjoint.
 
-    Raises
-    ------
-    InputError
-        With the channel.
+    Raises InputError: with the channel.
     """
     for channel, row in zip(observer.channels, observer.rows, strict=True):
         if row.kind is None:
@@ -33,17 +30,9 @@ def pull_readings(
 ) -> MotionState:  # fmt: skip
     """Return the cotangents of sampled states (samples, N + 1), and add to the gradient by numbers of channels.
 
-    Parameters
-    ----------
-    gradient : NumberGradient
-    model : Model
-        In complex numbers without imaginary parts.
-    states : MotionState of arrays (samples, N + 1)
-    times : array (samples,)
-        s.
-    cotangent : array (samples, channels)
-    signal_bars : array (samples, signals, 3)
-        Adjoints of the signals at each sample; added to.
+    ``model``: in complex numbers without imaginary parts; ``states`` (samples, N + 1); ``times`` (samples,): s;
+    ``cotangent`` (samples, channels); ``signal_bars`` (samples, signals, 3): adjoints of the signals at each sample;
+    added to.
     """
     bars = MotionState(*(np.zeros_like(states.x) for _ in range(4)))
     rows = gradient.observer.rows

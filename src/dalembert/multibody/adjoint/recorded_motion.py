@@ -45,19 +45,9 @@ class Stored:
 class StoredMotion:
     """A motion whose states can be passed from the last to the first.
 
-    Parameters
-    ----------
-    problem : Problem
-    steps : Steps
-    stretches : tuple of Stretch
-    starts : tuple of MotionState
-        State at the start of each stretch, with its accelerations.
-    keeper : Keeper
-    samples : MotionState of arrays (samples, N + 1)
-    turns : array (samples, angles)
-        Of the angles that were counted.
-    owners, shares : array (samples,)
-        Step that each sample lies in, -1 for the start, and the share of that step.
+    ``starts``: state at the start of each stretch, with its accelerations; ``samples`` (samples, N + 1); ``turns``
+    (samples, angles): of the angles that were counted; ``owners``, ``shares`` (samples,): step that each sample lies
+    in, -1 for the start, and the share of that step.
     """
 
     problem: Problem
@@ -82,12 +72,7 @@ def stored_motion(
 
     Steps that were halved, or chosen by the method, are only known afterwards: then the motion is integrated twice.
 
-    Raises
-    ------
-    SolveError
-        Where the solver could not go on.
-    InputError
-        For more steps than the log of a run holds.
+    Raises SolveError: where the solver could not go on. Raises InputError: for more steps than the log of a run holds.
     """
     end, width = float(times[-1]), len(lowered.x)
     expected = solver.step_ends(end, lowered.jumps)

@@ -5,7 +5,7 @@ mu of F_(a, lambda)^T mu = adjoint of (a, lambda), the adjoints of q, v and the 
 F_numbers^T mu.
 """
 
-from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from scipy.sparse import csc_matrix
@@ -23,20 +23,10 @@ from dalembert.multibody.model.lowered import Lowered
 def accelerations_back(lowered: Lowered, state: MotionState, t: float, within: float, bar: MotionState) -> np.ndarray:
     """Take the adjoint of a state with consistent accelerations to that of its positions and velocities alone.
 
-    Parameters
-    ----------
-    lowered : Lowered
-    state : MotionState
-        Unknowns, velocities and accelerations, (N + 1,), as they were solved for.
-    t, within : float
-        Time, s, and a time that says on which side of a jump it lies.
-    bar : MotionState
-        Adjoint of the state; those of accelerations and multipliers become zero.
-
-    Returns
-    -------
-    array, shape (N + 1,)
-        mu: its last part belongs to the second derivatives of the constraints.
+    ``state``: unknowns, velocities and accelerations, (N + 1,), as they were solved for; ``t``, ``within``: time, s,
+    and a time that says on which side of a jump it lies; ``bar``: adjoint of the state; those of accelerations and
+    multipliers become zero. Returns array, shape (N + 1,): mu: its last part belongs to the second derivatives of the
+    constraints.
     """
     n, last = lowered.structure.n, lowered.structure.size
     x, v, a = state.x, state.v, state.a
@@ -62,7 +52,7 @@ class SecondRates:
         x, v, a = self._state
         self._call: Call = model.call().set(x=x, v=v, a=a, rate=self._rate, second=self._second)
         model.evaluate(self._call, t, within)
-        self._kinds = [kind for kind in lowered.data if kind.has("rates")]
+        self._kinds = [kind for kind in lowered.data if "rates" in kind.roles]
 
     def pull(self, bar: MotionState, gradient: NumberGradient, bars: np.ndarray) -> None:
         """Take the derivatives off the adjoints of positions and velocities, the gradient and the signals' adjoints."""
@@ -85,7 +75,7 @@ class SecondRates:
         n = self._lowered.structure.n
         array[place] += 1j * STEP
         self._second[:] = 0.0
-        kernel: Callable = kind.kernel("rates", complex)  # type: ignore[assignment]
+        kernel: Any = kind.kernel("rates", complex)
         kernel(self._call.address, self._model.block(list(self._lowered.data).index(kind)))
         array[place] = array[place].real
         return float(self._mu[n:] @ np.imag(self._second[n:])) / STEP

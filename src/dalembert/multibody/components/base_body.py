@@ -28,6 +28,10 @@ class BaseBody(Checked):
     name: str
 
     FRAME: ClassVar[tuple[str, ...]]
+    dimension: ClassVar[int]
+    """Number of coordinates of a position."""
+    turns: ClassVar[bool] = True
+    """Whether the body has a direction."""
     sensor: ClassVar[Kind]
     without_axes: ClassVar[tuple[str, ...]]
     """Outputs of the sensor that a point without axes does not have."""
@@ -101,16 +105,6 @@ class BaseBody(Checked):
     def surface(self) -> Any:
         """Corners (corners, 3) in the axes of the body and triangles to draw; None where there are none."""
         return None
-
-    @property
-    def dimension(self) -> int:
-        """Number of coordinates of a position."""
-        return sum(name in "xyz" for name in self.FRAME)
-
-    @property
-    def turns(self) -> bool:
-        """Whether the body has a direction."""
-        return True
 
     @property
     def findings(self) -> tuple[Finding, ...]:

@@ -365,10 +365,7 @@ def as_signal(value: Course) -> Signal:
 def refuse_jumps(owner: str, motion: Any) -> None:
     """Refuse a prescribed motion whose velocity jumps.
 
-    Raises
-    ------
-    InputError
-        With the kind of the function of time.
+    Raises InputError: with the kind of the function of time.
     """
     if isinstance(motion, Step) or (isinstance(motion, Table) and not motion.is_smooth):
         raise InputError(

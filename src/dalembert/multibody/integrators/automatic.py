@@ -13,8 +13,7 @@ from dalembert.multibody.integrators.radau.radau_iia import RadauIIA
 from dalembert.multibody.integrators.shared.batch import Batch
 from dalembert.multibody.integrators.shared.integrator import Integrator
 from dalembert.multibody.integrators.shared.run import Run
-from dalembert.multibody.model.lowered import Lowered
-from dalembert.multibody.model.scales import slip_scale
+from dalembert.multibody.model.lowered import Lowered, slip_scale
 from dalembert.multibody.start.assemble import redundancy
 from dalembert.multibody.start.singular_positions import SingularPositionError
 

@@ -28,12 +28,15 @@ def set_signals(model, t, within, work):
 @inlined
 def _add_residuals(blocks, count, increments, work, scale, r):
     own, last = call_at(work), len(r) - 1
+    # Absent unknowns have the number of the last entry: kernels read zero there and add what nobody reads, so that they
+    # need no branch.
     own.r, own.mode, own.increments, own.last_row = address_of(r), RESIDUAL, increments, last
     for i in range(last):
         r[i] = 0.0
     for k in range(count):
         block = blocks + k * BLOCK_SIZE
         call(block_at(block).residual, work, block)
+    # Rows of constraints get the unit of the rows of motion, once for all of them.
     for i in range(increments, last):
         r[i] *= scale
     r[last] = 0.0
@@ -60,6 +63,8 @@ def _add_tangents(blocks, count, increments, last_row, slots, by, rows, work, ma
     own = call_at(work)
     own.matrix, own.entries, own.mode = address_of(matrix), len(matrix), TANGENT
     own.increments, own.last_row = increments, last_row
+    # Of one step by_x, by_v and by_a are dq/da, dv/da and 1; of a static solution 1, 0 and 0. So one kernel gives every
+    # matrix that an integrator needs.
     own.by_x, own.by_v, own.by_a = by
     own.motion, own.constraint = rows
     for k in range(count):
@@ -106,6 +111,7 @@ def constraint_forces(model, x, v, a, work, f):
     own.r, own.mode = address_of(f), RESIDUAL
     for k in range(table.block_count):
         block = table.blocks + k * BLOCK_SIZE
+        # Multipliers enter the residuals of joints alone, so that their sum is J^T lambda.
         if block_at(block).joins == 1:
             call(block_at(block).residual, work, block)
     f[len(f) - 1] = 0.0
@@ -154,6 +160,7 @@ def displace(model, scale, x, delta, work, change):
     """Fill ``change`` so that x - ``scale`` change has the increments -``scale`` delta, which may be large."""
     if has_nodes(model):
         own = call_at(work)
+        # The finite increment of a node is -scale delta: a rotation by it, not its linear part.
         own.delta, own.last_row, own.by_x = address_of(delta), len(delta) - 1, scale
         _of_nodes(model_at(model).change, model, x, change, work)
 
@@ -163,6 +170,7 @@ def restore(model, scale, x, work, change):
     """Whether there are nodes; if so, fill ``change`` so that x - ``scale`` change satisfies internal constraints."""
     if not has_nodes(model):
         return False
+    # What moves a node onto its internal constraints is divided by the scale, as corrections of accelerations are.
     call_at(work).by_x = scale
     _of_nodes(model_at(model).restore, model, x, change, work)
     return True

@@ -1,7 +1,9 @@
 """Models as kernels see them: tables of blocks, made by NumPy, kept alive by Python, known by their address."""
 
-from collections.abc import Iterable, Mapping
+import ctypes
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -11,7 +13,13 @@ from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.nodes import CHANGE, RESTORE, SPREAD
 from dalembert.multibody.kernels.records import BLOCK, CALL, MODEL
 from dalembert.multibody.kernels.reduction import Reduction
-from dalembert.multibody.kernels.signal_values import evaluators
+from dalembert.multibody.kernels.signal_values import EVALUATORS
+
+
+@cache
+def c_function(address: int) -> Callable[[int, int], None]:
+    """The kernel of a block at an address, for calls from Python."""
+    return ctypes.CFUNCTYPE(None, ctypes.c_int64, ctypes.c_int64)(address)
 
 
 @dataclass(frozen=True)
@@ -36,20 +44,9 @@ class Signals:
 class Model:
     """A whole model in real numbers, or in complex ones as a direction of differentiation.
 
-    Parameters
-    ----------
-    blocks : Blocks
-    signals : Signals
-    callbacks : int array
-    size : int
-        Unknowns.
-    coordinates : int
-        Unknowns that are no multipliers.
-    dtype : float or complex
-    reduction : Reduction
-        Rows of the reduced system.
-    roles : tuple of str
-        Kernels that it needs at once: in real numbers the residuals, in complex ones the tangents, too, or alone.
+    ``size``: unknowns; ``coordinates``: unknowns that are no multipliers; ``reduction``: rows of the reduced system;
+    ``roles``: kernels that it needs at once: in real numbers the residuals, in complex ones the tangents, too, or
+    alone.
     """
 
     blocks: Blocks
@@ -60,6 +57,7 @@ class Model:
     dtype: type
     reduction: Reduction
     roles: tuple[str, ...] = ("residual",)
+    _evaluator: BlockKernel = field(init=False, repr=False)
     _words: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray] = field(init=False, repr=False)
     _kernels: list[Any] = field(default_factory=list, init=False, repr=False)  # kept alive
     _real_numbers: dict[Kind, np.ndarray] = field(default_factory=dict, init=False, repr=False)
@@ -67,6 +65,7 @@ class Model:
     def __post_init__(self) -> None:
         head, own = np.zeros(1, MODEL), self.reduction
         for kind, numbers in self.blocks.numbers.items():
+            # Quadratic kinds take their tangents in real numbers, from complex models too.
             self._real_numbers[kind] = np.ascontiguousarray(np.real(numbers))
         full = self._table(self.blocks.index, self.blocks.index)
         reduced = self._table(own.index, own.index) if own.nodes else full
@@ -80,7 +79,9 @@ class Model:
         table["knots"], table["signal_data"] = self.signals.knots.ctypes.data, self.signals.data.ctypes.data
         table["knot_count"], table["number_count"] = len(self.signals.knots), len(self.signals.data)
         table["callbacks"], table["callback_count"] = self.callbacks.ctypes.data, len(self.callbacks)
-        table["evaluate"] = self._evaluator.address
+        evaluator = EVALUATORS[len(self.signals.index) > 1][self.dtype]
+        table["evaluate"] = evaluator.address
+        object.__setattr__(self, "_evaluator", evaluator)
         object.__setattr__(self, "_words", (head, full, reduced, nodes))
         self.need(*self.roles)
 
@@ -100,9 +101,13 @@ class Model:
     def need(self, *roles: str) -> "Model":
         """Load the kernels of these roles, and hand the model back."""
         for block, kind in zip(self._words[1], self.blocks.index, strict=False):
-            for role in roles:
-                if block[role] == 0 and kind.has(role):
-                    block[role] = self._load(kind, role, self.dtype)
+            # Kernels are loaded by role when they are first needed: loading, or even compiling, is most of a cold
+            # start.
+            for role in kind.roles.intersection(roles):
+                if block[role] == 0:
+                    kernel = kind.kernel(role, self.dtype)
+                    self._kernels.append(kernel)
+                    block[role] = kernel.address
         return self
 
     def reduced(self, nodes: bool = True) -> "Model":
@@ -126,10 +131,6 @@ class Model:
         return kernel.address
 
     @property
-    def _evaluator(self) -> BlockKernel:
-        return evaluators(self.signals.index)[self.dtype]
-
-    @property
     def address(self) -> int:
         """Address of the table."""
         return self._words[0].ctypes.data
@@ -140,17 +141,16 @@ class Model:
 
     def evaluate(self, call: "Call", t: float, within: float) -> None:
         """Evaluate the signals of a call."""
-        self._evaluator(call.set(t=t, within=within).address, self.address)
+        c_function(self._evaluator.address)(call.set(t=t, within=within).address, self.address)
 
     def each(self, role: str, call: "Call", slots: np.ndarray | None = None, only: Kind | None = None) -> None:
         """Call the kernels of a role, block by block, or those of one kind."""
         self.need(role)
-        for k, kind in enumerate(self.blocks.index):
-            if kind.has(role) and only in (None, kind):
+        for k, (block, kind) in enumerate(zip(self._words[1], self.blocks.index, strict=False)):
+            if role in kind.roles and only in (None, kind):
                 if slots is not None:
                     call.set(slots=slots[k])
-                kernel: Any = kind.kernel(role, self.dtype)
-                kernel(call.address, self.block(k))
+                c_function(int(block[role]))(call.address, self.block(k))
 
     def call(self) -> "Call":
         """A call in the arithmetic of the model."""

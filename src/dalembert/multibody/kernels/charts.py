@@ -64,6 +64,7 @@ def _chain(charts: tuple[Chart, ...], function_of: Callable[[Chart, int, int], F
     for chart in charts:
         steps.append(function_of(chart, coordinate, increment))
         coordinate, increment = coordinate + chart.size, increment + chart.increments
+    # Functions are composed in pairs, since compiled code has no loop over functions; LLVM inlines the chain.
     chain = steps.pop()
     while steps:
         chain = _both(steps.pop(), chain)
@@ -123,6 +124,7 @@ def _projected(chart: Chart) -> Function:
         for j in range(increments):
             d[j] = 0.0
         for j in range(increments):
+            # Row j of N^T r is the product of the column N e_j with r.
             d[j] = 1.0
             function(x, d, dx)
             d[j] = 0.0

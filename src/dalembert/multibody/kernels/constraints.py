@@ -20,6 +20,7 @@ def forces_of(constraint: Callable[..., Any], coordinates: int, multipliers: int
         for i in range(width):
             seed[i], zero[i] = 0.0, 0.0
         for j in range(coordinates):
+            # One jet along each coordinate: its slope is a column of J, which the multipliers weigh.
             seed[j] = 1.0
             constraint(jets(x, seed, zero), p, m, inputs, jets(g, slope, unused))
             seed[j] = 0.0
@@ -55,6 +56,8 @@ def rates_of(constraint: Callable[..., Any], multipliers: int) -> Callable[..., 
     @inner
     def rates(x, v, a, p, m, inputs, rate, second):
         g = stack(x, multipliers)
+        # With x' = v and x'' = a the first two derivatives of g(x(t), t) are J v + g_t and J a + (all that is quadratic
+        # in v): the rows of the index-2 and index-1 equations.
         constraint(jets(x, v, a), p, m, in_time(inputs), jets(g, rate, second))
 
     return rates
@@ -68,6 +71,7 @@ def power_of(residual: Callable[..., Any], width: int) -> Callable[..., Any]:
         still, r = stack(x, width), stack(x, width)
         for i in range(width):
             still[i], r[i] = 0.0, 0.0
+        # At zero acceleration: forces of inertia that depend on velocities alone do count.
         residual(x, v, still, p, m, inputs, r)
         power = 0.0 * x[0]
         for i in range(width):

@@ -10,7 +10,8 @@ from typing import Any
 from dalembert.kernels.kernel import BlockKernel, Compiled
 from dalembert.multibody.kernels.declaration import Declaration
 
-_PLAIN: ContextVar[dict[Declaration, list[BaseException]]] = ContextVar("plain kinds", default={})  # noqa: B039 - never written
+PLAIN: ContextVar[dict[Declaration, list[BaseException]]] = ContextVar("plain kinds", default={})  # noqa: B039 - never written
+"""Errors of the functions of each kind that runs in plain Python here."""
 
 
 @contextmanager
@@ -39,11 +40,11 @@ def in_python(*components: Any) -> Iterator[None]:
     """
     errors: list[BaseException] = []
     kinds = [getattr(component, "kind", component) for component in components]
-    token = _PLAIN.set({**_PLAIN.get(), **dict.fromkeys(kinds, errors)})
+    token = PLAIN.set({**PLAIN.get(), **dict.fromkeys(kinds, errors)})
     try:
         yield
     finally:
-        _PLAIN.reset(token)
+        PLAIN.reset(token)
         for error in errors[:1]:
             raise error
 
@@ -69,9 +70,3 @@ class PlainKernel(Compiled):
             self.function(call, block)
         except BaseException as error:  # it must not cross the compiled code
             self._errors.append(error)
-
-
-def plain(kind: Declaration, kernel: BlockKernel) -> PlainKernel | None:
-    """The kernel in plain Python, if the kind is to run so here."""
-    errors = _PLAIN.get().get(kind)
-    return None if errors is None else PlainKernel(kernel, errors)

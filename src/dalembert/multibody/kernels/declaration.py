@@ -132,7 +132,7 @@ class Declaration:
         """Charts of all coordinates."""
         return (self.chart,) if self.chart is not None else self.charts or (flat(self.coordinates),)
 
-    @property
+    @cached_property
     def width(self) -> int:
         """Local unknowns."""
         return self.coordinates + self.multipliers + self.reactions
@@ -141,11 +141,6 @@ class Declaration:
     def increments(self) -> int:
         """Local increments of the coordinates."""
         return sum(chart.increments for chart in self.parts)
-
-    @property
-    def reduced_width(self) -> int:
-        """Local rows of the reduced system."""
-        return self.increments + self.multipliers + self.reactions
 
     @property
     def is_flat(self) -> bool:
@@ -163,6 +158,11 @@ class Declaration:
 
     def number_record(self, dtype: type) -> np.dtype:
         return np.dtype([(name, "c16" if dtype is complex else "f8") for name in self.numbers or ("unused",)])
+
+    @cached_property
+    def length_columns(self) -> list[int]:
+        """Positions of the columns that count to the extent of a mechanism."""
+        return self.columns(self.lengths)
 
     def columns(self, names: tuple[str, ...]) -> list[int]:
         """Positions of columns of numbers."""
@@ -198,17 +198,23 @@ class Declaration:
         names = {*self.angles, "angle"} if wraps else self.angles
         return [output for output, (name, _) in enumerate(self.outputs) if name in names]
 
-    def has(self, role: str) -> bool:
-        """Whether the kind has kernels of this role."""
-        return {
-            **dict.fromkeys(("residual", "tangent"), self.residual is not None or self.constraint is not None),
-            "pullback": self.residual is not None or self.constraint is not None,
+    @cached_property
+    def roles(self) -> frozenset[str]:
+        """Roles that the kind has kernels of."""
+        acts = self.residual is not None or self.constraint is not None
+        roles = {
+            **dict.fromkeys(("residual", "tangent", "pullback"), acts),
             "rates": self.constraint is not None,
             "energy": self.energy is not None or self.residual is not None,
             "outputs": self.observe is not None,
             "turn": self.turn is not None and bool(self.angles),
             **dict.fromkeys(("spread", "change", "restore"), self.chart is not None),
-        }[role]
+        }
+        return frozenset(role for role, known in roles.items() if known)
+
+    def has(self, role: str) -> bool:
+        """Whether the kind has kernels of this role."""
+        return role in self.roles
 
     @cached_property
     def residual_function(self) -> Callable[..., Any]:

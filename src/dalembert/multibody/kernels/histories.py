@@ -20,6 +20,7 @@ def outputs_history(
     for s in range(samples):
         if len(times) > 0:
             set_signals(model, times[s], within[s], work)
+        # Addresses move on from sample to sample: no state is copied.
         own.x, own.v, own.a, own.r = x + s * stride, v + s * stride, a + s * stride, out + s * out_stride
         call(block_at(block).outputs, work, block)
 

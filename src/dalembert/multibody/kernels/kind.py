@@ -4,12 +4,12 @@ from dataclasses import dataclass, field
 
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.kernels import loops, nodes, pullbacks, real_tangents
-from dalembert.multibody.kernels.debugging import plain
+from dalembert.multibody.kernels.debugging import PLAIN, PlainKernel
 from dalembert.multibody.kernels.declaration import Declaration
 from dalembert.multibody.kernels.loops import BlockKernel
 
 _MAKERS = {**loops.MAKERS, **nodes.MAKERS, "tangent": real_tangents.tangent, "pullback": pullbacks.pullback}
-_COMPLEX = ("tangent", "pullback")  #: roles of complex models alone
+_COMPLEX = {"tangent", "pullback"}  #: roles of complex models alone
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,14 +24,17 @@ class Kind(Declaration):
             role = "residual"
         if (role, dtype) not in self._kernels:
             self._kernels[role, dtype] = _MAKERS[role](self, dtype)
-        own = self._kernels[role, dtype]
-        return plain(self, own) or own
+        kernel, errors = self._kernels[role, dtype], PLAIN.get().get(self)
+        return kernel if errors is None else PlainKernel(kernel, errors)
 
     def all_kernels(self) -> list[Compiled]:
         """The kernels of all roles that the kind has."""
         roles = [
-            (role, dtype) for role in _MAKERS if self.has(role) and role not in _COMPLEX for dtype in (float, complex)
+            (role, dtype)
+            for role in _MAKERS
+            if role in self.roles and role not in _COMPLEX
+            for dtype in (float, complex)
         ]
-        pulled = self.is_flat and self.has("pullback")
+        pulled = self.is_flat and "pullback" in self.roles
         more = [("tangent", complex)] * self.quadratic + [("pullback", complex)] * pulled
         return [self.kernel(*role) for role in (*roles, *more)]

@@ -78,6 +78,8 @@ def solve(layout, factors, given, answer):
 @inlined
 def _largest(a, begin, count):
     """Number of the entry of the largest size, and whether it is needed as the pivot in the first one's stead."""
+    # Threshold pivoting: rows are exchanged only where the diagonal is small. In a band each exchange widens the upper
+    # factor, and the iteration around corrects what growth there is.
     first = largest = abs(a[begin])
     found = 0
     for i in range(1, count):
@@ -96,6 +98,7 @@ def _exchange(a, i, j):
 def invert_dense(size: int, reach: int, lead: int, a: Reals, pivots: Integers, tops: Integers) -> bool:
     """Gauss and Jordan's inverse of a dense matrix by columns; whether it is regular."""
     for k in range(size):
+        # Column k becomes a unit vector, its place takes the column of the inverse: no second matrix is needed.
         own = k * lead
         p = pivots[k] = k + _largest(a, own + k, size - k)
         if p != k:
@@ -113,6 +116,7 @@ def invert_dense(size: int, reach: int, lead: int, a: Reals, pivots: Integers, t
         for i in range(size):
             a[own + i] *= -inverse
         a[own + k] = inverse
+    # Exchanged rows are exchanged columns of the inverse, in reverse order.
     for k in range(size - 1, -1, -1):
         p = pivots[k]
         if p != k:
@@ -126,6 +130,7 @@ def _pivot(size, reach, lead, a, pivots, tops, k, last):
     """Exchange rows if column ``k`` needs it, and divide the column; the last column that is concerned."""
     d = k * lead + 2 * reach
     p = pivots[k] = _largest(a, d, reach + 1)
+    # An exchange with the row p below makes the upper factor reach p columns further.
     while last < min(k + p + reach, size - 1):
         last += 1
         tops[last] = k
@@ -135,6 +140,7 @@ def _pivot(size, reach, lead, a, pivots, tops, k, last):
             _exchange(a, row, row + p)
     if a[d] == 0.0:
         return -1
+    # The reciprocal is kept: solutions multiply, as a division takes as long as a dozen products.
     a[d] = 1.0 / a[d]
     for i in range(1, reach + 1):
         a[d + i] *= a[d]
@@ -158,6 +164,7 @@ def factorise_band(size: int, reach: int, lead: int, a: Reals, pivots: Integers,
             return False
         own, begin = k * lead + above, k + 1
         if k + 1 < size:
+            # The first column is eliminated from the second one before both are eliminated from the rest.
             row = own + lead - 1
             add_multiple(a, row + 1, a, own + 1, -a[row], reach)
             begin = k + 2
@@ -169,6 +176,7 @@ def factorise_band(size: int, reach: int, lead: int, a: Reals, pivots: Integers,
                     row = j * lead + above + k - j
                     first = a[row]
                     a[row + 1] -= first * a[own + 1]
+                    # Many columns of a chain have zeros here: their elimination is skipped.
                     if first != 0.0 or a[row + 1] != 0.0:
                         add_two_multiples(a, row + 2, a, own + 2, -first, own + lead + 1, -a[row + 1], reach)
                 k += 2
@@ -186,6 +194,7 @@ def _multiply(matrix, size, lead, given, answer):
     """Product of a square matrix by columns with a vector, four columns at a time."""
     for i in range(size):
         answer[i] = 0.0
+    # Four columns share each load and store of the answer: the product is bound by memory, not by arithmetic.
     whole = size // 4 * 4
     for j in range(0, whole, 4):
         a, b, c, d = given[j], given[j + 1], given[j + 2], given[j + 3]
@@ -220,6 +229,7 @@ def solve_band(layout: Layout, factors: Factors, given: Reals, answer: Reals) ->
         own, at = k * lead + above, above + k
         if pivots[k] > 0:
             _exchange(x, at, at + pivots[k])
+        # Forward substitution by two columns where the second has no exchange of rows, as the factorisation did.
         if k + 1 < size and pivots[k + 1] == 0:
             x[at + 1] -= x[at] * a[own + 1]
             add_two_multiples(x, at + 2, a, own + 2, -x[at], own + lead + 1, -x[at + 1], reach)
@@ -233,6 +243,8 @@ def solve_band(layout: Layout, factors: Factors, given: Reals, answer: Reals) ->
         x[at] *= a[own]
         if k > 0:
             x[at - 1] = (x[at - 1] - x[at] * a[own - 1]) * a[own - lead]
+            # Backward substitution over the rows that the columns reach, in whole vectors; the room before the first
+            # unknown takes what is too much.
             count = -(-(k - 1 - min(tops[k], tops[k - 1])) // LANES) * LANES
             add_two_multiples(x, at - 1 - count, a, own - 1 - count, -x[at], own - lead - count, -x[at - 1], count)
             k -= 1

@@ -22,6 +22,8 @@ def arithmetic(dtype: type) -> tuple[Any, Any]:
 
 def made(loop: Callable[[Any, Any], None], kind: Declaration, role: str, dtype: type) -> BlockKernel:
     """The kernel of a kind in a role. Outside the package two kinds may have the same name: their sources differ."""
+    # A symbol must be one kernel alone: names of the package are unique, those of users need the digest of their
+    # source.
     known = (kind.module or "").startswith("dalembert.")
     name = kind.name if known else f"{kind.name}_{digest(loop)}"  # type: ignore[arg-type]
     return BlockKernel(loop, f"dal_kind_{name}_{role}_{dtype.__name__}", (kind, role, dtype))
@@ -46,6 +48,7 @@ def _each(kind: Declaration, role: str, dtype: type, step: Callable[..., None]) 
             for i in range(width):
                 g = index[e, i]
                 own_x[i], own_v[i], own_a[i] = x[g], v[g], a[g]
+            # Local copies: functions of a kind index a few numbers on the stack, which the compiler keeps in registers.
             own_step(own_x, own_v, own_a, p[e], m[e], inputs, call, block, e)
 
     return made(loop, kind, role, dtype)
@@ -96,6 +99,8 @@ def _full(kind: Declaration) -> _System:
 
     @inlined
     def perturb(count, j, call, x, v, a):
+        # One imaginary step moves position, velocity and acceleration together, by the weights of the matrix that is
+        # asked for: its imaginary residual is a finished column of by_x K + by_v C + by_a M.
         if j < coordinates:
             x[j] += 1j * STEP * call.by_x
             v[j] += 1j * STEP * call.by_v
@@ -132,6 +137,8 @@ def _either(kind: Declaration, full: _System) -> _System:
         if count == width:
             return perturb_one(count, j, call, x, v, a)
         if j < increments:
+            # Along the increment j: N e_j for coordinates, velocities and accelerations, with N of the real state. What
+            # N itself changes is in the projection below, which is complex.
             d, dx = local_d(), local_dx()
             for i in range(increments):
                 d[i] = 0.0
@@ -170,6 +177,7 @@ def _plain(kind: Declaration, dtype: type, system: _System) -> BlockKernel:
         for i in range(width):
             own_r[i] = 0.0
         function(x, v, a, p, m, inputs, own_r)
+        # N^T r, with the rows of multipliers after those of increments.
         forces = project(narrow, x, own_r, local_s())
         for i in range(narrow):
             r[rows[e, i]] += forces[i]
@@ -199,6 +207,7 @@ def _complex(kind: Declaration, system: _System) -> BlockKernel:
         matrix, slots = reals(call.matrix, call.entries), integers2(call.slots, count, narrow * narrow)
         tangent = call.mode == TANGENT
         for e in range(count):
+            # A formula by hand where the kind has one, in real numbers, for the full system alone.
             if tangent and narrow == width and known(p[e], m[e]):
                 for i in range(width):
                     own_real[i] = real_position[index[e, i]]
@@ -211,6 +220,7 @@ def _complex(kind: Declaration, system: _System) -> BlockKernel:
                 continue
             for i in range(width):
                 g = index[e, i]
+                # For a tangent the call holds the state in real numbers: the imaginary step is the only imaginary part.
                 if tangent:
                     own_x[i], own_v[i], own_a[i] = real_position[g], real_velocity[g], real_acceleration[g]
                 else:
@@ -218,6 +228,7 @@ def _complex(kind: Declaration, system: _System) -> BlockKernel:
             for j in range(narrow if tangent else 1):
                 first = last = 0
                 if tangent:
+                    # An absent unknown, such as a coordinate of the ground, has no column.
                     if rows[e, j] == call.last_row:
                         continue
                     first, last = perturb(narrow, j, call, own_x, own_v, own_a)
@@ -225,6 +236,7 @@ def _complex(kind: Declaration, system: _System) -> BlockKernel:
                     own_r[i] = 0.0
                 function(own_x, own_v, own_a, p[e], m[e], inputs, own_r)
                 forces = project(narrow, own_x, own_r, own_s)
+                # Only what the step has changed is read again: one unknown of the full system, all of a reduced one.
                 for i in range(first, last):
                     g = index[e, i]
                     own_x[i], own_v[i], own_a[i] = real_position[g], real_velocity[g], real_acceleration[g]
@@ -233,6 +245,8 @@ def _complex(kind: Declaration, system: _System) -> BlockKernel:
                     if not tangent:
                         r[row] += forces[i]
                     elif row < call.last_row:
+                        # Rows of motion and of constraints have their own factors, so that M, J or both come from the
+                        # same kernel.
                         factor = call.motion if row < call.increments else call.constraint
                         matrix[slots[e, i * narrow + j]] += forces[i].imag / STEP * factor
 
@@ -255,6 +269,7 @@ def rates(kind: Declaration, dtype: type) -> BlockKernel:
         function(x, v, a, p, m, inputs, own_rate, own_second)
         for i in range(multipliers):
             row = index[e, coordinates + i]
+            # A constraint belongs to one component, so that its rates are written, not added.
             rate[row], second[row] = own_rate[i], own_second[i]
 
     return _each(kind, "rates", dtype, step)

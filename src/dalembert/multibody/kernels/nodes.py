@@ -41,6 +41,7 @@ def _kernel(role: str, kind: Declaration, dtype: type) -> BlockKernel:
         call, block = call_at(call_address), block_at(block_address)
         count, size, scale = block.count, call.last + 1, 1.0
         if is_finite:
+            # Newton takes delta off with the factor by_x = dq/da, so the increment that happens is -by_x delta.
             scale = -call.by_x
         index, rows = integers2(block.index, count, width), integers2(block.rows, count, increments)
         p, m = numbers(block.numbers, count), whole(block.integers, count)
@@ -53,6 +54,7 @@ def _kernel(role: str, kind: Declaration, dtype: type) -> BlockKernel:
                 own_d[j] = scale * delta[rows[e, j]]
             function(own_x, own_d, p[e], m[e], own_dx)
             for i in range(coordinates):
+                # Back to a change of accelerations: q - by_x change has the increment.
                 change[index[e, i]] = own_dx[i] / scale
 
     return made(loop, kind, role, dtype)
@@ -81,6 +83,7 @@ def _deal(own, table):
     size = own.last + 1
     rows, delta, change = integers(table.rows, size), reals(own.delta, own.last_row + 1), reals(own.change, size)
     for i in range(size):
+        # Coordinates of nodes are filled by the kernels of their kinds after this.
         change[i] = delta[rows[i]]
 
 

@@ -66,6 +66,7 @@ def pullback(kind: Declaration, dtype: type) -> BlockKernel:
             of_number, other = k < own.column_count, k - own.column_count
             read, rate = other // 3, other % 3
             e = places[k, 0] if of_number else reads[read, 0]
+            # Neighbouring numbers mostly belong to one component, whose state is loaded once.
             if e != before:
                 for i in range(width):
                     g = index[e, i]
@@ -80,8 +81,11 @@ def pullback(kind: Declaration, dtype: type) -> BlockKernel:
             function(own_x, own_v, own_a, p[e], m[e], inputs, own_r)
             total = 0.0
             for i in range(width):
+                # mu^T dr/da by one complex residual: the gradient costs one residual a number, whatever the number of
+                # parameters.
                 total += adjoint[index[e, i]] * (own_r[i].imag / STEP)
             if of_number:
+                # The step is exact to take back: real parts are never touched.
                 entries[e, places[k, 1]] -= 1j * STEP
                 gradient[k] -= total
             else:
@@ -113,10 +117,12 @@ def _pull_signals(work, given):
     data, knots = complexes(table.signal_data, table.number_count), reals(table.knots, table.knot_count)
     callbacks, chosen = integers(table.callbacks, table.callback_count), integers(own.signals, own.signal_count)
     bars, gradient = reals2(own.bars, table.signal_count, 3), reals(own.gradient, table.number_count)
+    # Signals count from their own zero, calls from the start of the motion.
     t, within = call.t + data[0].real, call.within + data[0].real
     for k in range(own.signal_count):
         s = chosen[k]
         kind, first, count, knot = index[s, 0], index[s, 1], index[s, 2], index[s, 3]
+        # No component has read this signal at this state.
         if bars[s, 0] == 0.0 and bars[s, 1] == 0.0 and bars[s, 2] == 0.0:
             continue
         begin, end = first, first + count

@@ -20,6 +20,8 @@ def tangent(kind: Declaration, dtype: type) -> BlockKernel:
     """
     function, width, coordinates, increments = kind.residual_function, kind.width, kind.coordinates, kind.increments
     joins, system, others = kind.constraint is not None, system_of(kind), kind.width - kind.coordinates
+    # A quadratic r and an N that is linear in the coordinates: N^T r is of degree three, so its derivative takes both
+    # parts apart, N^T r' and (dN)^T r.
     turns = tuple(float(not chart.is_flat) for chart in kind.parts for _ in range(chart.size))  # N depends on them
     row_count, projected = system.count, system.project
     project, spread = projecting(kind.parts), spreading(kind.parts)

@@ -31,15 +31,13 @@ class Reduction(NamedTuple):
 def reduction(index: Mapping[Kind, np.ndarray], n: int, size: int) -> Reduction:
     """The reduced system of components with unknowns ``index``, for ``n`` coordinates and ``size`` unknowns.
 
-    Raises
-    ------
-    ModelError
-        For a kind that does not declare the charts of coordinates that it depends on.
+    Raises ModelError: for a kind that does not declare the charts of coordinates that it depends on.
     """
     nodal = [kind for kind in index if kind.chart is not None]
     rows = np.arange(size + 1, dtype=np.int64)
     if not nodal:
         return Reduction(n, size, index, {}, rows)
+    # Unknowns of nodes have no rows of their own: their coordinates become increments, their multipliers vanish.
     free = np.ones(size, dtype=bool)
     for kind in nodal:
         free[index[kind]] = False
@@ -48,6 +46,7 @@ def reduction(index: Mapping[Kind, np.ndarray], n: int, size: int) -> Reduction:
     increments = len(flat) + sum(counts)
     own = increments + len(others)
     rows[:-1], rows[-1] = _NODAL, own
+    # Order: flat coordinates, increments of the nodes kind by kind, multipliers of joints.
     rows[flat], rows[others] = np.arange(len(flat)), increments + np.arange(len(others))
     nodes: dict[Kind, np.ndarray] = {}
     places: dict[tuple[Chart | None, int], np.ndarray] = {}  # rows of the node with this first coordinate
@@ -70,6 +69,7 @@ def _rows_of(
     parts, at = [], 0
     for chart in kind.parts:
         own = index[:, at : at + chart.size]
+        # A component finds a node by the first of its coordinates; the ground has none.
         known = {**places, (chart, absent): np.full(chart.increments, rows[-1])}
         none = np.full(chart.increments, _NODAL)
         nodal = [known.get((chart, int(first)), none) for first in own[:, 0]]

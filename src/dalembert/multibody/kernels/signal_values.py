@@ -4,8 +4,6 @@ Each signal has a row of `index`: kind, first entry and number of entries in `da
 Signal 0 is the time itself. The first entry of `data` is the time of the signals at which the motion begins.
 """
 
-from collections.abc import Sized
-
 from dalembert.kernels.kernel import BlockKernel, inner
 from dalembert.kernels.views import call_with, complexes, complexes2, integers, integers2, reals, reals2, stack
 from dalembert.multibody.kernels.elementary import sin_cos
@@ -21,6 +19,8 @@ _AT_CHANGE = 1e-6  # of the interval between two times of a held table: how near
 @inner
 def _polynomial(data, first, count, t):
     """Value and two derivatives of data[first] + data[first + 1] t + ..."""
+    # Zeros of the data's arithmetic. Horner's scheme carries the derivatives along: (second, rate, value) in this
+    # order, as each needs the one below before it changes.
     value, rate, second = 0.0 * data[first], 0.0 * data[first], 0.0 * data[first]
     for i in range(count - 1, -1, -1):
         second = second * t + 2.0 * rate
@@ -33,6 +33,7 @@ def _polynomial(data, first, count, t):
 def segment(knots, first, count, t):
     """Number of the interval of `count` + 1 knots that holds t; the last one beyond the end."""
     low, high = 0, count - 1
+    # Bisection: a table of a measured input has many thousands of knots.
     while low < high:
         middle = (low + high + 1) // 2
         if knots[first + middle] <= t:
@@ -49,6 +50,7 @@ def _table(first, count, knot, data, knots, t, out):
     integrals, order = int(data[first + 3].real), int(data[first + 4].real)
     parts = (count - TABLE_HEAD) // order
     low, high = knots[knot], knots[knot + parts]
+    # Comparisons are of real parts: a delay may be complex, the piece that it falls on may not depend on it.
     inside = low <= since.real <= high
     if not inside:
         since = 0.0 * since + (low if since.real < low else high)
@@ -56,6 +58,7 @@ def _table(first, count, knot, data, knots, t, out):
     piece = first + TABLE_HEAD + order * part
     value, rate, second = _polynomial(data, piece, order, since - knots[knot + part])
     value, rate, second = scale * value, scale * rate, scale * second
+    # The offset acts under the integrals too: as a ramp of the first one, as a parabola of the second.
     lasted = since - low
     if integrals == 0:
         value += offset
@@ -143,10 +146,5 @@ def _time_kernel(dtype: type) -> BlockKernel:
 
 EVALUATE_REAL, EVALUATE_COMPLEX = _kernel(float), _kernel(complex)
 TIME_REAL, TIME_COMPLEX = _time_kernel(float), _time_kernel(complex)
-_ALL = {float: EVALUATE_REAL, complex: EVALUATE_COMPLEX}
-_TIME_ALONE = {float: TIME_REAL, complex: TIME_COMPLEX}
-
-
-def evaluators(index: Sized) -> dict[type, BlockKernel]:
-    """Kernels that fill the signals with these rows of ``index``, in real and in complex numbers."""
-    return _TIME_ALONE if len(index) == 1 else _ALL
+EVALUATORS = {float: TIME_REAL, complex: TIME_COMPLEX}, {float: EVALUATE_REAL, complex: EVALUATE_COMPLEX}
+"""Kernels that fill the signals of a model, of the time alone and of more than one signal, by their arithmetic."""

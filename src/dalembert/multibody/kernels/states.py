@@ -77,6 +77,7 @@ def copy(source, target):
 def perturb(n, state, direction, target):
     """Complex state: the real one plus the imaginary step along a direction."""
     for i in range(len(state.x)):
+        # A step of 1e-30: its square is below the smallest number that could change a real part.
         target[0, i] = complex(state.x[i], STEP * direction.x[i])
     for i in range(n):
         target[1, i] = complex(state.v[i], STEP * direction.v[i])
@@ -101,10 +102,13 @@ def coefficients(step, spectral_radius):
 
     ``dq`` = dq_{n+1} / d(acceleration) = beta h^2 (1 - alpha_f) / (1 - alpha_m), ``dv`` = gamma h times the same ratio.
     """
+    # Chung and Hulbert's choice: second order, and for the spectral radius at infinity the least damping of low
+    # frequencies.
     alpha_m = (2 * spectral_radius - 1) / (spectral_radius + 1)
     alpha_f = spectral_radius / (spectral_radius + 1)
     gamma = 0.5 + alpha_f - alpha_m
     beta = 0.25 * (gamma + 0.5) ** 2
+    # By the first formula dw = share da; q and v change by it through Newmark's formulas.
     share = (1 - alpha_f) / (1 - alpha_m)
     return Coefficients(step, step * step * beta * share, step * gamma * share, alpha_m, alpha_f, beta, gamma)
 
@@ -127,6 +131,7 @@ def advance(n, c, old, new):
     half, beta = h * h * (0.5 - c.beta), h * h * c.beta
     early, late = h * (1.0 - c.gamma), h * c.gamma
     for i in range(n):
+        # The new algorithmic acceleration first: coordinates and velocities need it.
         w0 = old.w[i]
         w1 = own * new.a[i] + past * old.a[i] - lag * w0
         new.w[i] = w1
@@ -137,6 +142,7 @@ def advance(n, c, old, new):
 @inner
 def shift(n, c, change, state):
     """Take a change off the accelerations of an advanced state, with what it changes of the rest."""
+    # The formulas are linear: a correction is taken off all parts without a look at the old state.
     share = (1.0 - c.alpha_f) / (1.0 - c.alpha_m)
     for i in range(n):
         state.a[i] -= change[i]
@@ -152,6 +158,8 @@ def interpolate(n, h, s, old, new, x, v, a):
         for i in range(len(x)):
             x[i], v[i], a[i] = new.x[i], new.v[i], new.a[i]
         return
+    # Hermite's cubic through the values and rates of both ends. Velocities are interpolated alike, not as its
+    # derivative, which would lose an order.
     s0, s1 = 1 - 3 * s * s + 2 * s**3, 3 * s * s - 2 * s**3
     t0, t1 = h * (s - 2 * s * s + s**3), h * (s**3 - s * s)
     for i in range(n):

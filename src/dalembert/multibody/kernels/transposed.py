@@ -11,6 +11,7 @@ def solve_dense_transposed(layout: Layout, factors: Factors, given: Reals, answe
     """Multiply by the transposed inverse."""
     for j in range(layout.size):
         whole = layout.size // LANES * LANES
+        # Columns of the inverse are rows of its transpose: each entry is a dot product over contiguous memory.
         total = dot(factors.matrix, j * layout.lead, given, 0, whole)
         for i in range(whole, layout.size):
             total += factors.matrix[j * layout.lead + i] * given[i]
@@ -31,9 +32,12 @@ def solve_band_transposed(layout: Layout, factors: Factors, given: Reals, answer
         x[i] = 0.0
     for k in range(size):
         own, at, count = k * lead + above, above + k, -(-(k - tops[k]) // LANES) * LANES
+        # U^T has the columns of U as rows. In whole vectors: entries above a column's top meet the zeros before the
+        # first unknown.
         x[at] = (x[at] - dot(a, own - count, x, at - count, count)) * a[own]
     for k in range(size - 1, -1, -1):
         own, at = k * lead + above, above + k
+        # L^T after it; exchanges of rows come last, as they came first in the solution with L.
         x[at] -= dot(a, own + 1, x, at + 1, reach)
         p = pivots[k]
         if p > 0:

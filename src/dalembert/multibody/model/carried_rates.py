@@ -15,14 +15,8 @@ def carried_rates(
 
     The chosen velocity of a body that states none is relative to the point that the body is placed at.
 
-    Parameters
-    ----------
-    bodies : sequence of BaseBody
-    coordinates : sequence of array (size,)
-        Of each undeformed body.
-    modes : sequence of array (size, rates)
-        Their derivatives by the frames.
-    chosen : array, shape (bodies, rates, k)
+    ``coordinates`` (size,): of each undeformed body; ``modes`` (size, rates): their derivatives by the frames;
+    ``chosen`` (bodies, rates, k).
     """
     number = {body.name: k for k, body in enumerate(bodies)}
     rates = chosen.astype(np.result_type(chosen, *modes))

@@ -19,12 +19,7 @@ _SMALL = 90  # unknowns up to which a kept dense inverse is faster than a kept b
 class Couplings:
     """The matrix of a system of equations.
 
-    Parameters
-    ----------
-    index : mapping of kind to int array (count, width)
-        Rows of each component; ``size`` where it has none.
-    size : int
-        Of the matrix.
+    ``index`` (count, width): rows of each component; ``size`` where it has none; ``size``: of the matrix.
     """
 
     index: Mapping[Kind, np.ndarray]

@@ -97,7 +97,7 @@ def _violations(
 def energy_kernels(lowered: Lowered, derivatives: bool) -> list[Compiled]:
     """Kernels of :func:`energies`, and those that differentiate them."""
     types = (float, complex)[: 1 + derivatives]
-    kinds = [kind for kind in lowered.data if kind.has("energy")]
+    kinds = [kind for kind in lowered.data if "energy" in kind.roles]
     return [energy_history, *(kind.kernel("energy", dtype) for dtype in types for kind in kinds)]
 
 

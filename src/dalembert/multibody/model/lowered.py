@@ -1,48 +1,34 @@
-"""A system of components as the arrays of the kernels, and its models in real and in complex numbers."""
+"""A system of components as the arrays of the kernels, its models in real and in complex numbers, typical sizes."""
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.components.base_body import BaseBody
+from dalembert.multibody.components.laws.friction_law import FORCE, NUMBERS
 from dalembert.multibody.kernels.block_table import Blocks, Model, Signals
 from dalembert.multibody.kernels.callbacks import Callback, Failures
 from dalembert.multibody.kernels.kind import Kind
-from dalembert.multibody.kernels.signal_values import evaluators
+from dalembert.multibody.kernels.signal_values import EVALUATORS
 from dalembert.multibody.model.structure import Structure
+
+_MODELS = ("real", "complex_model", "unperturbed", "tangents")
 
 
 @dataclass(frozen=True)
 class Lowered:
     """A system as arrays.
 
-    Parameters
-    ----------
-    structure : Structure
-    bodies : mapping of name to BaseBody
-    data : mapping of kind to array (count, -)
-    signal_data, knots : array
-    callbacks : tuple of Callback
-    frames : array, shape (bodies, -)
-        Initial frame of each body.
-    rates : array, shape (bodies, rates)
-        Their stated rates, zero where none is stated.
-    stated : array of bool, shape (bodies, rates)
-        Which rates the bodies state.
-    x, v : array, shape (N + 1,)
-        First unknowns and velocities, as placed: joints may not be closed yet.
-    jumps : tuple of float
-        Times, s, at which loads jump; these and those of kinks are measured from the start of the motion.
-    changes : frozenset of float
-        Those of the jumps at which nothing but the values of held tables changes.
-    kinks : tuple of (time, joint)
-        Times, s, at which the velocity of a prescribed motion would jump.
-    failures : Failures
-        What functions of the user's raised.
-    parts : mapping of kind to tuple of str
-        Name of the component that each row belongs to.
+    ``data`` (count, -); ``frames`` (bodies, -): initial frame of each body; ``rates`` (bodies, rates): their stated
+    rates, zero where none is stated; ``stated`` (bodies, rates): which rates the bodies state; ``x``, ``v`` (N + 1,):
+    first unknowns and velocities, as placed: joints may not be closed yet; ``jumps``: times, s, at which loads jump;
+    these and those of kinks are measured from the start of the motion; ``changes``: those of the jumps at which nothing
+    but the values of held tables changes; ``kinks`` (time, joint): times, s, at which the velocity of a prescribed
+    motion would jump; ``failures``: what functions of the user's raised; ``parts``: name of the component that each row
+    belongs to.
     """
 
     structure: Structure
@@ -80,8 +66,8 @@ class Lowered:
         """Kernels of the components that every simulation needs, and those for derivatives along directions."""
         roles = [("residual", float), ("tangent", complex), ("rates", float)]
         roles += [("residual", complex), ("rates", complex)] * derivatives
-        own = [kind.kernel(*role) for role in roles for kind in self.data if kind.has(role[0])]
-        return [*own, *evaluators(self.structure.signals).values()]
+        own = [kind.kernel(*role) for role in roles for kind in self.data if role[0] in kind.roles]
+        return [*own, *EVALUATORS[len(self.structure.signals) > 1].values()]
 
     def model(self, dtype: type, *roles: str) -> Model:
         """The arrays in real or in complex numbers, with the kernels of these roles."""
@@ -120,6 +106,16 @@ class Lowered:
         """The model in complex numbers without imaginary parts, for tangents alone."""
         return self._unperturbed.model(complex, "tangent")
 
+    def moved(self, **changes: Any) -> "Lowered":
+        """The system in another state: ``frames``, ``rates``, ``x`` or ``v``, or in an equal structure.
+
+        Its models do not depend on these, so those that exist are kept.
+        """
+        kept = {name: vars(self)[name] for name in _MODELS if name in vars(self)}
+        other = replace(self, **changes)
+        vars(other).update(kept)
+        return other
+
     @property
     def _unperturbed(self) -> "Lowered":
         data = {kind: np.real(array) for kind, array in self.data.items()}
@@ -128,3 +124,32 @@ class Lowered:
 
 def _cast(array: np.ndarray, dtype: type) -> np.ndarray:
     return np.real(array).astype(float) if dtype is float else array.astype(complex)
+
+
+def scales(lowered: Lowered) -> np.ndarray:
+    """Typical size of each unknown, (N + 1,): the mechanism's extent for positions, one for angles and gradients."""
+    n, kinds, extent = lowered.structure.n, np.array(lowered.structure.kinds), _extent(lowered)
+    scale = np.ones(lowered.structure.size + 1)
+    scale[:n][np.isin(kinds, ("position", "displacement"))] = extent
+    return scale
+
+
+def slip_scale(lowered: Lowered) -> float:
+    """Smallest rate over which dry friction changes, in parts of the scales, 1/s; infinity without dry friction."""
+    least = np.inf
+    for kind, data in lowered.data.items():
+        if set(NUMBERS) <= set(kind.numbers):
+            own = dict(zip(kind.numbers, np.real(data.T), strict=True))
+            dry = own["coulomb"] + own["per_reaction"] + own["stribeck"] > 0
+            scale = _extent(lowered) if kind.outputs == FORCE else 1.0
+            least = min(least, np.min(own["slip"], where=dry, initial=np.inf) / scale)
+    return float(least)
+
+
+def _extent(lowered: Lowered) -> float:
+    """Largest distance of positions, or length of a component, m; 1 for a point."""
+    n, kinds = lowered.structure.n, np.array(lowered.structure.kinds)
+    places = np.real(lowered.x)[:n][kinds == "position"].reshape(-1, lowered.dimension)
+    lengths = (np.real(data[:, kind.length_columns]) for kind, data in lowered.data.items())
+    extent = max(np.ptp(places, axis=0).max(initial=0.0), *(np.abs(entry).max(initial=0.0) for entry in lengths))
+    return float(extent) if extent > 0 else 1.0

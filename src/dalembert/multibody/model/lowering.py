@@ -15,7 +15,7 @@ import numpy as np
 from dalembert.errors import InputError, ModelError, shown
 from dalembert.multibody.components.base_body import BaseBody
 from dalembert.multibody.components.fields import Number
-from dalembert.multibody.components.points import Point
+from dalembert.multibody.components.points import Ground, Point
 from dalembert.multibody.components.signals import Course, Custom, Signal, as_signal
 from dalembert.multibody.kernels import signal_values as signal_kinds
 from dalembert.multibody.kernels.callbacks import Callback, Failures, Sizes, force_callback, signal_callback
@@ -49,6 +49,7 @@ class MechanismLowering(ABC):
         self._component = ""  # that writes its rows
         self._failures = Failures()
         self._bodies: dict[str, BaseBody] = {}
+        self._frames: dict[str, np.ndarray] = {}
         self._coordinates: dict[str, np.ndarray] = {}
         self._first: dict[str, int] = {}
 
@@ -114,6 +115,17 @@ class MechanismLowering(ABC):
     def frame(self, body: BaseBody) -> np.ndarray:
         """Initial frame of a body; those that it is placed at are known already."""
 
+    def _ends(self, a: Any, b: Any, owner: str) -> list[tuple[Any, Any]]:
+        """Both sides, each with the marker of a point as its body numbers it, or with None."""
+        if not isinstance(a, Point) and not isinstance(b, Point):
+            raise ModelError(f"{owner!r}: it acts on the ground only; give it a point of a body")
+        if isinstance(a, Point) and isinstance(b, Point) and a.body is b.body and a.body.rigid:
+            raise ModelError(
+                f"{owner!r}: both its points, {a} and {b}, belong to the same rigid body, so it does nothing; "
+                "give it points of two bodies, or of a body and the ground"
+            )
+        return [(side, self._known(side, owner) if isinstance(side, Point) else None) for side in (a, b or Ground())]
+
     def _known(self, point: Point, owner: str) -> Any:
         if self._bodies.get(point.body.name) is not point.body:
             raise ModelError(
@@ -153,15 +165,17 @@ class MechanismLowering(ABC):
         """Place the bodies, let every component write its rows, and pack them."""
         system = self._system
         bodies = system.carriers
-        frames, kinds = [], []
+        kinds, motions, modes = [], [], []
         for body in bodies:
-            frame = self.frame(body)
+            frame = self._frames[body.name] = self.frame(body)
+            motions.append(body.motion)
             self._bodies[body.name] = body
             self._first[body.name] = len(self._owners)
-            self._owners += [body.name] * body.size
-            self._coordinates[body.name] = body.placed(frame)
-            frames.append(frame)
-            kinds += body.coordinate_kinds
+            coordinate_kinds = body.coordinate_kinds
+            self._owners += [body.name] * len(coordinate_kinds)
+            place = self._coordinates[body.name] = body.placed(frame)
+            modes.append(body.rigid_modes(place, frame))
+            kinds += coordinate_kinds
         n = len(self._owners)
         if n == 0:
             raise ModelError("the system has no body; add one")
@@ -174,10 +188,9 @@ class MechanismLowering(ABC):
         self._refuse_unnamed_rows()
         size = len(self._owners)
         tail = np.zeros(size + 1 - n)
-        places = list(self._coordinates.values())
+        frames, places = list(self._frames.values()), list(self._coordinates.values())
         x = np.concatenate([*places, tail])
-        modes = [body.rigid_modes(*place) for body, *place in zip(bodies, places, frames, strict=True)]
-        chosen = np.array([[0.0 if value is None else value for value in body.motion] for body in bodies])
+        chosen = np.array([[0.0 if value is None else value for value in motion] for motion in motions])
         rates = carried_rates(bodies, places, modes, chosen[:, :, None])[:, :, 0]
         velocities = [own @ rate for own, rate in zip(modes, rates, strict=True)]
         columns = {kind: [*zip(*rows, strict=True)] for kind, rows in self._written.items()}
@@ -201,7 +214,7 @@ class MechanismLowering(ABC):
             callbacks=tuple(self._callbacks),
             frames=np.array(frames),
             rates=chosen,
-            stated=np.array([[value is not None for value in body.motion] for body in bodies]),
+            stated=np.array([[value is not None for value in motion] for motion in motions]),
             x=x,
             v=np.concatenate([*velocities, tail]),
             jumps=tuple(sorted(self._since(time) for time in self._jumps | self._changes if np.isfinite(time))),
@@ -218,10 +231,7 @@ class MechanismLowering(ABC):
 def lower(system: Mechanism, begin: float = 0.0) -> Lowered:
     """Arrays of a system, with its bodies as placed; its motion starts at the time ``begin`` (s) of its signals.
 
-    Raises
-    ------
-    InputError
-        For what is no System.
+    Raises InputError: for what is no System.
     """
     if not isinstance(system, Mechanism):
         advice = f": {system.INSTEAD}" if hasattr(system, "INSTEAD") else ""

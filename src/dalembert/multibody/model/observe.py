@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -38,7 +39,7 @@ class _Row:
     source: int | tuple[str, str] = 0
     weights: tuple[float, float] = (0.0, 0.0)
 
-    @property
+    @cached_property
     def angle(self) -> CountedAngle | None:
         """The angle that it is, if it is one that is known up to whole turns."""
         if self.kind is None or self.output not in self.kind.turning(self.integers):
@@ -56,13 +57,7 @@ class _Row:
 
 @dataclass(frozen=True)
 class Observer:
-    """Channels of a structure; the numbers of components are read from each sample's arrays.
-
-    Parameters
-    ----------
-    channels : tuple of Channel
-    rows : tuple of _Row
-    """
+    """Channels of a structure; the numbers of components are read from each sample's arrays."""
 
     channels: tuple[Channel, ...]
     rows: tuple[_Row, ...]
@@ -74,7 +69,7 @@ class Observer:
         energies_too = energy_kernels(lowered, derivatives) if None in kinds else []
         return [*[outputs_history] * bool(own), *own, *energies_too, *turn_kernels(self.counted)]
 
-    @property
+    @cached_property
     def counted(self) -> tuple[CountedAngle, ...]:
         """Angles among the channels that are known up to whole turns."""
         return tuple(dict.fromkeys(row.angle for row in self.rows if row.angle))
@@ -145,12 +140,12 @@ class OutputBlock:
 
     def read(self, model: Model, states: Sequence[np.ndarray], stamps: np.ndarray) -> np.ndarray:
         """Outputs (samples, components, outputs) of contiguous states (samples, -); without stamps no signals."""
-        x, v, a = states
-        call, stamps = model.call().set(last=x.shape[1] - 1), np.ascontiguousarray(stamps, dtype=float)
+        x, places = states[0], [array.ctypes.data for array in states]
+        own, stamps = self.address, np.ascontiguousarray(stamps, dtype=float)
+        call = model.call().set(last=x.shape[1] - 1)
         out = np.zeros((len(x), len(self._arrays[0]), len(self.kind.outputs)), dtype=x.dtype)
-        places = (array.ctypes.data for array in (x, v, a))
         outputs_history(
-            model.address, call.address, self.address, *places, x.strides[0], stamps, beside(stamps, -1),
+            model.address, call.address, own, *places, x.strides[0], stamps, beside(stamps, -1),
             out.ctypes.data, out.strides[0], len(x),
         )  # fmt: skip
         return out
@@ -164,10 +159,7 @@ def beside(times: np.ndarray, side: int) -> np.ndarray:
 def observer(system: Mechanism, lowered: Lowered, names: Sequence[str]) -> Observer:
     """Channels by name.
 
-    Raises
-    ------
-    InputError
-        For an unknown name, with the nearest ones.
+    Raises InputError: for an unknown name, with the nearest ones.
     """
     rows = tuple(_row(system, lowered, name) for name in names)
     return Observer(tuple(Channel(name, row.unit) for name, row in zip(names, rows, strict=True)), rows)

@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 
-from dalembert.errors import ModelError
 from dalembert.multibody.components.base_body import BaseBody
 from dalembert.multibody.components.points import Point
 from dalembert.multibody.components.spatial import markers
@@ -25,7 +24,7 @@ class SpatialLowering(MechanismLowering):
         if callable(place):
             return body.frame(place(self))
         if isinstance(place, Point | GroundPoint):
-            return body.frame(*self._stand(place, body.name))
+            return body.frame(*self._stand(place, self._known(place, body.name) if isinstance(place, Point) else None))
         return body.frame(place)
 
     def pair(self, a: Side, b: Side | None, owner: str, turned: tuple[np.ndarray, np.ndarray] | None = None) -> Pair:
@@ -33,17 +32,13 @@ class SpatialLowering(MechanismLowering):
 
         ``turned``: rotation matrices that turn the axes of both markers into those of the joint.
         """
-        if not isinstance(a, Point) and not isinstance(b, Point):
-            raise ModelError(f"{owner!r}: it acts on the ground only; give it a point of a body")
-        if isinstance(a, Point) and isinstance(b, Point) and a.body is b.body and a.body.rigid:
-            raise ModelError(
-                f"{owner!r}: both its points, {a} and {b}, belong to the same rigid body, so it does nothing; "
-                "give it points of two bodies, or of a body and the ground"
-            )
-        sides = (a, b or Ground())
-        stands = [self._stand(one if not _bare(one) else other, owner) for one, other in (sides, sides[::-1])]
-        stands = [(at, np.eye(3) if _bare(one) else axes) for one, (at, axes) in zip(sides, stands, strict=True)]
-        own = [self._marker(side, owner, stand) for side, stand in zip(sides, stands, strict=True)]
+        ends = self._ends(a, b, owner)
+        stands = [self._stand(*(other if isinstance(end[0], Ground) else end)) for end, other in (ends, ends[::-1])]
+        stands = [
+            (at, np.eye(3) if isinstance(end, Ground) else axes)
+            for (end, _), (at, axes) in zip(ends, stands, strict=True)
+        ]
+        own = [self._marker(*end, stand) for end, stand in zip(ends, stands, strict=True)]
         axes = [stand[1] for stand in stands]
         if turned is not None:
             own = [one._replace(axes=one.axes @ turn) for one, turn in zip(own, turned, strict=True)]
@@ -57,26 +52,20 @@ class SpatialLowering(MechanismLowering):
             axes=(axes[0], axes[1]),
         )
 
-    def _stand(self, side: Any, owner: str) -> Stand:
+    def _stand(self, side: Any, marker: Marker | None) -> Stand:
         """Position and axes of a side at the start."""
         if isinstance(side, GroundPoint):
             return np.array(side.position), side.orientation.matrix
-        if isinstance(side, Ground):
+        if marker is None:
             return np.zeros(3), np.eye(3)
-        marker, own = self._known(side, owner), self._coordinates[side.body.name]
+        own = self._coordinates[side.body.name]
         if marker.kind == markers.MASS:
             return own[:3], np.eye(3)
         directors = own[3:12].reshape(3, 3).T
         return own[:3] + directors @ marker.position, directors @ marker.axes
 
-    def _marker(self, side: Any, owner: str, stand: Stand) -> Marker:
-        if isinstance(side, Point):
-            marker = self._known(side, owner)
+    def _marker(self, side: Any, marker: Marker | None, stand: Stand) -> Marker:
+        if marker is not None:
             first = self._first[side.body.name]
             return marker._replace(slots=tuple(None if k is None else first + k for k in marker.slots))
         return Marker(markers.GROUND, (None,) * markers.SLOTS, *stand)
-
-
-def _bare(side: Any) -> bool:
-    """Whether a side is the ground without a position."""
-    return isinstance(side, Ground)

@@ -26,12 +26,7 @@ Stated = Mapping[tuple[str, str], Number]
 class JointStates:
     """Coordinates and rates of joints that a state has at the start.
 
-    Parameters
-    ----------
-    coordinates : mapping of (joint, coordinate) to float
-        rad and m.
-    rates : mapping of (joint, coordinate) to float
-        rad/s and m/s.
+    ``coordinates`` (joint, coordinate): rad and m; ``rates`` (joint, coordinate): rad/s and m/s.
     """
 
     coordinates: Stated
@@ -52,10 +47,8 @@ NONE = JointStates({}, {})
 def joint_values(owner: str, joints: list[Any], given: Mapping[str, Number] | None) -> Stated:
     """Values by joint and coordinate, from those by ``"pin"`` or ``"bearing.displacement"``.
 
-    Raises
-    ------
-    InputError
-        For another joint or coordinate, a joint with several coordinates of which none is named, and what is no number.
+    Raises InputError: for another joint or coordinate, a joint with several coordinates of which none is named, and
+    what is no number.
     """
     known: dict[str, list[str]] = {joint.name: list(joint.stated_coordinates) for joint in joints}
     movable = [name for name, own in known.items() if own]

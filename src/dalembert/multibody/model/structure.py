@@ -16,18 +16,8 @@ from dalembert.multibody.model.couplings import Couplings
 class Structure:
     """What samples of an ensemble share.
 
-    Parameters
-    ----------
-    n, size : int
-        Coordinates; coordinates and multipliers.
-    owners : tuple of str, length size
-        Component of each unknown.
-    first : mapping of body to its first coordinate
-    kinds : tuple of str, length n
-        Kind of each coordinate.
-    index, meta : mapping of kind to int array (count, -)
-    rows : mapping of joint or spring to its kind and row
-    signals : int array (signals, 4)
+    ``n``, ``size``: coordinates; coordinates and multipliers; ``owners``: component of each unknown; ``kinds``: kind of
+    each coordinate; ``index``, ``meta`` (count, -); ``signals`` (signals, 4).
     """
 
     n: int

@@ -83,12 +83,7 @@ def count_turns(turns, t, state, due):
 class CountedAngle:
     """An output of a component that is an angle known up to whole turns.
 
-    Parameters
-    ----------
-    kind : Kind
-    source : int or (body, point)
-        Row of the component, or the body and point whose sensor is read.
-    output : int
+    ``source`` (body, point): row of the component, or the body and point whose sensor is read.
     """
 
     kind: Kind
@@ -99,7 +94,7 @@ class CountedAngle:
     def columns(self) -> tuple[int, int]:
         """Where angle and rate stand in what the kernel of the kind fills; -1 for no rate."""
         names = [name for name, _ in self.kind.outputs]
-        if self.kind.has("turn"):
+        if "turn" in self.kind.roles:
             place = 2 * self.kind.angles.index(names[self.output])
             return place, place + 1
         rate = names[self.output].replace("angle", "rate")
@@ -142,7 +137,7 @@ def turn_kernels(angles: Sequence[CountedAngle]) -> list[Compiled]:
 
 def _kernel(kind: Kind) -> Compiled:
     """The kernel that fills angles and rates, or all outputs of a kind without one."""
-    return kind.kernel("turn" if kind.has("turn") else "outputs", float)
+    return kind.kernel("turn" if "turn" in kind.roles else "outputs", float)
 
 
 class TurnCounter:
@@ -162,7 +157,7 @@ class TurnCounter:
                 np.ascontiguousarray(whole.reshape(len(chosen), -1), np.int64),
                 np.ascontiguousarray(np.real(numbers), float),
             )
-            kernel, wide = _kernel(kind), 2 * len(kind.angles) if kind.has("turn") else len(kind.outputs)
+            kernel, wide = _kernel(kind), 2 * len(kind.angles) if "turn" in kind.roles else len(kind.outputs)
             block = self._blocks[k]
             block["count"], block["outputs"] = len(chosen), kernel.address
             block["index"], block["integers"], block["numbers"] = (array.ctypes.data for array in arrays)

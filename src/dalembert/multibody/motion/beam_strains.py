@@ -22,14 +22,7 @@ def stretching(system: Mechanism) -> list[AncfBeam]:
 def strain_findings(system: Mechanism, lowered: Lowered, times: np.ndarray, states: np.ndarray) -> tuple[Finding, ...]:
     """Return a finding for each beam whose axial force differs by 1 % or more from Hooke's.
 
-    Parameters
-    ----------
-    system : Mechanism
-    lowered : Lowered
-    times : array, shape (samples,)
-        s.
-    states : array, shape (samples, N + 1)
-        Coordinates.
+    ``times`` (samples,): s; ``states`` (samples, N + 1): coordinates.
     """
     findings = []
     for beam in stretching(system):

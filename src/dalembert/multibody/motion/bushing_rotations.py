@@ -16,12 +16,8 @@ def turning_bushings(system: Mechanism) -> dict[str, tuple[str, ...]]:
 def half_turns(times: np.ndarray, rotations: Mapping[str, np.ndarray]) -> tuple[Finding, ...]:
     """Return a finding for each bushing that passes half a turn.
 
-    Parameters
-    ----------
-    times : array, shape (samples,)
-        s.
-    rotations : mapping of str to array (samples, 3)
-        Rotation vector of each bushing, rad. Where its length passes pi, it jumps by almost 2 pi.
+    ``times`` (samples,): s. ``rotations`` (samples, 3): rotation vector of each bushing, rad. Where its length passes
+    pi, it jumps by almost 2 pi.
     """
     findings = []
     for name, vectors in rotations.items():

@@ -34,13 +34,7 @@ _STATES = 5  # of a motion at which functions are compared
 class Along:
     """A motion with its channels.
 
-    Parameters
-    ----------
-    observer : Observer
-    times : array (samples,)
-    states : MotionState of arrays (samples, N + 1)
-    begin : float
-        Time of the signals at which the motion starts, s.
+    ``times`` (samples,); ``states`` (samples, N + 1); ``begin``: time of the signals at which the motion starts, s.
     """
 
     observer: Observer
@@ -66,10 +60,7 @@ def check_numbers(
 ) -> None:
     """Raise where a number of the model, or a function of time, loses the complex step of a parameter.
 
-    Raises
-    ------
-    InputError
-        It names the parameter, the component and its number.
+    Raises InputError: it names the parameter, the component and its number.
     """
 
     def lowered(vector: np.ndarray) -> Lowered:
@@ -85,10 +76,7 @@ def check_numbers(
 def check_numbers_together(builder: Callable[..., Mechanism], parameters: Parameters, vector: np.ndarray) -> None:
     """Compare as :func:`check_numbers`, along one direction of all parameters at once; they are few builds.
 
-    Raises
-    ------
-    InputError
-        It names the parameter, the component and its number.
+    Raises InputError: it names the parameter, the component and its number.
     """
     with in_complex_numbers(strict=True):
         check_together(
@@ -128,10 +116,7 @@ def _place(lowered: Lowered, entry: int) -> str:
 def check_closures(builder: Callable[..., Mechanism], parameters: Parameters, vector: np.ndarray, along: Along) -> None:
     """Raise where a function of the user's, or a kind of another package, loses the complex step of a parameter.
 
-    Raises
-    ------
-    InputError
-        It names the parameter and the component.
+    Raises InputError: it names the parameter and the component.
     """
 
     def answers(vector: np.ndarray) -> list[tuple[str, np.ndarray]]:
@@ -175,19 +160,8 @@ def _of_components(lowered: Lowered, along: Along) -> Iterator[tuple[str, np.nda
 def check_forces(lowered: Lowered, along: Along, scale: np.ndarray, remedy: str = REMEDY) -> None:
     """Raise where a function of the user's, or a kind of another package, loses the complex step of the state.
 
-    Parameters
-    ----------
-    lowered : Lowered
-    along : Along
-    scale : array (N + 1,)
-        Typical sizes of the coordinates.
-    remedy : str
-        What to do about a force, at the end of the message.
-
-    Raises
-    ------
-    InputError
-        It names the component.
+    ``scale`` (N + 1,): typical sizes of the coordinates; ``remedy``: what to do about a force, at the end of the
+    message. Raises InputError: it names the component.
     """
     kinds = [kind for kind in lowered.data if _foreign(kind)]
     if kinds or along.readers:

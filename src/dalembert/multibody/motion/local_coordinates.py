@@ -19,18 +19,10 @@ class LocalCoordinates:
     reference; its rates are the angular velocity w, d_i' = w x d_i. Both are in the fixed axes. All other coordinates
     are local coordinates themselves. So a mechanism in the plane has local coordinates that are its coordinates.
 
-    Parameters
-    ----------
-    names, kinds : tuple of str, length local
-        Such as ``"bar.x"``, ``"bar.angle"`` and ``"bar.rotation x"``; rotation increments are angles.
-    coordinates : int
-        Number n of coordinates.
-    directors : array of int, shape (nodes, 9)
-        Coordinates of the directors.
-    rotations : array of int, shape (nodes, 3)
-        Places of the rotation increments among the local coordinates.
-    inner : array of int
-        Constraints that local coordinates satisfy: those of the directors.
+    ``names``, ``kinds``: such as ``"bar.x"``, ``"bar.angle"`` and ``"bar.rotation x"``; rotation increments are angles;
+    ``coordinates``: number n of coordinates; ``directors`` (nodes, 9): coordinates of the directors; ``rotations``
+    (nodes, 3): places of the rotation increments among the local coordinates; ``inner``: constraints that local
+    coordinates satisfy: those of the directors.
     """
 
     names: tuple[str, ...]

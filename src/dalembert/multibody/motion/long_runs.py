@@ -21,9 +21,7 @@ TRIAL = 2_000  # steps
 def check_steps(owner: str, solver: Integrator, end: float, most: float = MOST_STEPS, advice: str = "") -> None:
     """Refuse more fixed steps than ``most``.
 
-    Raises
-    ------
-    InputError
+    Raises InputError.
     """
     if not (is_real(most) and most > 0):
         raise InputError(f"{owner}: most_steps is {shown(most)}; expected a positive number")
@@ -45,9 +43,7 @@ def check_pace(lowered: Lowered, solver: Integrator, end: float) -> None:
 
     Where loads or losses do work, steps may grow as the motion decays. There only the limit ends the run.
 
-    Raises
-    ------
-    SolveError
+    Raises SolveError.
     """
     most = getattr(solver, "most_steps", 0)
     if end < LONG or most <= TRIAL or solver.fixed_step is not None or works(lowered):

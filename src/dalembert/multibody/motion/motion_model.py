@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -117,13 +117,13 @@ class MotionModel(ABC):
         vector = self.parameters.real_vector(vector)
         if self._built.derivative != COMPLEX_STEP:
             return central_differences(self, vector)
-        self._built.prepare_derivatives()
+        solver = self._built.derivative_solver
         with in_complex_numbers(strict=True):
             lowered, perturbed = self._perturbed(vector)
             active = [column for column, own in enumerate(perturbed) if _moves(own)]
             directions = [perturbed[column] for column in active]
             end, counted = self.times[-1], self._built.observer.counted
-            (run,) = self._built.solver.integrate([lowered], directions, self.problem, end, counted=counted)
+            (run,) = solver.integrate([lowered], directions, self.problem, end, counted=counted)
         if run.reason:
             raise run.reason
         for name, own in zip(self.parameters.names, perturbed, strict=True):
@@ -206,11 +206,13 @@ class BuiltModel(MotionModel):
         check_pace(lowered, solver, end)
         return lowered
 
-    def prepare_derivatives(self) -> None:
-        """Compile, or load, what sensitivities need."""
+    @cached_property
+    def derivative_solver(self) -> Integrator:
+        """The solver, with what sensitivities need compiled, or loaded, once."""
         solver = self.solver.suiting(self.shared, float(self.times[-1]))
         kernels = self.shared.kernels(True), solver.kernels(self.shared.structure, True)
         prepare([*kernels[0], *kernels[1], *self.observer.kernels(self.shared, True)])
+        return self.solver
 
     def check_derivatives(self, vector: np.ndarray) -> None:
         """Compare the complex step with differences of the model's numbers at a vector (parameters,).
@@ -324,7 +326,7 @@ class BuiltModel(MotionModel):
     def _fit(self, lowered: Lowered) -> Lowered:
         if not self.shared.structure.same(lowered.structure):
             raise restructured()
-        return replace(lowered, structure=self.shared.structure)
+        return lowered.moved(structure=self.shared.structure)
 
 
 def _moves(perturbed: Lowered) -> bool:

@@ -14,8 +14,7 @@ from dalembert.multibody.kernels.block_table import Model
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.model.evaluate import constraint_jacobian, constraint_rates, residual
 from dalembert.multibody.model.fingerprint import fingerprint
-from dalembert.multibody.model.lowered import Lowered
-from dalembert.multibody.model.scales import scales
+from dalembert.multibody.model.lowered import Lowered, scales
 from dalembert.multibody.motion.local_coordinates import LocalCoordinates, coordinate_names
 from dalembert.multibody.motion.motion_model import BuiltModel, MotionModel
 from dalembert.parameters import Parameter, Parameters
@@ -111,17 +110,9 @@ def _unit(kind: str) -> str:
 class Completion:
     """How the dependent coordinates of a state follow from the chosen ones.
 
-    Parameters
-    ----------
-    chart : StateChart
-    coordinates : LocalCoordinates
-    dependent : array of int
-        Local coordinates that follow.
-    local : array, shape (local,)
-        Local coordinates where the joints are closed.
-    inverse, of_rates : array
-        Inverses there of the derivatives of the joints' constraints by the dependent local coordinates, and of their
-        rates by the dependent rates.
+    ``dependent``: local coordinates that follow; ``local`` (local,): local coordinates where the joints are closed;
+    ``inverse``, ``of_rates``: inverses there of the derivatives of the joints' constraints by the dependent local
+    coordinates, and of their rates by the dependent rates.
     """
 
     chart: StateChart
@@ -135,10 +126,7 @@ class Completion:
     def at(cls, lowered: Lowered, chart: StateChart, numbers: np.ndarray) -> "Completion":
         """Solve the joints' constraints for the dependent coordinates near the chart's state, by Newton's method.
 
-        Raises
-        ------
-        SolveError
-            Where the joints do not close there.
+        Raises SolveError: where the joints do not close there.
         """
         n, size = lowered.structure.n, lowered.structure.size
         own, half = LocalCoordinates.of(lowered), len(chart.places) // 2

@@ -26,17 +26,9 @@ FORCES = ("force", "force_in_space")
 class Sketch:
     """One pose of a mechanism.
 
-    Parameters
-    ----------
-    system : Mechanism
-    drawing : Drawing
-        One frame.
-    ends : mapping of str to array, shape (1 or 2, 2 or 3)
-        Positions in m of the points that a joint or a load acts on, by its name.
-    marks : mapping of str to array, shape (2 or 3,)
-        Positions in m of further points of bodies, by ``"body.point"``.
-    forces : mapping of str to array, shape (2 or 3,)
-        Forces in N along the fixed axes, by the names of their loads: amplitudes of those that change over time.
+    ``drawing``: one frame; ``ends`` (1 or 2, 2 or 3): positions in m of the points that a joint or a load acts on, by
+    its name; ``marks`` (2 or 3,): positions in m of further points of bodies, by ``"body.point"``; ``forces`` (2 or
+    3,): forces in N along the fixed axes, by the names of their loads: amplitudes of those that change over time.
     """
 
     system: Mechanism
@@ -59,20 +51,8 @@ class Sketch:
 def sketch(system: Mechanism, points: int = 8, *, marks: Sequence[str] = (), assemble: bool = True) -> Sketch:
     """Return the mechanism as it begins: assembled, or as its bodies are placed.
 
-    Parameters
-    ----------
-    system : Mechanism
-    points : int
-        Drawn points of a beam element.
-    marks : sequence of str
-        Points of bodies to locate, ``"body.point"``.
-    assemble : bool
-        Whether to close the joints.
-
-    Raises
-    ------
-    ModelError
-        Where the mechanism cannot be assembled.
+    ``points``: drawn points of a beam element; ``marks``: points of bodies to locate, ``"body.point"``; ``assemble``:
+    whether to close the joints. Raises ModelError: where the mechanism cannot be assembled.
     """
     placed = lower(system)
     prepare(placed.kernels(False))

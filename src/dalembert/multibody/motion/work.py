@@ -16,12 +16,7 @@ def works_of_steps(lowered: Lowered, times: np.ndarray, states: MotionState) -> 
     fourth order in the intervals, below those of the methods at their steps. Multipliers are linear. The points lie
     inside of the intervals, where no load jumps.
 
-    Parameters
-    ----------
-    lowered : Lowered
-    times : array, shape (samples,)
-        s.
-    states : MotionState of arrays (samples, N + 1)
+    ``times`` (samples,): s; ``states`` (samples, N + 1).
     """
     x, v, a = (np.asarray(own) for own in (states.x, states.v, states.a))
     n, h = lowered.structure.n, np.diff(times)[:, None]

@@ -7,7 +7,6 @@ the complex step, so the derivatives are those of the positions that are found, 
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
 from typing import Any, NamedTuple, cast
 
 import numpy as np
@@ -21,7 +20,7 @@ from dalembert.multibody.kernels.block_table import Model
 from dalembert.multibody.kernels.callbacks import AnswerError
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.model.evaluate import constraint_jacobian, residual
-from dalembert.multibody.model.lowered import Lowered
+from dalembert.multibody.model.lowered import Lowered, scales
 from dalembert.multibody.model.lowering import lower
 from dalembert.multibody.model.rigid_motions import (
     CLOSED,
@@ -34,7 +33,6 @@ from dalembert.multibody.model.rigid_motions import (
     turning,
     unknowns,
 )
-from dalembert.multibody.model.scales import scales
 from dalembert.multibody.model.stated_state import closing, kept_coordinates, like, moving
 from dalembert.multibody.model.system import EQUILIBRIUM, Mechanism
 from dalembert.multibody.start.equilibrium_start import begin_at_rest, unstable_body
@@ -54,12 +52,8 @@ def assembled(system: Mechanism, perturbed: bool = False, placed: Lowered | None
     A ``perturbed`` system is treated in complex numbers even if only functions of the user's hold the imaginary step;
     ``placed`` are the arrays of the system as `lower` makes them, where they are there already.
 
-    Raises
-    ------
-    ModelError
-        Where the mechanism cannot be assembled, its driving coordinates contradict its joints, or stated velocities do.
-    SolveError
-        Where a system that starts at its equilibrium has none near its first placement.
+    Raises ModelError: where the mechanism cannot be assembled, its driving coordinates contradict its joints, or stated
+    velocities do. Raises SolveError: where a system that starts at its equilibrium has none near its first placement.
     """
     lowered = placed or lower(system, begin)
     rests = system.start == EQUILIBRIUM
@@ -68,20 +62,22 @@ def assembled(system: Mechanism, perturbed: bool = False, placed: Lowered | None
     model = lowered.real
     if lowered.is_complex or perturbed:
         model = lowered.complex_model
-        lowered = replace(
-            lowered, **{name: getattr(lowered, name).astype(complex) for name in ("frames", "rates", "x", "v")}
+        lowered = lowered.moved(
+            **{name: getattr(lowered, name).astype(complex) for name in ("frames", "rates", "x", "v")}
         )
-    free = _free(system)
+    bodies = tuple(lowered.bodies.values())
+    turns = turning(bodies)
+    free = _free(system, bodies, turns)
     start = lowered.x
     if system.stated.coordinates:
-        lowered = _posed(system, lowered, model, free, begin)
-    frames, x = _close(system.carriers, lowered, model, free)
+        lowered = _posed(system, bodies, lowered, model, free, begin)
+    frames, x = _close(bodies, lowered, model, free)
     _refuse_misalignment(system, lowered, start, x)
-    lowered = replace(lowered, frames=frames, x=x)
+    lowered = lowered.moved(frames=frames, x=x)
     lowered = begin_at_rest(lowered) if rests else lowered
     if system.stated.rates:
-        return replace(lowered, v=_moving(system, lowered, begin))
-    return replace(lowered, v=initial_velocities(system.carriers, lowered, model))
+        return lowered.moved(v=_moving(system, bodies, turns, lowered, begin))
+    return lowered.moved(v=initial_velocities(bodies, turns, lowered, model))
 
 
 def _refuse_misalignment(system: Mechanism, lowered: Lowered, placed: np.ndarray, closed: np.ndarray) -> None:
@@ -116,27 +112,29 @@ def moves_start(system: Mechanism, placed: Lowered) -> bool:
     return bool(placed.callbacks) or any(np.any(data[first : first + count]) for _, first, count, _ in rows)
 
 
-def _posed(system: Mechanism, lowered: Lowered, model: Model, free: np.ndarray, begin: float) -> Lowered:
+def _posed(
+    system: Mechanism, bodies: Sequence[BaseBody], lowered: Lowered, model: Model, free: np.ndarray, begin: float
+) -> Lowered:
     """Arrays with frames where the joints have the stated coordinates, which are approached in small steps."""
     kept = kept_coordinates(system)
     placed = lowered
     _, gaps = _held(system, lowered, dict.fromkeys(kept, 0.0), placed, begin)
     with suppress(ModelError):  # joints that cannot be closed as placed may be closed where the coordinates are stated
-        frames, x = _close(system.carriers, lowered, model, free)
-        lowered = replace(lowered, frames=frames, x=x)
+        frames, x = _close(bodies, lowered, model, free)
+        lowered = lowered.moved(frames=frames, x=x)
     held, begins = _held(system, lowered, {key: gaps[".".join(key)] for key in kept}, placed, begin)
     own, owners = _model(held), held.structure.owners[held.structure.n :]
     ways = np.array([begins.get(owner, 0.0) for owner in owners])
     steps = max(1, int(np.ceil(np.abs(np.real(ways)).max() / _SWING)))
     try:
         for step in range(1, steps + 1):
-            frames, x = _close(system.carriers, held, own, free, (1 - step / steps) * ways)
-            held = replace(held, frames=frames, x=x)
+            frames, x = _close(bodies, held, own, free, (1 - step / steps) * ways)
+            held = held.moved(frames=frames, x=x)
     except ModelError as error:
         raise ModelError(
             f"the joints cannot have the stated coordinates {system.stated.described('coordinates')}: {error}"
         ) from None
-    return replace(lowered, frames=held.frames, x=like(lowered, held).x)
+    return lowered.moved(frames=held.frames, x=like(lowered, held).x)
 
 
 def _held(
@@ -151,11 +149,13 @@ def _held(
     return held, {name: gaps[rows.index(name)] for name in names}
 
 
-def _moving(system: Mechanism, lowered: Lowered, begin: float) -> np.ndarray:
+def _moving(
+    system: Mechanism, bodies: Sequence[BaseBody], turns: np.ndarray, lowered: Lowered, begin: float
+) -> np.ndarray:
     """Initial velocities (N + 1,) with which the joints have the stated rates."""
     held = like(lower(moving(system, lowered), begin), lowered)
     try:
-        found = initial_velocities(system.carriers, held, _model(held))
+        found = initial_velocities(bodies, turns, held, _model(held))
     except ModelError as error:
         raise ModelError(
             f"the joints cannot have the stated rates {system.stated.described('rates')}: {error}"
@@ -172,10 +172,7 @@ def _model(lowered: Lowered) -> Model:
 def refuse_kinks(lowered: Lowered, end: float) -> None:
     """Raise where the velocity of a prescribed motion jumps within the motion.
 
-    Raises
-    ------
-    ModelError
-        With the joint and the time.
+    Raises ModelError: with the joint and the time.
     """
     for time, joint in lowered.kinks:
         if 0 < time < end * (1 - 1e-9):
@@ -189,10 +186,7 @@ def refuse_kinks(lowered: Lowered, end: float) -> None:
 def refuse_unstable_start(system: Mechanism, lowered: Lowered) -> None:
     """Raise where a system that starts at its equilibrium would fall away from it.
 
-    Raises
-    ------
-    ModelError
-        With the body that moves most.
+    Raises ModelError: with the body that moves most.
     """
     body = unstable_body(lowered) if system.start == EQUILIBRIUM else None
     if body is not None:
@@ -250,10 +244,7 @@ def _is_regular(jacobian: csr_matrix) -> bool:
 def refuse_redundancy(lowered: Lowered) -> None:
     """Raise where a constraint follows from the others.
 
-    Raises
-    ------
-    ModelError
-        With the joints whose constraints are redundant, or that leave no freedom.
+    Raises ModelError: with the joints whose constraints are redundant, or that leave no freedom.
     """
     count, rank, names = redundancy(lowered)
     if rank < count:
@@ -268,13 +259,13 @@ def refuse_redundancy(lowered: Lowered) -> None:
         )
 
 
-def _free(system: Mechanism) -> np.ndarray:
+def _free(system: Mechanism, bodies: Sequence[BaseBody], turns: np.ndarray) -> np.ndarray:
     """Mask of the frame coordinates that assembly may change, (bodies, rates)."""
-    names = [body.name for body in system.carriers]
-    free = turning(system.carriers)
+    names = [body.name for body in bodies]
+    free = turns.copy()
     for entry in system.driving:
         name, _, coordinate = entry.rpartition(".")
-        known = system.carriers[0].FRAME
+        known = bodies[0].FRAME
         require_known("coordinate", coordinate, known, f"driving {entry!r}")
         require_known("body", name, names, f"driving {entry!r}")
         free[names.index(name), known.index(coordinate)] = False

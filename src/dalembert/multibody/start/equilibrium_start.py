@@ -1,7 +1,6 @@
 """The static equilibrium of a mechanism, with its derivatives, and motions that begin there."""
 
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 from scipy.linalg import eigh, null_space
@@ -10,8 +9,7 @@ from scipy.sparse.linalg import lsqr, splu
 
 from dalembert.errors import ModelError, SolveError
 from dalembert.multibody.model.evaluate import residual, tangent
-from dalembert.multibody.model.lowered import Lowered
-from dalembert.multibody.model.scales import scales
+from dalembert.multibody.model.lowered import Lowered, scales
 
 _MOST_ITERATIONS = 30
 _LAST_ITERATIONS = 300  # where loads in steps lead nowhere, as a torque that rolls a beam up
@@ -28,12 +26,8 @@ def begin_at_rest(lowered: Lowered) -> Lowered:
 
     With the residual r(x, p) = 0 of the equilibrium, its derivative is dx/dp = -(dr/dx)^-1 dr/dp.
 
-    Raises
-    ------
-    ModelError
-        Where a body states a velocity.
-    SolveError
-        Where there is no equilibrium near the first placement.
+    Raises ModelError: where a body states a velocity. Raises SolveError: where there is no equilibrium near the first
+    placement.
     """
     _refuse_velocities(lowered)
     place, _ = resting_place(lowered)
@@ -49,7 +43,7 @@ def begin_at_rest(lowered: Lowered) -> Lowered:
             )
         place[:-1] -= 1j * step
     place[lowered.structure.n :] = 0.0  # integrators find the multipliers of the start
-    return replace(lowered, x=place, v=np.zeros_like(place))
+    return lowered.moved(x=place, v=np.zeros_like(place))
 
 
 def unstable_body(lowered: Lowered) -> str | None:
@@ -72,10 +66,7 @@ def unstable_body(lowered: Lowered) -> str | None:
 def resting_place(lowered: Lowered) -> tuple[np.ndarray, int]:
     """Coordinates and multipliers (N + 1,) of the equilibrium nearest to the first placement, and Newton iterations.
 
-    Raises
-    ------
-    SolveError
-        Where there is none near it, or the system can move without any stiffness.
+    Raises SolveError: where there is none near it, or the system can move without any stiffness.
     """
     still = np.zeros_like(np.real(lowered.x))
 

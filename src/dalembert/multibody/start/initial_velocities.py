@@ -5,6 +5,7 @@ placed at; the change from rest is the smallest one. In complex numbers the deri
 """
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -14,25 +15,20 @@ from dalembert.multibody.kernels.block_table import Model
 from dalembert.multibody.model.carried_rates import carried_rates
 from dalembert.multibody.model.evaluate import constraint_rates
 from dalembert.multibody.model.lowered import Lowered
-from dalembert.multibody.model.rigid_motions import CLOSED, modes_of, size_of, smallest, spread, turning
+from dalembert.multibody.model.rigid_motions import CLOSED, modes_of, size_of, smallest, spread
 
 _ROUNDING = 1e-9  # of the largest velocity: what stated velocities may leave of a constraint's rate
 
 
-def initial_velocities(bodies: Sequence[BaseBody], lowered: Lowered, model: Model) -> np.ndarray:
-    """Velocities of rigid motions that satisfy the joints, (N + 1,).
+def initial_velocities(bodies: Sequence[BaseBody], rates: np.ndarray, lowered: Lowered, model: Model) -> np.ndarray:
+    """Velocities of rigid motions that satisfy the joints, (N + 1,); ``rates`` are the rates that the bodies have.
 
-    Raises
-    ------
-    ModelError
-        Where the stated velocities contradict a joint, with the velocities that are stated and the nearest possible
-        ones; where no velocities satisfy the joints.
+    Raises ModelError: where the stated velocities contradict a joint, with the velocities that are stated and the
+    nearest possible ones; where no velocities satisfy the joints.
     """
-    rates = turning(bodies)
     motion = _RigidMotion(bodies, lowered, model)
-    _, v, left = motion.completed(np.where(lowered.stated, lowered.rates, 0.0), rates & ~lowered.stated)
-    wrong, wrong_slope = size_of(left)
-    speed, slope = motion.sizes(v)
+    given = np.where(lowered.stated, lowered.rates, 0.0)
+    _, v, left, (wrong, wrong_slope), (speed, slope) = motion.completed(given, rates & ~lowered.stated)
     if wrong > _ROUNDING * speed:
         raise _contradiction(motion, rates, left)
     if wrong_slope > _ROUNDING * slope:
@@ -50,7 +46,7 @@ class _RigidMotion:
     def __init__(self, bodies: Sequence[BaseBody], lowered: Lowered, model: Model) -> None:
         self.bodies, self.lowered, self.model = bodies, lowered, model
         first = [lowered.structure.first[body.name] for body in bodies]
-        self._slots = [slice(k, k + body.size) for k, body in zip(first, bodies, strict=True)]
+        self._slots = [slice(*ends) for ends in pairwise([*first, lowered.structure.n])]
         self._coordinates = [lowered.x[slots] for slots in self._slots]
         self._each = modes_of(bodies, self._coordinates, lowered.frames)
         self._place = max(size_of(lowered.x)[1], 1.0)
@@ -67,25 +63,27 @@ class _RigidMotion:
         """The joint of a constraint."""
         return self.lowered.structure.owners[self.lowered.structure.n + row]
 
-    def sizes(self, v: np.ndarray) -> tuple[float, float]:
-        """Sizes against which constraint rates, and their derivatives, count as none."""
-        speed, slope = size_of(v)
-        speed = max(speed, 1.0)
-        return speed, max(slope, speed * self._place)
+    def completed(
+        self, chosen: np.ndarray, free: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, tuple[float, float], tuple[float, float]]:
+        """Chosen rates with the smallest change of the ``free`` ones, velocities, and constraint rates that remain.
 
-    def completed(self, chosen: np.ndarray, free: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Chosen rates with the smallest change of the ``free`` ones, velocities, and constraint rates that remain."""
+        Then the largest of these and of their derivatives, and the sizes of velocities and of their derivatives.
+        """
         lowered, chosen = self.lowered, chosen.astype(self.lowered.x.dtype)
         units = None
         for attempt in range(4):  # linear: once for the value, twice for rounding
             v = self.velocities(chosen)
             left, _ = constraint_rates(lowered, self.model, lowered.x, v, np.zeros_like(v))
-            (wrong, wrong_slope), (speed, slope) = size_of(left), self.sizes(v)
-            if attempt == 3 or not free.any() or (wrong <= 10 * CLOSED * speed and wrong_slope <= 10 * CLOSED * slope):
+            wrong, (speed, slope) = size_of(left), size_of(v)
+            speed = max(speed, 1.0)
+            size = speed, max(slope, speed * self._place)  # rates, and their derivatives, that are small against it
+            closed = all(error <= 10 * CLOSED * scale for error, scale in zip(wrong, size, strict=True))
+            if attempt == 3 or closed or not free.any():
                 break
             units = self._units(free) if units is None else units
             chosen[free] += smallest(lowered, self.model, lowered.x, units, -left)
-        return chosen, v, left
+        return chosen, v, left, wrong, size
 
     def _units(self, free: np.ndarray) -> np.ndarray:
         """Derivatives of the velocities by the free rates, (n, free)."""
@@ -101,9 +99,9 @@ def _contradiction(motion: _RigidMotion, rates: np.ndarray, left: np.ndarray) ->
     wide = np.abs(np.real(left))
     joints = sorted({motion.owner(row) for row in np.flatnonzero(wide > 0.5 * wide.max()).tolist()})
     lowered, given = motion.lowered, np.where(motion.lowered.stated, motion.lowered.rates, 0.0)
-    possible, v, remains = motion.completed(given, rates)
+    possible, _, remains, wrong, size = motion.completed(given, rates)
     worst = int(np.argmax(np.abs(np.real(remains))))
-    if size_of(remains)[0] > _ROUNDING * motion.sizes(v)[0]:
+    if wrong[0] > _ROUNDING * size[0]:
         return ModelError(
             f"no initial velocities satisfy joint {motion.owner(worst)!r}: {np.abs(np.real(remains[worst])):.3g} "
             "(m/s or rad/s) remain. Check the prescribed motions at the start"

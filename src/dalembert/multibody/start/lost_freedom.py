@@ -16,14 +16,9 @@ _INDEPENDENT = 1e-9
 class Locked(NamedTuple):
     """A mechanism that cannot move.
 
-    Parameters
-    ----------
-    constraints : int
-        Of joints, without prescribed motions and the constraints inside of bodies.
-    freedoms : int
-        Of the bodies without joints.
-    joints : tuple of str
-        Joints without which, one at a time, the mechanism would move; all of them if there is no such one.
+    ``constraints``: of joints, without prescribed motions and the constraints inside of bodies; ``freedoms``: of the
+    bodies without joints; ``joints``: joints without which, one at a time, the mechanism would move; all of them if
+    there is no such one.
     """
 
     constraints: int
@@ -87,10 +82,7 @@ def no_freedom(lowered: Lowered) -> tuple[Finding, ...]:
 def refuse_locked(lowered: Lowered) -> None:
     """Raise where the joints leave no freedom.
 
-    Raises
-    ------
-    ModelError
-        With the joints.
+    Raises ModelError: with the joints.
     """
     found = locked(lowered)
     if found is not None:

@@ -4,8 +4,7 @@ import numpy as np
 
 from dalembert.errors import SolveError
 from dalembert.multibody.model.evaluate import constraint_jacobian
-from dalembert.multibody.model.lowered import Lowered
-from dalembert.multibody.model.scales import scales
+from dalembert.multibody.model.lowered import Lowered, scales
 from dalembert.multibody.start.assemble import redundancy
 
 _NEAR = 1e-3  # of the smallest singular value at the start

@@ -28,12 +28,7 @@ def joined(system: Mechanism) -> list[Any]:
 def start_findings(system: Mechanism, lowered: Lowered, x: np.ndarray) -> tuple[Finding, ...]:
     """Return findings on limits that the start violates, and on axes that no joint between the same bodies has.
 
-    Parameters
-    ----------
-    system : Mechanism
-    lowered : Lowered
-    x : array, shape (N + 1,)
-        Unknowns at the start.
+    ``x`` (N + 1,): unknowns at the start.
     """
     findings: list[Finding] = []
     for load in joined(system):

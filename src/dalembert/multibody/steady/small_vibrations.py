@@ -11,9 +11,8 @@ from dalembert.errors import InputError, require_known
 from dalembert.forward.complex_steps import SAFE
 from dalembert.multibody.kernels.states import MotionState
 from dalembert.multibody.model.evaluate import tangent
-from dalembert.multibody.model.lowered import Lowered
+from dalembert.multibody.model.lowered import Lowered, scales
 from dalembert.multibody.model.observe import Observer
-from dalembert.multibody.model.scales import scales
 from dalembert.multibody.model.system import Mechanism
 from dalembert.multibody.motion.complex_steps import Along, check_forces
 from dalembert.multibody.start.lost_freedom import refuse_locked

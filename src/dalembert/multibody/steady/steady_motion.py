@@ -9,9 +9,8 @@ from dalembert.errors import InputError, ModelError
 from dalembert.forward.complex_steps import SAFE
 from dalembert.multibody.kernels.states import MotionState
 from dalembert.multibody.model.evaluate import residual, tangent
-from dalembert.multibody.model.lowered import Lowered
+from dalembert.multibody.model.lowered import Lowered, scales
 from dalembert.multibody.model.observe import Observer
-from dalembert.multibody.model.scales import scales
 from dalembert.multibody.motion.complex_steps import Along, check_forces
 from dalembert.multibody.steady.steady_nodes import Frame, Motion, Node, nodes_of
 
@@ -80,10 +79,8 @@ def steady_equations(lowered: Lowered, frame: str | None = None) -> SteadyEquati
     equations of motion, so springs carry centrifugal forces. Frames are tried in turn: the fixed one, and those that
     turn with a body.
 
-    Raises
-    ------
-    ModelError
-        Where the motion is not steady, or its equations are constant in no frame, or not in the one that is given.
+    Raises ModelError: where the motion is not steady, or its equations are constant in no frame, or not in the one that
+    is given.
     """
     v = np.real(lowered.v[:-1])
     nodes = nodes_of(lowered)

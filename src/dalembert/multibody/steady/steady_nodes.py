@@ -25,12 +25,7 @@ _STILL = 1e-9
 class Frame(NamedTuple):
     """A frame that turns at a constant rate.
 
-    Parameters
-    ----------
-    rate : array, shape (1,) or (3,)
-        rad/s, in the fixed axes.
-    origin : array, shape (2,) or (3,)
-        A point of the axis.
+    ``rate`` (1,): rad/s, in the fixed axes; ``origin`` (2,): a point of the axis.
     """
 
     rate: np.ndarray
@@ -40,9 +35,7 @@ class Frame(NamedTuple):
 class Motion(NamedTuple):
     """Numbers of some coordinates, or their derivatives by local coordinates, at one time.
 
-    Parameters
-    ----------
-    q, v, a : array, shape (size,) or (size, local)
+    ``q``, ``v``, ``a`` (size,).
     """
 
     q: np.ndarray
@@ -62,23 +55,11 @@ def skew(rate: np.ndarray) -> np.ndarray:
 class Node:
     """Coordinates that one twist moves.
 
-    Parameters
-    ----------
-    position : array of int, shape (d,) or (0,)
-        Coordinates of a position.
-    vectors : array of int, shape (vectors, d)
-        Coordinates of vectors that turn with the node.
-    scalars : array of int
-        Coordinates that are numbers.
-    turns : bool
-        Whether rotations are local coordinates.
-    absolute : bool
-        Whether the numbers are angles against the fixed axes.
-    p0, s0 : array
-        Position and numbers at the time 0, in the frame.
-    directions : array, shape (vectors, d)
-    rate, centre, velocity, speeds : array
-        Of the twist relative to the frame, and of the numbers.
+    ``position`` (d,): coordinates of a position; ``vectors`` (vectors, d): coordinates of vectors that turn with the
+    node; ``scalars``: coordinates that are numbers; ``turns``: whether rotations are local coordinates; ``absolute``:
+    whether the numbers are angles against the fixed axes; ``p0``, ``s0``: position and numbers at the time 0, in the
+    frame; ``directions`` (vectors, d); ``rate``, ``centre``, ``velocity``, ``speeds``: of the twist relative to the
+    frame, and of the numbers.
     """
 
     position: np.ndarray

@@ -45,18 +45,9 @@ Frame = tuple[np.ndarray, np.ndarray]
 class Group:
     """Links that are fixed to each other: one rigid body, named after the first of them.
 
-    Parameters
-    ----------
-    name : str
-    joint : TreeJoint or None
-        By which it hangs on another group; None for the group of the base.
-    frames : dict of str to Frame
-        Frame of each link in that of the first one.
-    seats : dict of str to Frame
-        Frame of each joint that hangs on it, at the position zero.
-    inertias : list of (Frame, Inertia)
-    shapes : list of Shape
-        In the frame of the first link.
+    ``joint``: by which it hangs on another group; None for the group of the base; ``frames``: frame of each link in
+    that of the first one; ``seats``: frame of each joint that hangs on it, at the position zero; ``inertias`` (Frame,
+    Inertia); ``shapes``: in the frame of the first link.
     """
 
     name: str

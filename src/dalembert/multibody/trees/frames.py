@@ -17,16 +17,10 @@ COSINE, SINE, CONSTANT, PLACE, SLIDE, AXIS, INERTIA, WIDTH = 0, 9, 18, 27, 30, 3
 class Frames(NamedTuple):
     """The frames for kernels.
 
-    Parameters
-    ----------
-    parents : array, shape (frames,)
-        0 for the base, k + 1 for frame k.
-    turns : array, shape (frames,)
-        1 for a revolute joint, 0 for a prismatic one.
-    numbers : array, shape (frames * WIDTH,)
-        Rotation from the frame to its parent's: constant part, factors of cosine and sine of the position; position in
-        the parent's frame and its derivative by that of the joint; axis; mass, mass x centre and inertia about the
-        origin of all that hangs rigidly on the frame.
+    ``parents`` (frames,): 0 for the base, k + 1 for frame k; ``turns`` (frames,): 1 for a revolute joint, 0 for a
+    prismatic one; ``numbers`` (frames * WIDTH,): rotation from the frame to its parent's: constant part, factors of
+    cosine and sine of the position; position in the parent's frame and its derivative by that of the joint; axis; mass,
+    mass x centre and inertia about the origin of all that hangs rigidly on the frame.
     """
 
     parents: Integers
@@ -46,19 +40,10 @@ class ComplexFrames(NamedTuple):
 class FlatTree:
     """A tree as arrays.
 
-    Parameters
-    ----------
-    frames : Frames or ComplexFrames
-    joints : tuple of TreeJoint
-        That of each frame; those that follow another one included.
-    factors : array, shape (frames, dofs)
-    offsets : array, shape (frames,)
-        Positions of the joints = factors @ positions of the tree + offsets.
-    homes : array of int, shape (links,)
-        On which frame each link hangs: 0 for the base, k + 1 for frame k.
-    places : array, shape (links, 3)
-    axes : array, shape (links, 3, 3)
-        Position and orientation of the links in these frames.
+    ``joints``: that of each frame; those that follow another one included; ``factors`` (frames, dofs); ``offsets``
+    (frames,): positions of the joints = factors @ positions of the tree + offsets; ``homes`` (links,): on which frame
+    each link hangs: 0 for the base, k + 1 for frame k; ``places`` (links, 3); ``axes`` (links, 3, 3): position and
+    orientation of the links in these frames.
     """
 
     frames: Frames | ComplexFrames
@@ -78,10 +63,7 @@ class FlatTree:
 def flat(tree: Tree) -> FlatTree:
     """The arrays of a tree. The tree keeps them, as it does with cached properties: they take as long as 500 samples.
 
-    Raises
-    ------
-    ModelError
-        For a joint that follows itself or one that does not move.
+    Raises ModelError: for a joint that follows itself or one that does not move.
     """
     kept = vars(tree)
     if "_flat" not in kept:

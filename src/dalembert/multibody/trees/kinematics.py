@@ -27,10 +27,7 @@ class Motion(NamedTuple):
 def values(tree: Tree, given: Mapping[str, Number] | Sequence[Number] | None, what: str) -> dict[str, Number]:
     """Numbers of the moving joints by name, from a mapping (0 where a joint is missing) or from one number a joint.
 
-    Raises
-    ------
-    InputError
-        For an unknown joint, another count, and what is no number.
+    Raises InputError: for an unknown joint, another count, and what is no number.
     """
     names = [joint.name for joint in tree.moving]
     if given is None:

@@ -15,12 +15,8 @@ MOST = 8
 class Omission:
     """A part of a robot file that has no counterpart in the mechanism.
 
-    Parameters
-    ----------
-    text : str
-        What was left out, with its line or its name.
-    moves : bool
-        Whether the motion is another one without it: a spring does, a camera does not.
+    ``text``: what was left out, with its line or its name; ``moves``: whether the motion is another one without it: a
+    spring does, a camera does not.
     """
 
     text: str

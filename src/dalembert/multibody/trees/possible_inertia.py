@@ -25,10 +25,7 @@ def possible(
     gyration along these, and listed. The nearest possible one of an impossible inertia has the same principal axes;
     second moments along them, the eigenvalues of tr(J) / 2 - J, that are too small are raised.
 
-    Raises
-    ------
-    ModelError
-        For an impossible inertia that is to be refused, with the place and the excess.
+    Raises ModelError: for an impossible inertia that is to be refused, with the place and the excess.
     """
     if mass == 0.0 and not np.any(tensor):
         return None

@@ -25,13 +25,7 @@ STANDING = ("fixed", "floating", "planar")
 class Element:
     """An element of a file.
 
-    Parameters
-    ----------
-    tag : str
-    line : int
-    owner : str
-        The link, joint or other part of the robot that it belongs to, for messages.
-    attributes : mapping of str to str
+    ``owner``: the link, joint or other part of the robot that it belongs to, for messages.
     """
 
     tag: str
@@ -73,10 +67,7 @@ class Element:
     def required(self, tag: str) -> "Element":
         """The first child with a tag.
 
-        Raises
-        ------
-        InputError
-            If there is none.
+        Raises InputError: if there is none.
         """
         found = self.child(tag)
         if found is None:
@@ -91,10 +82,7 @@ class Element:
     def required_word(self, name: str) -> str:
         """The value of an attribute.
 
-        Raises
-        ------
-        InputError
-            If it is missing.
+        Raises InputError: if it is missing.
         """
         found = self.word(name)
         if found is None:
@@ -104,10 +92,7 @@ class Element:
     def numbers(self, name: str, count: int, default: tuple[float, ...] | None = None) -> tuple[float, ...]:
         """Finite numbers of an attribute; the default where it is missing.
 
-        Raises
-        ------
-        InputError
-            For a missing attribute without a default, and for anything else than so many finite numbers.
+        Raises InputError: for a missing attribute without a default, and for anything else than so many finite numbers.
         """
         given = self.word(name) if default is not None else self.required_word(name)
         if given is None:
@@ -164,10 +149,7 @@ class Element:
 def parsed(path: Path, tag: str, what: str) -> Element:
     """The outermost element of a file.
 
-    Raises
-    ------
-    InputError
-        If there is no such file, if it is no XML, or if its outermost element has another tag.
+    Raises InputError: if there is no such file, if it is no XML, or if its outermost element has another tag.
     """
     try:
         content = path.read_bytes()

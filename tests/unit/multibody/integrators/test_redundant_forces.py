@@ -5,7 +5,7 @@ import pytest
 
 import dalembert.multibody as mb
 from dalembert.multibody.model.evaluate import constraint_jacobian
-from dalembert.multibody.model.scales import scales
+from dalembert.multibody.model.lowered import scales
 
 SOLVERS = {
     "RK4": mb.RungeKutta4(2e-3),

@@ -60,13 +60,8 @@ def _torque(current, rate, p):
 class Turning(NamedTuple):
     """Relative rotation of two markers, as functions.
 
-    Parameters
-    ----------
-    angle : function (x, p, m)
-    rate : function (x, v, p, m)
-    acceleration : function (x, v, a, p, m)
-    twist : function (x, p, m, torque, r)
-        Adds the generalised force of a torque on b and of its opposite on a.
+    ``angle`` (x, p, m); ``rate`` (x, v, p, m); ``acceleration`` (x, v, a, p, m); ``twist`` (x, p, m, torque, r): adds
+    the generalised force of a torque on b and of its opposite on a.
     """
 
     angle: Callable[..., Any]
@@ -78,11 +73,7 @@ class Turning(NamedTuple):
 def drive_properties(command: Callable[..., Any], turning: Turning) -> dict[str, Any]:
     """Properties of the kind of a motor.
 
-    Parameters
-    ----------
-    command : function (x, v, p, m, inputs)
-        Returns its voltage or current.
-    turning : Turning
+    ``command`` (x, v, p, m, inputs): returns its voltage or current.
     """
     commanded: Any = command
     angle_of_b, rate_of_b, acceleration_of_b, twist = turning
@@ -125,12 +116,8 @@ def drive_properties(command: Callable[..., Any], turning: Turning) -> dict[str,
 class DriveNumbers(BaseLoad):
     """What motors are made of.
 
-    Parameters
-    ----------
-    name : str
-    a, b : Point or ground
-    torque_constant, resistance, back_emf, voltage_limit, gear_ratio, efficiency, slip_rate, armature_inertia, enabled
-        See `Motor`.
+    ``torque_constant``, ``resistance``, ``back_emf``, ``voltage_limit``, ``gear_ratio``, ``efficiency``, ``slip_rate``,
+    ``armature_inertia``, ``enabled``: see `Motor`.
     """
 
     a: Any

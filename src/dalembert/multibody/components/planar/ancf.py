@@ -1,8 +1,7 @@
 """What flexible bars of planar ANCF elements share: straight and undeformed at first."""
 
-from abc import abstractmethod
 from dataclasses import dataclass, field
-from typing import Any, cast
+from typing import Any, ClassVar, cast
 
 import numpy as np
 
@@ -27,10 +26,8 @@ class Ancf(Body):
     elements: int = cast(Any, field())  # as a field of ours is to a type checker: any
     youngs_modulus: Number = number("Pa", above=0)
 
-    @property
-    @abstractmethod
-    def vectors(self) -> int:
-        """Vectors of two components a node."""
+    vectors: ClassVar[int]
+    """Vectors of two components a node."""
 
     @property
     def place(self) -> Place:

@@ -71,6 +71,7 @@ class AncfBeam(Ancf):
     (18, 'bar.end')
     """
 
+    vectors = 3
     poisson_ratio: Number = number("", above=-1, below=0.5)
     density: Number = number("kg/m**3", above=0)
     height: Number = number("m", above=0)
@@ -90,10 +91,6 @@ class AncfBeam(Ancf):
         owner = f"beam {self.name!r}"
         require_known("law", self.law, LAWS, owner)
         require_known("formulation", self.formulation, FORMULATIONS, owner)
-
-    @property
-    def vectors(self) -> int:
-        return 3
 
     @property
     def stiffnesses(self) -> tuple[Number, Number, Number]:

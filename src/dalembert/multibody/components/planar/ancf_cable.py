@@ -44,6 +44,7 @@ class AncfCable(Ancf):
     20
     """
 
+    vectors = 2
     density: Number = number("kg/m**3", above=0)
     height: Number = number("m", above=0)
     width: Number = number("m", above=0)
@@ -57,10 +58,6 @@ class AncfCable(Ancf):
     def __post_init__(self, start: Place) -> None:
         object.__setattr__(self, "origin", start)
         self._check()
-
-    @property
-    def vectors(self) -> int:
-        return 2
 
     @property
     def findings(self) -> tuple[Finding, ...]:

@@ -46,13 +46,9 @@ class AngleCoordinate(Body):
     """The counted angle of b relative to a; components that need one return it in their ``coordinates``.
 
     At the start it is the angle that the bodies state.
-
-    Parameters
-    ----------
-    name : str
-    a, b : Point or ground
     """
 
+    turns = False
     a: Side
     b: Side
 
@@ -70,10 +66,6 @@ class AngleCoordinate(Body):
     @property
     def coordinate_kinds(self) -> tuple[str, ...]:
         return (ANGLE,)
-
-    @property
-    def turns(self) -> bool:
-        return False
 
     @property
     def point_names(self) -> tuple[str, ...]:

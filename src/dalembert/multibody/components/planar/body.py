@@ -32,6 +32,7 @@ class Body(BaseBody):
     """Base of all planar bodies: a name, an initial placement, an initial rigid motion; the frame is (x, y, angle)."""
 
     FRAME: ClassVar[tuple[str, ...]] = ("x", "y", "angle")
+    dimension: ClassVar[int] = 2
     sensor: ClassVar[Kind] = SENSOR
     without_axes: ClassVar[tuple[str, ...]] = DIRECTIONAL
 

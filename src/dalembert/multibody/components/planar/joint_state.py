@@ -41,14 +41,7 @@ STATED = pair_kind(
 class JointState(Joint):
     """A constraint on the coordinate of a joint, with the name of that coordinate.
 
-    Parameters
-    ----------
-    name : str
-    a, b : Point or ground
-    coordinate : {"angle", "displacement", "direction"}
-    course : Signal
-    line : float
-        Angle of the line of a displacement against the axes of a, rad.
+    ``line``: angle of the line of a displacement against the axes of a, rad.
     """
 
     coordinate: str

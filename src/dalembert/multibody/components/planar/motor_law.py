@@ -43,12 +43,7 @@ def drive_kind(
 ) -> Kind:
     """Kind of a motor, from ``command(x, v, p, m, inputs)``, which returns its voltage or current.
 
-    Parameters
-    ----------
-    name : str
-    command : function
-    numbers, integers : tuple of str
-        Columns of the command; they follow those of all motors.
+    ``numbers``, ``integers``: columns of the command; they follow those of all motors.
     """
     properties = drive_properties(command, _TURNING)
     return pair_kind(name, (*NUMBERS, *numbers), (*INTEGERS, *integers), **properties)

@@ -59,6 +59,7 @@ class PointMass(Body):
         change it then.
     """
 
+    turns = False
     mass: Number = number("kg", above=0)
     position: Place = pair("m")
     velocity: tuple[Number, Number] | None = pair("m/s", None)
@@ -70,10 +71,6 @@ class PointMass(Body):
     @property
     def coordinate_kinds(self) -> tuple[str, ...]:
         return (POSITION, POSITION)
-
-    @property
-    def turns(self) -> bool:
-        return False
 
     @property
     def point_names(self) -> tuple[str, ...]:

@@ -38,6 +38,7 @@ class Body(BaseBody):
     """Base of all bodies in space: a name, an initial pose and an initial rigid motion."""
 
     FRAME: ClassVar[tuple[str, ...]] = ("x", "y", "z", "rotation_x", "rotation_y", "rotation_z")
+    dimension: ClassVar[int] = 3
     sensor: ClassVar = SENSOR
     without_axes: ClassVar = AXIAL
 

@@ -18,16 +18,9 @@ Function = Callable[..., Any]
 class Condition(NamedTuple):
     """One condition or several.
 
-    Parameters
-    ----------
-    count : int
-        Rows.
-    residual : function (x, p, m, row, g)
-        Fills ``g[row:row + count]``, which are zero where the condition holds.
-    forces : function (x, p, m, k, r)
-        Adds the forces of the multipliers ``x[k:k + count]``.
-    quadratic : bool
-        Whether they are polynomials of degree two at most in the coordinates.
+    ``count``: rows; ``residual`` (x, p, m, row, g): fills ``g[row:row + count]``, which are zero where the condition
+    holds; ``forces`` (x, p, m, k, r): adds the forces of the multipliers ``x[k:k + count]``; ``quadratic``: whether
+    they are polynomials of degree two at most in the coordinates.
     """
 
     count: int

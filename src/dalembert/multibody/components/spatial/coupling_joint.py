@@ -58,11 +58,7 @@ COUPLINGS: dict[tuple[str, ...], Kind] = {ends: _coupling(*ends) for ends in pro
 class Coupling(Joint):
     """Base of couplings.
 
-    Parameters
-    ----------
-    name : str
-    a, b : Joint
-        Joints with an axis.
+    ``a``, ``b``: joints with an axis.
     """
 
     a: Joint

@@ -134,15 +134,8 @@ def joint_kind(
 ) -> Kind:
     """The kind of a joint.
 
-    Parameters
-    ----------
-    name : str
-    home : str
-        Module that holds it.
-    conditions : Condition
-    angle, displacement : bool
-        Whether the joint has an angle about its axis, and a displacement along it.
-    properties : of the kind
+    ``home``: module that holds it; ``angle``, ``displacement``: whether the joint has an angle about its axis, and a
+    displacement along it.
     """
     count, forces = sum(entry.count for entry in conditions), forces_of(conditions, pairs.COORDINATES)
     settings = {

@@ -93,10 +93,7 @@ def coordinates_of(joint: Joint) -> list[str]:
 def chosen_coordinate(owner: str, joint: Any, coordinate: str | None) -> str:
     """The coordinate of a joint that is asked for; the angle, or else the displacement, where none is.
 
-    Raises
-    ------
-    InputError
-        For what is no joint with such a coordinate.
+    Raises InputError: for what is no joint with such a coordinate.
     """
     known = coordinates_of(joint) if isinstance(joint, Joint) else []
     if not known or coordinate not in (None, *known):
@@ -137,16 +134,11 @@ class JointCoordinate(Body):
 
     Components that need one return it in their ``coordinates``; no one adds it to a system.
 
-    Parameters
-    ----------
-    name : str
-    joint : Joint or TorsionSpring
-    coordinate : {"angle", "displacement"}
-    within : (float, float)
-        The angle at the start is counted from a turn that puts it between these, rad; if none does, it is the one
-        nearest to their middle.
+    ``within`` (float, float): the angle at the start is counted from a turn that puts it between these, rad; if none
+    does, it is the one nearest to their middle.
     """
 
+    turns = False
     joint: Paired
     coordinate: str = ANGLE
     within: tuple[float, float] = (-np.pi, np.pi)
@@ -168,10 +160,6 @@ class JointCoordinate(Body):
     @property
     def coordinate_kinds(self) -> tuple[str, ...]:
         return (self.coordinate,)
-
-    @property
-    def turns(self) -> bool:
-        return False
 
     @property
     def point_names(self) -> tuple[str, ...]:

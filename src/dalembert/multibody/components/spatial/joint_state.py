@@ -69,14 +69,8 @@ _LAST = {1: [1, 2, 0], 2: [2, 0, 1], 3: [0, 1, 2]}
 class JointState(Joint):
     """A constraint on the coordinate of a joint, with the name of that coordinate.
 
-    Parameters
-    ----------
-    name : str
-    a, b : Point or ground
-    axes : (array, array)
-        Rotations (3, 3) from the axes of both markers to those in which the kernel measures the coordinate.
-    measures : Kind
-    course : Signal
+    ``axes`` (array, array): rotations (3, 3) from the axes of both markers to those in which the kernel measures the
+    coordinate.
     """
 
     axes: tuple[np.ndarray, np.ndarray]
@@ -120,13 +114,8 @@ def kept(joint: Joint, coordinate: str, course: Signal, now: tuple[np.ndarray, n
 
     So these have no singular pose near the present one, and the rates of rotations are angular velocities.
 
-    Parameters
-    ----------
-    joint : Joint
-    coordinate : str
-    course : Signal
-    now : (array, array, array), shapes (3, 3), (3, 3) and (3,)
-        The axes of the joint at a and at b, as columns, and the position of b relative to a, in the fixed axes.
+    ``now`` (array, array, array): the axes of the joint at a and at b, as columns, and the position of b relative to a,
+    in the fixed axes.
     """
     (e, f, gap), state = now, stated(joint, coordinate, course)
     a, b, (first, second) = joint.a, joint.b, joint.turned

@@ -12,13 +12,7 @@ def pair_kind(
 ) -> Kind:
     """A kind with the columns of two markers, then its own ones.
 
-    Parameters
-    ----------
-    name : str
-    home : str
-        Module that holds it.
-    numbers, integers : tuple of str
-    properties : of the kind
+    ``home``: module that holds it.
     """
     return Kind(
         name,
@@ -34,12 +28,7 @@ def pair_kind(
 def sensor_kind(name: str, home: str, **properties: Any) -> Kind:
     """A kind with the columns of two markers, then its own ones, that exerts no force.
 
-    Parameters
-    ----------
-    name : str
-    home : str
-        Module that holds it.
-    properties : of the kind
+    ``home``: module that holds it.
     """
     return pair_kind(name, home, residual=_no_residual, energy=_no_energy, **properties)
 

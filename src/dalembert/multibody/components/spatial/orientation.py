@@ -208,10 +208,7 @@ def turned(directors: np.ndarray, turn: np.ndarray) -> np.ndarray:
 def direction(vector: Any, owner: str) -> np.ndarray:
     """A direction, made one of length one, (3,).
 
-    Raises
-    ------
-    InputError
-        For what is not three finite numbers, or has the length zero.
+    Raises InputError: for what is not three finite numbers, or has the length zero.
     """
     given = _three(vector, owner)
     square = given @ given

@@ -58,6 +58,7 @@ class PointMass(Body):
         change it then.
     """
 
+    turns = False
     mass: Number = number("kg", above=0)
     position: Place = field(default=(0.0, 0.0, 0.0), metadata={"unit": "m", "shape": (3,)})
     velocity: Vector | None = number("m/s", None)
@@ -69,10 +70,6 @@ class PointMass(Body):
     @property
     def coordinate_kinds(self) -> tuple[str, ...]:
         return (POSITION,) * 3
-
-    @property
-    def turns(self) -> bool:
-        return False
 
     @property
     def point_names(self) -> tuple[str, ...]:

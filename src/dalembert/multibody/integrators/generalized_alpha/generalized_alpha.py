@@ -33,7 +33,7 @@ from dalembert.multibody.integrators.shared.problem import (
 )
 from dalembert.multibody.integrators.shared.run import Run, explain
 from dalembert.multibody.kernels.assembly import set_signals
-from dalembert.multibody.kernels.block_table import Call, addresses
+from dalembert.multibody.kernels.block_table import addresses
 from dalembert.multibody.kernels.states import (
     Histories,
     MotionState,
@@ -116,26 +116,27 @@ class GeneralizedAlpha(Integrator):
         # at spectral radius 1 velocities leave the constraints and nothing damps what grows from there
         problem = batch.problem._replace(projected=self.spectral_radius == 1.0)
         samples, perturbed = batch.samples, batch.perturbed
-        dout = batch.derivatives()
+        ends_of_steps = self.step_ends(batch.end, samples[0].jumps) if batch.logged else None
+        dout, log = batch.derivatives(), batch.log(ends_of_steps)
+        opens, turns = restarts(samples, problem), batch.begin_counting()
         out = resting(len(samples), *dout.x.shape[1:])
-        log = batch.log(self.step_ends(batch.end, samples[0].jumps))
         steps = self.step, self.spectral_radius, self.initial_acceleration == "consistent", self.adaptive
         settings = Settings(*steps, self.tolerance, self.newton_tolerance, self.most_steps)
         ends = np.zeros((len(samples), 3))
         real = [entry.real.need("rates").reduced() for entry in samples]
         complex_models = [entry.tangents.reduced(nodes=len(perturbed) > 0) for entry in samples]
         directions = addresses(entry.complex_model.need("rates").reduced() for entry in perturbed)
-        calls = real[0].call(), complex_models[0].call()
+        call, complex_call = real[0].call(), complex_models[0].call()
+        works = call.address, complex_call.address
         integrate(
-            problem, restarts(samples, problem), settings, addresses(real), addresses(complex_models),
-            directions, batch.begin_counting(), batch.states, batch.dstates, out, dout, log, ends,
-            _workspace(problem, *calls, len(perturbed)),
+            problem, opens, settings, addresses(real), addresses(complex_models), directions, turns, batch.states,
+            batch.dstates, out, dout, log, ends, _workspace(problem, *works, len(perturbed)),
         )  # fmt: skip
         runs, shortened = [], f"the step of {self.step:g} s was cut down {'' if self.adaptive else 'to 1/256 '}for it"
         for number, (lowered, (status, time, moved)) in enumerate(zip(samples, ends, strict=True)):
             given = lowered, int(status), time, int(moved), shortened, self.most_steps
             reason = None if status == DONE else explain(*given)
-            runs.append(batch.result(reason, row(out, number), dout, log))
+            runs.append(batch.result(reason, MotionState(*(part[number] for part in out)), dout, log))
         return runs
 
 
@@ -166,8 +167,8 @@ class Workspace(NamedTuple):
     differentiate: Address
 
 
-def _workspace(problem: Problem, call: Call, complex_call: Call, directions: int) -> Workspace:
-    width, work, complex_work = len(problem.scale), call.address, complex_call.address
+def _workspace(problem: Problem, work: int, complex_work: int, directions: int) -> Workspace:
+    width = len(problem.scale)
     along = differentiate.address if directions else 0
     return Workspace(
         resting(width), resting(width), resting(directions, width), newton(problem, work, complex_work),

@@ -21,8 +21,7 @@ from dalembert.multibody.integrators.shared.outputs import record_along
 from dalembert.multibody.integrators.shared.problem import DONE, INEXACT
 from dalembert.multibody.integrators.shared.run import Run, cut_down, explain, users_error
 from dalembert.multibody.kernels.states import resting
-from dalembert.multibody.model.lowered import Lowered
-from dalembert.multibody.model.scales import slip_scale
+from dalembert.multibody.model.lowered import Lowered, slip_scale
 from dalembert.multibody.model.structure import Structure
 from dalembert.multibody.start.singular_positions import singular_position
 

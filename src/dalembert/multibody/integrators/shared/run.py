@@ -1,14 +1,14 @@
 """What a run of an integrator leaves, the problem that its samples share, and why a run ended early."""
 
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
 from dalembert.errors import SolveError
 from dalembert.multibody.integrators.shared.problem import DIVERGED, SINGULAR, TOO_MANY_STEPS, Problem, Reduced
 from dalembert.multibody.kernels.states import MotionState
-from dalembert.multibody.model.lowered import Lowered
-from dalembert.multibody.model.scales import scales
+from dalembert.multibody.model.lowered import Lowered, scales
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Run:
     counts: np.ndarray
     iterations: np.ndarray
     ends: np.ndarray
-    turns: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
+    turns: np.ndarray = field(default_factory=partial(np.zeros, (0, 0)))
 
 
 def make_problem(lowered: Lowered, times: np.ndarray) -> Problem:

@@ -20,6 +20,8 @@ def _place(work, x, v, a):
 def set_signals(model, t, within, work):
     """Evaluate the signals at time ``t``, in the smooth stretch of motion that holds ``within``."""
     own = call_at(work)
+    # Signals are evaluated once for a time, and all kernels read the results: ``within`` decides on which side of a
+    # jump the time lies.
     own.t, own.within = t, within
     own.callbacks, own.callback_count = model_at(model).callbacks, model_at(model).callback_count
     call(model_at(model).evaluate, work, model)

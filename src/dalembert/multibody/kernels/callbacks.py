@@ -103,11 +103,13 @@ def force_callback(function: Callable[..., Any], owner: str, failures: Failures,
             f"UserForce {owner!r}: its compiled function does not return {sizes.words}, or Numba cannot compile it. "
             "Run it without numba.njit to see which"
         ) from error
+    # Compiled functions cannot raise: they note the time of a first wrong answer, which the run reads at its end.
     failures.compiled.append((owner, wrong_at))
     try:
         complex_state, _ = _compiled_force(function, complex128, sizes)
         return Callback(real.address, complex_state.address, (real, complex_state))
     except NumbaError as error:
+        # For real numbers it runs compiled; in complex numbers a plain Python call takes its place, or refuses.
         reason = error
 
     def refuse(*_: Any) -> Any:
@@ -133,6 +135,8 @@ def signal_callback(
             last = second(t) if second is not None else (rate(t + h) - rate(t - h)) / (2 * h)
         else:
             ahead, behind = function(t + h), function(t - h)
+            # Central differences of second order: of the user's function, in complex numbers too, so that their
+            # derivatives by parameters are exact.
             first = (ahead - behind) / (2 * h)
             last = second(t) if second is not None else (ahead - 2 * value + behind) / h**2
         return value, first, last

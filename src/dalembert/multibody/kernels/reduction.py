@@ -52,6 +52,7 @@ def reduction(index: Mapping[Kind, np.ndarray], n: int, size: int) -> Reduction:
     places: dict[tuple[Chart | None, int], np.ndarray] = {}  # rows of the node with this first coordinate
     first = len(flat)
     for kind, count in zip(nodal, counts, strict=True):
+        # Rows of a node are contiguous, and nodes of a kind follow each other.
         nodes[kind] = first + np.arange(count).reshape(len(index[kind]), kind.increments)
         first += count
         for coordinates, node in zip(index[kind], nodes[kind], strict=True):

@@ -83,6 +83,8 @@ def _find_range(problem, surplus):
     for k in range(partition.rank[0]):
         own = partition.columns[k] * problem.exact_layout.lead + problem.n
         for i in range(len(basis)):
+            # The multipliers of least norm are S^2 J w: columns of S^2 J of the dependent coordinates span their range.
+            # Gram and Schmidt in units of the scales makes them orthonormal.
             basis[i, k] = scale[i] * scale[i] * partition.matrix[own + i]
         for _ in range(2):  # twice is enough to be orthogonal to rounding
             for j in range(k):
@@ -118,6 +120,7 @@ def _restrict(n, size, lead, rank, surplus, matrix, small_lead):
     """Fill ``surplus.small`` with W^T A W, where W = [I 0; 0 B] with the range's basis B, by way of A W."""
     basis = surplus.basis
     for c in range(n + rank):
+        # A W column by column: columns of coordinates as they are, combinations of those of multipliers.
         product = surplus.product[c]
         if c < n:
             _copy(matrix[c * lead : c * lead + size], product)
@@ -136,6 +139,7 @@ def _restrict(n, size, lead, rank, surplus, matrix, small_lead):
 def _extend(n, size, lead, rank, surplus, matrix, small_lead):
     """Fill the matrix with W S W^T, where S is ``surplus.small``, by way of W S."""
     basis = surplus.basis
+    # The same products in the opposite order: W (A W)^-1 W^T keeps solutions within the range.
     for c in range(n + rank):
         product, small = surplus.product[c], surplus.small.matrix[c * small_lead : (c + 1) * small_lead]
         clear(product)
@@ -190,6 +194,8 @@ def turn_range(
         perturb(n, state, dstate, complex_state)
         for i in range(complex_state.shape[1]):
             complex_state[1, i] = 0.0
+        # J along the dependent coordinates times w, and at zero velocity the part that is prescribed: their difference
+        # is linear in w.
         if part == 0:
             for i in range(rank):
                 complex_state[1, partition.columns[i]] = partition.change[i]

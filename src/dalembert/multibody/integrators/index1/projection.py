@@ -65,6 +65,7 @@ def _follow(problem, level, model, t, within, state, dstate, tools, change):
             weighed[i] = complex(change.a[i] if i < n else change.x[i], dweighed[i].imag)
         weigh_along(model, n, before, weighed, work, complex_state, f)
         for i in range(n):
+            # Rows of motion in the coordinates before the projection, rows of constraints in those after it.
             gap[i] = f[i].imag / STEP
             shift = dweighed[i].imag
             x[i] = complex(state.x[i], STEP * dstate.x[i] - (shift if level == POSITION else 0.0))
@@ -108,6 +109,7 @@ def project(
         before = 1e300
         for _ in range(_MOST_ITERATIONS):
             fill_gap(models.real, n, level, state.x, state.v, state.a, tools.work, tools.gap, tools.second)
+            # No forces: the correction is the smallest one in the metric of the masses.
             clear(tools.gap[:n])
             solve(problem.exact_layout, tools.exact, tools.gap, tools.answer)
             moved = _move(problem, level, tools, state, change)

@@ -67,6 +67,7 @@ def support(e):
     oldest = max(first, newest - 1)
     shortest = _SHORT * (e.times[newest] - e.times[oldest])
     while oldest > first and e.times[oldest] - e.times[oldest - 1] >= shortest:
+        # Ends that are close together would make the polynomial swing: it goes through ends of similar distances only.
         oldest -= 1
     return oldest
 
@@ -86,6 +87,8 @@ def weigh_ends(e, oldest, t, weights):
                 gap = e.times[j] - e.times[k]
                 ahead = t - e.times[k]
                 ell *= ahead / gap
+                # Logarithmic derivatives of the cube: at t, to differentiate l, and at the end itself, for the basis.
+                # The time t is never an end: there the state is copied.
                 slope += 3.0 / ahead
                 bend -= 3.0 / (ahead * ahead)
                 first += 3.0 / gap
@@ -97,6 +100,8 @@ def weigh_ends(e, oldest, t, weights):
         weights[0, j, 2], weights[1, j, 2] = 0.5 * x * x, x
         weights[2, j, 0], weights[2, j, 1], weights[2, j, 2] = 2.0 * curve, -2.0 * first, 1.0
         weights[3, j, 0] = ell
+        # The cube of Lagrange's polynomial has zeros of third order at all other ends: values, rates and second rates
+        # there stay as they are.
         ell *= ell * ell
         for i in range(3):
             base, rate, second = weights[0, j, i], weights[1, j, i], weights[2, j, i]

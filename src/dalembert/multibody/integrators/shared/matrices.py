@@ -130,6 +130,7 @@ def renew(
     if matrices.pattern.varies:
         weigh_masses(matrices, complex_model, n, state, complex_work)
     x, v, a, slots = state.x, state.v, state.a, matrices.pattern.slots
+    # K with J^T and J: the rows of constraints come with the coordinates, J^T with the multipliers.
     tangent(complex_model, slots, n, x, v, a, (1.0, 0.0, 0.0), (1.0, 1.0), complex_work, matrices.stiffness)
     if damped:
         tangent(complex_model, slots, n, x, v, a, (0.0, 1.0, 0.0), (1.0, 0.0), complex_work, matrices.damping)
@@ -152,6 +153,8 @@ def _factorise(n, matrices, first, second, factors):
     for e in range(len(rows)):
         value = stiffness[e]
         if rows[e] < n and columns[e] < n:
+            # M, C and K are kept apart, so that a new step length needs sums over the entries and a factorisation, but
+            # no evaluation.
             value = mass[e] + first * damping[e] + second * value
         matrix[places[e]] = value
     return factorise(pattern.layout, factors)
@@ -191,6 +194,7 @@ def factorise_complex(n, matrices, p, s):
         if rows[e] < n and columns[e] < n:
             turned = first.imag * damping[e] + second.imag * value
             value = mass[e] + first.real * damping[e] + second.real * value
+        # A complex entry z is the real block [Re z, -Im z; Im z, Re z]: real kernels factorise complex systems too.
         matrix[places[0, e]] = value
         matrix[places[1, e]] = -turned
         matrix[places[2, e]] = turned
@@ -209,6 +213,7 @@ def add_inertia(matrices, vector, target):
     """target += M vector."""
     pattern, heavy, mass = matrices.pattern, matrices.heavy, matrices.mass
     rows, columns = pattern.rows, pattern.columns
+    # Most entries have no mass: only those that do are visited, as this product is taken at each iteration.
     for number in range(heavy[len(heavy) - 1]):
         e = heavy[number]
         target[rows[e]] += mass[e] * vector[columns[e]]

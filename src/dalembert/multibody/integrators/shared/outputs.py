@@ -63,6 +63,8 @@ def record(
         oldest = support(ends)
         weigh_ends(ends, oldest, t, room.weights)
         interpolate_ends(problem.n, oldest, room.weights, ends.states, state)
+        # The interpolated state is near the constraints, so that kept matrices correct it unless they are from far
+        # away.
         if far and not renew(problem, matrices, models.complex, False, t, within, state, room.complex_work):
             return False
         set_signals(models.real, t, within, room.work)

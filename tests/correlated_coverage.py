@@ -13,8 +13,8 @@ import numpy as np
 
 import dalembert as da
 from correlated_noise import autoregressive
-from dalembert.inverse.correlation.correlation import correlation
 from dalembert.inverse.least_squares.estimate import estimate
+from dalembert.inverse.noise.correlation.correlation import correlation
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import pose
 

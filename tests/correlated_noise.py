@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dalembert.inverse.correlation.series import Series, even_grid
+from dalembert.inverse.noise.correlation.series import Series, even_grid
 
 
 def autoregressive(seed, number, coefficient, repetitions=None):

@@ -15,7 +15,6 @@ from dalembert.inverse.comparison.compare_models import compare_models
 from dalembert.inverse.comparison.cross_validate import cross_validate
 from dalembert.inverse.comparison.cross_validation import CrossValidation
 from dalembert.inverse.comparison.model_comparison import ModelComparison
-from dalembert.inverse.correlation.correlated import CorrelatedResiduals, NoiseProcess
 from dalembert.inverse.diagnostics.findings import Outlier
 from dalembert.inverse.diagnostics.influence import Influence
 from dalembert.inverse.diagnostics.residual_diagnostics import ResidualDiagnostics
@@ -39,12 +38,13 @@ from dalembert.inverse.experiments.validation import Validation
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.identify import identify
 from dalembert.inverse.least_squares.estimate import Identifiability
-from dalembert.inverse.likelihood.estimated_noise import EstimatedNoise
-from dalembert.inverse.likelihood.likelihood import Likelihood, likelihood
-from dalembert.inverse.noise.correlated import AutoregressiveNoise, OrnsteinUhlenbeckNoise
-from dalembert.inverse.noise.deviations import ConstantNoise, KnownNoise, MixedNoise, ProportionalNoise
+from dalembert.inverse.noise.correlation.correlated_residuals import CorrelatedResiduals, NoiseProcess
 from dalembert.inverse.noise.input_errors import InputErrors, input_errors
-from dalembert.inverse.noise.noise_model import NoiseModel
+from dalembert.inverse.noise.likelihood.estimated_noise import EstimatedNoise
+from dalembert.inverse.noise.likelihood.likelihood import Likelihood, likelihood
+from dalembert.inverse.noise.models.correlated_noise import AutoregressiveNoise, OrnsteinUhlenbeckNoise
+from dalembert.inverse.noise.models.independent_noise import ConstantNoise, KnownNoise, MixedNoise, ProportionalNoise
+from dalembert.inverse.noise.models.noise_model import NoiseModel
 from dalembert.inverse.posterior.posterior import Posterior
 from dalembert.inverse.posterior.sample import sample
 from dalembert.inverse.posterior.samplers.affine_invariant import AffineInvariant

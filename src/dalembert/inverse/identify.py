@@ -13,16 +13,12 @@ from dalembert.findings import Finding
 from dalembert.forward import Executor, ForwardModel, check_derivatives, findings_at, takes_executor
 from dalembert.forward.adjoint import GRADIENTS
 from dalembert.forward.provenance import provenance
-from dalembert.inverse.correlation.correlated import CorrelatedResiduals
-from dalembert.inverse.correlation.correlation import correlation
-from dalembert.inverse.correlation.findings import correlation_findings
 from dalembert.inverse.events import Finished, OnEvent
 from dalembert.inverse.experiments.coverage import with_coverage
 from dalembert.inverse.experiments.experiment import Experiment
 from dalembert.inverse.experiments.experiments import begun, placed
 from dalembert.inverse.experiments.explained import explained_findings
 from dalembert.inverse.experiments.joined import joined
-from dalembert.inverse.experiments.smoothed import noise_findings, smooth_noise
 from dalembert.inverse.experiments.suspect_times import experiment_time_findings
 from dalembert.inverse.experiments.suspect_units import unit_findings
 from dalembert.inverse.experiments.validation import HeldOut, split, whole_jacobian
@@ -30,18 +26,22 @@ from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.fit.integration import integration_bias, integration_findings
 from dalembert.inverse.fit.outcome import outcome, too_few_findings
 from dalembert.inverse.fit.settings import settings, weights_source
-from dalembert.inverse.fit.with_noise import check_noise, counted_values, whole_noise, whole_weights, with_noise
-from dalembert.inverse.fit.with_noise import noise_findings as estimated_noise_findings
 from dalembert.inverse.least_squares.descent import End
 from dalembert.inverse.least_squares.estimate import Estimate, estimate, estimate_of, unknown_estimate
 from dalembert.inverse.least_squares.roughness import roughness_findings
-from dalembert.inverse.likelihood.placing import Noise
 from dalembert.inverse.misfit.misfit import misfit_conclusions
 from dalembert.inverse.mistakes.findings import with_mistakes
 from dalembert.inverse.mistakes.record import FittedRecord
+from dalembert.inverse.noise.correlation.correlated_residuals import CorrelatedResiduals
+from dalembert.inverse.noise.correlation.correlation import correlation
+from dalembert.inverse.noise.correlation.correlation_findings import correlation_findings
+from dalembert.inverse.noise.likelihood.placing import Noise
+from dalembert.inverse.noise.noise_floor import noise_floor
+from dalembert.inverse.noise.smoothed import noise_findings, smooth_noise
+from dalembert.inverse.noise.with_noise import check_noise, counted_values, whole_noise, whole_weights, with_noise
+from dalembert.inverse.noise.with_noise import noise_findings as estimated_noise_findings
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.loss import loss_of
-from dalembert.inverse.problem.noise import noise_floor
 from dalembert.inverse.problem.prior import priors
 from dalembert.inverse.problem.problem import Linearisation, Problem, pose
 from dalembert.inverse.shooting.growth import growth_findings

@@ -10,7 +10,7 @@ import dalembert as da
 from dalembert.errors import InputError
 from dalembert.forward import Checkpoint, Recorded, Sensor, Sensors, prefers_adjoint, pullback
 from dalembert.inverse import AutoregressiveNoise, Experiment, ProportionalNoise, likelihood
-from dalembert.inverse.noise.noise_model import NoiseModel
+from dalembert.inverse.noise.models.noise_model import NoiseModel
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import Problem, pose
 from refusals import refused

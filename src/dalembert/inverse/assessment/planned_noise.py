@@ -9,11 +9,11 @@ from numpy.typing import ArrayLike
 from dalembert.errors import InputError, require_known, unknown
 from dalembert.forward import Coordinate, ForwardModel
 from dalembert.inverse.assessment.sensitivity import noise_of
-from dalembert.inverse.correlation.series import Series, even_grid
-from dalembert.inverse.likelihood.estimated_noise import EstimatedNoise
-from dalembert.inverse.noise.catalogue import noise_model
-from dalembert.inverse.noise.deviations import KnownNoise
-from dalembert.inverse.noise.noise_model import Extent, NoiseModel
+from dalembert.inverse.noise.correlation.series import Series, even_grid
+from dalembert.inverse.noise.likelihood.estimated_noise import EstimatedNoise
+from dalembert.inverse.noise.models.independent_noise import KnownNoise
+from dalembert.inverse.noise.models.noise_catalogue import noise_model
+from dalembert.inverse.noise.models.noise_model import Extent, NoiseModel
 
 # Noise of channels with known parameters: of all, by name, or as a fit has estimated it.
 Planned = NoiseModel | str | Mapping[str, NoiseModel | str] | EstimatedNoise

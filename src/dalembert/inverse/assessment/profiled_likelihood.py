@@ -5,13 +5,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from dalembert.errors import DalembertError
-from dalembert.inverse.correlation.series import series_of
-from dalembert.inverse.likelihood.estimated_noise import EstimatedNoise
-from dalembert.inverse.likelihood.expansion import expanded
-from dalembert.inverse.likelihood.likelihood import Likelihood
-from dalembert.inverse.likelihood.maximum import Objective, maximum
-from dalembert.inverse.likelihood.placing import noises_of
-from dalembert.inverse.likelihood.restricted import Restriction
+from dalembert.inverse.noise.correlation.series import series_of
+from dalembert.inverse.noise.likelihood.estimated_noise import EstimatedNoise
+from dalembert.inverse.noise.likelihood.expansion import expanded
+from dalembert.inverse.noise.likelihood.likelihood import Likelihood
+from dalembert.inverse.noise.likelihood.maximum import Objective, maximum
+from dalembert.inverse.noise.likelihood.placing import noises_of
+from dalembert.inverse.noise.likelihood.restricted import Restriction
 from dalembert.inverse.problem.problem import Linearisation, Problem
 from dalembert.parameters import Parameters
 

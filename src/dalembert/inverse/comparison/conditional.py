@@ -10,11 +10,11 @@ from scipy.optimize import minimize
 
 from dalembert.errors import InputError
 from dalembert.inverse.comparison.predictive import LEAST, log_density
-from dalembert.inverse.correlation.series import Series, series_of_record
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.least_squares.estimate import UNSEEN
-from dalembert.inverse.likelihood.estimated_noise import EstimatedNoise
 from dalembert.inverse.misfit.residuals import off_bounds
+from dalembert.inverse.noise.correlation.series import Series, series_of_record
+from dalembert.inverse.noise.likelihood.estimated_noise import EstimatedNoise
 from dalembert.inverse.problem.prior import prior_residual, prior_slopes
 
 if TYPE_CHECKING:

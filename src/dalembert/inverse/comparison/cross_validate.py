@@ -18,7 +18,7 @@ from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.identify import identify
 from dalembert.inverse.least_squares.estimate import UNSEEN
 from dalembert.inverse.misfit.residuals import off_bounds
-from dalembert.inverse.noise.noise_model import NoiseModel
+from dalembert.inverse.noise.models.noise_model import NoiseModel
 from dalembert.inverse.problem.prior import prior_slopes
 
 UNDETERMINED = (

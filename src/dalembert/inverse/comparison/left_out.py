@@ -3,10 +3,10 @@
 import numpy as np
 
 from dalembert.errors import InputError, require_known
-from dalembert.inverse.correlation.series import Series, series_of_record
 from dalembert.inverse.experiments.blocks import USUAL, blocks_of_records
 from dalembert.inverse.fit.fit import Fit
-from dalembert.inverse.likelihood.estimated_noise import EstimatedNoise
+from dalembert.inverse.noise.correlation.series import Series, series_of_record
+from dalembert.inverse.noise.likelihood.estimated_noise import EstimatedNoise
 
 # What is left out together, in words.
 WAYS = {"values": "single values", "blocks": "blocks of neighbouring samples", "experiments": "experiments"}

@@ -7,10 +7,10 @@ from itertools import combinations
 import numpy as np
 from scipy.special import erfc
 
-from dalembert.inverse.correlation.correlated import NoiseProcess
-from dalembert.inverse.correlation.whiteness import LEAST
 from dalembert.inverse.diagnostics.series_residuals import SeriesResiduals
 from dalembert.inverse.least_squares.estimate import UNSEEN
+from dalembert.inverse.noise.correlation.correlated_residuals import NoiseProcess
+from dalembert.inverse.noise.correlation.whiteness import LEAST
 
 COPY = 0.99
 """Correlation from which one channel repeats the other, also where the model is wrong for both."""

@@ -7,10 +7,10 @@ import numpy as np
 
 from dalembert.errors import counted, listed
 from dalembert.findings import Finding
-from dalembert.inverse.correlation.correlation import SLIGHT
 from dalembert.inverse.diagnostics.channel_pairs import ChannelPair
 from dalembert.inverse.diagnostics.noise_tests import runs
 from dalembert.inverse.diagnostics.series_residuals import SeriesResiduals
+from dalembert.inverse.noise.correlation.correlation import SLIGHT
 
 LEVEL = 0.001
 """Probability with which a test takes independent noise for something else, over all channels of a fit."""

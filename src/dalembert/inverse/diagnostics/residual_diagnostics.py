@@ -7,11 +7,6 @@ import numpy as np
 from scipy.special import ndtr, stdtr
 
 from dalembert.findings import Finding
-from dalembert.inverse.correlation.balanced import balanced
-from dalembert.inverse.correlation.correlated import NoiseProcess
-from dalembert.inverse.correlation.correlation import SMALL
-from dalembert.inverse.correlation.series import Series, series_of_record
-from dalembert.inverse.correlation.whiteness import LEAST, p_value
 from dalembert.inverse.diagnostics.channel_pairs import correlated_pairs, factors
 from dalembert.inverse.diagnostics.findings import LEVEL, Outlier, diagnostic_findings, pair_findings
 from dalembert.inverse.diagnostics.influence import ALONE, Influence, influence
@@ -19,6 +14,11 @@ from dalembert.inverse.diagnostics.noise_tests import normality, runs
 from dalembert.inverse.diagnostics.series_residuals import SeriesResiduals
 from dalembert.inverse.least_squares.estimate import left_vectors
 from dalembert.inverse.misfit.residuals import off_bounds
+from dalembert.inverse.noise.correlation.balanced import balanced
+from dalembert.inverse.noise.correlation.correlated_residuals import NoiseProcess
+from dalembert.inverse.noise.correlation.correlation import SMALL
+from dalembert.inverse.noise.correlation.series import Series, series_of_record
+from dalembert.inverse.noise.correlation.whiteness import LEAST, p_value
 from dalembert.inverse.problem.prior import prior_slopes
 
 if TYPE_CHECKING:

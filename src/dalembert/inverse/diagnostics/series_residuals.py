@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtri
 
-from dalembert.inverse.correlation.series import Series
-from dalembert.inverse.correlation.whiteness import lagged, on_grid, p_value_of_period
 from dalembert.inverse.diagnostics.noise_tests import growth
+from dalembert.inverse.noise.correlation.series import Series
+from dalembert.inverse.noise.correlation.whiteness import lagged, on_grid, p_value_of_period
 
 LAGS = 40
 """Most lags of an autocorrelation."""

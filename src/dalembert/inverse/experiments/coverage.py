@@ -7,9 +7,9 @@ import numpy as np
 
 from dalembert.findings import Finding
 from dalembert.inverse.assessment.predict import band_end, noise_deviations, response_deviations
-from dalembert.inverse.correlation.series import series_of
 from dalembert.inverse.experiments.validation import Validation
 from dalembert.inverse.fit.fit import Fit
+from dalembert.inverse.noise.correlation.series import series_of
 from dalembert.inverse.problem.problem import Problem
 
 LEVEL = 0.95

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.findings import Finding
-from dalembert.inverse.correlation.series import series_of
-from dalembert.inverse.correlation.whiteness import LEVEL, p_value
+from dalembert.inverse.noise.correlation.series import series_of
+from dalembert.inverse.noise.correlation.whiteness import LEVEL, p_value
 from dalembert.inverse.problem.problem import Problem
 
 GOOD = 0.9

@@ -9,10 +9,10 @@ import numpy as np
 from dalembert.data import Measurements
 from dalembert.findings import Finding
 from dalembert.forward import ForwardModel
-from dalembert.inverse.correlation.series import Series, series_of
 from dalembert.inverse.experiments.explained import GOOD, explained
 from dalembert.inverse.experiments.without_outliers import without_outliers
 from dalembert.inverse.least_squares.descent import End, refine
+from dalembert.inverse.noise.correlation.series import Series, series_of
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import Problem, pose
 from dalembert.optimize import LeastSquares

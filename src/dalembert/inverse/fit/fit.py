@@ -11,7 +11,6 @@ from dalembert.arguments import is_number
 from dalembert.contents import Contents
 from dalembert.errors import InputError, shown
 from dalembert.findings import Finding
-from dalembert.inverse.correlation.correlated import CorrelatedResiduals
 from dalembert.inverse.diagnostics.residual_diagnostics import ResidualDiagnostics, residual_diagnostics
 from dalembert.inverse.events import StartEnd, Step
 from dalembert.inverse.experiments.experiment import ExperimentFit, Part, experiment_fit
@@ -21,8 +20,9 @@ from dalembert.inverse.fit.stored_data import StoredData, StoredParts
 from dalembert.inverse.fit.stored_search import History, Starts
 from dalembert.inverse.least_squares.estimate import Estimate, Identifiability
 from dalembert.inverse.least_squares.identifiable import identifiability_findings
-from dalembert.inverse.likelihood.estimated_noise import EstimatedNoise
 from dalembert.inverse.misfit.halves import Halves
+from dalembert.inverse.noise.correlation.correlated_residuals import CorrelatedResiduals
+from dalembert.inverse.noise.likelihood.estimated_noise import EstimatedNoise
 from dalembert.inverse.problem.combinations import amounts
 from dalembert.inverse.problem.prior import priors
 from dalembert.inverse.shooting.nodes import Nodes

@@ -7,8 +7,8 @@ import numpy as np
 from dalembert.errors import counted
 from dalembert.findings import Finding
 from dalembert.inverse.least_squares.descent import End
+from dalembert.inverse.noise.noise_floor import NoiseFloor, signal
 from dalembert.inverse.problem.combinations import members, moved, separated
-from dalembert.inverse.problem.noise import NoiseFloor, signal
 from dalembert.inverse.problem.problem import Problem
 from dalembert.inverse.shooting.nodes import Nodes
 

@@ -7,8 +7,8 @@ import numpy as np
 
 from dalembert.inverse.experiments.experiments import JointModel
 from dalembert.inverse.experiments.validation import HeldOut
-from dalembert.inverse.likelihood.estimate_noise import NoiseFit
-from dalembert.inverse.noise.catalogue import as_table
+from dalembert.inverse.noise.likelihood.estimate_noise import NoiseFit
+from dalembert.inverse.noise.models.noise_catalogue import as_table
 from dalembert.inverse.problem.problem import Problem
 from dalembert.inverse.shooting.shooting import MultipleShooting
 from dalembert.stored_fields import encoded

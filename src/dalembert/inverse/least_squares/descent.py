@@ -7,8 +7,8 @@ import numpy as np
 
 from dalembert.errors import SolveError
 from dalembert.forward import refined
+from dalembert.inverse.noise.noise_floor import random_residuals
 from dalembert.inverse.problem.integration_error import as_residuals, integration_error
-from dalembert.inverse.problem.noise import random_residuals
 from dalembert.inverse.problem.problem import Linearisation, Problem
 from dalembert.inverse.shooting.nodes import Nodes
 from dalembert.optimize import Progress, Squares

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.findings import Finding
-from dalembert.inverse.correlation.series import Series
 from dalembert.inverse.misfit.residuals import Residuals
+from dalembert.inverse.noise.correlation.series import Series
 
 SIGNIFICANT = 4.0
 """Delay in its standard deviations from which it is suspected."""

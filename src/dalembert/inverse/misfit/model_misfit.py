@@ -7,9 +7,9 @@ import numpy as np
 from scipy.special import chdtri
 
 from dalembert.findings import Finding
-from dalembert.inverse.correlation.correlated import CLEAR, NoiseProcess
-from dalembert.inverse.correlation.series import Series
 from dalembert.inverse.misfit.residuals import Residuals
+from dalembert.inverse.noise.correlation.correlated_residuals import CLEAR, NoiseProcess
+from dalembert.inverse.noise.correlation.series import Series
 
 FAR = 2.0
 """Residuals in deviations of the noise from which they are far above it."""

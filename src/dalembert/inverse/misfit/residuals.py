@@ -7,19 +7,19 @@ from typing import Self
 
 import numpy as np
 
-from dalembert.inverse.correlation.balanced import balanced, noise_of
-from dalembert.inverse.correlation.correlated import NoiseProcess
-from dalembert.inverse.correlation.correlation import (
+from dalembert.inverse.least_squares.estimate import left_vectors
+from dalembert.inverse.misfit.local_noise import local_deviation
+from dalembert.inverse.noise.correlation.balanced import balanced, noise_of
+from dalembert.inverse.noise.correlation.correlated_residuals import NoiseProcess
+from dalembert.inverse.noise.correlation.correlation import (
     Process,
     correlated_series,
     fitted_processes,
     noise_along,
     summaries,
 )
-from dalembert.inverse.correlation.series import Series, series_of
-from dalembert.inverse.least_squares.estimate import left_vectors
-from dalembert.inverse.misfit.local_noise import local_deviation
-from dalembert.inverse.problem.noise import quantum
+from dalembert.inverse.noise.correlation.series import Series, series_of
+from dalembert.inverse.noise.noise_floor import quantum
 from dalembert.inverse.problem.problem import Linearisation, Problem
 from dalembert.parameters import Parameters
 

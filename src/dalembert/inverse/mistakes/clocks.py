@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dalembert.inverse.correlation.series import Series
 from dalembert.inverse.mistakes.record import TIME, FittedRecord
+from dalembert.inverse.noise.correlation.series import Series
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline

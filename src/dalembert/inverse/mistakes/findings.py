@@ -6,11 +6,11 @@ import numpy as np
 
 from dalembert.errors import SolveError
 from dalembert.findings import Finding
-from dalembert.inverse.correlation.correlation import correlated_series
 from dalembert.inverse.mistakes.clocks import RESOLUTION, clocks
 from dalembert.inverse.mistakes.hypotheses import HYPOTHESES
 from dalembert.inverse.mistakes.record import NONE, FittedRecord, Mistake, Verdict
 from dalembert.inverse.mistakes.supposed import LEAST, Supposed, linear, refitted
+from dalembert.inverse.noise.correlation.correlation import correlated_series
 from dalembert.inverse.problem.problem import Linearisation
 
 EXPLAINS = 0.35

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from dalembert.findings import Finding
-from dalembert.inverse.correlation.series import Series, series_of
+from dalembert.inverse.noise.correlation.series import Series, series_of
 from dalembert.inverse.problem.problem import Linearisation, Problem
 
 TIME = "s"

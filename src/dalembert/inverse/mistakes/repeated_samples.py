@@ -6,9 +6,9 @@ from functools import partial
 import numpy as np
 
 from dalembert.findings import Finding
-from dalembert.inverse.correlation.series import Series
 from dalembert.inverse.mistakes.patterns import FEWEST, plateaus, runs
 from dalembert.inverse.mistakes.record import NONE, FittedRecord, Mistake, Verdict
+from dalembert.inverse.noise.correlation.series import Series
 
 
 def repeated_samples(record: FittedRecord) -> Iterator[Mistake]:

@@ -7,8 +7,8 @@ from itertools import combinations
 import numpy as np
 
 from dalembert.findings import Finding
-from dalembert.inverse.correlation.series import Series
 from dalembert.inverse.mistakes.record import NONE, FittedRecord, Mistake, Verdict
+from dalembert.inverse.noise.correlation.series import Series
 
 MOST = 12
 """Channels of an experiment up to which all pairs are tested."""

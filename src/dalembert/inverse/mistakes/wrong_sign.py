@@ -6,8 +6,8 @@ from functools import partial
 import numpy as np
 
 from dalembert.findings import Finding
-from dalembert.inverse.correlation.series import Series
 from dalembert.inverse.mistakes.record import NONE, FittedRecord, Mistake, Verdict
+from dalembert.inverse.noise.correlation.series import Series
 
 
 def wrong_sign(record: FittedRecord) -> Iterator[Mistake]:

@@ -1,1 +1,1 @@
-"""Models of the noise of measurements: its deviation, and its correlation from sample to sample."""
+"""Noise of measurements: its models, their likelihood, correlated residuals, and the misfit that noise explains."""

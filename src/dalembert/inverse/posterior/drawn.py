@@ -7,7 +7,7 @@ import numpy as np
 
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.experiments.blocks import blocks_of_records
-from dalembert.inverse.likelihood.likelihood import Likelihood
+from dalembert.inverse.noise.likelihood.likelihood import Likelihood
 from dalembert.inverse.posterior.conclusions import contradictions, draw_findings, separate_modes
 from dalembert.inverse.posterior.convergence import convergence
 from dalembert.inverse.posterior.model_variants import Remembered

@@ -8,8 +8,8 @@ from scipy.spatial import KDTree
 
 from dalembert.errors import SolveError
 from dalembert.inverse.least_squares.descent import End, refine
-from dalembert.inverse.likelihood.guesses import guessed
-from dalembert.inverse.likelihood.likelihood import Likelihood
+from dalembert.inverse.noise.likelihood.guesses import guessed
+from dalembert.inverse.noise.likelihood.likelihood import Likelihood
 from dalembert.inverse.posterior.model_variants import WithoutPriors
 from dalembert.inverse.posterior.posed import Length, PosedPosterior, SearchStart
 from dalembert.inverse.posterior.preconditioning import Centred, centred

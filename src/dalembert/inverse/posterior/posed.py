@@ -12,9 +12,9 @@ from dalembert.inverse.events import OnEvent
 from dalembert.inverse.experiments.experiment import Experiment
 from dalembert.inverse.experiments.joined import joined
 from dalembert.inverse.fit.fit import Fit
-from dalembert.inverse.likelihood.guesses import guessed
-from dalembert.inverse.likelihood.likelihood import Likelihood, likelihood_of
-from dalembert.inverse.likelihood.placing import Noise
+from dalembert.inverse.noise.likelihood.guesses import guessed
+from dalembert.inverse.noise.likelihood.likelihood import Likelihood, likelihood_of
+from dalembert.inverse.noise.likelihood.placing import Noise
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import pose
 from dalembert.parameters import Parameter, Parameters

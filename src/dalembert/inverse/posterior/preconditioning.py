@@ -6,7 +6,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from dalembert.errors import SolveError
-from dalembert.inverse.likelihood.likelihood import Likelihood
+from dalembert.inverse.noise.likelihood.likelihood import Likelihood
 from dalembert.inverse.posterior.target import Target
 from dalembert.inverse.problem.prior import prior_slopes
 from dalembert.parameters import Parameters

@@ -15,7 +15,7 @@ from dalembert.inverse.experiments.experiment import Experiment
 from dalembert.inverse.experiments.experiments import placed
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.identify import identify
-from dalembert.inverse.likelihood.placing import Noise
+from dalembert.inverse.noise.likelihood.placing import Noise
 from dalembert.inverse.posterior.conclusions import inherited
 from dalembert.inverse.posterior.drawn import draw, posterior_of
 from dalembert.inverse.posterior.model_variants import without_priors

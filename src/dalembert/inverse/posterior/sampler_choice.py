@@ -6,7 +6,7 @@ import numpy as np
 
 from dalembert.errors import DalembertError, InputError, StorageError, require_known, shown
 from dalembert.forward import check_derivatives
-from dalembert.inverse.likelihood.likelihood import Likelihood
+from dalembert.inverse.noise.likelihood.likelihood import Likelihood
 from dalembert.inverse.posterior.samplers.affine_invariant import AffineInvariant
 from dalembert.inverse.posterior.samplers.delayed_acceptance import DelayedAcceptance
 from dalembert.inverse.posterior.samplers.nuts import NUTS

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from dalembert.errors import SolveError
-from dalembert.inverse.likelihood.likelihood import Likelihood
+from dalembert.inverse.noise.likelihood.likelihood import Likelihood
 from dalembert.inverse.posterior.prior_density import PriorDensity
 from dalembert.inverse.posterior.unbounded import UnboundedCoordinates
 from dalembert.inverse.problem.problem import Problem

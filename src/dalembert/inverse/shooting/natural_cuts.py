@@ -8,8 +8,8 @@ import numpy as np
 
 from dalembert.errors import DalembertError, InputError, SolveError
 from dalembert.forward import Restartable, StateChart, restartable, restarted
-from dalembert.inverse.experiments.smoothed import Smoothed, smoothed
 from dalembert.inverse.experiments.tracks import Track
+from dalembert.inverse.noise.smoothed import Smoothed, smoothed
 from dalembert.inverse.problem.problem import Problem
 from dalembert.inverse.shooting.cuts import TURN, Cut, Node
 

@@ -11,7 +11,7 @@ from dalembert.arguments import Checked, limited
 from dalembert.errors import InputError, SolveError
 from dalembert.inverse.experiments.tracks import tracks
 from dalembert.inverse.least_squares.descent import End, descend, recorded
-from dalembert.inverse.problem.noise import NoiseFloor
+from dalembert.inverse.noise.noise_floor import NoiseFloor
 from dalembert.inverse.problem.problem import Problem
 from dalembert.inverse.shooting.continuity import Chain, ChainEnd
 from dalembert.inverse.shooting.cuts import Cut, guess, named_cut, segments

@@ -9,7 +9,7 @@ from typing import TypeAlias
 import numpy as np
 
 from dalembert.inverse.least_squares.descent import End, descend, recorded
-from dalembert.inverse.problem.noise import NoiseFloor, random_residuals
+from dalembert.inverse.noise.noise_floor import NoiseFloor, random_residuals
 from dalembert.inverse.problem.problem import Problem, Work
 from dalembert.inverse.problem.search_coordinates import SearchCoordinates
 from dalembert.inverse.starts.neighbours import neighbours

@@ -6,7 +6,7 @@ from typing import TypeAlias
 import numpy as np
 
 from dalembert.inverse.least_squares.descent import End, refine
-from dalembert.inverse.problem.noise import NoiseFloor
+from dalembert.inverse.noise.noise_floor import NoiseFloor
 from dalembert.inverse.problem.problem import Problem
 from dalembert.inverse.starts.spread import spread_points
 from dalembert.optimize import Minimiser, Progress, Squares, Swarm

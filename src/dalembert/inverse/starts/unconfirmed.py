@@ -7,8 +7,8 @@ import numpy as np
 
 from dalembert.findings import Finding
 from dalembert.inverse.least_squares.descent import End, refine
+from dalembert.inverse.noise.noise_floor import NoiseFloor, random_residuals
 from dalembert.inverse.problem.journal import Journal
-from dalembert.inverse.problem.noise import NoiseFloor, random_residuals
 from dalembert.inverse.problem.problem import Problem
 from dalembert.inverse.starts.rivals import ALIKE, PROMISING
 from dalembert.optimize import LeastSquares

@@ -49,7 +49,7 @@ class ChannelNoiseTable(StudyTable):
 
     def settings(self) -> "NoiseModel":
         """The noise model."""
-        from dalembert.inverse.noise.catalogue import from_table
+        from dalembert.inverse.noise.models.noise_catalogue import from_table
 
         return from_table(self._given())
 

@@ -8,8 +8,8 @@ from dalembert.data import Measurements
 from dalembert.errors import DataError
 from dalembert.forward import PythonModel
 from dalembert.inverse import Fit, identify
+from dalembert.inverse.noise.noise_floor import noise_floor, random_residuals
 from dalembert.inverse.problem.journal import Journal
-from dalembert.inverse.problem.noise import noise_floor, random_residuals
 from dalembert.inverse.problem.problem import pose
 from dalembert.inverse.starts.multistart import horizons
 from dalembert.optimize import ParticleSwarm

@@ -9,8 +9,8 @@ from dalembert.data import Measurements
 from dalembert.forward import PythonModel
 from dalembert.inverse import identify
 from dalembert.inverse.least_squares.descent import End
+from dalembert.inverse.noise.noise_floor import NoiseFloor
 from dalembert.inverse.problem.journal import Journal
-from dalembert.inverse.problem.noise import NoiseFloor
 from dalembert.inverse.problem.problem import pose
 from dalembert.inverse.starts.unconfirmed import unconfirmed_findings
 

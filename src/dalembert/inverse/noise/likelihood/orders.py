@@ -1,0 +1,92 @@
+"""The order of autoregressive noise by the corrected Akaike criterion."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from dalembert.inverse.noise.correlation.series import Series
+from dalembert.inverse.noise.likelihood.channel_noise import ChannelNoise
+from dalembert.inverse.noise.likelihood.guesses import guessed
+from dalembert.inverse.noise.likelihood.likelihood import Likelihood
+from dalembert.inverse.noise.likelihood.maximum import Objective, linear_expansion, scored
+from dalembert.inverse.noise.likelihood.placing import base_of, noises_of
+from dalembert.inverse.noise.models.correlated_noise import SAMPLES, AutoregressiveNoise
+from dalembert.inverse.noise.models.noise_model import NoiseModel
+from dalembert.inverse.problem.problem import Linearisation, Problem
+from dalembert.inverse.problem.search_coordinates import SearchCoordinates
+from dalembert.parameters import Parameters
+
+MOST = 10
+"""Highest order."""
+
+PATIENCE = 3
+"""Orders in a row that do not improve the criterion, after which the search ends."""
+
+
+def ordered(
+    problem: Problem, picked: Mapping[Series, NoiseModel], at: Linearisation, *, known: bool
+) -> dict[Series, NoiseModel]:
+    """Return the noise models with the order of each autoregressive one that leaves it open.
+
+    Parameters
+    ----------
+    problem : Problem
+    picked : mapping of Series to NoiseModel
+    at : Linearisation
+        Whose residuals are compared.
+    known : bool
+        Whether the weights of the problem are 1/variance.
+
+    Notes
+    -----
+    The order is that of the least AICc = −2 log p + 2k + 2k(k + 1)/(n − k − 1), with k parameters of model and noise
+    and n values. Experiments that share noise parameters share the order.
+
+    Source: C. M. Hurvich, C.-L. Tsai, Regression and time series model selection in small samples, Biometrika 76
+    (1989).
+    """
+    groups: dict[str, list[Series]] = {}
+    for series, model in picked.items():
+        if isinstance(model, AutoregressiveNoise) and model.order is None:
+            groups.setdefault(base_of(series, model), []).append(series)
+    found = dict(picked)
+    for alike in groups.values():
+        model = picked[alike[0]]
+        order = _best(problem, alike, model, at, known=known)
+        found.update({series: replace(picked[series], order=order) for series in alike})  # pyright: ignore[reportCallIssue]
+    return found
+
+
+def _best(problem: Problem, alike: Sequence[Series], model: NoiseModel, at: Linearisation, *, known: bool) -> int:
+    most = min(MOST, min(len(series.rows) for series in alike) // SAMPLES)
+    best, chosen = np.inf, 0
+    for order, criterion in enumerate(_criteria(problem, alike, model, at, most, known=known)):
+        if criterion < best:
+            best, chosen = criterion, order
+        elif order - chosen >= PATIENCE:
+            break
+    return chosen
+
+
+def _criteria(
+    problem: Problem, alike: Sequence[Series], model: NoiseModel, at: Linearisation, most: int, *, known: bool
+) -> Iterator[float]:
+    """Yield the criterion of each order from 0."""
+    number = sum(len(series.rows) for series in alike)
+    for order in range(most + 1):
+        channels, own = noises_of(problem, {series: replace(model, order=order) for series in alike}, known=known)  # pyright: ignore[reportCallIssue]
+        count = len(at.vector) + len(own)
+        value = _largest(problem, channels, own, at)
+        yield -2 * value + 2 * count + 2 * count * (count + 1) / max(number - count - 1, 1)
+
+
+def _largest(problem: Problem, channels: tuple[ChannelNoise, ...], own: Parameters, at: Linearisation) -> float:
+    """Return the largest log-likelihood of some channels over their noise parameters."""
+    model = problem.model.parameters
+    parameters = Parameters((*model.items, *own.items), (*model.fixed, *own.fixed))
+    alone = Likelihood(problem, {}, parameters, channels)
+    expansion = linear_expansion(alone, at)
+    here = expansion(np.concatenate([at.vector, guessed(channels, own, problem, at.response)]))
+    objective = Objective(parameters, model, None, frozenset(range(len(model))))
+    return scored(here, objective, SearchCoordinates(parameters), expansion)[0].value

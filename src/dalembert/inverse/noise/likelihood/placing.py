@@ -1,0 +1,122 @@
+"""Which noise model describes which channel, and the parameters of all of them."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TypeAlias
+
+import numpy as np
+
+from dalembert.errors import InputError, unknown
+from dalembert.inverse.noise.correlation.series import Series, series_of
+from dalembert.inverse.noise.likelihood.channel_noise import ChannelNoise
+from dalembert.inverse.noise.likelihood.estimated_noise import EstimatedNoise
+from dalembert.inverse.noise.models.independent_noise import ConstantNoise, KnownNoise
+from dalembert.inverse.noise.models.noise_catalogue import noise_model
+from dalembert.inverse.noise.models.noise_model import Extent, NoiseModel
+from dalembert.inverse.problem.problem import Problem
+from dalembert.parameters import Parameter, Parameters
+
+Noise: TypeAlias = NoiseModel | str | Mapping[str, NoiseModel | str] | EstimatedNoise
+"""One noise model for all channels, one for each by name, or those of a fit, whose orders are chosen."""
+
+
+def picked_models(
+    problem: Problem, given: Noise | None, *, known: bool
+) -> tuple[dict[Series, NoiseModel], NoiseModel | Mapping[str, NoiseModel]]:
+    """Return the noise model of each channel with compared values, and the models by which it was chosen.
+
+    ``known`` means that the weights of the problem are 1/variance.
+
+    Raises
+    ------
+    InputError
+        For a channel that there is not, and what is no noise model.
+    """
+    usual = KnownNoise() if known else ConstantNoise()
+    series = list(series_of(problem, fewest=1))
+    given = given.models if isinstance(given, EstimatedNoise) else given
+    if not isinstance(given, Mapping):
+        chosen = usual if given is None else noise_model(given)
+        return dict.fromkeys(series, chosen), chosen
+    names = [name for own in series for name in (own.name, own.channel)]
+    for name in given:
+        if name not in names:
+            raise InputError(unknown("channel", str(name), dict.fromkeys(names), "noise"))
+    several = {str(name): noise_model(one) for name, one in given.items()}
+    return {own: several.get(own.name, several.get(own.channel, usual)) for own in series}, several
+
+
+def noises_of(
+    problem: Problem, picked: Mapping[Series, NoiseModel], *, known: bool
+) -> tuple[tuple[ChannelNoise, ...], Parameters]:
+    """Return the noise of each series, and the parameters of all of them.
+
+    Raises
+    ------
+    InputError
+        For known noise that is not known, and what :meth:`NoiseModel.whitening` refuses.
+    """
+    channels = tuple(_channel_noise(problem, own, model, known=known) for own, model in picked.items())
+    return channels, noise_parameters(problem, channels)
+
+
+def _channel_noise(problem: Problem, series: Series, model: NoiseModel, *, known: bool) -> ChannelNoise:
+    if isinstance(model, KnownNoise) and not known:
+        raise InputError(
+            f"noise of channel {series.name!r}: KnownNoise was given, but the data have no deviations; give them, or "
+            "take ConstantNoise()"
+        )
+    names = {item.name: f"{base_of(series, model)}.{item.name}" for item in model.parameters(_extent(problem, series))}
+    weights = problem.weights.ravel()[series.rows]
+    return ChannelNoise(series, model, weights**-0.5, names, model.whitening(series))
+
+
+def base_of(series: Series, model: NoiseModel) -> str:
+    """Return how the names of a channel's noise parameters begin: the same for experiments that share them."""
+    return f"noise.{series.name if model.local else series.channel}"
+
+
+def noise_parameters(problem: Problem, channels: tuple[ChannelNoise, ...]) -> Parameters:
+    """Return the parameters of the noise of all channels; those of the same name are one, if they are alike.
+
+    Raises
+    ------
+    InputError
+        For channels of one name with different noise models.
+    """
+    found: dict[str, tuple[NoiseModel, Extent, str]] = {}
+    for channel in channels:
+        extent = _extent(problem, channel.series)
+        for bare, full in channel.names.items():
+            model, before, _ = found.get(full, (channel.model, extent, bare))
+            if model != channel.model:
+                raise InputError(
+                    f"noise of channel {channel.series.channel!r}: experiments share its parameters, but have "
+                    "different noise models; give all the same, or models with local=True"
+                )
+            found[full] = model, _joint(before, extent), bare
+    return Parameters(tuple(_named(name, *entry) for name, entry in found.items()))
+
+
+def _named(name: str, model: NoiseModel, extent: Extent, bare: str) -> Parameter:
+    return replace(next(item for item in model.parameters(extent) if item.name == bare), name=name)
+
+
+def _joint(first: Extent, second: Extent) -> Extent:
+    return replace(
+        first,
+        size=max(first.size, second.size),
+        step=min(first.step, second.step),
+        length=max(first.length, second.length),
+    )
+
+
+def _extent(problem: Problem, series: Series) -> Extent:
+    data = problem.data
+    values = data.continuous.ravel()[series.rows]
+    size = float(np.std(values)) or float(np.max(np.abs(values))) or 1.0
+    names = [channel.name for channel in problem.model.channels]
+    unit = problem.model.channels[names.index(series.name)].unit
+    intervals = np.diff(series.along)
+    step = float(np.min(intervals)) if len(intervals) else 1.0
+    return Extent(size, unit, step, max(series.length, step), series.unit)

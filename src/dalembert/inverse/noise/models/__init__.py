@@ -1,0 +1,1 @@
+"""Models of the noise of measurements: its deviation, and its correlation from sample to sample."""

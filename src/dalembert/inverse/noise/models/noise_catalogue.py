@@ -1,0 +1,77 @@
+"""Noise models by name, and as tables of plain values."""
+
+from collections.abc import Mapping
+from dataclasses import fields
+from typing import Any
+
+from dalembert.errors import InputError, require_known, shown
+from dalembert.inverse.noise.models.correlated_noise import AutoregressiveNoise, CorrelatedNoise, OrnsteinUhlenbeckNoise
+from dalembert.inverse.noise.models.independent_noise import ConstantNoise, KnownNoise, MixedNoise, ProportionalNoise
+from dalembert.inverse.noise.models.noise_model import NoiseModel
+
+MODELS: dict[str, type[NoiseModel]] = {
+    kind.name: kind
+    for kind in (KnownNoise, ConstantNoise, ProportionalNoise, MixedNoise, AutoregressiveNoise, OrnsteinUhlenbeckNoise)
+}
+
+
+def noise_model(given: object) -> NoiseModel:
+    """Return a noise model, from itself or from its name with its defaults.
+
+    Raises
+    ------
+    InputError
+    """
+    if isinstance(given, str):
+        require_known("noise model", given, MODELS, "noise")
+        return MODELS[given]()
+    if not isinstance(given, NoiseModel):
+        hint = f"; write {given.__name__}()" if isinstance(given, type) else ""
+        raise InputError(
+            f"noise is {shown(given)}; expected a noise model such as ConstantNoise(), its name, or a mapping from "
+            f"channels to such models{hint}"
+        )
+    return given
+
+
+def as_table(model: NoiseModel) -> dict[str, Any]:
+    """Return a noise model as plain values, its name as ``"model"``.
+
+    >>> as_table(ConstantNoise(deviation=0.1))
+    {'model': 'constant', 'local': False, 'deviation': 0.1}
+    """
+    values = {part.name: getattr(model, part.name) for part in fields(model)}
+    plain = {
+        name: as_table(value) if isinstance(value, NoiseModel) else list(value) if isinstance(value, tuple) else value
+        for name, value in values.items()
+    }
+    return {"model": model.name, **plain}
+
+
+def from_table(table: Mapping[str, Any]) -> NoiseModel:
+    """Return the noise model of a table, see :func:`as_table`.
+
+    Raises
+    ------
+    InputError
+        For an unknown model, and arguments that it does not have or allow.
+
+    The number, or the two bounds, of the deviation of correlated noise are those of constant noise.
+
+    >>> from_table({"model": "autoregressive", "deviation": 0.2}).deviation
+    ConstantNoise(local=False, deviation=0.2)
+    >>> from_table({"model": "autoregressive", "order": 2, "deviation": {"model": "mixed"}}).order
+    2
+    """
+    values: dict[str, Any] = {
+        name: from_table(value) if isinstance(value, Mapping) else tuple(value) if isinstance(value, list) else value
+        for name, value in table.items()
+        if name != "model"
+    }
+    require_known("noise model", table.get("model"), MODELS, "noise")
+    kind = MODELS[table["model"]]
+    for name in values:
+        require_known("argument", name, [part.name for part in fields(kind)], f"noise model {kind.name!r}")
+    if issubclass(kind, CorrelatedNoise) and isinstance(values.get("deviation"), int | float | tuple):
+        values["deviation"] = ConstantNoise(deviation=values["deviation"])
+    return kind(**values)

@@ -120,9 +120,3 @@ class Propagation(Bands, EndedResult):
         near = 1e-6 * (self.box.upper - self.box.lower)
         on_end = (at <= self.box.lower + near) | (at >= self.box.upper - near)
         return on_end.all(axis=-1).mean(axis=(0, 1))
-
-    @classmethod
-    def upgrade(cls, arrays: dict[str, Any], settings: dict[str, Any]) -> None:
-        super().upgrade(arrays, settings)
-        if settings["kind"] == "enclosure":
-            settings["kind"] = "enclosure of the surrogate"

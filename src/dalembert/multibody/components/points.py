@@ -3,7 +3,7 @@
 __all__ = ["Ground", "GroundPoint", "Point"]
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 from dalembert.arguments import Checked
 from dalembert.errors import ModelError
@@ -18,10 +18,8 @@ class Carrier(Protocol):
         """Of the body."""
         ...
 
-    @property
-    def turns(self) -> bool:
-        """Whether it has a direction."""
-        ...
+    turns: ClassVar[bool]
+    """Whether it has a direction."""
 
     @property
     def rigid(self) -> bool:

@@ -261,9 +261,8 @@ class BlockTangent:
             phasors = series.phasors(values.reshape(right.shape))
             return series.coefficients((self._preconditioner @ phasors[:, :, None])[:, :, 0]).ravel()
 
-        operator, near = (
-            LinearOperator((size, size), matvec=product, dtype=float) for product in (self._product, precondition)
-        )  # type: ignore[call-arg]
+        products = self._product, precondition
+        operator, near = (LinearOperator((size, size), matvec=product, dtype=float) for product in products)  # type: ignore[call-arg]
         solution, failed = gmres(
             operator, right.ravel(), rtol=tolerance, atol=0.0, restart=KRYLOV, maxiter=CYCLES, M=near
         )

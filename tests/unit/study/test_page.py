@@ -87,10 +87,10 @@ TABLES = {
     "ReductionTable": [r"model\.structure"],
     "WorkPrecisionTable": ["work_precision"],
     "SeriesTable": ["work_precision"],
-    "dalembert__study__numbers__Grid__1": ["Numbers"],
-    "dalembert__study__numbers__Grid__2": ["Numbers"],
-    "dalembert__study__numbers__Grid__3": ["Numbers"],
-    "dalembert__study__numbers__Grid__4": ["Numbers"],
+    "dalembert__study__text__numbers__Grid__1": ["Numbers"],
+    "dalembert__study__text__numbers__Grid__2": ["Numbers"],
+    "dalembert__study__text__numbers__Grid__3": ["Numbers"],
+    "dalembert__study__text__numbers__Grid__4": ["Numbers"],
 }
 """Where the page tells of a table that is not one kind of several."""
 

@@ -176,13 +176,15 @@ def kinds_of(
 def listed(sources: Path, module: str, package: str = "") -> dict[str, str]:
     """Modules of the names that a module lists, and itself as that of its modules.
 
-    A package lists them in its ``__init__``; the modules are those of ``package``, if it is another one.
+    A package lists them in its ``__init__``; the modules are those of ``package``, if it is another one. Names of
+    modules outside the package are in ``_ELSEWHERE``.
     """
     path = sources.joinpath(*module.split("."))
     path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
     tree = ast.parse(path.read_text(encoding="utf-8"))
-    given = literal(tree, "_NAMES", {})
-    names = {name: f"{package or module}.{home}" for home, names in given.items() for name in names.split()}
+    inside = {f"{package or module}.{home}": names for home, names in literal(tree, "_NAMES", {}).items()}
+    homes = inside | literal(tree, "_ELSEWHERE", {})
+    names = {name: home for home, names in homes.items() for name in names.split()}
     return names | dict.fromkeys(literal(tree, "_MODULES", ()), module)
 
 

@@ -9,7 +9,8 @@ _NAMES = {
     "registry": "sections_of",
     "section": "Part",
 }
+_ELSEWHERE = {"dalembert.tables": "Table cell"}
 _HOMES = {name: f"{__name__}.{module}" for module, names in _NAMES.items() for name in names.split()}
-_HOMES |= dict.fromkeys(("Table", "cell"), "dalembert.tables")
+_HOMES |= {name: module for module, names in _ELSEWHERE.items() for name in names.split()}
 _MODULES = ("charts",)
 __getattr__, __dir__ = lazy_names(__name__, _HOMES, _MODULES)

@@ -43,7 +43,7 @@ SOURCES = [
         for name in ("chebyshev", "comparison", "morris", "optimise", "propagate", "sobol", "taylor")
     ),
     *SECTIONS,
-    "study/tasks/telling.py",
+    "study/tasks/assessments.py",
 ]
 GAP = ".{0,200}?"
 NO_SENTENCE = re.compile(r"dalembert \w+ \d+")  # the name of a file's format

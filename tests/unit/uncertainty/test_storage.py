@@ -1,7 +1,5 @@
 """Propagations and comparisons come back from their files bit for bit."""
 
-from dataclasses import replace
-
 import pytest
 
 from dalembert.errors import DataError
@@ -76,9 +74,3 @@ def test_a_file_of_another_kind_is_told(kind, what, tmp_path):
     )
     with pytest.raises(DataError, match=says(f"{path}: holds 'sweep 1'; expected 'dalembert {what} 1', {expected}")):
         kind.load(path)
-
-
-def test_a_file_of_a_former_version_is_read_with_its_kind(tmp_path):
-    result = propagate(DECAY, BOX, Chebyshev(Tensor(4), bounds="bernstein", tolerance=0.1))
-    replace(result, kind="enclosure").save(tmp_path / "former.nc")
-    assert Propagation.load(tmp_path / "former.nc").kind == "enclosure of the surrogate"

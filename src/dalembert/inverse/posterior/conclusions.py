@@ -11,7 +11,6 @@ from dalembert.findings import Finding
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.posterior.modes import Modes
 from dalembert.inverse.posterior.posed import PosedPosterior
-from dalembert.inverse.posterior.posterior import SEPARATE
 from dalembert.inverse.posterior.preconditioning import Centred
 from dalembert.inverse.posterior.samplers.sampler import Sampler
 from dalembert.inverse.posterior.unbounded import UnboundedCoordinates
@@ -145,7 +144,7 @@ def separate_modes(modes: Modes, places: np.ndarray, sampler: Sampler) -> Iterat
     message = f"The posterior has {count} modes that no chain connects: {'; '.join(texts)}."
     jumps = "Increase draws" if sampler.jumps else "Use the sampler 'affine-invariant', which jumps between modes"
     yield Finding(
-        SEPARATE,
+        "separate-modes",
         "error",
         values,
         message,

@@ -149,7 +149,7 @@ def samplers() -> dict[str, type]:
     """Samplers by the names that a study file gives them."""
     from dalembert.inverse.posterior.samplers.sampler import Sampler
 
-    return named("dalembert.inverse.posterior.samplers", Sampler)
+    return dict(sorted(named("dalembert.inverse.posterior.samplers", Sampler).items()))
 
 
 def _starts(model: Any) -> dict[str, float]:

@@ -45,11 +45,41 @@ MOTOR = pair_kind(
 class Motor(MotorNumbers, Load):
     """A direct-current motor with a gear about the axis of a joint: it turns b against a.
 
-    The law, the outputs and the errors are those of :class:`dalembert.multibody.Motor`, and so are the parameters but
-    for ``axis``. Its torque on b acts about the axis, the opposite torque on a.
+    The law, the outputs and the errors are those of :class:`dalembert.multibody.Motor`. Its torque on b acts about the
+    axis, the opposite torque on a.
 
     Parameters
     ----------
+    name : str
+    a, b : Point or ground
+        Stator and output, which a joint with this axis should connect.
+    torque_constant : float
+        N m/A.
+    resistance : float
+        Ohm; needed with a ``voltage``.
+    back_emf : float
+        Back-EMF constant, V s/rad; that of the torque if not given.
+    voltage_limit : float, optional
+        V. Larger voltages are reduced to it. The corners are rounded over 2 % of the limit, so that the torque has a
+        derivative; the voltage differs by at most 0.7 % of the limit.
+    gear_ratio : float
+        Turns of the armature per turn of b against a; negative if they turn in opposite directions.
+    efficiency : float
+        Of the gear, in (0, 1]. The torque behind the gear is N k i e where the motor drives and N k i / e where it is
+        driven, with the efficiency e; in between it is N k i e^s, s = tanh(w / slip_rate) sign(N i). So the friction
+        of the gear grows with the motor's torque, and acts against the rate.
+    slip_rate : float
+        Rate of b against a, rad/s, over which the losses of the gear turn their sign.
+    armature_inertia : float
+        kg m^2, about the armature's axis. N^2 times it resists the angular acceleration of b against a. Where a turns
+        as well, terms of the relative size 1/N are missing.
+    enabled : float or Signal
+        Factor of the current: 1, or 0 where the motor is switched off (no current, so no torque and no braking). A
+        ``Step(1.0, 0.0, 2.0)`` switches off at 2 s.
+    voltage : float or Signal, optional
+        V. Give this or a ``current``.
+    current : float or Signal, optional
+        A. The amplifier then controls the current, and resistance and back-EMF have no influence.
     axis : (float, float, float)
         Direction of the axis, the same in the axes of both markers.
 

@@ -44,8 +44,20 @@ SPRING = pair_kind(
 class Spring(LineSpring, Load):
     """A spring with damper along the connection of two points.
 
-    Tension = stiffness x elongation + cubic x elongation^3 + damping x rate of elongation. The parameters are those of
-    :class:`dalembert.multibody.Spring`.
+    Tension = stiffness x elongation + cubic x elongation^3 + damping x rate of elongation.
+
+    Parameters
+    ----------
+    name : str
+    a, b : Point or ground
+    stiffness : float
+        N/m.
+    damping : float
+        N s/m.
+    free_length : float, optional
+        m; the initial distance of the points if not given.
+    cubic : float
+        N/m^3.
     """
 
     a: Side

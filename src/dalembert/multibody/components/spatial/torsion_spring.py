@@ -28,8 +28,16 @@ class TorsionSpring(TwistSpring, Load):
 
     Parameters
     ----------
-    name, a, b, stiffness, damping, free_angle, cubic
-        As those of :class:`dalembert.multibody.TorsionSpring`.
+    name : str
+    a, b : Point or ground
+    stiffness : float
+        N m/rad.
+    damping : float
+        N m s/rad.
+    free_angle : float, optional
+        Angle of b relative to a without torque, rad; the initial one if not given.
+    cubic : float
+        N m/rad^3.
     axis : (float, float, float)
         Direction of the axis, the same in the axes of both markers.
     near : float, optional

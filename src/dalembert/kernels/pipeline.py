@@ -1,17 +1,20 @@
 """Numba's compiler with only the passes that kernels need, and with faster comparisons: a third less time.
 
-Kernels have no closures, no array expressions, no ``with``, no exceptions, and no literal loops.
+Kernels have no closures, no array expressions, no ``with``, no exceptions, and no literal loops. These passes and
+shortcuts are internals of Numba. With versions that were not tried, Numba's own passes compile the kernels.
 """
 
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+import numba
 from numba.core import event, ir, types
 from numba.core import lowering as _lowering
 from numba.core import typeinfer as _typeinfer
 from numba.core.base import BaseContext
-from numba.core.compiler import CompilerBase, Flags
+from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
 from numba.core.compiler_machinery import PassManager
 from numba.core.errors import NumbaError
 from numba.core.postproc import PostProcessor, VariableLifetime
@@ -61,7 +64,41 @@ class Pipeline(CompilerBase):
         return [manager]
 
 
-PIPELINE: Any = Pipeline
+class NumbaPasses(CompilerBase):
+    """All passes of Numba, and the one that kernels need for exact derivatives of powers."""
+
+    def define_pipelines(self) -> list[PassManager]:
+        """Numba's list, with :class:`IntegerPowers` where :class:`Pipeline` has it."""
+        manager = DefaultPassBuilder.define_nopython_pipeline(self.state)
+        manager.add_pass_after(IntegerPowers, IRProcessing)
+        manager.finalize()
+        return [manager]
+
+
+TRIED = (0, 62), (0, 68)
+"""First and last version of Numba that the tests ran with; `pyproject.toml` has the same bounds."""
+
+
+def is_tried(version: tuple[int, int]) -> bool:
+    """Whether the passes and shortcuts of this module are known to work with a version of Numba; warn if they are not.
+
+    >>> is_tried((0, 68))
+    True
+    """
+    first, last = TRIED
+    if first <= version <= last:
+        return True
+    first, last, this = (".".join(map(str, numbers)) for numbers in (first, last, version))
+    warnings.warn(
+        f"Numba {this} was not tried with dalembert, so kernels compile more slowly, by Numba's own passes. "
+        f"Install a version from {first} to {last}.",
+        stacklevel=2,
+    )
+    return False
+
+
+_SHORTENED = is_tried(numba.version_info[:2])
+PIPELINE: Any = Pipeline if _SHORTENED else NumbaPasses
 
 
 def _same_flags(self: Any, other: object) -> Any:
@@ -182,8 +219,11 @@ def _no_event(kind: Any, data: Any = None, exc_details: Any = None) -> None:
 def hastened() -> Iterator[None]:
     """Compare flags, resolve calls, read arrays, list variables and analyse lifetimes at less cost in this block.
 
-    The optimised code stays the same.
+    The optimised code stays the same. Nothing changes with a version of Numba that was not tried.
     """
+    if not _SHORTENED:
+        yield
+        return
     flags: Any = Flags
     usual = flags.__eq__, flags.__hash__
     flags.__eq__, flags.__hash__ = _same_flags, _flags_hash

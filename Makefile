@@ -46,7 +46,7 @@ help:
 	@echo "make bench       speed, beside a peer"
 	@echo "make wheel       a wheel for this platform with all kernels compiled, in dist"
 	@echo "make pure-wheel  a wheel without kernels for any platform, and the archive of the sources, in dist"
-	@echo "make versions    the README's examples and all templates with the lowest and the newest versions of all dependencies"
+	@echo "make versions    the README's examples and all templates with the lowest and the newest versions of the dependencies"
 	@echo "make clean       remove the environment and everything built"
 
 demo: .venv/core.stamp

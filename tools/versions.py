@@ -1,7 +1,8 @@
 """Run the README's examples and all templates with the lowest or the newest versions of all dependencies.
 
 ``python tools/versions.py lowest newest`` makes the environments ``build/versions/lowest``, with the lowest version of
-each package that ``pyproject.toml`` allows, and ``build/versions/newest``. Without an argument, both.
+each package that ``pyproject.toml`` allows, and ``build/versions/newest``. Without an argument, both. README
+and templates need no extra, so extras are not installed.
 """
 
 import argparse
@@ -17,8 +18,6 @@ from packaging.requirements import Requirement
 
 ROOT = Path(__file__).parents[1]
 FOLDER = ROOT / "build" / "versions"
-DEVELOPERS = {"bench", "docs", "test", "verify"}
-"""Extras that no user installs."""
 BLOCK = re.compile(r"^```(python|toml)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 SAVE_DATA = """
 np.savetxt("motion.csv", np.column_stack([times, motion]), delimiter=",", header="t,x,y", comments="")
@@ -26,26 +25,17 @@ np.savetxt("motion.csv", np.column_stack([times, motion]), delimiter=",", header
 """The file of measurements that the README's study reads, after its first example."""
 
 
-def extras(project: dict) -> list[str]:
-    """Return the names of the extras for users."""
-    return sorted(project["optional-dependencies"].keys() - DEVELOPERS)
-
-
-def lowest(project: dict) -> list[str]:
+def lowest(dependencies: list[str]) -> list[str]:
     """Return constraints to the lowest allowed version of each dependency.
 
-    >>> lowest({"dependencies": ["numba>=0.62,<0.69"], "optional-dependencies": {"vtk": ["meshio>=5.3"]}})
-    ['numba==0.62', 'meshio==5.3']
+    >>> lowest(["numba>=0.62,<0.69", "numpy>=2.0"])
+    ['numba==0.62', 'numpy==2.0']
     """
-    lines = [
-        *project["dependencies"],
-        *(line for name in extras(project) for line in project["optional-dependencies"][name]),
-    ]
-    constraints: dict[str, str] = {}
-    for requirement in map(Requirement, lines):
+    constraints = []
+    for requirement in map(Requirement, dependencies):
         (bound,) = (part.version for part in requirement.specifier if part.operator == ">=")
-        constraints[requirement.name] = f"{requirement.name}=={bound}"
-    return list(constraints.values())
+        constraints.append(f"{requirement.name}=={bound}")
+    return constraints
 
 
 def examples(readme: str) -> tuple[str, str]:
@@ -60,16 +50,15 @@ def examples(readme: str) -> tuple[str, str]:
 
 
 def environment(name: str, project: dict, python: str) -> Path:
-    """Install the package with all extras for users into a new environment, and return its folder of programs."""
+    """Install the package into a new environment, and return its folder of programs."""
     folder = FOLDER / name
     subprocess.run([python, "-m", "venv", "--clear", folder], check=True)
     programs = folder / ("Scripts" if os.name == "nt" else "bin")
     constraints = folder / "constraints.txt"
-    constraints.write_text("\n".join(lowest(project) if name == "lowest" else []), encoding="utf-8")
+    constraints.write_text("\n".join(lowest(project["dependencies"]) if name == "lowest" else []), encoding="utf-8")
     install = [programs / "python", "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
     subprocess.run([*install, "hatchling"], check=True)
-    package = f"{ROOT}[{','.join(extras(project))}]"
-    subprocess.run([*install, "--no-build-isolation", "--constraint", constraints, package], check=True)
+    subprocess.run([*install, "--no-build-isolation", "--constraint", constraints, ROOT], check=True)
     return programs
 
 

@@ -110,6 +110,7 @@ def sample(
 
     Examples
     --------
+    >>> import numpy as np
     >>> from dalembert.forward import PythonModel
     >>> times = np.linspace(0.0, 1.0, 11)
     >>> line = PythonModel(lambda slope: slope * times, {"slope": (0.0, 4.0)}, ["x"], times)

@@ -1,6 +1,6 @@
 """Structures in three dimensions: surfaces, deformed shapes and modes."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import plotly.graph_objects as go
@@ -9,7 +9,9 @@ from dalembert.report.charts.motion.film import Film, slowness
 from dalembert.report.look import LIGHT, themed
 from dalembert.structure import ModeShapes
 from dalembert.tables import labelled, prefixed, shown
-from dalembert.vibration import Deformation
+
+if TYPE_CHECKING:
+    from dalembert.vibration import Deformation
 
 SHARP = 0.8
 """Cosine of the angle between the normals of two faces below which their common edge is drawn."""
@@ -107,7 +109,7 @@ STILL = 1e-3
 """Part of the largest displacement up to which an axis counts as still."""
 
 
-def deformation(shape: Deformation, *, title: str | None = None) -> go.Figure:
+def deformation(shape: "Deformation", *, title: str | None = None) -> go.Figure:
     """The structure over a period, magnified, coloured by the largest displacement of each node in the period.
 
     Parameters
@@ -145,7 +147,7 @@ def deformation(shape: Deformation, *, title: str | None = None) -> go.Figure:
     return themed(figure, title or f"Deformed shape at {shown(shape.frequency)} Hz", 520, **film.controls())
 
 
-def magnified(shape: Deformation) -> float:
+def magnified(shape: "Deformation") -> float:
     """How much larger than they are displacements are drawn."""
     motion = shape.motion(2 * np.pi * np.arange(FRAMES) / FRAMES)
     return magnification(shape.places, np.linalg.norm(motion, axis=2).max(axis=0))

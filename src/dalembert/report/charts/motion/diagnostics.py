@@ -1,12 +1,17 @@
 """How well motions were computed."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import plotly.graph_objects as go
 
-from dalembert.multibody import Trajectory, WorkPrecision
+from dalembert.multibody import Trajectory
 from dalembert.report.charts.drawing import colour_of, draw, logarithmic, positive, stacked
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.thinning import largest_of_stretches, thinned
+
+if TYPE_CHECKING:
+    from dalembert.multibody import WorkPrecision
 
 ENERGIES = {
     "kinetic": ("kinetic", LIGHT.series[0]),
@@ -95,7 +100,7 @@ def newton(trajectory: Trajectory, *, title: str = "Newton iterations") -> go.Fi
 SYMBOLS = ("circle", "square", "diamond", "triangle-up", "x", "star", "cross", "pentagon")
 
 
-def work_precision(found: WorkPrecision, *, title: str = "Error against run time") -> go.Figure:
+def work_precision(found: "WorkPrecision", *, title: str = "Error against run time") -> go.Figure:
     """Error of each run over its run time, both logarithmic, one line an integrator; no runs that ended early.
 
     Parameters

@@ -57,7 +57,7 @@ class Propagation(Bands, EndedResult):
     fixed : tuple of Parameter
         Parameters of the model that equal bounds fix; they are not in ``box``.
     parameter_units : tuple of str, length parameters
-        Of the parameters, in the order of ``box``; empty in results of former versions.
+        Of the parameters, in the order of ``box``.
     """
 
     FORMAT: ClassVar[str] = "dalembert propagation 1"

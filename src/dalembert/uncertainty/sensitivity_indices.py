@@ -44,7 +44,7 @@ class SensitivityIndices(Result):
     provenance : mapping
     findings : tuple of Finding
     parameter_units : tuple of str, length parameters
-        Of the parameters, in the order of ``box``; empty in results of former versions.
+        Of the parameters, in the order of ``box``.
     """
 
     FORMAT: ClassVar[str] = "dalembert sensitivity indices 1"

@@ -22,6 +22,6 @@ def linearised(name: str, fit: Fit, *, normal: bool = False) -> Linearised | Wit
         )
     if fit.jacobian is None:
         raise InputError(
-            f"{name!r} has no Jacobian: its model gives no derivatives, or a former version stored it; identify again"
+            f"{name!r} has no Jacobian, since its model gives no derivatives; use a model with derivatives"
         )
     return replace(Linearised.of(fit), normal=normal) if fit.noise is None else WithNoise(fit, fit.weights)

@@ -168,7 +168,7 @@ class Fit(EndedResult):
     def diagnostics(self) -> ResidualDiagnostics:
         """Return tests of the residuals, outliers by channel and time, and the influence of single samples.
 
-        Fits of former versions have no Jacobian: their leverages are NaN.
+        Fits without a Jacobian have leverages of NaN.
 
         Examples
         --------

@@ -265,7 +265,7 @@ def test_models_that_cannot_be_compared():
         ),
         (
             {"line": line, "b": replace(line, jacobian=None)},
-            "'b' has no Jacobian: its model gives no derivatives, or a former version stored it; identify again",
+            "'b' has no Jacobian, since its model gives no derivatives; use a model with derivatives",
         ),
         (
             {"line": line, "b": 3.0},

@@ -1,4 +1,4 @@
-"""Global minimisers of a batch fitness over a box at one price, PARTICLES × ITERATIONS evaluations: ours and others."""
+"""Global minimisers of a batch misfit over a box at one price, PARTICLES × ITERATIONS evaluations: ours and others."""
 
 import warnings
 from collections.abc import Callable
@@ -15,20 +15,20 @@ import dalembert as da
 PARTICLES, ITERATIONS = 40, 100
 PRICE = PARTICLES * ITERATIONS
 
-Fitness = Callable[[np.ndarray], np.ndarray]
-Method = Callable[[Fitness, np.ndarray, np.ndarray, int], float]
+Misfit = Callable[[np.ndarray], np.ndarray]
+Method = Callable[[Misfit, np.ndarray, np.ndarray, int], float]
 
 
 def swarm(settings) -> Method:
     """A swarm of ours."""
 
-    def run(fitness: Fitness, lower: np.ndarray, upper: np.ndarray, seed: int) -> float:
-        return settings.minimise(fitness, lower, upper, seed).fitness
+    def run(misfit: Misfit, lower: np.ndarray, upper: np.ndarray, seed: int) -> float:
+        return settings.minimise(misfit, lower, upper, seed).misfit
 
     return run
 
 
-def pymoo_swarm(fitness: Fitness, lower: np.ndarray, upper: np.ndarray, seed: int) -> float:
+def pymoo_swarm(misfit: Misfit, lower: np.ndarray, upper: np.ndarray, seed: int) -> float:
     """pymoo's adaptive particle swarm as it comes."""
 
     class Posed(Problem):
@@ -36,12 +36,12 @@ def pymoo_swarm(fitness: Fitness, lower: np.ndarray, upper: np.ndarray, seed: in
             super().__init__(n_var=len(lower), n_obj=1, xl=lower, xu=upper)
 
         def _evaluate(self, x, out, *args, **kwargs) -> None:
-            out["F"] = fitness(x)[:, None]
+            out["F"] = misfit(x)[:, None]
 
     return float(minimize(Posed(), PSO(pop_size=PARTICLES), ("n_eval", PRICE), seed=seed).F[0])
 
 
-def covariance(fitness: Fitness, lower: np.ndarray, upper: np.ndarray, seed: int) -> float:
+def covariance(misfit: Misfit, lower: np.ndarray, upper: np.ndarray, seed: int) -> float:
     """CMA-ES from random points, begun anew where it has converged until the evaluations are spent."""
     rng, spent, best = np.random.default_rng(seed), 0, np.inf
     while spent < PRICE:
@@ -51,17 +51,17 @@ def covariance(fitness: Fitness, lower: np.ndarray, upper: np.ndarray, seed: int
             strategy = cma.CMAEvolutionStrategy(rng.random(len(lower)), 0.3, options)
             while spent < PRICE and not strategy.stop():
                 points = strategy.ask()
-                values = fitness(lower + (upper - lower) * np.array(points))
+                values = misfit(lower + (upper - lower) * np.array(points))
                 strategy.tell(points, values.tolist())
                 spent, best = spent + len(points), min(best, float(np.min(values)))
     return best
 
 
-def evolution(fitness: Fitness, lower: np.ndarray, upper: np.ndarray, seed: int) -> float:
+def evolution(misfit: Misfit, lower: np.ndarray, upper: np.ndarray, seed: int) -> float:
     """SciPy's differential evolution, as many members as particles, unpolished."""
     members = max(5, PARTICLES // len(lower)) * len(lower)
     found = differential_evolution(
-        lambda x: fitness(x.T) if x.ndim == 2 else float(fitness(x[None])[0]),
+        lambda x: misfit(x.T) if x.ndim == 2 else float(misfit(x[None])[0]),
         list(zip(lower, upper, strict=True)),
         maxiter=PRICE // members - 1,
         popsize=members // len(lower),

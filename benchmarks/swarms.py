@@ -1,10 +1,10 @@
 """Swarms beside other minimisers on the published cases: 20 seeds each, 4,000 evaluations a run.
 
 The response is that of a Chebyshev surrogate, made once a case from a few hundred simulations, so that 20 seeds of
-eight methods take minutes and not days. Its error stands in the table: a fitness below the square of it is the
+eight methods take minutes and not days. Its error stands in the table: a misfit below the square of it is the
 surrogate's own. The rows "on the simulation" repeat some seeds without it. The data of the deterministic cases are
 our own simulation at the published truth, unrounded. Those of the interval cases are the printed tables: the unknowns
-are midpoints and radii, and the fitness is that of the surrogate's bounds on the box that they make.
+are midpoints and radii, and the misfit is that of the surrogate's bounds on the box that they make.
 """
 
 import json
@@ -32,10 +32,10 @@ TIMES = np.arange(41) * 0.05
 
 @dataclass(frozen=True)
 class Case:
-    """A fitness over a box, the published values of the standard and the improved swarm, and the surrogate's error."""
+    """A misfit over a box, the published values of the standard and the improved swarm, and the surrogate's error."""
 
     name: str
-    fitness: Callable[[np.ndarray], np.ndarray]
+    misfit: Callable[[np.ndarray], np.ndarray]
     lower: np.ndarray
     upper: np.ndarray
     published: tuple[float, float]
@@ -51,7 +51,7 @@ INTERVAL = {
     "interval 2, Table A3": ("bands-a3", "table-a3.csv", (1.5754e-4, 3.0576e-5)),
     "interval 3, Table A4": ("bands-a4", "table-a4.csv", (2.6023e-5, 6.0421e-5)),
 }
-"""Published: Guo & Jin 2025, 40 particles, 100 iterations, one value each: fitness of SPSO, of IPSO."""
+"""Published: Guo & Jin 2025, 40 particles, 100 iterations, one value each: misfit of SPSO, of IPSO."""
 
 
 def main(chosen: Sequence[str] = ()) -> list[dict[str, object]]:
@@ -61,7 +61,7 @@ def main(chosen: Sequence[str] = ()) -> list[dict[str, object]]:
         if not chosen or any(word in name for word in chosen):
             rows = [row for row in rows if not str(row["case"]).startswith(name)] + _rows(name)
             rows.sort(key=lambda row: str(row["case"]))
-            timing.report("swarms", "Fitness after 4,000 evaluations", rows)
+            timing.report("swarms", "Misfit after 4,000 evaluations", rows)
     return rows
 
 
@@ -84,7 +84,7 @@ def _kept() -> list[dict[str, object]]:
 
 def _row(case: Case, method: str, seeds: Sequence[int]) -> dict[str, object]:
     run: Method = METHODS[method]
-    ends = np.array([run(case.fitness, case.lower, case.upper, seed) for seed in seeds])
+    ends = np.array([run(case.misfit, case.lower, case.upper, seed) for seed in seeds])
     quartiles = np.quantile(ends, [0.25, 0.5, 0.75])
     return {
         "case": case.name,
@@ -128,10 +128,10 @@ def _deterministic(name: str, model: ForwardModel, data: np.ndarray, published: 
 
 
 def _simulated(name: str, model: ForwardModel, data: np.ndarray, published: tuple[float, float]) -> Case:
-    def fitness(x: np.ndarray) -> np.ndarray:
+    def misfit(x: np.ndarray) -> np.ndarray:
         return np.sum((model.evaluate(x).values.reshape(len(x), -1) - data) ** 2, axis=1)
 
-    return Case(f"{name}, on the simulation", fitness, model.parameters.lower, model.parameters.upper, published, 0.0)
+    return Case(f"{name}, on the simulation", misfit, model.parameters.lower, model.parameters.upper, published, 0.0)
 
 
 def _interval(name: str, model: ForwardModel, given: Bands, published: tuple[float, float]) -> Case:
@@ -139,7 +139,7 @@ def _interval(name: str, model: ForwardModel, given: Bands, published: tuple[flo
     box, d = model.parameters, len(model.parameters)
     surrogate = _surrogate(model, Tensor(12) if d == 2 else Adaptive(1e-4, most_runs=500))
 
-    def fitness(x: np.ndarray) -> np.ndarray:
+    def misfit(x: np.ndarray) -> np.ndarray:
         middle, radius = x[:, :d], x[:, d:]
         found = bounds(surrogate.polynomial, box.clip(middle - radius), box.clip(middle + radius), points=6, starts=2)
         apart = np.stack([found.lower - given.lower.ravel(), found.upper - given.upper.ravel()])
@@ -147,7 +147,7 @@ def _interval(name: str, model: ForwardModel, given: Bands, published: tuple[flo
 
     lower = np.concatenate([box.lower, np.zeros(d)])
     upper = np.concatenate([box.upper, (box.upper - box.lower) / 4])
-    return Case(name, fitness, lower, upper, published, float(np.max(surrogate.error)))
+    return Case(name, misfit, lower, upper, published, float(np.max(surrogate.error)))
 
 
 if __name__ == "__main__":

@@ -35,7 +35,7 @@ class Recovered:
     @property
     def misfit(self) -> float:
         """Weighted sum of squares in parts of its expectation, values less parameters."""
-        return self.fit.fitness / (np.count_nonzero(self.fit.weights) - len(self.fit.values))
+        return self.fit.misfit / (np.count_nonzero(self.fit.weights) - len(self.fit.values))
 
     def row(self, seed: int, even: bool) -> str:
         """The line of the table."""

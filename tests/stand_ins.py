@@ -88,19 +88,19 @@ def fit(
     response = swing(times)[1]
     noise = 5e-3 * random.standard_normal(response.shape)
     parameters = Parameters((Parameter(names[0], 0.6, 1.0, unit="rad"), Parameter(names[1], 0.4, 0.65, unit="rad")))
-    fitness = [1.9e-3 if start % 3 else 0.41 for start in range(starts)]
+    misfit = [1.9e-3 if start % 3 else 0.41 for start in range(starts)]
     history = tuple(
         SimpleNamespace(
             start=start, iteration=step, simulations=9 * start + step + 1, best=best, regularised=None, gap=None
         )
         for start in range(starts)
-        for step, best in enumerate(fitness[start] + (8 + start) * 10.0 ** -np.arange(9))
+        for step, best in enumerate(misfit[start] + (8 + start) * 10.0 ** -np.arange(9))
     )
     ends = tuple(
         SimpleNamespace(
             start=random.uniform(parameters.lower, parameters.upper),
             end=np.array([0.7853, 0.65]) if start % 3 else np.array([0.61, 0.5]),
-            fitness=fitness[start],
+            misfit=misfit[start],
             success=start != 4,
             message="the gradient vanishes" if start != 4 else "too many iterations",
             simulations=9,
@@ -120,7 +120,7 @@ def fit(
         values=np.array([0.785312, 0.65]),
         deviations=np.array([2.1e-4, 3.3e-4]),
         correlation=np.array([[1.0, -0.83], [-0.83, 1.0]]),
-        fitness=1.9e-3,
+        misfit=1.9e-3,
         response=response,
         data=SimpleNamespace(
             coordinate=Coordinate("time", "s", times),
@@ -133,7 +133,7 @@ def fit(
         history=history,
         starts=ends,
         success=True,
-        status="The fitness no longer falls: 4 of 6 starts end in the same minimum. Widen the bounds of theta2.",
+        status="The misfit no longer falls: 4 of 6 starts end in the same minimum. Widen the bounds of theta2.",
         method="least squares, 6 starts",
         simulations=54,
         provenance={"version": "0.1.0", "seed": 0, "model": "9f2c", "method": {"name": "least squares", "starts": 6}},
@@ -253,17 +253,17 @@ def band_fit(names: tuple[str, str] = ("theta1", "theta2")) -> Any:
         middle_deviations=np.array([3e-4, 2e-4]),
         radius_deviations=np.array([4e-4, 1e-4]),
         correlation=correlation,
-        fitness=3.3e-5,
+        misfit=3.3e-5,
         bands=given,
         lower=given.lower + 2 * noise,
         upper=given.upper - noise,
         checked_lower=given.lower + noise,
         checked_upper=given.upper - noise,
-        checked_fitness=3.4e-5,
+        checked_misfit=3.4e-5,
         history=like.history,
         starts=like.starts,
         success=True,
-        status="The fitness no longer falls; the surrogate agrees with 12 true runs to 1e-06.",
+        status="The misfit no longer falls; the surrogate agrees with 12 true runs to 1e-06.",
         method="global surrogate",
         simulations=93,
         seconds=4.5,

@@ -18,7 +18,7 @@ STATE = {
     "state": "finished",
     "since": "2026-01-02T03:04:05+00:00",
     "message": "Converged.",
-    "best": {"fitness": 0.5, "values": {"drag": 0.2}, "deviations": {"drag": 0.01}},
+    "best": {"misfit": 0.5, "values": {"drag": 0.2}, "deviations": {"drag": 0.01}},
     "findings": [],
     "study": "swing",
     "title": "A swing",
@@ -194,7 +194,7 @@ def test_a_run_is_continued_from_its_values(page, root):
 
 def test_many_values_of_a_run_are_a_table(root, visit):
     state = json.loads((root / "runs" / "pendulum" / "state.json").read_text())
-    state["best"] = {"fitness": 0.5, "values": {f"k{number}": float(number) for number in range(1, 17)}}
+    state["best"] = {"misfit": 0.5, "values": {f"k{number}": float(number) for number in range(1, 17)}}
     (root / "runs" / "pendulum" / "state.json").write_text(json.dumps(state))
     page = visit("/run/pendulum")
     wait_until(page, f"{TEXT}.includes('misfit 0.5')")

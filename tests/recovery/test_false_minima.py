@@ -53,7 +53,7 @@ def test_one_descent_ends_in_a_false_minimum(far):
 def test_exact_data_give_the_truth_exactly_from_anywhere(far, seed):
     fit = identify(MODEL, data(0.0), start=TRUTH * far, seed=seed)
     np.testing.assert_allclose(fit.values, TRUTH, rtol=1e-9)
-    assert fit.fitness < 1e-16
+    assert fit.misfit < 1e-16
     assert fit.simulations < 700
 
 

@@ -40,7 +40,7 @@ def test_inertias_of_a_slider_crank_at_coarse_steps(engine, record_evidence):
         "the step", np.zeros(2), (fit.values - fit.integration.bias - fine.values) / fine.deviations, tolerance=0.2,
         topic="Statistics of estimates", kind="other method", source="a second identification at a tenth of the step",
     )  # fmt: skip
-    np.testing.assert_allclose(fit.integration.corrected, fine.fitness, rtol=1e-3)
+    np.testing.assert_allclose(fit.integration.corrected, fine.misfit, rtol=1e-3)
 
 
 def double_pendulum(mass, length):
@@ -73,5 +73,5 @@ def test_a_double_pendulum_misses_the_data_at_converged_steps():
     assert np.all(off > 8)
     assert np.all(corrected < 2)
     there = converged.evaluate(fit.values[None]).only()[0]
-    assert fit.integration.fitness == pytest.approx(np.sum(((there - motion) / noise) ** 2), rel=0.1)
-    assert fit.integration.corrected < 250 < 5000 < fit.fitness
+    assert fit.integration.misfit == pytest.approx(np.sum(((there - motion) / noise) ** 2), rel=0.1)
+    assert fit.integration.corrected < 250 < 5000 < fit.misfit

@@ -46,7 +46,7 @@ def test_both_angles_come_back_from_exact_bands(angles):
     assert found.simulations <= 120
     np.testing.assert_allclose(found.box.lower / middle, 0.95, atol=1e-6)
     np.testing.assert_allclose(found.box.upper / middle, 1.05, atol=1e-6)
-    assert found.checked_fitness < 1e-11
+    assert found.checked_misfit < 1e-11
 
 
 @pytest.mark.slow

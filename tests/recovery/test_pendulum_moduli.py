@@ -54,4 +54,4 @@ def test_noisy_motion_gives_a_minimum_no_worse_than_the_one_beside_the_truth(fac
     data = measured(NOISE, seed)
     beside = da.identify(model((1, 1)), data, starts=1, horizon=None)
     fit = da.identify(model(factors), data)
-    assert fit.fitness < beside.fitness + 0.5  # half a variance of the noise: what no data can tell
+    assert fit.misfit < beside.misfit + 0.5  # half a variance of the noise: what no data can tell

@@ -44,7 +44,7 @@ def test_readings_one_step_late_bias_the_damping_and_leave_residuals():
     late, good = (da.identify(MODEL, measured(motion(TIMES - lag))) for lag in (STEP, 0.0))
     assert late.values[0] > 1.03 * DAMPING
     assert late.values[1] < 0.99 * STIFFNESS
-    assert late.fitness > 1e9 * good.fitness
+    assert late.misfit > 1e9 * good.misfit
     assert "systematic-residuals" in {finding.code for finding in late.findings}
 
 

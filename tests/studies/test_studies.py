@@ -42,14 +42,14 @@ def found(study: Study, outcome: Outcome, row: dict[str, Any]) -> float:
         case "identify" | "sample":
             values = outcome.best["values"]
             return (
-                outcome.best["fitness"] if quantity == "fitness" else values[quantity] / values.get(row.get("per"), 1)
+                outcome.best["misfit"] if quantity == "misfit" else values[quantity] / values.get(row.get("per"), 1)
             )
         case "design" | "identify_inertias" | "exciting_trajectory" | "global_sensitivity" | "screening":
             return outcome.best["values"][quantity]
         case "identify_bands" if quantity == "simulations":
             return getattr(outcome, "result").simulations  # noqa: B009
         case "identify_bands" | "identify_set":
-            return outcome.best[quantity] if quantity == "fitness" else outcome.best["values"][quantity]
+            return outcome.best[quantity] if quantity == "misfit" else outcome.best["values"][quantity]
         case "work_precision":
             runs: Any = getattr(outcome, "result").rows  # noqa: B009
             return next(run.error for run in runs if (run.method, run.settings) == (row["method"], row["settings"]))

@@ -121,7 +121,7 @@ def searched(model, events, method, **options):
     data = None if isinstance(model, list) else DATA
     fit = da.identify(model, data, method=method, seed=3, on_event=events.append, **options)
     events[:] = [repr(event) for event in events]
-    return fit.values.tobytes(), fit.fitness, fit.history.tobytes() if hasattr(fit.history, "tobytes") else fit.history
+    return fit.values.tobytes(), fit.misfit, fit.history.tobytes() if hasattr(fit.history, "tobytes") else fit.history
 
 
 @pytest.mark.parametrize("options", [{}, {"loss": "huber", "loss_scale": 0.5}], ids=["squares", "huber"])
@@ -137,7 +137,7 @@ def test_a_stopped_swarm_ends_with_the_same_bits_and_events(tmp_path, simulation
         with pytest.raises(KeyboardInterrupt), Checkpoint(tmp_path / "checkpoint") as checkpoint:
             searched(Recorded(model, checkpoint), events, method, **options)
         events.clear()
-        # the responses of the swarm at work and the first of all; of each swarm before, its fitness
+        # the responses of the swarm at work and the first of all; of each swarm before, its misfit
         assert (tmp_path / "checkpoint").stat().st_size < 1.1 * (64 + 2) * SIZE + 100_000
     simulations.last = np.inf
     with Checkpoint(tmp_path / "checkpoint") as checkpoint:
@@ -146,7 +146,7 @@ def test_a_stopped_swarm_ends_with_the_same_bits_and_events(tmp_path, simulation
     assert simulations.count <= total + 2 * 64
 
 
-def test_swarms_of_several_experiments_keep_their_fitness(tmp_path, model):
+def test_swarms_of_several_experiments_keep_their_misfit(tmp_path, model):
     expected, events = [], []
     undisturbed = repr(searched(joined(model), expected, SWARMS["particles"]))
     with Checkpoint(tmp_path / "checkpoint") as checkpoint:
@@ -161,7 +161,7 @@ def test_swarms_of_several_experiments_keep_their_fitness(tmp_path, model):
 
 
 def test_a_checkpoint_of_other_data_is_not_used(tmp_path, model):
-    """The fitness belongs to the data, weights and loss that it was computed with."""
+    """The misfit belongs to the data, weights and loss that it was computed with."""
     other = da.Measurements.of(TIMES, {name: np.exp(-1.5 * TIMES) for name in CHANNELS})
     with Checkpoint(tmp_path / "checkpoint") as checkpoint:
         recorded = Recorded(model, checkpoint)
@@ -172,4 +172,4 @@ def test_a_checkpoint_of_other_data_is_not_used(tmp_path, model):
             (DATA, {"weights": [2.0] + 5 * [1.0]}),
         ]:
             fits = [da.identify(one, data, method=SWARMS["particles"], seed=3, **options) for one in (recorded, model)]
-            assert fits[0].fitness == fits[1].fitness
+            assert fits[0].misfit == fits[1].misfit

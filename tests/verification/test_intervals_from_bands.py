@@ -30,9 +30,9 @@ def test_table_a2(record_evidence) -> None:
         unit="rad",
     )
     record_evidence(
-        "Table A2: fitness by true runs (published by the improved swarm: 2.1717e-6)",
+        "Table A2: misfit by true runs (published by the improved swarm: 2.1717e-6)",
         0.0,
-        found.checked_fitness,
+        found.checked_misfit,
         tolerance=1e-6,
         topic=TOPIC,
         kind="published",
@@ -95,9 +95,9 @@ def test_table_a3_by_the_polynomials_that_it_was_made_by(record_evidence) -> Non
         unit="rad",
     )
     record_evidence(
-        "Table A3, nested with total degree 3: fitness (published by the improved swarm: 3.0576e-5)",
+        "Table A3, nested with total degree 3: misfit (published by the improved swarm: 3.0576e-5)",
         0.0,
-        found.fitness,
+        found.misfit,
         tolerance=1e-6,
         topic=TOPIC,
         kind="published",
@@ -130,9 +130,9 @@ def test_table_a4(record_evidence) -> None:
         unit="rad",
     )
     record_evidence(
-        "Table A4: fitness by true runs (published: 2.6023e-5 and 6.0421e-5)",
+        "Table A4: misfit by true runs (published: 2.6023e-5 and 6.0421e-5)",
         0.0,
-        found.checked_fitness,
+        found.checked_misfit,
         tolerance=3e-6,
         topic=TOPIC,
         kind="published",

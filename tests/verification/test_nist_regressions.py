@@ -46,7 +46,7 @@ def test_a_fit_from_too_far_a_start_is_no_success(regressions):
     name, number = TOO_FAR
     fit = regressions[name].fit(regressions[name].starts[number])
     assert not fit.success
-    assert fit.fitness > 1e5 * regressions[name].given["squares"]
+    assert fit.misfit > 1e5 * regressions[name].given["squares"]
     assert fit.outcome[0].code == "not-converged"
     lost = [finding.values for finding in fit.conclusions if finding.code == "unidentifiable-parameter"]
     assert lost == [{"parameter": "b2"}, {"parameter": "b3"}]

@@ -21,7 +21,7 @@ class StartBegan:
 
 @dataclass(frozen=True, eq=False)
 class Screened:
-    """Points spread over the bounds were simulated to choose starts from; ``best`` is the lowest fitness among them."""
+    """Points spread over the bounds were simulated to choose starts from; ``best`` is the lowest misfit among them."""
 
     kind: ClassVar[str] = "screened"
     points: int
@@ -41,12 +41,12 @@ class Sampled:
 
 @dataclass(frozen=True, eq=False)
 class Checked:
-    """True runs where a surrogate has its minima and maxima: their fitness, and the surrogate's largest error there."""
+    """True runs where a surrogate has its minima and maxima: their misfit, and the surrogate's largest error there."""
 
     kind: ClassVar[str] = "checked"
     runs: int
     simulations: int
-    fitness: float
+    misfit: float
     error: float
 
 
@@ -100,7 +100,7 @@ class Step:
     simulations : int
         Spent so far by the whole identification; a response with its sensitivities counts as 1 + parameters.
     best : float
-        Lowest fitness of this start so far, over its first ``samples`` samples; of segments that need not meet yet,
+        Lowest misfit of this start so far, over its first ``samples`` samples; of segments that need not meet yet,
         their misfit.
     values : array, shape (parameters,)
         Where it was found.
@@ -138,7 +138,7 @@ class StartEnd:
     ----------
     start, end : array, shape (parameters,)
         NaN where a swarm scattered its own points.
-    fitness : float
+    misfit : float
         Over all samples; infinite for a start that failed.
     success : bool
     message : str
@@ -149,7 +149,7 @@ class StartEnd:
     kind: ClassVar[str] = "start-ended"
     start: np.ndarray
     end: np.ndarray
-    fitness: float
+    misfit: float
     success: bool
     message: str
     simulations: int
@@ -162,7 +162,7 @@ class Finished:
     kind: ClassVar[str] = "finished"
     success: bool
     status: str
-    fitness: float
+    misfit: float
     values: np.ndarray
     simulations: int
 

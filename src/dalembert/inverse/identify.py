@@ -163,7 +163,7 @@ def identify(
 
     The first least squares start is ``start`` or ``Parameters.start``. If it does not settle the matter, 8 points a
     parameter and start of a Latin hypercube are simulated in one batch, and further starts are those of the least
-    misfit over half, a quarter, an eighth of the samples in turn. From the best end the fitness is scanned along the
+    misfit over half, a quarter, an eighth of the samples in turn. From the best end the misfit is scanned along the
     combinations of parameters that the singular values belong to, and up to two dips beside it are descended into, as
     long as that finds a better end. The best end is polished at last.
 
@@ -226,8 +226,8 @@ def identify(
         ends = multistart(problem, method, floor, starts=starts, seed=seed, horizon=horizon, spread=spread, start=first)
     else:
         ends = runs(problem, method, floor, starts=starts, seed=seed, spread=spread, start=origin)
-    best = min(ends, key=lambda end: end.fitness)
-    if not np.isfinite(best.fitness):
+    best = min(ends, key=lambda end: end.misfit)
+    if not np.isfinite(best.misfit):
         raise SolveError(
             f"none of {len(ends)} starts could be simulated; the first failure: {journal.failures[0]}; "
             "look at the model there, or change the bounds or the start"
@@ -243,7 +243,7 @@ def identify(
     at = best.linearisation or problem.linearised(vector)
     response = problem.responses(vector[None])[0] if at is None else at.response
     known = given or problem.priors > 0 if settled is None else settled.noise.known
-    reached = best.fitness <= floor.fitness
+    reached = best.misfit <= floor.misfit
     exact = reached and floor.source == "arithmetic"
     if settled is None:
         estimated, correlated = _estimated(problem, response, at, best, known=known, exact=exact)
@@ -266,13 +266,13 @@ def identify(
     predicted = parted.validation(whole)
     unexplained = () if predicted is None else explained_findings(predicted.explained)
     detected = correlated is not None and len(correlated.detected) > 0
-    doubtful = best.fitness > floor.fitness and (detected or floor.known or not best.success)
+    doubtful = best.misfit > floor.misfit and (detected or floor.known or not best.success)
     grown = tuple(growth_findings(problem, vector)) if squares and shooting is None and doubtful else ()
     fit = Fit(
         parameters=model.parameters,
         values=vector,
         **vars(estimated),
-        fitness=best.fitness,
+        misfit=best.misfit,
         response=whole,
         data=data,
         weights=np.where(parted.fitted, posed.weights, 0.0) if settled is None else whole_weights(parted, problem),
@@ -286,7 +286,7 @@ def identify(
                 response,
                 floor,
                 correlated=detected or settled is not None,
-                searched=searched[1].fitness,
+                searched=searched[1].misfit,
             ),
             *unconfirmed,
         ),
@@ -324,7 +324,7 @@ def identify(
                 None if exact else found,
                 problem,
                 deviations,
-                best.fitness,
+                best.misfit,
                 known=known,
                 white=not detected and settled is None,
             ),
@@ -340,7 +340,7 @@ def identify(
     )
     fit = with_coverage(fit, posed)
     fit = replace(fit, findings=(*fit.findings, *fit.diagnostics().findings))
-    journal.tell(Finished(fit.success, fit.status, fit.fitness, fit.values, fit.simulations))
+    journal.tell(Finished(fit.success, fit.status, fit.misfit, fit.values, fit.simulations))
     return fit
 
 
@@ -360,7 +360,7 @@ def _method(given: Squares | Method | str | None) -> Squares | Method:
 
 def _seen(journal: Journal) -> list[np.ndarray]:
     """Vectors (parameters,) of the first guesses and of the ends of starts, the best first."""
-    ends = sorted((start for start in journal.starts if np.isfinite(start.fitness)), key=lambda start: start.fitness)
+    ends = sorted((start for start in journal.starts if np.isfinite(start.misfit)), key=lambda start: start.misfit)
     return [*([] if journal.first is None else [journal.first.vector]), *(start.end for start in ends)]
 
 
@@ -378,7 +378,7 @@ def _estimated(
     """
     scale, plain = problem.model.parameters.scale, replace(problem, loss=None)
     freedom = problem.compared - len(scale)
-    variance = 1.0 if known else best.fitness / freedom if freedom > 0 else np.nan
+    variance = 1.0 if known else best.misfit / freedom if freedom > 0 else np.nan
     residual, slopes = plain.residual(response), None if at is None else plain.slopes(at, scale)
     if problem.loss is not None:
         counted = problem.weights.ravel() > 0

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from dalembert.arguments import Checked, limited
 from dalembert.intervals import corners
-from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, fitness_of
+from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, misfits
 from dalembert.optimize.swarm import MOST_PARTICLES
 
 
@@ -16,7 +16,7 @@ class Firefly(Checked):
     """Firefly algorithm whose fireflies fly to the brightest one and remember how they flew.
 
     Every generation tries x ← x + η for each firefly, where η ← α η + β (brightest − x), β = β₀ exp(−γ Rᵛ) and R is the
-    distance from the brightest. A firefly moves only where that lowers its fitness; η changes in any case.
+    distance from the brightest. A firefly moves only where that lowers its misfit; η changes in any case.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ class Firefly(Checked):
         α, in [0, 1), which weighs the memory η. The classical algorithm multiplies random numbers by it; here chance
         has a part in the first places alone.
     target : float
-        Fitness below which the search ends.
+        Misfit below which the search ends.
     generations : int
         After which it ends.
     exponent : float
@@ -50,7 +50,7 @@ class Firefly(Checked):
     >>> sphere = lambda points: np.sum((points - 0.3) ** 2, axis=1)
     >>> found = Firefly().minimise(sphere, [-1, -1], [1, 1], seed=1)
     >>> found.message, found.x.round(6).tolist()
-    ('the fitness fell below the target of 1e-15', [0.3, 0.3])
+    ('the misfit fell below the target of 1e-15', [0.3, 0.3])
     """
 
     fireflies: int = limited(60, least=1, most=MOST_PARTICLES)
@@ -72,12 +72,12 @@ class Firefly(Checked):
         start: ArrayLike | None = None,
         on_iteration: OnIteration | None = None,
     ) -> Minimum:
-        """Smallest fitness found in the box.
+        """Smallest misfit found in the box.
 
         Parameters
         ----------
         objective : callable
-            Batch (batch, parameters) to fitness (batch,), at most as many as there are fireflies; NaN marks a failed
+            Batch (batch, parameters) to misfit (batch,), at most as many as there are fireflies; NaN marks a failed
             sample.
         lower, upper : array, shape (parameters,)
         seed : int
@@ -91,16 +91,16 @@ class Firefly(Checked):
         places = low + width * np.random.default_rng(seed).random((self.fireflies, len(low)))
         if start is not None:
             places[0] = np.clip(start, low, high)
-        fitness = fitness_of(objective, places)
+        misfit = misfits(objective, places)
         memory, tried = np.zeros_like(places), places
         evaluations, generation = len(places), 1
         while True:
-            brightest = int(np.argmin(fitness))
-            best = float(fitness[brightest])
+            brightest = int(np.argmin(misfit))
+            best = float(misfit[brightest])
             if on_iteration is not None:
                 on_iteration(Progress(generation, evaluations, best, places[brightest]))
             if best < self.target:
-                message = f"the fitness fell below the target of {self.target:g}"
+                message = f"the misfit fell below the target of {self.target:g}"
                 break
             if generation >= self.generations:
                 message = f"all {generation} generations done"
@@ -110,7 +110,7 @@ class Firefly(Checked):
             # flies on by its memory alone.
             memory = self.randomness * memory + self._pull(away / width) * away
             trial = np.clip(places + memory, low, high)
-            # A place that the firefly tried before, or where it is, has a known fitness: the run ends where none is
+            # A place that the firefly tried before, or where it is, has a known misfit: the run ends where none is
             # fresh.
             fresh = self._apart(trial, places, width) & self._apart(trial, tried, width)
             tried = np.where(fresh[:, None], trial, tried)
@@ -118,12 +118,12 @@ class Firefly(Checked):
             if not fresh.any():
                 message = f"no firefly moves any more after {generation} generations"
                 break
-            fitness_values = np.full(len(places), np.inf)
-            fitness_values[fresh] = fitness_of(objective, trial[fresh])
+            misfit_values = np.full(len(places), np.inf)
+            misfit_values[fresh] = misfits(objective, trial[fresh])
             evaluations += int(fresh.sum())
             # Only downhill moves are taken, so the sequence of best values never rises.
-            better = fitness_values < fitness
-            places, fitness = np.where(better[:, None], trial, places), np.where(better, fitness_values, fitness)
+            better = misfit_values < misfit
+            places, misfit = np.where(better[:, None], trial, places), np.where(better, misfit_values, misfit)
         success = bool(np.isfinite(best))
         message = message if success else "every sample failed"
         return Minimum(places[brightest], best, success, message, generation, evaluations)

@@ -15,7 +15,7 @@ SPANS = ("bound", "width")
 class ImprovedParticleSwarm(Swarm):
     """Improved particle swarm, as published.
 
-    All visited positions with a fitness below ``quality_fitness`` form the quality set, kept to the best
+    All visited positions with a misfit below ``quality_misfit`` form the quality set, kept to the best
     ``quality_size``. With U the mean of a random 90 % of it, the groups move so:
 
     1. v ← ωv + c1 r1 (own best − x) + c2 r2 (best of all − x) + c3 r3 (U − x), x ← x + v;
@@ -40,8 +40,8 @@ class ImprovedParticleSwarm(Swarm):
         The published 1/100.
     span : {"bound", "width"}
         What the velocity limit is a fraction of.
-    quality_fitness : float
-        h; only better positions enter the quality set. It has the unit of the fitness.
+    quality_misfit : float
+        h; only better positions enter the quality set. It has the unit of the misfit.
     quality_size : int
 
     Notes
@@ -58,7 +58,7 @@ class ImprovedParticleSwarm(Swarm):
     >>> import numpy as np
     >>> sphere = lambda points: np.sum(points**2, axis=1)
     >>> found = ImprovedParticleSwarm(iterations=200).minimise(sphere, [-1, -1], [1, 1], seed=1)
-    >>> bool(found.fitness < 1e-4)
+    >>> bool(found.misfit < 1e-4)
     True
     """
 
@@ -71,7 +71,7 @@ class ImprovedParticleSwarm(Swarm):
     inertia: tuple[float, float] = (0.8, 0.1)
     velocity_limit: float = 0.01
     span: str = "bound"
-    quality_fitness: float = 0.1
+    quality_misfit: float = 0.1
     quality_size: int = 500
 
     def __post_init__(self) -> None:
@@ -120,12 +120,12 @@ class ImprovedParticleSwarm(Swarm):
         return positions, velocities
 
     def remember(
-        self, kept: np.ndarray, kept_fitness: np.ndarray, positions: np.ndarray, fitness: np.ndarray
+        self, kept: np.ndarray, kept_misfit: np.ndarray, positions: np.ndarray, misfit: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        good = fitness < self.quality_fitness
-        fitness = np.concatenate([kept_fitness, fitness[good]])
-        order = np.argsort(fitness, kind="stable")[: self.quality_size]
-        return np.concatenate([kept, positions[good]])[order], fitness[order]
+        good = misfit < self.quality_misfit
+        misfit = np.concatenate([kept_misfit, misfit[good]])
+        order = np.argsort(misfit, kind="stable")[: self.quality_size]
+        return np.concatenate([kept, positions[good]])[order], misfit[order]
 
 
 def subset_means(rng: np.random.Generator, rows: np.ndarray, fraction: float, count: int) -> np.ndarray:

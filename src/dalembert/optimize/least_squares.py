@@ -71,7 +71,7 @@ class LeastSquares(SquaresMinimiser):
             end = self._trust_region(path)
         except Creeps as at:
             end = settle(path, at, Stopping(self.gain, window), self.tolerance)
-        if end.success or self.gain >= COARSE or not np.isfinite(end.fitness):
+        if end.success or self.gain >= COARSE or not np.isfinite(end.misfit):
             return end
         # The valley is judged anew: the trial points of the trust region would end it at once.
         path.stopping = Stopping(self.gain, window)

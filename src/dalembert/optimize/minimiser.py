@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from dalembert.arguments import Checked
 from dalembert.errors import InputError, require_known, unknown
 from dalembert.intervals import corners
-from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, fitness_of
+from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, misfits
 
 if TYPE_CHECKING:
     from scipy.optimize import OptimizeResult
@@ -73,7 +73,7 @@ class Minimiser(Checked):
 
     @property
     def batched(self) -> bool:
-        """Whether it asks for the fitness of many points at once."""
+        """Whether it asks for the misfit of many points at once."""
         return self.name == BATCHED
 
     def minimise(
@@ -87,12 +87,12 @@ class Minimiser(Checked):
         gradient: Callable[[np.ndarray], np.ndarray] | None = None,
         on_iteration: OnIteration | None = None,
     ) -> Minimum:
-        """Smallest fitness found in the box.
+        """Smallest misfit found in the box.
 
         Parameters
         ----------
         objective : callable
-            Batch (batch, parameters) to fitness (batch,); NaN marks a failed sample.
+            Batch (batch, parameters) to misfit (batch,); NaN marks a failed sample.
         lower, upper : array, shape (parameters,)
         seed : int
             For the methods that draw random numbers.
@@ -167,23 +167,23 @@ class _Watched:
         self.evaluations, self.improvements, self.best, self.worst, self.x = 0, 0, np.inf, 1.0, (low + high) / 2
 
     def one(self, x: np.ndarray) -> float:
-        """Fitness of one point (parameters,)."""
+        """Misfit of one point (parameters,)."""
         return float(self.columns(np.asarray(x)[:, None])[0])
 
     def columns(self, points: np.ndarray) -> np.ndarray:
-        """Fitness (batch,) of points given as columns (parameters, batch); a point outside the box has failed."""
+        """Misfit (batch,) of points given as columns (parameters, batch); a point outside the box has failed."""
         rows = np.atleast_2d(np.asarray(points, dtype=float).T)
         inside = np.all((rows >= self.low) & (rows <= self.high), axis=1)
-        fitness = np.full(len(rows), np.inf)
+        misfit = np.full(len(rows), np.inf)
         if inside.any():
-            fitness[inside] = fitness_of(self.objective, rows[inside])
+            misfit[inside] = misfits(self.objective, rows[inside])
         self.evaluations += int(inside.sum())
-        first = int(np.argmin(fitness))
-        if fitness[first] < self.best:
-            self.best, self.x = float(fitness[first]), rows[first].copy()
+        first = int(np.argmin(misfit))
+        if misfit[first] < self.best:
+            self.best, self.x = float(misfit[first]), rows[first].copy()
             self.improvements += 1
             if self.on_iteration is not None:
                 self.on_iteration(Progress(self.improvements, self.evaluations, self.best, self.x))
-        fine = np.isfinite(fitness)
-        self.worst = max([self.worst, *np.abs(fitness[fine])])
-        return np.where(fine, fitness, FAILED * self.worst)
+        fine = np.isfinite(misfit)
+        self.worst = max([self.worst, *np.abs(misfit[fine])])
+        return np.where(fine, misfit, FAILED * self.worst)

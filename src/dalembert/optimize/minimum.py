@@ -10,7 +10,7 @@ from dalembert.arguments import limited
 from dalembert.errors import InputError
 
 Objective = Callable[[np.ndarray], np.ndarray]
-"""Fitness of a batch, (batch, parameters) to (batch,); NaN or an infinity marks a sample that failed."""
+"""Misfit of a batch, (batch, parameters) to (batch,); NaN or an infinity marks a sample that failed."""
 
 
 def reachable(default: float) -> Any:
@@ -57,7 +57,7 @@ class Progress:
     ----------
     iteration, evaluations : int
     best : float
-        Lowest fitness so far; infinite while every sample has failed.
+        Lowest misfit so far; infinite while every sample has failed.
     x : array, shape (parameters,)
         Where it was found.
     regularised : RegularisedStep, optional
@@ -81,7 +81,7 @@ class Minimum:
     Parameters
     ----------
     x : array, shape (parameters,)
-    fitness : float
+    misfit : float
         Infinite if every sample failed.
     success : bool
     message : str
@@ -90,13 +90,13 @@ class Minimum:
     stationary : bool
         Whether it stopped because x moves no more; going on with finer settings would change nothing.
     rough : bool
-        Whether it stopped because the fitness is rough: it does not fall where its derivatives foresee a fall.
+        Whether it stopped because the misfit is rough: it does not fall where its derivatives foresee a fall.
     left_out : array, shape (directions, parameters), optional
         Directions along which x was left because the residuals do not identify them.
     """
 
     x: np.ndarray
-    fitness: float
+    misfit: float
     success: bool
     message: str
     iterations: int
@@ -106,10 +106,10 @@ class Minimum:
     left_out: np.ndarray | None = None
 
 
-def fitness_of(objective: Objective, points: np.ndarray) -> np.ndarray:
-    """Fitness of a batch, shape (batch,), with every failed sample infinitely bad.
+def misfits(objective: Objective, points: np.ndarray) -> np.ndarray:
+    """Misfit of a batch, shape (batch,), with every failed sample infinitely bad.
 
-    >>> fitness_of(lambda x: np.array([1.0, np.nan, -np.inf]), np.zeros((3, 2)))
+    >>> misfits(lambda x: np.array([1.0, np.nan, -np.inf]), np.zeros((3, 2)))
     array([ 1., inf, inf])
     """
     values = np.asarray(objective(points), dtype=float)

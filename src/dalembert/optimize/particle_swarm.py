@@ -33,7 +33,7 @@ class ParticleSwarm(Swarm):
     >>> import numpy as np
     >>> sphere = lambda points: np.sum(points**2, axis=1)
     >>> found = ParticleSwarm(particles=20, iterations=60).minimise(sphere, [-5, -5], [5, 4], seed=1)
-    >>> found.evaluations, bool(found.fitness < 1e-4)
+    >>> found.evaluations, bool(found.misfit < 1e-4)
     (1200, True)
     """
 

@@ -131,8 +131,8 @@ class _Descent:
                     return self.settled(model)
                 last = self.advance(model)
         except Stopped as end:
-            fitness = float(self.r @ self.r)
-            return Minimum(self.x, fitness, end.success, str(end), self.iterations, self.trials, end.stationary)
+            misfit = float(self.r @ self.r)
+            return Minimum(self.x, misfit, end.success, str(end), self.iterations, self.trials, end.stationary)
 
     def tell(self, last: RegularisedStep | None) -> None:
         self.problem.on_iteration(Progress(self.iterations, self.trials, float(self.r @ self.r), self.x, last))

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from dalembert.arguments import Checked, limited
 from dalembert.intervals import corners
-from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, fitness_of
+from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, misfits
 
 
 @dataclass(frozen=True)
@@ -25,9 +25,9 @@ class SwarmState:
         ``iteration`` counts evaluated swarms, the first random one included.
     lower, upper : array, shape (parameters,)
     positions, velocities : array, shape (particles, parameters)
-    own, own_fitness : array, shape (particles, parameters), (particles,)
+    own, own_misfit : array, shape (particles, parameters), (particles,)
         Best position of each particle so far.
-    quality, quality_fitness : array, shape (kept, parameters), (kept,)
+    quality, quality_misfit : array, shape (kept, parameters), (kept,)
         Good positions that the swarm remembers, best first; empty for swarms without such a memory.
     """
 
@@ -39,18 +39,18 @@ class SwarmState:
     positions: np.ndarray
     velocities: np.ndarray
     own: np.ndarray
-    own_fitness: np.ndarray
+    own_misfit: np.ndarray
     quality: np.ndarray
-    quality_fitness: np.ndarray
+    quality_misfit: np.ndarray
 
     @property
     def best(self) -> np.ndarray:
         """Best position of all, shape (parameters,)."""
-        return self.own[np.argmin(self.own_fitness)]
+        return self.own[np.argmin(self.own_misfit)]
 
     @property
-    def best_fitness(self) -> float:
-        return float(np.min(self.own_fitness))
+    def best_misfit(self) -> float:
+        return float(np.min(self.own_misfit))
 
 
 MOST_PARTICLES = 1_000_000  # a swarm of 1e9 would take the memory of the machine before it computes anything
@@ -80,7 +80,7 @@ class Swarm(Checked, ABC):
         Parameters
         ----------
         objective : callable
-            Batch (particles, parameters) to fitness (particles,); NaN marks a failed sample.
+            Batch (particles, parameters) to misfit (particles,); NaN marks a failed sample.
         lower, upper : array, shape (parameters,)
         seed : int
         start : array, shape (parameters,), optional
@@ -94,17 +94,17 @@ class Swarm(Checked, ABC):
         limit = self.velocity_bound(low, high)
         velocities = limit * (2 * rng.random(positions.shape) - 1)
         empty = np.empty((0, len(low)))
-        fitness = fitness_of(objective, positions)
-        quality = self.remember(empty, np.empty(0), positions, fitness)
-        return SwarmState(seed, 1, len(positions), low, high, positions, velocities, positions, fitness, *quality)
+        misfit = misfits(objective, positions)
+        quality = self.remember(empty, np.empty(0), positions, misfit)
+        return SwarmState(seed, 1, len(positions), low, high, positions, velocities, positions, misfit, *quality)
 
     def advance(self, state: SwarmState, objective: Objective) -> SwarmState:
         """The state one iteration later."""
         # A generator for each iteration: a resumed swarm continues with the same bits from its state alone.
         rng = np.random.default_rng((state.seed, state.iteration))
         positions, velocities = self.move(state, rng)
-        fitness = fitness_of(objective, positions)
-        better = fitness < state.own_fitness
+        misfit = misfits(objective, positions)
+        better = misfit < state.own_misfit
         return SwarmState(
             state.seed,
             state.iteration + 1,
@@ -114,8 +114,8 @@ class Swarm(Checked, ABC):
             positions,
             velocities,
             np.where(better[:, None], positions, state.own),
-            np.where(better, fitness, state.own_fitness),
-            *self.remember(state.quality, state.quality_fitness, positions, fitness),
+            np.where(better, misfit, state.own_misfit),
+            *self.remember(state.quality, state.quality_misfit, positions, misfit),
         )
 
     def minimise(
@@ -128,23 +128,23 @@ class Swarm(Checked, ABC):
         start: ArrayLike | None = None,
         on_iteration: OnIteration | None = None,
     ) -> Minimum:
-        """Smallest fitness found in the box; parameters as in :meth:`start`.
+        """Smallest misfit found in the box; parameters as in :meth:`start`.
 
         ``on_iteration`` is called with a :class:`Progress` after each evaluated swarm.
         """
         state = self.start(objective, lower, upper, seed, start)
         while True:
             if on_iteration is not None:
-                on_iteration(Progress(state.iteration, state.evaluations, state.best_fitness, state.best))
+                on_iteration(Progress(state.iteration, state.evaluations, state.best_misfit, state.best))
             if state.iteration >= self.iterations:
                 return self.end(state)
             state = self.advance(state, objective)
 
     def end(self, state: SwarmState) -> Minimum:
         """What a swarm found when it stops in this state."""
-        success = bool(np.isfinite(state.best_fitness))
+        success = bool(np.isfinite(state.best_misfit))
         message = f"all {state.iteration} iterations done" if success else "every sample of the swarm failed"
-        return Minimum(state.best, state.best_fitness, success, message, state.iteration, state.evaluations)
+        return Minimum(state.best, state.best_misfit, success, message, state.iteration, state.evaluations)
 
     def steered(
         self, state: SwarmState, rng: np.random.Generator, inertia: tuple[float, float], c1: float, c2: float
@@ -165,10 +165,10 @@ class Swarm(Checked, ABC):
         """New positions and velocities, each (particles, parameters), inside their bounds."""
 
     def remember(
-        self, kept: np.ndarray, kept_fitness: np.ndarray, positions: np.ndarray, fitness: np.ndarray
+        self, kept: np.ndarray, kept_misfit: np.ndarray, positions: np.ndarray, misfit: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Good positions and their fitness after new ones were seen; a plain swarm remembers none."""
-        return kept, kept_fitness
+        """Good positions and their misfit after new ones were seen; a plain swarm remembers none."""
+        return kept, kept_misfit
 
 
 def pulled(rng: np.random.Generator, strength: float, towards: np.ndarray, positions: np.ndarray) -> np.ndarray:

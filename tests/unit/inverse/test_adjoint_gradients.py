@@ -1,4 +1,4 @@
-"""Gradients of the fitness and of the likelihood by the adjoint, against those by all sensitivities."""
+"""Gradients of the misfit and of the likelihood by the adjoint, against those by all sensitivities."""
 
 from dataclasses import replace
 
@@ -43,7 +43,7 @@ def posed(model: da.ForwardModel = MODEL) -> Problem:
 
 
 @pytest.mark.parametrize("model", [MODEL, WITH_PRIORS], ids=["data", "data and priors"])
-def test_the_gradient_of_the_fitness(model: da.TimeResponse) -> None:
+def test_the_gradient_of_the_misfit(model: da.TimeResponse) -> None:
     problem = posed(model)
     assert problem.by_adjoint
     point = problem.search.points(VECTOR + 1.0)

@@ -44,7 +44,7 @@ def test_one_unknown_deviation_is_the_plain_fit():
     assert fit.noise.estimates == pytest.approx({"noise.x.deviation": size})
     assert fit.noise.deviations == pytest.approx([size / np.sqrt(2 * 59)], rel=1e-4)
     assert fit.weights == pytest.approx(size**-2)
-    assert fit.fitness == pytest.approx(59)
+    assert fit.misfit == pytest.approx(59)
     assert not fit.noise_is_known
     assert da.predict(decay(), fit).noise == pytest.approx([size])
 
@@ -71,7 +71,7 @@ def test_known_noise_has_the_deviations_of_the_data():
     assert fit.deviations == pytest.approx(plain.deviations, rel=1e-7)
     assert fit.noise_is_known
     assert fit.noise.known
-    assert fit.fitness == pytest.approx(plain.fitness)
+    assert fit.misfit == pytest.approx(plain.misfit)
     assert [item.code for item in fit.findings if item.code == "noise-estimated"] == ["noise-estimated"]
     assert "noise parameter" not in fit.summary()
 

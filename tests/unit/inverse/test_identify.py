@@ -29,7 +29,7 @@ def test_a_linear_problem_has_the_values_deviations_and_correlation_of_the_close
     values, squares, *_ = np.linalg.lstsq(DESIGN, data.values.ravel(), rcond=None)
     covariance = squares[0] / (82 - 2) * np.linalg.inv(DESIGN.T @ DESIGN)
     np.testing.assert_allclose(fit.values, values, rtol=1e-7)
-    np.testing.assert_allclose(fit.fitness, squares[0], rtol=1e-12)
+    np.testing.assert_allclose(fit.misfit, squares[0], rtol=1e-12)
     np.testing.assert_allclose(fit.deviations, np.sqrt(np.diag(covariance)), rtol=1e-9)
     np.testing.assert_allclose(
         fit.correlation[0, 1], covariance[0, 1] / np.sqrt(covariance[0, 0] * covariance[1, 1]), rtol=1e-9
@@ -55,7 +55,7 @@ def test_weights_multiply_the_squares_and_a_zero_leaves_a_value_out(shape):
     only = DESIGN.reshape(41, 2, 2)[:, 1]
     values, squares, *_ = np.linalg.lstsq(only, data.values[:, 1], rcond=None)
     np.testing.assert_allclose(fit.values, values, rtol=1e-7)
-    np.testing.assert_allclose(fit.fitness, 3 * squares[0], rtol=1e-10)
+    np.testing.assert_allclose(fit.misfit, 3 * squares[0], rtol=1e-10)
     variance = np.linalg.inv(only.T @ only) * squares[0] / (41 - 2)
     np.testing.assert_allclose(fit.deviations, np.sqrt(np.diag(variance)), rtol=1e-9)
 
@@ -93,7 +93,7 @@ def test_every_method_goes_through_the_same_call_and_ends_with_the_same_bits(met
     one, same = (identify(DECAY, data, method=method, seed=4) for _ in range(2))
     np.testing.assert_allclose(one.values, [2.0, 0.8], rtol=0.05)
     assert np.isfinite(one.deviations).all()
-    assert one.history[-1].best == pytest.approx(one.fitness, abs=1e-20)
+    assert one.history[-1].best == pytest.approx(one.misfit, abs=1e-20)
     for name in ("values", "deviations", "correlation", "response"):
         assert getattr(one, name).tobytes() == getattr(same, name).tobytes()
     assert [step.best for step in one.history] == [step.best for step in same.history]
@@ -113,7 +113,7 @@ def test_polish_ends_where_least_squares_ends(method):
     np.testing.assert_allclose(fit.values, identify(DECAY, data).values, rtol=1e-5)
     assert len(fit.starts) == 2
     assert fit.starts[-1].message.startswith("polished: converged")
-    assert fit.starts[-1].fitness <= fit.starts[0].fitness
+    assert fit.starts[-1].misfit <= fit.starts[0].misfit
 
 
 def test_several_starts_of_a_local_minimiser_find_the_deeper_of_two_minima():
@@ -138,7 +138,7 @@ def test_swarm_settings_count_as_published():
 
 def test_an_easy_problem_costs_few_simulations():
     fit = identify(DECAY, measured(DECAY, [2.0, 0.8]), start=[4.0, 2.9])
-    assert fit.fitness < 1e-24
+    assert fit.misfit < 1e-24
     assert len(fit.starts) == 1
     assert fit.simulations <= 60
     assert fit.success
@@ -176,7 +176,7 @@ def test_events_tell_the_run_in_order():
     assert any(event.samples < 41 for event in events if event.kind == "iteration")
     records = [as_record(event) for event in events]
     assert records[0] == {"event": "start-began", "start": 0, "simulations": 0, "values": pytest.approx([2.25, 1.55])}
-    assert records[-1]["fitness"] == fit.fitness
+    assert records[-1]["misfit"] == fit.misfit
 
 
 def test_simulations_are_those_that_the_model_was_asked_for():
@@ -219,7 +219,7 @@ def test_a_start_that_fails_is_followed_by_others_and_told():
     fit = identify(FRAGILE, measured(FRAGILE, [2.0, 0.8]), start=[3.9, 2.9])
     np.testing.assert_allclose(fit.values, [2.0, 0.8], rtol=1e-9)
     assert not fit.starts[0].success
-    assert fit.starts[0].fitness == np.inf
+    assert fit.starts[0].misfit == np.inf
     assert fit.starts[0].message == (
         "the first point could not be simulated: ArithmeticError: the motion runs away (test_identify.py, line 205) "
         "(at size = 3.9, rate = 2.9)"

@@ -64,16 +64,16 @@ def test_what_was_refused_is_not_computed_again_and_changes_nothing():
     """A search of whole generations, written out, finds the same place with more evaluations."""
     found = Firefly(resolution=0.0).minimise(raised, LOWER, UPPER, seed=3)
     places = LOWER + (UPPER - LOWER) * np.random.default_rng(3).random((60, 2))
-    fitness, memory = raised(places), np.zeros((60, 2))
+    misfit, memory = raised(places), np.zeros((60, 2))
     for _ in range(999):
-        away = places[np.argmin(fitness)] - places
+        away = places[np.argmin(misfit)] - places
         distance = np.sum((away / (UPPER - LOWER)) ** 2, axis=1, keepdims=True)
         memory = 0.7 * memory + 0.7 * np.exp(-distance) * away
         trial = np.clip(places + memory, LOWER, UPPER)
-        better = raised(trial) < fitness
+        better = raised(trial) < misfit
         places[better] = trial[better]
-        fitness = raised(places)
-    np.testing.assert_array_equal(found.x, places[np.argmin(fitness)])
+        misfit = raised(places)
+    np.testing.assert_array_equal(found.x, places[np.argmin(misfit)])
     assert found.message == f"no firefly moves any more after {found.iterations} generations"
     assert found.evaluations < 60 * found.iterations < 60 * 1000
     coarse = Firefly().minimise(raised, LOWER, UPPER, seed=3)
@@ -83,8 +83,8 @@ def test_what_was_refused_is_not_computed_again_and_changes_nothing():
 
 def test_it_ends_below_its_target_or_after_its_generations():
     found = Firefly(target=1e-3).minimise(sphere, LOWER, UPPER, seed=0)
-    assert 0 < found.fitness < 1e-3
-    assert found.message == "the fitness fell below the target of 0.001"
+    assert 0 < found.misfit < 1e-3
+    assert found.message == "the misfit fell below the target of 0.001"
     found = Firefly(generations=5).minimise(raised, LOWER, UPPER, seed=0)
     assert (found.iterations, found.message) == (5, "all 5 generations done")
 
@@ -97,7 +97,7 @@ def test_a_seed_fixes_every_bit_and_another_seed_changes_them():
 
 def test_the_first_firefly_begins_at_a_given_start():
     found = Firefly(generations=1).minimise(sphere, LOWER, UPPER, seed=0, start=[0.3, 0.7])
-    assert found.fitness == 0
+    assert found.misfit == 0
 
 
 def test_failed_samples_are_infinitely_bad_and_a_search_that_finds_none_says_so():
@@ -106,9 +106,9 @@ def test_failed_samples_are_infinitely_bad_and_a_search_that_finds_none_says_so(
         values[points[:, 0] < 0] = np.nan
         return values
 
-    assert Firefly().minimise(fragile, LOWER, UPPER, seed=0).fitness < 1e-12
+    assert Firefly().minimise(fragile, LOWER, UPPER, seed=0).misfit < 1e-12
     found = Firefly().minimise(lambda points: np.full(len(points), np.nan), LOWER, UPPER, seed=0)
-    assert (found.success, found.fitness, found.message) == (False, np.inf, "every sample failed")
+    assert (found.success, found.misfit, found.message) == (False, np.inf, "every sample failed")
 
 
 def test_progress_tells_a_best_that_never_rises():
@@ -116,7 +116,7 @@ def test_progress_tells_a_best_that_never_rises():
     found = Firefly().minimise(raised, LOWER, UPPER, 0, on_iteration=seen.append)
     assert [one.iteration for one in seen] == list(range(1, len(seen) + 1))
     assert np.all(np.diff([one.best for one in seen]) <= 0)
-    assert seen[-1].best == found.fitness
+    assert seen[-1].best == found.misfit
 
 
 @pytest.mark.parametrize(

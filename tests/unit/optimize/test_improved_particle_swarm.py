@@ -27,7 +27,7 @@ def test_the_published_settings_are_the_defaults():
     swarm = ImprovedParticleSwarm()
     assert (swarm.particles, swarm.iterations, swarm.sizes) == (40, 100, (30, 5, 5))
     assert (swarm.c1, swarm.c2, swarm.c3, swarm.alpha) == (1, 1, 1, 0.5)
-    assert (swarm.quality_fitness, swarm.quality_size) == (0.1, 500)
+    assert (swarm.quality_misfit, swarm.quality_size) == (0.1, 500)
     assert swarm.inertia == (0.8, pytest.approx(0.1))
 
 
@@ -64,8 +64,8 @@ def test_group_1_is_pulled_to_own_best_best_and_quality_set():
     pulls = []
     for seed in range(40):
         at = replace(
-            state, seed=seed, positions=here, own=np.repeat(goal[None], 40, axis=0), own_fitness=np.zeros(40),
-            quality=goal[None], quality_fitness=np.zeros(1),
+            state, seed=seed, positions=here, own=np.repeat(goal[None], 40, axis=0), own_misfit=np.zeros(40),
+            quality=goal[None], quality_misfit=np.zeros(1),
         )  # fmt: skip
         pulls.append((swarm.advance(at, bowl).velocities[GROUP == 1]) / (goal - here[0]))
     assert np.min(pulls) >= 0
@@ -75,10 +75,10 @@ def test_group_1_is_pulled_to_own_best_best_and_quality_set():
 
 
 def test_without_a_quality_set_group_1_has_two_pulls():
-    swarm = ImprovedParticleSwarm(velocity_limit=10.0, quality_fitness=-1.0)
+    swarm = ImprovedParticleSwarm(velocity_limit=10.0, quality_misfit=-1.0)
     goal, here = np.array([0.9, 0.6]), np.repeat([[0.7, 0.5]], 40, axis=0)
     state = quiet(swarm)
-    at = replace(state, positions=here, own=np.repeat(goal[None], 40, axis=0), own_fitness=np.zeros(40))
+    at = replace(state, positions=here, own=np.repeat(goal[None], 40, axis=0), own_misfit=np.zeros(40))
     assert len(at.quality) == 0
     pulls = swarm.advance(at, bowl).velocities / (goal - here[0])
     assert np.max(pulls) <= 2
@@ -104,7 +104,7 @@ def test_group_3_goes_to_the_mean_of_half_the_quality_set_half_the_time():
     lone = np.array([[0.77, 0.51]])
     gathered = 0
     for seed in range(200):
-        after = swarm.advance(replace(state, seed=seed, quality=lone, quality_fitness=np.array([0.01])), bowl)
+        after = swarm.advance(replace(state, seed=seed, quality=lone, quality_misfit=np.array([0.01])), bowl)
         there = np.all(after.positions == lone, axis=1)
         assert not there[GROUP != 3].any()
         np.testing.assert_array_equal(after.velocities[there], state.velocities[there])
@@ -113,7 +113,7 @@ def test_group_3_goes_to_the_mean_of_half_the_quality_set_half_the_time():
 
 
 def test_the_quality_set_keeps_the_best_500_positions_below_h():
-    swarm = ImprovedParticleSwarm(quality_fitness=0.01)
+    swarm = ImprovedParticleSwarm(quality_misfit=0.01)
     visited, state = [], swarm.start(bowl, LOWER, UPPER, seed=0)
     for _ in range(60):
         visited.append(state.positions)
@@ -122,8 +122,8 @@ def test_the_quality_set_keeps_the_best_500_positions_below_h():
     good = np.sort(everywhere[everywhere < 0.01])
     assert len(good) > 500
     assert state.quality.shape == (500, 2)
-    np.testing.assert_array_equal(state.quality_fitness, good[:500])
-    np.testing.assert_array_equal(bowl(state.quality), state.quality_fitness)
+    np.testing.assert_array_equal(state.quality_misfit, good[:500])
+    np.testing.assert_array_equal(bowl(state.quality), state.quality_misfit)
 
 
 def test_subset_means_use_the_given_share_without_repetition():

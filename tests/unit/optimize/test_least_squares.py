@@ -23,13 +23,13 @@ def test_parameters_come_back_exactly_from_exact_data():
     np.testing.assert_allclose(found.x, [2, 3], rtol=1e-12)
     assert found.success
     assert found.stationary
-    assert found.fitness < 1e-26
+    assert found.misfit < 1e-26
 
 
 def test_starting_at_the_solution_costs_one_residual():
     data = decay([2.0, 3.0])
     found = LeastSquares().minimise(lambda x: decay(x) - data, slope, [0, 0], [10, 10], [2, 3])
-    assert (found.evaluations, found.fitness) == (1, 0)
+    assert (found.evaluations, found.misfit) == (1, 0)
 
 
 def test_the_solution_of_a_linear_problem_at_a_bound_is_the_constrained_one():
@@ -57,7 +57,7 @@ def test_a_failed_trial_shortens_the_step():
 
 def test_a_start_that_fails_is_told_and_not_raised():
     found = LeastSquares().minimise(lambda x: x * np.nan, slope, [0, 0], [1, 1], [0.5, 0.5])
-    assert (found.success, found.fitness, found.evaluations) == (False, np.inf, 1)
+    assert (found.success, found.misfit, found.evaluations) == (False, np.inf, 1)
     assert found.message == "the first point could not be simulated"
 
 
@@ -132,7 +132,7 @@ def test_one_of_many_descents_is_judged_sooner():
     assert "stopped, not converged" in many.message
     assert many.evaluations < 25
     assert last.success
-    np.testing.assert_allclose(last.fitness, 400.0)
+    np.testing.assert_allclose(last.misfit, 400.0)
 
 
 @pytest.mark.parametrize(

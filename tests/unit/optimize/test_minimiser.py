@@ -25,7 +25,7 @@ def downhill(point):
 def test_every_minimiser_finds_the_minimum(name):
     found = Minimiser(name, ROUGH.get(name, {})).minimise(valley, LOWER, UPPER, 0, start=START, gradient=downhill)
     np.testing.assert_allclose(found.x, [1, 1], atol=2e-2)
-    assert found.fitness == valley(found.x[None])[0]
+    assert found.misfit == valley(found.x[None])[0]
     assert found.evaluations > 3
 
 
@@ -43,7 +43,7 @@ def test_samples_that_fail_end_nothing(name):
 @pytest.mark.parametrize("name", ["Nelder-Mead", "differential_evolution"])
 def test_when_every_sample_fails_the_result_says_so(name):
     found = Minimiser(name).minimise(lambda points: np.full(len(points), np.nan), LOWER, UPPER, 0)
-    assert (found.success, found.fitness, found.message) == (False, np.inf, "every sample failed")
+    assert (found.success, found.misfit, found.message) == (False, np.inf, "every sample failed")
 
 
 @pytest.mark.parametrize("name", ["differential_evolution", "dual_annealing", "basinhopping"])
@@ -74,7 +74,7 @@ def test_progress_is_told_at_each_improvement():
     seen = []
     found = Minimiser("Nelder-Mead").minimise(valley, LOWER, UPPER, 0, start=START, on_iteration=seen.append)
     assert np.all(np.diff([one.best for one in seen]) < 0)
-    assert seen[-1].best == found.fitness
+    assert seen[-1].best == found.misfit
 
 
 def test_the_names_are_sorted_into_what_they_need():

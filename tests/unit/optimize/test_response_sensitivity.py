@@ -227,20 +227,20 @@ def test_other_choices_end_within_the_noise_of_the_minimum(regularisation):
     )  # fmt: skip
     best, _ = told(lambda x: (decay(x) - data) / 0.01, lambda x: slope(x) / 0.01, [0, 0], [10, 10], [3, 2])
     assert found.success
-    assert best.fitness <= found.fitness < 1.3 * best.fitness + 1
+    assert best.misfit <= found.misfit < 1.3 * best.misfit + 1
     np.testing.assert_allclose(found.x, [2, 3], atol=0.15)
 
 
 def test_a_start_that_fails_is_told_and_not_raised():
     found = ResponseSensitivity().minimise(lambda x: x * np.nan, slope, [0, 0], [1, 1], [0.5, 0.5])
-    assert (found.success, found.fitness, found.evaluations) == (False, np.inf, 1)
+    assert (found.success, found.misfit, found.evaluations) == (False, np.inf, 1)
     assert found.message == "the first point could not be simulated"
 
 
 def test_starting_at_the_solution_costs_one_residual():
     data = decay([2.0, 3.0])
     found = ResponseSensitivity().minimise(lambda x: decay(x) - data, slope, [0, 0], [10, 10], [2, 3])
-    assert (found.evaluations, found.fitness, found.message) == (1, 0, "converged: the fit is perfect")
+    assert (found.evaluations, found.misfit, found.message) == (1, 0, "converged: the fit is perfect")
 
 
 def test_a_residual_that_sees_nothing_ends_at_once():

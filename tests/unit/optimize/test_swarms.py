@@ -24,7 +24,7 @@ SWARMS = [ParticleSwarm(), ImprovedParticleSwarm(), ParticleSwarm(inertia=0.7298
 @pytest.mark.parametrize("swarm", SWARMS)
 def test_the_minimum_of_a_sphere_is_found_in_the_median_of_seeds(swarm):
     found = [swarm.minimise(sphere, [0.1, 0.4], [0.5, 1.0], seed) for seed in range(5)]
-    assert np.median([one.fitness for one in found]) < 1e-12
+    assert np.median([one.misfit for one in found]) < 1e-12
     assert np.median([np.max(np.abs(one.x - [0.3, 0.7])) for one in found]) < 1e-6
 
 
@@ -61,7 +61,7 @@ def test_stepping_gives_the_bits_of_the_whole_run(swarm):
         state = swarm.advance(state, rosenbrock)
     whole = swarm.minimise(rosenbrock, LOWER, UPPER, seed=5)
     assert state.best.tobytes() == whole.x.tobytes()
-    assert state.best_fitness == whole.fitness
+    assert state.best_misfit == whole.misfit
 
 
 @pytest.mark.parametrize("swarm", SWARMS)
@@ -75,14 +75,14 @@ def test_failed_samples_are_infinitely_bad_and_end_nothing(swarm):
 
     found = swarm.minimise(fragile, LOWER, UPPER, seed=0)
     assert found.success
-    assert found.fitness < 1e-4
+    assert found.misfit < 1e-4
 
 
 @pytest.mark.parametrize("swarm", SWARMS)
 def test_a_swarm_of_which_every_sample_fails_says_so(swarm):
     found = swarm.minimise(lambda points: np.full(len(points), np.nan), LOWER, UPPER, seed=0)
     assert not found.success
-    assert found.fitness == np.inf
+    assert found.misfit == np.inf
     assert found.message == "every sample of the swarm failed"
 
 
@@ -106,13 +106,13 @@ def test_progress_tells_iteration_evaluations_and_a_best_that_never_rises():
     assert [one.iteration for one in seen] == list(range(1, 21))
     assert [one.evaluations for one in seen] == list(range(10, 201, 10))
     assert np.all(np.diff([one.best for one in seen]) <= 0)
-    assert seen[-1].best == found.fitness
+    assert seen[-1].best == found.misfit
 
 
 def test_the_first_particle_begins_at_a_given_start():
     state = ParticleSwarm().start(sphere, LOWER, UPPER, seed=0, start=[0.3, 0.7])
     np.testing.assert_array_equal(state.positions[0], [0.3, 0.7])
-    assert state.best_fitness == 0
+    assert state.best_misfit == 0
 
 
 def test_the_standard_move_is_the_textbook_formula():
@@ -122,7 +122,7 @@ def test_the_standard_move_is_the_textbook_formula():
     after = swarm.advance(state, sphere)
     inertia = 0.9 - 0.5 * 1 / 10
     pull = (after.velocities - inertia * state.velocities) / (state.best - state.positions + 1e-300)
-    leader = int(np.argmin(state.own_fitness))
+    leader = int(np.argmin(state.own_misfit))
     np.testing.assert_allclose(after.velocities[leader], inertia * state.velocities[leader], atol=1e-14)
     assert np.all((pull[1 - leader] >= 0) & (pull[1 - leader] <= 2))
 

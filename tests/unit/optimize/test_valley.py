@@ -38,7 +38,7 @@ def test_a_descent_reaches_the_end_of_a_curved_valley(start):
     assert found.success
     slopes, rest = jacobian(found.x), residual(found.x)
     left = np.linalg.lstsq(slopes / np.linalg.norm(slopes, axis=0), rest, rcond=None)
-    assert found.fitness - left[1][0] < 1e-12 * found.fitness
+    assert found.misfit - left[1][0] < 1e-12 * found.misfit
 
 
 def test_a_descent_along_a_valley_keeps_to_its_trials_and_bounds():
@@ -56,7 +56,7 @@ def test_a_bound_in_the_valley_holds_the_minimum():
     assert found.x[1] == pytest.approx(44.0, abs=1e-6)
     free = jacobian(found.x)[:, [0, 2]]
     parts = np.linalg.svd(free / np.linalg.norm(free, axis=0), full_matrices=False)[0].T @ residual(found.x)
-    assert parts @ parts < 1e-10 * found.fitness
+    assert parts @ parts < 1e-10 * found.misfit
 
 
 def test_hasty_descents_do_not_follow_a_valley():

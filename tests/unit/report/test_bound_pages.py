@@ -169,7 +169,7 @@ def test_figures_of_intervals():
 
 def test_intervals_without_true_ones_true_runs_and_history(tmp_path):
     result = band_fit()
-    result.history, result.checked_fitness = (), None
+    result.history, result.checked_misfit = (), None
     page = read_page(report(result, tmp_path / "a.html"))
     assert "true lower" not in page.table("intervals")[0]
     assert "misfit by true runs" not in page.text

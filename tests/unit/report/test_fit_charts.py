@@ -66,7 +66,7 @@ def test_convergence_draws_every_start_and_the_winner_last_in_colour():
     assert list(drawn[-1].y) == [step.best for step in own]
 
 
-def test_a_fitness_of_zero_is_a_gap_and_not_an_error():
+def test_a_misfit_of_zero_is_a_gap_and_not_an_error():
     result = fit(starts=1)
     for step in result.history:
         step.best = 0.0
@@ -75,7 +75,7 @@ def test_a_fitness_of_zero_is_a_gap_and_not_an_error():
 
 def test_starts_are_sorted_by_where_they_end():
     result = fit()
-    result.starts[5].fitness = float("nan")
+    result.starts[5].misfit = float("nan")
     traces = _named(charts.starts(result))
     assert list(traces["converged"].x) == [1, 2, 4, 5, 6]
     assert list(traces["not converged"].x) == [3]
@@ -139,7 +139,7 @@ def test_small_parts_of_a_combination_are_left_out():
 
 def test_gaps_of_the_best_start_stand_over_its_misfit():
     step = partial(Step, values=np.zeros(2), samples=9)
-    ends = [StartEnd(np.zeros(2), np.zeros(2), fitness, True, "", 9) for fitness in (5.0, 1.0)]
+    ends = [StartEnd(np.zeros(2), np.zeros(2), misfit, True, "", 9) for misfit in (5.0, 1.0)]
     history = [
         step(0, 0, 3, 9.0, gap=0.5),
         step(1, 0, 6, 8.0, gap=0.1),

@@ -229,7 +229,7 @@ def test_a_sweep_with_gaps_says_so(tmp_path):
 
 def test_a_start_that_failed_and_a_swarm_that_scattered_itself_have_their_rows(tmp_path):
     result = fit()
-    result.starts[2].fitness, result.starts[2].success = float("inf"), False
+    result.starts[2].misfit, result.starts[2].success = float("inf"), False
     result.starts[2].start = np.full(2, np.nan)
     rows = read_page(report(result, tmp_path / "a.html")).table("starts")
     assert rows[-1][:4] == ["3", "inf", "9", "not converged"]

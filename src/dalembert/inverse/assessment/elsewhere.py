@@ -41,7 +41,7 @@ def _around(
     memo, search = Memo(problem), problem.search
     try:
         end = walk.method.minimise(memo.residual, memo.jacobian, search.lower, search.upper, point, ahead=memo.ahead)
-        excess, end_vector = (end.fitness - walk.best) / walk.variance, search.vectors(end.x)
+        excess, end_vector = (end.misfit - walk.best) / walk.variance, search.vectors(end.x)
         if any(lower <= end_vector[k] <= upper for lower, upper in intervals):
             return None
         if walk.likelihood is not None and excess < 4 * walk.threshold:  # the misfit with fixed noise is near it
@@ -69,10 +69,10 @@ def _starts(problem: Problem, vector: np.ndarray, k: int, interval: tuple[float,
         grid[1:] = search.lower + spread * (search.upper - search.lower)
     points = np.repeat(grid[None], SCANNED, axis=0)
     points[:, :, k] = values[:, None]
-    fitness = problem.fitness(points.reshape(-1, size)).reshape(SCANNED, -1)
-    fitness = np.where(np.isfinite(fitness), fitness, np.inf)
-    best = np.argmin(fitness, axis=1)
-    chosen, lowest = points[np.arange(SCANNED), best], fitness[np.arange(SCANNED), best]
+    misfit = problem.misfit(points.reshape(-1, size)).reshape(SCANNED, -1)
+    misfit = np.where(np.isfinite(misfit), misfit, np.inf)
+    best = np.argmin(misfit, axis=1)
+    chosen, lowest = points[np.arange(SCANNED), best], misfit[np.arange(SCANNED), best]
     along = search.vectors(chosen)[:, k]
     outside = (along < interval[0]) | (along > interval[1])
     low = [n for n in dips(np.concatenate([[np.inf], lowest, [np.inf]])) - 1 if outside[n] and np.isfinite(lowest[n])]

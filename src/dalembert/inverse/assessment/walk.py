@@ -125,7 +125,7 @@ def least(problem: Problem, k: int, guess: np.ndarray, walk: Walk) -> tuple[floa
     before = len(problem.journal.failures)
     if not free.any():
         memo.hopeful = False
-        fitness, point = float(np.sum(memo.residual(guess) ** 2)), guess
+        misfit, point = float(np.sum(memo.residual(guess) ** 2)), guess
     else:
         try:
             end = walk.method.minimise(
@@ -138,11 +138,11 @@ def least(problem: Problem, k: int, guess: np.ndarray, walk: Walk) -> tuple[floa
             )
         except SolveError as error:
             return str(error)
-        fitness, point = end.fitness, whole(end.x)
-    if not np.isfinite(fitness):
+        misfit, point = end.misfit, whole(end.x)
+    if not np.isfinite(misfit):
         reasons = problem.journal.failures[before:]
         return reasons[0] if reasons else "the misfit is not finite"
-    return (fitness - walk.best) / walk.variance, point
+    return (misfit - walk.best) / walk.variance, point
 
 
 def _root(excess: float) -> float:

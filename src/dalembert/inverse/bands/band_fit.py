@@ -43,7 +43,7 @@ class BandFit(EndedResult):
         Of W^½ ∂(lower, upper)/∂unknown · scale, largest first.
     directions : array, shape (unknowns, unknowns)
         A row a singular value: the combination of unknown/scale that it belongs to.
-    fitness : float
+    misfit : float
         Σ W ((lower − given lower)² + (upper − given upper)²) over samples and channels.
     bands : Bands
         The given ones.
@@ -56,10 +56,10 @@ class BandFit(EndedResult):
     checked_lower, checked_upper : array, shape (samples, channels)
         Least and largest response of true runs at the points where the surrogate has its minima and maxima; None if
         no run was made there, or every one failed.
-    checked_fitness : float
-        The fitness of these; None without them.
+    checked_misfit : float
+        The misfit of these; None without them.
     history : tuple of Step
-        Best fitness along each start; its values are the unknowns.
+        Best misfit along each start; its values are the unknowns.
     starts : tuple of StartEnd
     success : bool
     outcome : tuple of Finding
@@ -85,7 +85,7 @@ class BandFit(EndedResult):
     correlation: Annotated[np.ndarray, Over("unknown", "unknown_")]
     singular_values: Annotated[np.ndarray, Over("combination")]
     directions: Annotated[np.ndarray, Over("combination", "unknown")]
-    fitness: float
+    misfit: float
     bands: StoredBands
     weights: Table
     lower: Table
@@ -93,7 +93,7 @@ class BandFit(EndedResult):
     error: Table
     checked_lower: OptionalTable
     checked_upper: OptionalTable
-    checked_fitness: float | None
+    checked_misfit: float | None
     history: Annotated[tuple[Step, ...], History("unknown")]
     starts: Annotated[tuple[StartEnd, ...], Starts("unknown")]
     success: bool
@@ -153,11 +153,11 @@ class BandFit(EndedResult):
                     f"{item.lower:.6g} to {item.upper:.6g}",
                 )
             )
-        checked = "not checked" if self.checked_fitness is None else f"{self.checked_fitness:.6g} by true runs"
+        checked = "not checked" if self.checked_misfit is None else f"{self.checked_misfit:.6g} by true runs"
         facts = [
             *fact_lines(
                 method=self.method,
-                misfit=f"{self.fitness:.6g} (weighted sum of squares of {2 * self.lower.size} bounds), {checked}",
+                misfit=f"{self.misfit:.6g} (weighted sum of squares of {2 * self.lower.size} bounds), {checked}",
                 simulations=self.simulations,
                 seconds=f"{self.seconds:.2g}",
                 starts=len(self.starts),

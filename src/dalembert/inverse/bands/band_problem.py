@@ -15,7 +15,7 @@ from dalembert.inverse.problem.simulated import simulated
 
 @dataclass(frozen=True, eq=False)
 class BandProblem:
-    """Fitness F = Σ W ((lower − given lower)² + (upper − given upper)²) over samples and channels.
+    """Misfit F = Σ W ((lower − given lower)² + (upper − given upper)²) over samples and channels.
 
     Outputs are samples × channels, flat.
     """
@@ -42,7 +42,7 @@ class BandProblem:
         apart = np.stack([lower - self.bands.lower.ravel(), upper - self.bands.upper.ravel()], axis=-2)
         return (np.sqrt(self.weights.ravel()) * apart).reshape(*lower.shape[:-1], -1)
 
-    def fitness(self, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
+    def misfit(self, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
         """F, shape (...), of bounds (..., outputs)."""
         return np.sum(self.residual(lower, upper) ** 2, axis=-1)
 

@@ -41,7 +41,7 @@ def descend(problem: BandProblem, polynomial: ChebyshevPolynomial, method: Least
         scale=unknowns.upper - unknowns.lower,
         on_iteration=progress,
     )
-    journal.ended(unknowns.physical(x), unknowns.physical(minimum.x), minimum.fitness, minimum.success, minimum.message)
+    journal.ended(unknowns.physical(x), unknowns.physical(minimum.x), minimum.misfit, minimum.success, minimum.message)
     return minimum
 
 
@@ -58,7 +58,7 @@ def screened(problem: BandProblem, polynomial: ChebyshevPolynomial, number: int,
     width = unknowns.upper - unknowns.lower
     x = unknowns.lower + width * latin_hypercube(len(width), number, np.random.default_rng((seed, 1)))
     bounded = bounds(polynomial, *unknowns.ends(x))
-    order = x[np.argsort(problem.fitness(bounded.lower, bounded.upper), kind="stable")]
+    order = x[np.argsort(problem.misfit(bounded.lower, bounded.upper), kind="stable")]
     chosen = order[:1]
     for start in order[1:]:
         if len(chosen) == starts:

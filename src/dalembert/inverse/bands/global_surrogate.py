@@ -105,7 +105,7 @@ class GlobalSurrogate(CheckedArguments):
         ends: list[Minimum] = []
         for origin in origins:
             ends.append(descend(problem, surrogate.polynomial, LeastSquares(), origin))
-            best = min(ends, key=lambda end: end.fitness)
+            best = min(ends, key=lambda end: end.misfit)
             width = problem.unknowns.upper - problem.unknowns.lower
             times = sum(bool(np.all(np.abs(end.x - best.x) <= SAME * width)) for end in ends)
             if len(ends) >= self.starts and (times > 1 or self.starts == 1):
@@ -132,8 +132,8 @@ class GlobalSurrogate(CheckedArguments):
             checked = check(problem, polynomial, at)
             if checked is None:
                 break
-            fitness, largest = float(problem.fitness(checked.lower, checked.upper)), float(checked.error.max())
-            problem.journal.tell(Checked(len(checked.points), problem.journal.simulations, fitness, largest))
+            misfit, largest = float(problem.misfit(checked.lower, checked.upper)), float(checked.error.max())
+            problem.journal.tell(Checked(len(checked.points), problem.journal.simulations, misfit, largest))
             worst = float(np.max(checked.error / scale(problem)))
             if worst > sharpest:  # the correction made it worse
                 break

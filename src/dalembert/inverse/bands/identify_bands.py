@@ -132,7 +132,7 @@ def identify_bands(
         correlation=estimated.correlation,
         singular_values=estimated.singular_values,
         directions=estimated.directions,
-        fitness=float(problem.fitness(at.bounds.lower, at.bounds.upper)),
+        misfit=float(problem.misfit(at.bounds.lower, at.bounds.upper)),
         bands=Bands(bands.coordinate, bands.channels, bands.lower, bands.upper),
         weights=np.array(problem.weights),
         lower=at.bounds.lower.reshape(problem.shape),
@@ -140,7 +140,7 @@ def identify_bands(
         error=solution.error.reshape(problem.shape),
         checked_lower=None if checked is None else checked.lower.reshape(problem.shape),
         checked_upper=None if checked is None else checked.upper.reshape(problem.shape),
-        checked_fitness=None if checked is None else float(problem.fitness(checked.lower, checked.upper)),
+        checked_misfit=None if checked is None else float(problem.misfit(checked.lower, checked.upper)),
         history=tuple(journal.history),
         starts=tuple(journal.starts),
         success=solution.success and not any(finding.severity == "error" for finding in concluded),
@@ -160,7 +160,7 @@ def identify_bands(
         findings=(*concluded, *findings_at(model, (ends[0] + ends[1]) / 2)),
     )
     values = np.concatenate([fit.middle, fit.radius[unknowns.chosen]])
-    journal.tell(Finished(fit.success, fit.status, fit.fitness, values, fit.simulations))
+    journal.tell(Finished(fit.success, fit.status, fit.misfit, values, fit.simulations))
     return fit
 
 
@@ -187,5 +187,5 @@ def _estimated(problem: BandProblem, solution: BandSolution) -> Estimate:
     scale = np.concatenate([parameters.scale, parameters.scale[unknowns.chosen]])
     by_unknown = np.hstack([lower + upper, (upper - lower)[:, unknowns.chosen]]) * scale
     freedom = 2 * np.count_nonzero(problem.weights) - len(scale)
-    fitness = float(problem.fitness(at.bounds.lower, at.bounds.upper))
-    return estimate(by_unknown, scale, fitness / freedom if freedom > 0 else np.nan)
+    misfit = float(problem.misfit(at.bounds.lower, at.bounds.upper))
+    return estimate(by_unknown, scale, misfit / freedom if freedom > 0 else np.nan)

@@ -54,7 +54,7 @@ class Nested(Checked):
         unknowns, journal = problem.unknowns, problem.journal
         eta, exponents, solve = self._design(len(unknowns.chosen))
 
-        def fitness(x: np.ndarray) -> np.ndarray:
+        def misfit(x: np.ndarray) -> np.ndarray:
             lower, upper = unknowns.ends(x)
             points = np.repeat(lower[:, None], len(eta), axis=1)
             width = (upper - lower)[:, None, unknowns.chosen]
@@ -67,17 +67,17 @@ class Nested(Checked):
             coefficients = np.moveaxis(solve @ values[ok], 1, 0).reshape(len(exponents), -1)
             ones = np.ones(eta.shape[1])
             bounded = bounds(ChebyshevPolynomial(-ones, ones, exponents, coefficients), -ones, ones)
-            result[ok] = problem.fitness(*(side.reshape(ok.sum(), -1) for side in (bounded.lower, bounded.upper)))
+            result[ok] = problem.misfit(*(side.reshape(ok.sum(), -1) for side in (bounded.lower, bounded.upper)))
             return result
 
         def progress(now: Progress) -> None:
             journal.step(now.best, unknowns.physical(now.x), problem.shape[0])
 
         journal.began(None)
-        best = self.swarm.minimise(fitness, unknowns.lower, unknowns.upper, seed, on_iteration=progress)
+        best = self.swarm.minimise(misfit, unknowns.lower, unknowns.upper, seed, on_iteration=progress)
         nowhere = np.full_like(unknowns.lower, np.nan)
         end = unknowns.physical(best.x) if best.success else nowhere
-        journal.ended(nowhere, end, best.fitness, best.success, best.message)
+        journal.ended(nowhere, end, best.misfit, best.success, best.message)
         if not best.success:
             raise SolveError(
                 f"none of the {best.evaluations} candidate boxes could be simulated; the first failure: "

@@ -38,7 +38,7 @@ def with_coverage(fit: Fit, problem: Problem) -> Fit:
     if validation is None or at is None:
         return fit
     deviations, width = response_deviations(fit, at.jacobian).ravel(), fit.quantile(LEVEL)
-    apart, response = np.abs(problem.misfit(at.response)).ravel(), at.response.ravel()
+    apart, response = np.abs(problem.unweighted_residual(at.response)).ravel(), at.response.ravel()
     inside: list[np.ndarray] = []
     for own in series_of(problem, validation.weights):
         wraps = own.name in problem.data.wraps

@@ -68,7 +68,7 @@ def explained(problem: Problem, response: np.ndarray, weights: np.ndarray, fitte
         Root mean square of the weighted residuals of the fitted values.
     """
     data = problem.data
-    values, residual = data.continuous.ravel(), (np.sqrt(weights) * problem.misfit(response)).ravel()
+    values, residual = data.continuous.ravel(), (np.sqrt(weights) * problem.unweighted_residual(response)).ravel()
     series = list(series_of(problem, weights))
     found = []
     for own in series:

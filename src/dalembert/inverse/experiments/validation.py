@@ -78,7 +78,7 @@ class Split:
         if self.part is self.whole:
             return None
         weights = np.where(self.fitted, 0.0, self.whole.weights)
-        squares = self.whole.misfit(response) ** 2
+        squares = self.whole.unweighted_residual(response) ** 2
         of_fit = self.whole.weights - weights
         misfit, fitted = (_rms(squares, own) for own in (weights, of_fit))
         return Validation(self.what, weights, misfit, fitted, explained(self.whole, response, weights, fitted))

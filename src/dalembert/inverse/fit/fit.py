@@ -46,7 +46,7 @@ class Fit(EndedResult):
         Of W^½ ∂R/∂p · scale, with a row scale/deviation a prior; largest first.
     directions : array, shape (parameters, parameters)
         A row a singular value: the combination of p/scale that it belongs to.
-    fitness : float
+    misfit : float
         Σ W (R − data)² over samples and channels, or the sum of the losses; + Σ ((p − start)/deviation)² over priors.
     response, residuals : array, shape (samples, channels)
         R at ``values``, and R − data: NaN where a value is missing, modulo a turn in wrapping channels.
@@ -55,7 +55,7 @@ class Fit(EndedResult):
     weights : array, shape (samples, channels)
         W, 0 where a value was not fitted.
     history : tuple of Step
-        Best fitness along each start, where all samples were compared.
+        Best misfit along each start, where all samples were compared.
     starts : tuple of StartEnd
     success : bool
     outcome : tuple of Finding
@@ -95,7 +95,7 @@ class Fit(EndedResult):
     correlation: Annotated[np.ndarray, Over("parameter", "parameter_")]
     singular_values: Annotated[np.ndarray, Over("combination")]
     directions: Annotated[np.ndarray, Over("combination", "parameter")]
-    fitness: float
+    misfit: float
     response: Table
     data: StoredData
     weights: Table
@@ -242,7 +242,7 @@ class Fit(EndedResult):
         """Return the variance of a weighted residual: 1 where the noise is known, else estimated from the residuals."""
         if self.noise_is_known or self.noise is not None:
             return 1.0
-        return self.fitness / self.degrees_of_freedom if self.degrees_of_freedom > 0 else np.nan
+        return self.misfit / self.degrees_of_freedom if self.degrees_of_freedom > 0 else np.nan
 
     def summary(self) -> str:
         """Return a table of parameters with standard deviations, unit and bounds, then effort and findings."""
@@ -253,7 +253,7 @@ class Fit(EndedResult):
         facts = [
             *fact_lines(
                 method=self.method,
-                misfit=f"{self.fitness:.6g} (weighted sum of squares of {np.count_nonzero(self.weights)} values)",
+                misfit=f"{self.misfit:.6g} (weighted sum of squares of {np.count_nonzero(self.weights)} values)",
                 simulations=self.simulations,
                 starts=len(self.starts),
             ),
@@ -302,7 +302,7 @@ def _integration_facts(fit: Fit) -> list[str]:
         return []
     return [
         f"integrator   bias of the values {amounts(fit.parameters, found.bias)} (by one simulation {found.how})",
-        f"             misfit with converged steps {found.fitness:.6g}, with corrected values {found.corrected:.6g}",
+        f"             misfit with converged steps {found.misfit:.6g}, with corrected values {found.corrected:.6g}",
     ]
 
 

@@ -33,10 +33,10 @@ class IntegrationBias:
     bias : array, shape (parameters,)
         Error of the identified values that the steps cause, to first order: values − bias are the corrected ones. NaN
         without the simulation.
-    fitness : float
+    misfit : float
         Of the same values with converged steps.
     corrected : float
-        Fitness of the corrected values with converged steps.
+        Misfit of the corrected values with converged steps.
     remainder : float
         Weighted sum of squares of that part of the response's error which no change of the parameters makes up for.
 
@@ -49,14 +49,14 @@ class IntegrationBias:
 
     how: str
     bias: Annotated[np.ndarray, Over("parameter", name="integration_bias")]
-    fitness: Annotated[float, Over(name="integration_fitness")]
+    misfit: Annotated[float, Over(name="integration_misfit")]
     corrected: Annotated[float, Over(name="integration_corrected")]
     remainder: Annotated[float, Over(name="integration_remainder")]
 
     @property
     def failed(self) -> bool:
         """Whether the more exact simulation failed."""
-        return bool(np.isnan(self.fitness))
+        return bool(np.isnan(self.misfit))
 
 
 def integration_bias(problem: Problem, at: Linearisation | None, nodes: Nodes | None) -> IntegrationBias | None:
@@ -89,13 +89,13 @@ def _estimated(problem: Problem, at: Linearisation, error: np.ndarray, how: str)
     return IntegrationBias(
         how=how,
         bias=-correction,
-        fitness=_fitness(problem, at.response - error, at.vector),
-        corrected=_fitness(problem, linear, at.vector + correction),
+        misfit=_misfit(problem, at.response - error, at.vector),
+        corrected=_misfit(problem, linear, at.vector + correction),
         remainder=float(remainder @ remainder),
     )
 
 
-def _fitness(problem: Problem, response: np.ndarray, vector: np.ndarray) -> float:
+def _misfit(problem: Problem, response: np.ndarray, vector: np.ndarray) -> float:
     return float(np.sum(problem.squares(response)) + np.sum(prior_residual(problem.model.parameters, vector) ** 2))
 
 
@@ -107,7 +107,7 @@ def integration_findings(
     found: IntegrationBias | None,
     problem: Problem,
     deviations: np.ndarray,
-    fitness: float,
+    misfit: float,
     *,
     known: bool,
     white: bool,
@@ -119,7 +119,7 @@ def integration_findings(
     found : IntegrationBias or None
     problem : Problem
     deviations : array, shape (parameters,)
-    fitness : float
+    misfit : float
     known : bool
         Whether the deviations of the data are.
     white : bool
@@ -137,12 +137,12 @@ def integration_findings(
         yield Finding("integration-bias-unknown", "note", {}, message, "Compare with a fit at finer steps.")
         return
     freedom = max(1, problem.compared - len(deviations))
-    variance = 1.0 if known else fitness / freedom
+    variance = 1.0 if known else misfit / freedom
     ratios = np.zeros(len(deviations))
     some = np.isfinite(deviations) & (deviations > 0)
     ratios[some] = np.abs(found.bias[some]) / deviations[some]
     worst = int(np.argmax(ratios))
-    change = (found.corrected - fitness) / max(variance * np.sqrt(2 * freedom), np.finfo(float).tiny)
+    change = (found.corrected - misfit) / max(variance * np.sqrt(2 * freedom), np.finfo(float).tiny)
     if ratios[worst] <= LARGE and abs(change) <= LARGE:
         return
     name, unit = problem.model.parameters.names[worst], problem.model.parameters.items[worst].unit
@@ -150,14 +150,14 @@ def integration_findings(
         "parameter": name,
         "bias": float(found.bias[worst]),
         "deviations": float(ratios[worst]),
-        "fitness": found.fitness,
-        "corrected_fitness": found.corrected,
+        "misfit": found.misfit,
+        "corrected_misfit": found.corrected,
     }
     size = (
         f"The integrator biases {name!r} by {f'{found.bias[worst]:.2g} {unit}'.rstrip()}, {ratios[worst]:.2g} times "
         f"its standard deviation (estimated by one simulation {found.how})."
     )
-    if white and found.corrected > fitness and found.remainder > 9 * variance:
+    if white and found.corrected > misfit and found.remainder > 9 * variance:
         yield Finding(
             "integration-bias", "note", values,
             f"{size} The data contain the same error, as data simulated with the same steps do.",
@@ -172,7 +172,7 @@ def integration_findings(
             "Use a smaller step or a tighter tolerance for the best misfit.",
         )  # fmt: skip
         return
-    ratio = np.sqrt(found.fitness / max(fitness, np.finfo(float).tiny))
+    ratio = np.sqrt(found.misfit / max(misfit, np.finfo(float).tiny))
     worse = f" With converged steps the same values leave residuals {ratio:.3g} times as large." if ratio > 1.05 else ""
     advice = "Identify again with a smaller step or a tighter tolerance."
     yield Finding("integration-bias", "warning", values, size + worse, advice)

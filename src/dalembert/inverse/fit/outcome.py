@@ -41,7 +41,7 @@ def outcome(
     correlated : bool
         Whether other findings say that the residuals are correlated.
     searched : float
-        Fitness of the best start, before noise was estimated.
+        Misfit of the best start, before noise was estimated.
     """
     few = lacking(problem)
     many = "Converged to one of many solutions: the data have fewer values than there are parameters."
@@ -49,16 +49,16 @@ def outcome(
         yield _partly_converged(problem, best, best.left_out)
     else:
         yield converged(best.success, best.message, many if few else "Converged.")
-    fitnesses = [start.fitness for start in problem.journal.starts]
-    if len(fitnesses) > 1:
-        there = sum(fitness <= searched * (1 + 1e-3) + floor.fitness * 1e-3 for fitness in fitnesses)
-        message = f"{there} of {len(fitnesses)} starts converged to the smallest misfit."
-        yield Finding("starts-at-best", "note", {"at_best": there, "starts": len(fitnesses)}, message)
+    misfits = [start.misfit for start in problem.journal.starts]
+    if len(misfits) > 1:
+        there = sum(misfit <= searched * (1 + 1e-3) + floor.misfit * 1e-3 for misfit in misfits)
+        message = f"{there} of {len(misfits)} starts converged to the smallest misfit."
+        yield Finding("starts-at-best", "note", {"at_best": there, "starts": len(misfits)}, message)
     if best.nodes is not None:
         yield _segments(best.nodes)
     yield from failed_simulations(problem.journal.failures)
     if problem.loss is not None:
-        plain = (np.sqrt(problem.weights) * problem.misfit(response)).ravel()
+        plain = (np.sqrt(problem.weights) * problem.unweighted_residual(response)).ravel()
         beyond = int(np.count_nonzero(np.abs(plain) > problem.loss.scale))
         message = (
             f"{beyond} of {problem.compared} weighted residuals exceed {problem.loss.scale:.4g} and count less than "
@@ -66,8 +66,8 @@ def outcome(
         )
         values = {"residuals": beyond, "of": problem.compared, "scale": problem.loss.scale}
         yield Finding("outlying-residuals", "note", values, message)
-    elif best.fitness > floor.fitness:
-        yield _explained(best.fitness, signal(problem))
+    elif best.misfit > floor.misfit:
+        yield _explained(best.misfit, signal(problem))
     if not few:  # with fewer values than parameters, a misfit near zero proves nothing
         yield from _compared(problem, best, response, floor, correlated=correlated)
 
@@ -146,14 +146,14 @@ def _compared(
     problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor, *, correlated: bool
 ) -> Iterator[Finding]:
     """Yield how the residuals compare with the noise of the data."""
-    if best.fitness <= floor.fitness:
+    if best.misfit <= floor.misfit:
         message = f"The misfit equals the noise level of the data ({_SOURCES[floor.source]})."
         yield Finding("misfit-at-noise", "note", {"source": floor.source}, message)
     elif problem.loss is not None and floor.known and _usual(problem, response) < _AS_GIVEN:
         message = "Without the outliers, the residuals agree with the given standard deviations."
         yield Finding("residuals-as-given", "note", {}, message)
     elif floor.known:
-        ratio = float(np.sqrt(best.fitness / floor.fitness))
+        ratio = float(np.sqrt(best.misfit / floor.misfit))
         message = (
             f"The root mean square of the residuals is {ratio:.2g} times as large as the given standard deviations "
             "allow."
@@ -168,7 +168,7 @@ def _compared(
 def _usual(problem: Problem, response: np.ndarray) -> float:
     """Return the standard deviation of the weighted residuals from their median size, which outliers hardly change."""
     counted = problem.weights > 0
-    return float(np.median(np.sqrt(problem.weights[counted]) * np.abs(problem.misfit(response)[counted]))) / _MEDIAN
+    return float(np.median(np.sqrt(problem.weights[counted]) * np.abs(problem.unweighted_residual(response)[counted]))) / _MEDIAN
 
 
 def _explained(misfit: float, variation: float) -> Finding:

@@ -54,16 +54,16 @@ class Starts:
         size = len(to.coordinates[self.over][1])
         for end in ("start", "end"):
             to.variables[f"{end}_values"] = (("start", self.over), _column(value, end).reshape(-1, size))
-        to.variables["end_fitness"] = ("start", _column(value, "fitness"))
+        to.variables["end_misfit"] = ("start", _column(value, "misfit"))
         to.variables["start_simulations"] = ("start", _column(value, "simulations", np.int64))
         settings["ends"] = [{"success": start.success, "message": start.message} for start in value]
 
     def load(self, source: Source, settings: Mapping[str, Any], name: str) -> tuple[StartEnd, ...]:
-        names = ("start_values", "end_values", "end_fitness", "start_simulations")
+        names = ("start_values", "end_values", "end_misfit", "start_simulations")
         columns = zip(*(source.arrays[column] for column in names), settings["ends"], strict=True)
         return tuple(
-            StartEnd(start, end, float(fitness), bool(how["success"]), str(how["message"]), int(simulations))
-            for start, end, fitness, simulations, how in columns
+            StartEnd(start, end, float(misfit), bool(how["success"]), str(how["message"]), int(simulations))
+            for start, end, misfit, simulations, how in columns
         )
 
 

@@ -229,7 +229,7 @@ def _minimised(problem: ConsistentProblem, start: np.ndarray) -> tuple[np.ndarra
     Newton's method by θ with a line search that keeps links possible: the objective is convex there, and combinations
     that the torques determine well are straight. It is curved over log-Cholesky parameters.
     """
-    values, fitness, last = start, problem.value_at(start), np.inf
+    values, misfit, last = start, problem.value_at(start), np.inf
     for steps in range(STEPS):
         step, decrement = newton_step(problem, values)
         if not np.isfinite(decrement):
@@ -237,15 +237,15 @@ def _minimised(problem: ConsistentProblem, start: np.ndarray) -> tuple[np.ndarra
         if decrement < NEAR:  # the objective changes by less than its rounding errors
             if not decrement < 0.1 * last or not np.isfinite(problem.value_at(values + step)):
                 return values, decrement, steps
-            values, last, fitness = values + step, decrement, np.inf
+            values, last, misfit = values + step, decrement, np.inf
             continue
         size = 1.0
-        while size > SHORTEST and not problem.value_at(values + size * step) < fitness - 1e-4 * size * decrement:
+        while size > SHORTEST and not problem.value_at(values + size * step) < misfit - 1e-4 * size * decrement:
             size *= 0.5
         if size <= SHORTEST:
             return values, decrement, steps
         values = values + size * step
-        fitness = problem.value_at(values)
+        misfit = problem.value_at(values)
     return values, newton_step(problem, values)[1], STEPS
 
 

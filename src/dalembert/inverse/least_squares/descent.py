@@ -19,17 +19,17 @@ MANY = 30
 
 @dataclass(frozen=True, eq=False)
 class End:
-    """Where a start ended: a search point (parameters,), its fitness over all samples, and how it was reached.
+    """Where a start ended: a search point (parameters,), its misfit over all samples, and how it was reached.
 
     At a ``stationary`` end a finer descent would change nothing; at a ``rough`` one the response is not smooth enough
     for it. Multiple shooting adds the ``nodes`` of its segments, and a ``spread`` S (parameters, parameters)
-    with the covariance S Sᵀ of the parameters at unit variance. ``begun`` is the fitness where the descent over all
+    with the covariance S Sᵀ of the parameters at unit variance. ``begun`` is the misfit where the descent over all
     samples began. The descent
     did not go along the directions ``left_out`` (directions, parameters), which are not identifiable.
     """
 
     point: np.ndarray
-    fitness: float
+    misfit: float
     success: bool
     message: str
     stationary: bool = False
@@ -108,19 +108,19 @@ class Memo:
         return next((at for at in both if np.array_equal(at.vector, vector)), None)
 
 
-def descend(ladder: Sequence[Problem], method: Squares, point: np.ndarray, fitness: float | None = None) -> End:
+def descend(ladder: Sequence[Problem], method: Squares, point: np.ndarray, misfit: float | None = None) -> End:
     """Least squares from a search point on each problem of a ladder, the last one the whole problem.
 
-    The shorter horizons only lead the way and are left early. Where they lead to a larger fitness of the whole problem
-    than the point's ``fitness``, if that is known, the descent over the whole begins at the point.
+    The shorter horizons only lead the way and are left early. Where they lead to a larger misfit of the whole problem
+    than the point's ``misfit``, if that is known, the descent over the whole begins at the point.
     """
     led = point
     for problem in ladder[:-1]:
         led = _local(Memo(problem), replace(method, trials=10, tolerance=1e-3, gain=1e-2), led).point
     memo = Memo(ladder[-1])
-    if fitness is not None and len(ladder) > 1:
+    if misfit is not None and len(ladder) > 1:
         residual = memo.residual(led)
-        led = led if residual @ residual <= fitness else point
+        led = led if residual @ residual <= misfit else point
     return _local(memo, method, led)
 
 
@@ -129,7 +129,7 @@ def recorded(problem: Problem, point: np.ndarray, descent: Callable[[], End]) ->
     values = problem.search.vectors(point)
     problem.journal.began(values)
     end = descent()
-    problem.journal.ended(values, problem.search.vectors(end.point), end.fitness, end.success, end.message)
+    problem.journal.ended(values, problem.search.vectors(end.point), end.misfit, end.success, end.message)
     return end
 
 
@@ -161,12 +161,12 @@ def _local(memo: Memo, method: Squares, point: np.ndarray) -> End:
         )
     except SolveError as error:
         return replace(best, message=f"the sensitivities could not be computed: {error}")
-    reasons = [] if np.isfinite(found.fitness) else journal.failures[-1:]
+    reasons = [] if np.isfinite(found.misfit) else journal.failures[-1:]
     message = ": ".join([found.message, *reasons])
     kept = memo.known(search.vectors(found.x))
     return End(
         found.x,
-        found.fitness,
+        found.misfit,
         found.success,
         message,
         found.stationary,

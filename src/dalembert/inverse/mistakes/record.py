@@ -49,7 +49,7 @@ class FittedRecord:
     @cached_property
     def residual(self) -> np.ndarray:
         """W^½ (R − data), shape (values,), flat from (samples, channels)."""
-        return (np.sqrt(self.problem.weights) * self.problem.misfit(self.at.response)).ravel()
+        return (np.sqrt(self.problem.weights) * self.problem.unweighted_residual(self.at.response)).ravel()
 
     @cached_property
     def ranked(self) -> np.ndarray:

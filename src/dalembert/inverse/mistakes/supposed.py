@@ -178,7 +178,7 @@ def _compared(record: FittedRecord, shown: np.ndarray, kept: np.ndarray) -> tupl
     problem = record.problem
     response = np.where(np.isfinite(shown[:, 0]), shown[:, 0], 0.0).reshape(problem.weights.shape)
     root = np.sqrt(problem.weights).ravel()[kept]
-    return root * problem.misfit(response).ravel()[kept], root[:, None] * shown[kept, 1:]
+    return root * problem.unweighted_residual(response).ravel()[kept], root[:, None] * shown[kept, 1:]
 
 
 def _ratio(before: np.ndarray, residual: np.ndarray, kept: int, total: int) -> float:

@@ -13,12 +13,12 @@ SMALL = 1e-6
 
 @dataclass(frozen=True)
 class NoiseFloor:
-    """Fitness that known noise alone explains.
+    """Misfit that known noise alone explains.
 
     Parameters
     ----------
-    fitness : float
-        99.9 % quantile of the fitness at the true parameters.
+    misfit : float
+        99.9 % quantile of the misfit at the true parameters.
     source : {"given", "smoothed", "rounded", "arithmetic"}
         Where the noise is known from: given standard deviations, local polynomials, rounding of the data, or rounding
         errors of the arithmetic.
@@ -27,7 +27,7 @@ class NoiseFloor:
         signal that a false minimum would not get there.
     """
 
-    fitness: float
+    misfit: float
     source: str
     conclusive: bool
 

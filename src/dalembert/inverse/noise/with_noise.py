@@ -96,7 +96,7 @@ def with_noise(problem: Problem, noise: Noise, best: End, *, known: bool) -> tup
     end = replace(
         best,
         point=problem.search.points(found.values),
-        fitness=squares + float(prior @ prior),
+        misfit=squares + float(prior @ prior),
         success=best.success and found.maximum.success,
         message=best.message if found.maximum.success else found.maximum.message,
         linearisation=found.at,

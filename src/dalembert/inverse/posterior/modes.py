@@ -87,7 +87,7 @@ def find_modes(posed: PosedPosterior, start: SearchStart, length: Length, *, gra
     """
     known = posed.likelihood, posed.parameters
     first = centred(*known, start.vector, gradients=gradients)
-    ends = [] if start.fit is None else [end.end for end in start.fit.starts if np.isfinite(end.fitness)]
+    ends = [] if start.fit is None else [end.end for end in start.fit.starts if np.isfinite(end.misfit)]
     modes = [first]
     starts = _starts(first.target, ends, posed.known_noise, length, gradients=gradients)
     for vector in starts:
@@ -129,7 +129,7 @@ def _starts(
     climbed: list[np.ndarray] = []
     for point in points:
         end = refine(quiet, LeastSquares(), End(quiet.search.points(point), np.inf, False, ""))
-        if np.isfinite(end.fitness):
+        if np.isfinite(end.misfit):
             climbed.append(quiet.search.vectors(end.point))
     likelihood.problem.journal.simulations += quiet.journal.simulations
     if climbed:

@@ -81,10 +81,10 @@ class Journal:
             self.history.append(step)
         self.tell(step)
 
-    def ended(self, start: np.ndarray, end: np.ndarray, fitness: float, success: bool, message: str) -> None:
-        self.starts.append(StartEnd(start, end, fitness, success, message, self.simulations - self._before))
+    def ended(self, start: np.ndarray, end: np.ndarray, misfit: float, success: bool, message: str) -> None:
+        self.starts.append(StartEnd(start, end, misfit, success, message, self.simulations - self._before))
         self.tell(self.starts[-1])
 
-    def screened(self, fitness: np.ndarray) -> None:
-        failed = int(np.sum(~np.isfinite(fitness)))
-        self.tell(Screened(len(fitness), failed, self.simulations, float(np.min(fitness))))
+    def screened(self, misfit: np.ndarray) -> None:
+        failed = int(np.sum(~np.isfinite(misfit)))
+        self.tell(Screened(len(misfit), failed, self.simulations, float(np.min(misfit))))

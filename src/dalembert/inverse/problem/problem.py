@@ -49,7 +49,7 @@ Work: TypeAlias = Callable[["Problem", Item], object]
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """Fitness g(p) = Σ W (R(p) − data)² over samples and channels, + the squared residuals of priors.
+    """Misfit g(p) = Σ W (R(p) − data)² over samples and channels, + the squared residuals of priors.
 
     Values that are missing have W = 0; differences of wrapping channels count modulo a turn.
 
@@ -112,36 +112,36 @@ class Problem:
         """Responses (batch, samples, channels) at parameter vectors (batch, parameters); NaN where a sample failed."""
         return simulated(self.model, self.columns, self.journal, vectors)
 
-    def fitness(self, points: np.ndarray) -> np.ndarray:
-        """Fitness (batch,) at search points (batch, parameters); NaN where a sample failed.
+    def misfit(self, points: np.ndarray) -> np.ndarray:
+        """Misfit (batch,) at search points (batch, parameters); NaN where a sample failed.
 
         A checkpoint keeps that of several points in place of the responses, with the reasons of failures and the
         journal's first response.
         """
         vectors, known = self.search.vectors(points), self.journal.first
         if len(vectors) < 2 or not self._is_recorded:
-            return self._fitness(vectors, self.journal)
+            return self._misfit(vectors, self.journal)
         journal = Journal(self.samples, first=known)
 
         def compute() -> tuple[np.ndarray, ...]:
-            fitness, first = self._fitness(vectors, journal), journal.first
+            misfit, first = self._misfit(vectors, journal), journal.first
             reasons = np.frombuffer(json.dumps(journal.failures).encode(), np.uint8)
-            return fitness, reasons, *([] if first is None or first is known else [first.response])
+            return misfit, reasons, *([] if first is None or first is known else [first.response])
 
-        fitness, reasons, *first = summarised(self.model, self._compared_with, vectors, compute)
+        misfit, reasons, *first = summarised(self.model, self._compared_with, vectors, compute)
         self.journal.simulations += len(vectors)
         self.journal.failures.extend(json.loads(reasons.tobytes()))
         for response in first:
             self.journal.computed(vectors[0], response)
-        return fitness
+        return misfit
 
-    def _fitness(self, vectors: np.ndarray, journal: Journal) -> np.ndarray:
+    def _misfit(self, vectors: np.ndarray, journal: Journal) -> np.ndarray:
         responses = simulated(self.model, self.columns, journal, vectors)
         prior = np.sum(prior_residual(self.model.parameters, vectors) ** 2, axis=1)
         if self.loss is not None:
             return np.sum(self.squares(responses), axis=(1, 2)) + prior
         with np.errstate(over="ignore"):
-            return np.einsum("sc,bsc->b", self.weights, self.misfit(responses) ** 2) + prior
+            return np.einsum("sc,bsc->b", self.weights, self.unweighted_residual(responses) ** 2) + prior
 
     @cached_property
     def _is_recorded(self) -> bool:
@@ -149,19 +149,19 @@ class Problem:
 
     @cached_property
     def _compared_with(self) -> str:
-        """What the fitness depends on beside the vectors: model, priors, data, weights and loss."""
+        """What the misfit depends on beside the vectors: model, priors, data, weights and loss."""
         numbers = sha256(self.weights.tobytes() + self.columns.tobytes()).hexdigest()
         words = self.model.fingerprint, repr(self.model.parameters), self.data.fingerprint, repr(self.loss)
-        return "\n".join(("fitness", *words, numbers))
+        return "\n".join(("misfit", *words, numbers))
 
     def squares(self, responses: np.ndarray) -> np.ndarray:
-        """What each value adds to the fitness, both (..., samples, channels)."""
+        """What each value adds to the misfit, both (..., samples, channels)."""
         with np.errstate(over="ignore"):  # infinite squares are a failed sample's
             if self.loss is not None:
-                return self.loss.residual(np.sqrt(self.weights) * self.misfit(responses)) ** 2
-            return self.weights * self.misfit(responses) ** 2
+                return self.loss.residual(np.sqrt(self.weights) * self.unweighted_residual(responses)) ** 2
+            return self.weights * self.unweighted_residual(responses) ** 2
 
-    def misfit(self, response: np.ndarray) -> np.ndarray:
+    def unweighted_residual(self, response: np.ndarray) -> np.ndarray:
         """R − data, both (..., samples, channels); 0 where a value is missing, NaN elsewhere if a sample failed."""
         return np.where(self.data.present, self.data.difference(response), 0.0)
 
@@ -221,11 +221,11 @@ class Problem:
 
     def residual(self, response: np.ndarray) -> np.ndarray:
         """W^½ (R − data), transformed by the loss, as a vector, shape (samples × channels,)."""
-        plain = (np.sqrt(self.weights) * self.misfit(response)).ravel()
+        plain = (np.sqrt(self.weights) * self.unweighted_residual(response)).ravel()
         return plain if self.loss is None else self.loss.residual(plain)
 
     def residuals(self, vector: np.ndarray, response: np.ndarray) -> np.ndarray:
-        """:meth:`residual`, and the priors' behind it: what the fitness is the sum of squares of."""
+        """:meth:`residual`, and the priors' behind it: what the misfit is the sum of squares of."""
         return np.concatenate([self.residual(response), prior_residual(self.model.parameters, vector)])
 
     def slopes(self, at: Linearisation, unit: np.ndarray | None = None) -> np.ndarray:
@@ -241,11 +241,11 @@ class Problem:
         """Changes (samples, channels, ...) of a response (samples, channels) as changes of the residuals."""
         factor = np.sqrt(self.weights)
         if self.loss is not None:
-            factor = factor * self.loss.slope(factor * self.misfit(response))
+            factor = factor * self.loss.slope(factor * self.unweighted_residual(response))
         return factor.reshape(*factor.shape, *[1] * (table.ndim - 2)) * table
 
     def gradient(self, point: np.ndarray) -> np.ndarray:
-        """Gradient of the fitness at a search point, both (parameters,); zero where the sample fails."""
+        """Gradient of the misfit at a search point, both (parameters,); zero where the sample fails."""
         vector = self.search.vectors(point)
         try:
             if self.by_adjoint:
@@ -256,7 +256,7 @@ class Problem:
         return 2 * self.slopes(at).T @ self.residuals(at.vector, at.response)
 
     def slope(self, vector: np.ndarray) -> np.ndarray:
-        """Gradient of the fitness by the parameters, without priors, at a vector, both (parameters,).
+        """Gradient of the misfit by the parameters, without priors, at a vector, both (parameters,).
 
         Raises
         ------

@@ -284,20 +284,20 @@ class _Stage:
 
 
 def _minimised(problem: Problem, many: Smoothed, mu: float, near: np.ndarray, stage: _Stage) -> np.ndarray:
-    """z of the least nonlinear fitness, by L-BFGS-B in coordinates in which the linearised fitness is round.
+    """z of the least nonlinear misfit, by L-BFGS-B in coordinates in which the linearised misfit is round.
 
     z = z₁ + C⁻ᵀ u, with C Cᵀ the normal matrix of the linearised problem, and z₁ on the way from the last values,
-    ``near``, to its minimum: the whole way if that lowers the fitness, else a part of it.
+    ``near``, to its minimum: the whole way if that lowers the misfit, else a part of it.
     """
     scale, penalty = problem.model.parameters.scale, mu * many.penalty
     factor, goal = np.linalg.cholesky(many.normal(mu)), many.solution(mu)
 
-    def fitness_of(places: np.ndarray) -> np.ndarray:
+    def misfits(places: np.ndarray) -> np.ndarray:
         squares = problem.squares(problem.responses(places * scale))
         return np.sum(squares, axis=(1, 2)) + np.sum((places @ penalty.T) ** 2, axis=1)
 
     shares = np.concatenate([[0.0], 0.5 ** np.arange(_HALVINGS)])
-    before, *rest = fitness_of(near + shares[:, None] * (goal - near))
+    before, *rest = misfits(near + shares[:, None] * (goal - near))
     lower = [share for share, value in zip(shares[1:], rest, strict=True) if value < before]
     base = near + (lower[0] if lower else 0.0) * (goal - near)
 
@@ -315,10 +315,10 @@ def _minimised(problem: Problem, many: Smoothed, mu: float, near: np.ndarray, st
 
     reach = np.full(len(base), _REACH)
     minimum = Minimiser("L-BFGS-B", _STEPS).minimise(
-        lambda batch: fitness_of(np.array([place(u) for u in batch])), -reach, reach, 0,
+        lambda batch: misfits(np.array([place(u) for u in batch])), -reach, reach, 0,
         start=np.zeros(len(base)), gradient=gradient,
     )  # fmt: skip
-    if not np.isfinite(minimum.fitness):
+    if not np.isfinite(minimum.misfit):
         raise SolveError(
             f"the model cannot be simulated near the start: {problem.journal.failures[0]}. "
             "Start from other values, or give a larger weight"

@@ -128,7 +128,7 @@ def shots(
     shot = partial(_shot, shooting, method, floor)
     for point in chain([start], problem.prefetched(shot, others)):
         ends.append(recorded(problem, point, partial(shot, problem, point)))
-        if ends[-1].fitness <= floor.fitness:
+        if ends[-1].misfit <= floor.misfit:
             break
     return ends
 
@@ -157,10 +157,10 @@ def _merged(problem: Problem, levels: Sequence[Level], method: Squares, floor: N
     last = next((level for level in reversed(levels) if level.found.closed), levels[-1])
     one = descend([problem], method, problem.search.points(_first(last, number)))
     met = [level for level in levels if level.found.closed]
-    least = min([one.fitness, *(level.found.misfit for level in met)])
+    least = min([one.misfit, *(level.found.misfit for level in met)])
     nodes = next(iter(met or levels))
     spread = nodes.chain.spread(nodes.found.point)
-    if not met or one.fitness <= max(WORSE * least, floor.fitness):
+    if not met or one.misfit <= max(WORSE * least, floor.misfit):
         return replace(one, nodes=_nodes(nodes, 1), spread=spread if met else None)
     level = next(level for level in reversed(met) if level.found.misfit <= WORSE * least)
     count = max(cut.count for cut in level.cuts)

@@ -17,7 +17,7 @@ from dalembert.inverse.starts.spread import spread_points
 from dalembert.optimize import Squares
 
 Attempt: TypeAlias = tuple[np.ndarray, int, float | None]
-"""A search point (parameters,) to start from, the rung of the ladder of horizons to begin on, and the point's fitness
+"""A search point (parameters,) to start from, the rung of the ladder of horizons to begin on, and the point's misfit
 over all samples if it is known."""
 
 HORIZONS = ("growing",)
@@ -50,25 +50,25 @@ def multistart(
 
     Stops early when an end reaches a conclusive noise floor, or, from the third start on, when the best end has been
     reached twice and leaves residuals that look like noise. With more than one start each is left once a step gains
-    less than a thousandth of the fitness; the best end is to be polished.
+    less than a thousandth of the misfit; the best end is to be polished.
     """
     sizes = horizons(problem, horizon)
     ladder = [problem.first(samples) for samples in sizes]
     hasty = method if starts == 1 else replace(method, gain=max(1e-3, method.gain))
     ends: list[End] = []
-    for point, rung, fitness in _attempts(ladder, partial(_ahead, sizes, hasty), starts, seed, spread, start, ends):
-        ends.append(recorded(problem, point, partial(descend, ladder[rung:], hasty, point, fitness)))
-        if floor.conclusive and ends[-1].fitness <= floor.fitness:
+    for point, rung, misfit in _attempts(ladder, partial(_ahead, sizes, hasty), starts, seed, spread, start, ends):
+        ends.append(recorded(problem, point, partial(descend, ladder[rung:], hasty, point, misfit)))
+        if floor.conclusive and ends[-1].misfit <= floor.misfit:
             return ends
         if len(ends) == starts or (len(ends) >= 3 and _reproduced(problem, ends)):
             break
-    return ends if starts == 1 else ends + _beside(problem, hasty, min(ends, key=lambda end: end.fitness), starts)
+    return ends if starts == 1 else ends + _beside(problem, hasty, min(ends, key=lambda end: end.misfit), starts)
 
 
 def _ahead(sizes: Sequence[int], method: Squares, problem: Problem, attempt: Attempt) -> None:
     """The same descent on a worker of a cluster."""
-    point, rung, fitness = attempt
-    descend([problem.first(samples) for samples in sizes[rung:]], method, point, fitness)
+    point, rung, misfit = attempt
+    descend([problem.first(samples) for samples in sizes[rung:]], method, point, misfit)
 
 
 def _beside(problem: Problem, method: Squares, best: End, most: int) -> list[End]:
@@ -79,7 +79,7 @@ def _beside(problem: Problem, method: Squares, best: End, most: int) -> list[End
         points = neighbours(problem, best)[: min(BESIDE, most - len(ends))]
         for point, *_ in problem.prefetched(ahead, [(point, 0, None) for point in points]):
             ends.append(recorded(problem, point, partial(descend, [problem], method, point)))
-            if ends[-1].fitness < (1 - method.gain) * best.fitness:
+            if ends[-1].misfit < (1 - method.gain) * best.misfit:
                 best = ends[-1]
                 break
         else:
@@ -114,7 +114,7 @@ def _attempts(
     yield first, 0, None
     whole = len(ladder) - 1
     again: list[Attempt] = [(first, whole, None)] if whole and starts >= DIRECT else []
-    if again and not ends[0].begun <= ladder[whole].fitness(first[None])[0]:
+    if again and not ends[0].begun <= ladder[whole].misfit(first[None])[0]:
         yield again.pop()
         starts -= 1
     points, scores = _screen(ladder, SCREENED * starts * len(first), seed, spread)
@@ -153,18 +153,18 @@ def _screen(ladder: list[Problem], number: int, seed: int, spread: str) -> tuple
 def _reproduced(problem: Problem, ends: list[End]) -> bool:
     """Whether a second end cannot be told from the best one by the data, and the residuals look like noise.
 
-    Two ends cannot be told apart when fitness and linearised residuals differ by less than one variance of the noise,
-    fitness/(values − parameters).
+    Two ends cannot be told apart when misfit and linearised residuals differ by less than one variance of the noise,
+    misfit/(values − parameters).
     """
-    best, *others = sorted(ends, key=lambda end: end.fitness)
+    best, *others = sorted(ends, key=lambda end: end.misfit)
     at = best.linearisation
     freedom = problem.compared - len(best.point)
     if at is None or freedom <= 0:
         return False
     if not random_residuals(problem.residual(at.response), problem.weights.shape, problem.data.present):
         return False
-    slopes, variance = problem.slopes(at), best.fitness / freedom
+    slopes, variance = problem.slopes(at), best.misfit / freedom
     return any(
-        end.fitness - best.fitness < variance and np.sum((slopes @ (end.point - best.point)) ** 2) < variance
+        end.misfit - best.misfit < variance and np.sum((slopes @ (end.point - best.point)) ** 2) < variance
         for end in others
     )

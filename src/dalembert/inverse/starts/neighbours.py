@@ -21,13 +21,13 @@ WORSE = 9.0
 def neighbours(problem: Problem, end: End) -> np.ndarray:
     """Search points (n, parameters) near other minima, the most promising first.
 
-    They are the local minima of the fitness, simulated in one batch, along a line through ``end`` for each combination
+    They are the local minima of the misfit, simulated in one batch, along a line through ``end`` for each combination
     of parameters that a singular value of the sensitivities belongs to.
     """
     if end.linearisation is None:
         return np.empty((0, len(end.point)))
     _, singular, directions = np.linalg.svd(problem.slopes(end.linearisation), full_matrices=False)
-    variance = end.fitness / max(1, problem.compared - len(end.point))
+    variance = end.misfit / max(1, problem.compared - len(end.point))
     rays = [
         end.point + np.array(distances)[:, None] * way
         for value, direction in zip(singular, directions, strict=True)
@@ -36,9 +36,9 @@ def neighbours(problem: Problem, end: End) -> np.ndarray:
     ]
     if not rays:
         return np.empty((0, len(end.point)))
-    fitness = np.split(problem.fitness(np.concatenate(rays)), np.cumsum([len(ray) for ray in rays])[:-1])
-    hopeful = end.fitness + WORSE * variance
-    found = [(f[k], tuple(ray[k])) for ray, f in zip(rays, fitness, strict=True) for k in dips(f) if f[k] < hopeful]
+    misfit = np.split(problem.misfit(np.concatenate(rays)), np.cumsum([len(ray) for ray in rays])[:-1])
+    hopeful = end.misfit + WORSE * variance
+    found = [(f[k], tuple(ray[k])) for ray, f in zip(rays, misfit, strict=True) for k in dips(f) if f[k] < hopeful]
     return np.array([point for _, point in sorted(found)]).reshape(-1, len(end.point))
 
 
@@ -50,8 +50,8 @@ def _distances(problem: Problem, point: np.ndarray, way: np.ndarray, first: floa
     return distances[distances <= np.min(walls)]
 
 
-def dips(fitness: np.ndarray) -> np.ndarray:
-    """Numbers of the local minima of fitness (points,) along a ray, its ends left out."""
-    finite = np.where(np.isfinite(fitness), fitness, np.inf)
+def dips(misfit: np.ndarray) -> np.ndarray:
+    """Numbers of the local minima of misfit (points,) along a ray, its ends left out."""
+    finite = np.where(np.isfinite(misfit), misfit, np.inf)
     inside = finite[1:-1]
     return 1 + np.flatnonzero((inside < finite[:-2]) & (inside <= finite[2:]))

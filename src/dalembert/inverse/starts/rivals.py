@@ -42,24 +42,24 @@ def rivals(problem: Problem, best: End, floor: NoiseFloor, deviations: np.ndarra
     parameter that is not identifiable is infinite, so ends along a flat valley are one minimum. If the values of other
     parameters differ along the valley, it is recognised by a descent from the middle that keeps the misfit.
     """
-    variance = best.fitness / max(1, problem.compared - len(best.point))
-    noise = max(variance, 1.0 if floor.known else floor.fitness / problem.compared)
+    variance = best.misfit / max(1, problem.compared - len(best.point))
+    noise = max(variance, 1.0 if floor.known else floor.misfit / problem.compared)
     inflation = np.sqrt(max(1.0, noise / max(1.0 if known else variance, np.finfo(float).tiny)))
     with np.errstate(invalid="ignore"):  # 0 · inf
         reach = 2.0 * inflation * deviations
     quiet = replace(problem, journal=Journal(problem.samples))
     found: list[End] = []
-    for start in sorted(problem.journal.starts, key=lambda start: start.fitness):
-        if not start.fitness < PROMISING * best.fitness + ALIKE * noise:
+    for start in sorted(problem.journal.starts, key=lambda start: start.misfit):
+        if not start.misfit < PROMISING * best.misfit + ALIKE * noise:
             break
-        end = End(problem.search.points(start.end), start.fitness, start.success, start.message)
+        end = End(problem.search.points(start.end), start.misfit, start.success, start.message)
         if not _new(problem, end, [best, *found], reach):
             continue
         if best.nodes is None or best.nodes.segments == 1:  # one run follows the motion
             end = refine(quiet, LeastSquares(), end)
-        if not (end.success and end.fitness - best.fitness < ALIKE * noise):
+        if not (end.success and end.misfit - best.misfit < ALIKE * noise):
             continue
-        most = best.fitness + ALIKE * noise
+        most = best.misfit + ALIKE * noise
         if _new(problem, end, [best, *found], reach) and not _one_valley(quiet, best, end, deviations, most, reach):
             found.append(end)
     problem.journal.simulations += quiet.journal.simulations
@@ -75,12 +75,12 @@ def rival_findings(problem: Problem, best: End, others: list[End], floor: NoiseF
     values: dict[str, float] = {"minima": len(others)}
     for number, (vector, end) in enumerate(zip(vectors, others, strict=True), 1):
         values |= {f"other_{number}.{name}": float(value) for name, value in zip(names, vector, strict=True)}
-        values[f"other_{number}.fitness"] = float(end.fitness)
+        values[f"other_{number}.misfit"] = float(end.misfit)
     which = "Another minimum explains" if len(others) == 1 else f"{len(others)} other minima explain"
     listed = "; ".join(named(problem.model, vector) for vector in vectors)
     message = f"{which} the data as well, within the noise: {listed}."
-    if best.fitness > floor.fitness:  # below, a ratio means nothing
-        message += f" Misfit: {', '.join(f'{end.fitness / best.fitness:.4g}' for end in others)} times as large."
+    if best.misfit > floor.misfit:  # below, a ratio means nothing
+        message += f" Misfit: {', '.join(f'{end.misfit / best.misfit:.4g}' for end in others)} times as large."
     advice = "Measure another channel, or narrow the bounds so that they contain one minimum."
     yield Finding("equal-minima", "warning", values, message, advice)
 
@@ -98,4 +98,4 @@ def _one_valley(problem: Problem, best: End, end: End, deviations: np.ndarray, m
     if not np.any(deviations > widths / np.sqrt(12)):
         return False
     between = refine(problem, LeastSquares(), replace(best, point=(best.point + end.point) / 2, linearisation=None))
-    return between.fitness < most and _new(problem, between, [best, end], reach)
+    return between.misfit < most and _new(problem, between, [best, end], reach)

@@ -12,7 +12,7 @@ from dalembert.inverse.starts.spread import spread_points
 from dalembert.optimize import Minimiser, Progress, Squares, Swarm
 
 Method: TypeAlias = Swarm | Minimiser
-"""A minimiser of a fitness that comes in batches."""
+"""A minimiser of a misfit that comes in batches."""
 
 
 def runs(
@@ -37,7 +37,7 @@ def runs(
     alone, run = isinstance(method, Minimiser) and not method.batched, partial(_run, method)
     for attempt in problem.prefetched(run, attempts) if alone else attempts:
         ends.append(run(problem, attempt))
-        if floor.conclusive and ends[-1].fitness <= floor.fitness:
+        if floor.conclusive and ends[-1].misfit <= floor.misfit:
             break
     return ends
 
@@ -47,8 +47,8 @@ def polished(problem: Problem, method: Squares, best: End) -> End:
     journal, vector = problem.journal, problem.search.vectors(best.point)
     journal.began(vector)
     end = refine(problem, method, best)
-    journal.ended(vector, problem.search.vectors(end.point), end.fitness, end.success, f"polished: {end.message}")
-    return end if end.fitness <= best.fitness else best
+    journal.ended(vector, problem.search.vectors(end.point), end.misfit, end.success, f"polished: {end.message}")
+    return end if end.misfit <= best.misfit else best
 
 
 def _run(method: Method, problem: Problem, attempt: tuple[int, np.ndarray | None]) -> End:
@@ -63,13 +63,13 @@ def _run(method: Method, problem: Problem, attempt: tuple[int, np.ndarray | None
         journal.step(now.best, search.vectors(now.x), problem.samples)
 
     journal.began(begin)
-    found = minimise(problem.fitness, search.lower, search.upper, seed, start=point, on_iteration=progress)
-    end = End(found.x, found.fitness, found.success, found.message, found.stationary)
+    found = minimise(problem.misfit, search.lower, search.upper, seed, start=point, on_iteration=progress)
+    end = End(found.x, found.misfit, found.success, found.message, found.stationary)
     nowhere = np.full_like(search.lower, np.nan)
     journal.ended(
         nowhere if begin is None else begin,
-        search.vectors(end.point) if np.isfinite(end.fitness) else nowhere,
-        end.fitness,
+        search.vectors(end.point) if np.isfinite(end.misfit) else nowhere,
+        end.misfit,
         end.success,
         end.message,
     )

@@ -36,10 +36,10 @@ def unconfirmed_findings(
     white : bool
         Whether the residuals look like white noise: a false minimum hardly leaves such residuals.
     """
-    if len(ends) < LEAST or white or not best.success or best.fitness <= floor.fitness:
+    if len(ends) < LEAST or white or not best.success or best.misfit <= floor.misfit:
         return
-    _, *others = sorted(ends, key=lambda end: end.fitness)
-    alike = best.fitness * (1 + ALIKE / max(1, problem.compared - len(best.point)))
+    _, *others = sorted(ends, key=lambda end: end.misfit)
+    alike = best.misfit * (1 + ALIKE / max(1, problem.compared - len(best.point)))
     if any(_refined(problem, end, alike) for end in others[:REFINED]):
         return
     message = (
@@ -52,14 +52,14 @@ def unconfirmed_findings(
 
 def _refined(problem: Problem, end: End, alike: float) -> bool:
     """Return True if a start's end, refined where it may be in the same valley, has a misfit below ``alike``."""
-    if end.fitness < alike:
+    if end.misfit < alike:
         return True
-    if not end.fitness < PROMISING * alike:
+    if not end.misfit < PROMISING * alike:
         return False
     quiet = replace(problem, journal=Journal(problem.samples))
-    fitness = refine(quiet, LeastSquares(), end).fitness
+    misfit = refine(quiet, LeastSquares(), end).misfit
     problem.journal.simulations += quiet.journal.simulations
-    return fitness < alike
+    return misfit < alike
 
 
 def look_white(problem: Problem, response: np.ndarray) -> bool:

@@ -138,8 +138,8 @@ def _numbers(state: Mapping[str, Any]) -> dict[Severity, int]:
 
 def _misfit(folder: RunFolder, best: Mapping[str, Any]) -> float | None:
     """Misfit of the result, or the best so far."""
-    if best.get("fitness") is not None:
-        return float(best["fitness"])
+    if best.get("misfit") is not None:
+        return float(best["misfit"])
     event = None if best else last_progress(folder.events)
     return None if event is None else float(event["best"])
 

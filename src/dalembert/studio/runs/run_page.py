@@ -174,7 +174,7 @@ class _Page:
     def _result(self) -> str:
         """Misfit of the result, and its values, many of them as a table."""
         found = self.folder.state().get("best") or {}
-        misfit, values = found.get("fitness"), found.get("values") or {}
+        misfit, values = found.get("misfit"), found.get("values") or {}
         units = run_units(self.folder, values)
         said = "" if misfit is None else f"misfit {misfit:.4g}"
         if len(values) > FEW_VALUES:

@@ -76,9 +76,9 @@ def since(state: dict) -> str:
 def best(folder: RunFolder, state: dict) -> str:
     """Smallest misfit and values: of the result, or of the events while there is none."""
     found = state.get("best") or {}
-    fitness = found.get("fitness")
-    if fitness is None:
+    misfit = found.get("misfit")
+    if misfit is None:
         event = last_progress(folder.events)
-        fitness = event["best"] if event else None
+        misfit = event["best"] if event else None
     values = ", ".join(f"{name} = {value:.6g}" for name, value in (found.get("values") or {}).items())
-    return ", ".join(part for part in ("" if fitness is None else f"misfit {fitness:.4g}", values) if part)
+    return ", ".join(part for part in ("" if misfit is None else f"misfit {misfit:.4g}", values) if part)

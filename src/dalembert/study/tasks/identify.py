@@ -260,7 +260,7 @@ def _identified(study: Study, fit: "Fit", told: Mapping[str, Any]) -> Identifica
     known = [one if np.isfinite(one) else None for one in fit.deviations.tolist()]
     deviations = dict(zip(fit.parameters.names, known, strict=True))
     values = fit.parameters.mapping(fit.values)
-    return Identification(study, fit, {"fitness": fit.fitness, "values": values, "deviations": deviations}, told=told)
+    return Identification(study, fit, {"misfit": fit.misfit, "values": values, "deviations": deviations}, told=told)
 
 
 def _wrong_population(file: Any) -> list[str]:

@@ -91,7 +91,7 @@ class IdentifyBands(ResultTask):
         """Outcome of identified intervals, with their ends; the known ones are drawn beside them."""
         known = {name: table.interval() for name, table in study.table.truth.items()}
         truth = {name: (interval.lower, interval.upper) for name, interval in known.items()}
-        return Outcome(study, fit, {"fitness": fit.fitness, "values": fit.estimates}, {"truth": truth})
+        return Outcome(study, fit, {"misfit": fit.misfit, "values": fit.estimates}, {"truth": truth})
 
 
 def _method(study: Study) -> Any:

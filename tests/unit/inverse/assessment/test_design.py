@@ -289,7 +289,7 @@ def test_a_prior_is_one_more_measurement_for_every_method(method):
     fit = identify(model, data, method=method)
     np.testing.assert_allclose(fit.values, expected, atol=2e-4 if method == "Nelder-Mead" else 1e-5)
     residual = jacobian @ expected - data.values.ravel() / 0.5
-    assert fit.fitness == pytest.approx(residual @ residual + ((expected[1] - 0.2) / 0.01) ** 2, rel=1e-6)
+    assert fit.misfit == pytest.approx(residual @ residual + ((expected[1] - 0.2) / 0.01) ** 2, rel=1e-6)
 
 
 @pytest.mark.parametrize("deviation", [0.0, -1.0, np.nan])

@@ -24,7 +24,7 @@ def test_a_straight_line_has_the_textbook_bands(known):
     data = measured(ONE, [1.0, -0.5], noise=0.2, deviations=0.2 if known else None)
     fit = identify(ONE, data)
     told = predict(ONE, fit, 0.9)
-    variance = 0.04 if known else fit.fitness / 39
+    variance = 0.04 if known else fit.misfit / 39
     quantile = norm.ppf(0.95) if known else t.ppf(0.95, 39)
     around = TIMES - TIMES.mean()
     own = variance * (1 / 41 + around**2 / np.sum(around**2))

@@ -27,7 +27,7 @@ def test_a_linear_case_has_the_closed_form(known, level):
     told = profile(LINE, data, fit, level=level)
     jacobian = LINE.jacobian(fit.values).reshape(-1, 2)
     freedom = jacobian.shape[0] - 2
-    variance = 0.09 if known else fit.fitness / freedom
+    variance = 0.09 if known else fit.misfit / freedom
     covariance = variance * np.linalg.inv(jacobian.T @ jacobian)
     quantile = chi2.ppf(level, 1) if known else f.ppf(level, 1, freedom)
     radius = np.sqrt(quantile * np.diag(covariance))
@@ -48,7 +48,7 @@ def test_one_parameter_alone_crosses_where_its_misfit_does():
     told = profile(model, data, fit)
 
     def excess(rate):
-        return np.sum((np.exp(-rate * TIMES) - data.values[:, 0]) ** 2) / 0.01 - fit.fitness - chi2.ppf(0.95, 1)
+        return np.sum((np.exp(-rate * TIMES) - data.values[:, 0]) ** 2) / 0.01 - fit.misfit - chi2.ppf(0.95, 1)
 
     expected = brentq(excess, 0.1, fit.values[0]), brentq(excess, fit.values[0], 9.0)
     np.testing.assert_allclose(told.intervals["rate"], expected, rtol=1e-5)
@@ -63,7 +63,7 @@ def test_a_nonlinear_case_is_that_of_a_scan():
 
     def excess(rate):
         shape, x = np.exp(-rate * TIMES), data.values[:, 0]
-        return (x @ x - (shape @ x) ** 2 / (shape @ shape)) / 0.15**2 - fit.fitness
+        return (x @ x - (shape @ x) ** 2 / (shape @ shape)) / 0.15**2 - fit.misfit
 
     curve = told["rate"]
     np.testing.assert_allclose(curve.excess, [excess(rate) for rate in curve.values], atol=1e-5)

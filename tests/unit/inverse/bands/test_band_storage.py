@@ -10,8 +10,8 @@ from dalembert.surrogate import Adaptive
 from small_models import DECAY, LINE, banded
 
 BANDS = banded(DECAY, [1.8, 0.7], [2.2, 0.9], points=2)
-PLAIN = ("fitness", "success", "status", "method", "simulations", "seconds", "provenance", "parameters", "intervals")
-PLAIN += ("unknowns", "checked_fitness")
+PLAIN = ("misfit", "success", "status", "method", "simulations", "seconds", "provenance", "parameters", "intervals")
+PLAIN += ("unknowns", "checked_misfit")
 ARRAYS = ("middle_deviations", "radius_deviations", "correlation", "singular_values", "directions", "weights", "lower")
 ARRAYS += ("upper", "error")
 

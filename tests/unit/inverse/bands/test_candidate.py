@@ -127,5 +127,5 @@ def test_starts_are_the_best_boxes_and_not_close_to_each_other():
     gaps = [np.max(np.abs(one - other) / width) for one, other in combinations(starts, 2)]
     assert min(gaps) > 0.1
     found = [candidate(problem, surrogate.polynomial, x).bounds for x in starts]
-    fitness = [problem.fitness(bounds.lower, bounds.upper) for bounds in found]
-    assert fitness == sorted(fitness)
+    misfit = [problem.misfit(bounds.lower, bounds.upper) for bounds in found]
+    assert misfit == sorted(misfit)

@@ -34,8 +34,8 @@ def test_bands_of_a_monotonic_model_give_back_their_box():
     np.testing.assert_allclose(fit.box.lower, [1.8, 0.7], rtol=1e-6)
     np.testing.assert_allclose(fit.box.upper, [2.2, 0.9], rtol=1e-6)
     assert fit.success
-    assert fit.fitness < 1e-10
-    assert fit.checked_fitness < 1e-10
+    assert fit.misfit < 1e-10
+    assert fit.checked_misfit < 1e-10
     np.testing.assert_allclose(fit.checked_lower, EXACT.lower, atol=1e-6)
     np.testing.assert_allclose(fit.lower, fit.checked_lower, atol=1e-6)
 
@@ -89,7 +89,7 @@ def test_deviations_are_those_of_the_linear_closed_form():
     np.testing.assert_allclose([fit.box.lower[0], fit.box.upper[0]], [lower.mean(), upper.mean()], rtol=1e-7)
     squares = np.sum((lower - lower.mean()) ** 2) + np.sum((upper - upper.mean()) ** 2)
     deviation = np.sqrt(squares / (82 - 2) / 82)
-    np.testing.assert_allclose(fit.fitness, squares, rtol=1e-9)
+    np.testing.assert_allclose(fit.misfit, squares, rtol=1e-9)
     np.testing.assert_allclose([fit.middle_deviations[0], fit.radius_deviations[0]], deviation, rtol=1e-7)
     np.testing.assert_allclose(fit.correlation, np.eye(2), atol=1e-9)
 
@@ -155,7 +155,7 @@ def test_nested_costs_what_is_published_and_then_its_answer_once_more_with_a_che
     assert fit.history[-1].simulations == 10 * 5 * 12
     assert 10 * 5 * 12 + 12 < fit.simulations < 10 * 5 * 12 + 12 + 2 * 2 * 41
     assert [step.best for step in fit.history] == sorted((step.best for step in fit.history), reverse=True)
-    assert fit.fitness == pytest.approx(fit.history[-1].best, rel=1e-6)
+    assert fit.misfit == pytest.approx(fit.history[-1].best, rel=1e-6)
 
 
 def test_nested_with_a_number_among_the_intervals_makes_runs_only_along_the_intervals():
@@ -176,7 +176,7 @@ def test_events_tell_of_runs_starts_checks_and_the_end():
     assert {"start-began", "iteration", "start-ended", "checked"} <= set(kinds)
     assert kinds.count("start-ended") == len(fit.starts)
     last = [event for event in events if event.kind == "checked"][-1]
-    assert last.fitness == pytest.approx(fit.checked_fitness)
+    assert last.misfit == pytest.approx(fit.checked_misfit)
     assert last.simulations == fit.simulations
     np.testing.assert_array_equal(events[-1].values, np.concatenate([fit.middle, fit.radius]))
     assert all(isinstance(as_record(event)["event"], str) for event in events)
@@ -242,11 +242,11 @@ def test_descents_from_other_starts_leave_false_minima_until_the_best_is_reached
     apart = np.concatenate([fit.middle, fit.radius]) - known
     assert np.all(np.abs(apart) < 3 * np.concatenate([fit.middle_deviations, fit.radius_deviations]))
     assert "minimum-reached-once" not in {item.code for item in fit.findings}
-    descents = np.array([end.fitness for end in fit.starts[:-1]])  # the last one refines the answer
+    descents = np.array([end.misfit for end in fit.starts[:-1]])  # the last one refines the answer
     assert np.count_nonzero(descents < 1.01 * descents.min()) >= 2
     many = identify_bands(WAVES, bands, method=GlobalSurrogate(starts=40), seed=seed)
     assert len(many.starts) >= 32
-    assert fit.fitness == pytest.approx(many.fitness, rel=1e-6)
+    assert fit.misfit == pytest.approx(many.misfit, rel=1e-6)
     np.testing.assert_allclose([fit.box.lower, fit.box.upper], [many.box.lower, many.box.upper], rtol=1e-5)
 
 
@@ -313,7 +313,7 @@ def test_a_surrogate_that_is_not_to_be_trusted_is_refused_before_and_after_the_c
 
 def test_without_a_check_the_result_says_so():
     fit = identify_bands(DECAY, EXACT, method=GlobalSurrogate(Adaptive(1e-6), checks=0))
-    assert fit.checked_fitness is None
+    assert fit.checked_misfit is None
     assert fit.checked_lower is None
     assert "surrogate-unchecked" in codes(fit)
     assert "not checked" in fit.summary()
@@ -331,7 +331,7 @@ def test_a_check_whose_runs_all_fail_is_none():
 
     model = PythonModel(fragile, DECAY.parameters, ["x"], TIMES)
     fit = identify_bands(model, EXACT, method=GlobalSurrogate(Tensor(8), tolerance=1.0))
-    assert fit.checked_fitness is None
+    assert fit.checked_misfit is None
     place = f"test_identify_bands.py, line {fragile.__code__.co_firstlineno + 3}"
     failed = only(fit, "failed-simulations").values["first"]
     assert failed.startswith(f"RuntimeError: enough ({place}) (at size = ")
@@ -342,7 +342,7 @@ def test_the_public_name_is_the_same():
     assert dalembert.identify_bands is identify_bands
 
 
-def test_the_summary_names_intervals_fitness_and_effort():
+def test_the_summary_names_intervals_misfit_and_effort():
     text = identify_bands(DECAY, EXACT, intervals=["rate"], method=GlobalSurrogate(tolerance=1.0)).summary()
     assert "0 (given)" in text
     assert "weighted sum of squares of 82 bounds" in text

@@ -35,7 +35,7 @@ def linear_fits(fit, errors):
         found = np.linalg.lstsq(slopes, values[:, 0], rcond=None)[0]
         response = (slopes @ found)[:, None]
         data = replace(fit.data, values=values)
-        yield replace(fit, data=data, values=found, response=response, fitness=float(np.sum((response - values) ** 2)))
+        yield replace(fit, data=data, values=found, response=response, misfit=float(np.sum((response - values) ** 2)))
 
 
 def codes(found):
@@ -321,7 +321,7 @@ def test_independent_channels_are_rarely_taken_for_correlated():
         found = np.linalg.lstsq(slopes, values.ravel(), rcond=None)[0]
         response = (slopes @ found).reshape(-1, 2)
         other = replace(fit, data=replace(fit.data, values=values), values=found, response=response,
-                        fitness=float(np.sum((response - values) ** 2)))  # fmt: skip
+                        misfit=float(np.sum((response - values) ** 2)))  # fmt: skip
         alarms += "correlated-channels" in codes(other.diagnostics())
     assert alarms <= 4  # 0.4 of 400 are expected
 

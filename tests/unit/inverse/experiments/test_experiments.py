@@ -75,7 +75,7 @@ def test_a_linear_problem_has_the_closed_form_of_all_samples_stacked():
     fit = identify(experiments)
     assert fit.parameters.names == ("run0.offset", "slope", "run1.offset")
     np.testing.assert_allclose(fit.values, expected, rtol=1e-7)
-    np.testing.assert_allclose(fit.fitness, np.sum((target - stacked @ expected) ** 2), rtol=1e-9)
+    np.testing.assert_allclose(fit.misfit, np.sum((target - stacked @ expected) ** 2), rtol=1e-9)
     np.testing.assert_allclose(fit.deviations, np.sqrt(np.diag(np.linalg.inv(stacked.T @ stacked))), rtol=1e-9)
 
 
@@ -85,7 +85,7 @@ def test_two_alike_experiments_are_one_with_every_value_twice():
     two = identify([Experiment(name, decay(SHORT), data) for name in ("a", "b")])
     assert two.parameters.names == one.parameters.names
     np.testing.assert_allclose(two.values, one.values, rtol=1e-7)
-    np.testing.assert_allclose(two.fitness, 2 * one.fitness, rtol=1e-9)
+    np.testing.assert_allclose(two.misfit, 2 * one.misfit, rtol=1e-9)
 
 
 def test_the_first_rows_are_the_same_part_of_each_experiment():

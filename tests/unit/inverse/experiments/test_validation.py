@@ -17,7 +17,7 @@ def test_a_share_at_the_end_does_not_touch_the_fit():
     whole = identify(DECAY, data, validation=0.25)
     part = identify(DECAY.first(31), data.first(31))
     np.testing.assert_allclose(whole.values, part.values, rtol=1e-9)
-    assert whole.fitness == pytest.approx(part.fitness, rel=1e-12)
+    assert whole.misfit == pytest.approx(part.misfit, rel=1e-12)
     assert whole.response.shape == (41, 1)
     np.testing.assert_allclose(whole.response[:31], part.response, rtol=1e-9)
     assert not whole.weights[31:].any()
@@ -52,7 +52,7 @@ def test_whole_experiments_are_predicted(tmp_path):
     fit = identify(experiments(), validation="b")
     without = identify([experiments()[0], experiments()[2]])
     np.testing.assert_allclose(fit.values, without.values, rtol=1e-9)
-    assert fit.fitness == pytest.approx(without.fitness, rel=1e-12)
+    assert fit.misfit == pytest.approx(without.misfit, rel=1e-12)
     assert [item.fitted for item in fit.experiments] == [True, False, True]
     np.testing.assert_allclose(fit.experiments[1].response, fit.experiments[0].response)
     assert fit.validation.what == "the experiment 'b'"

@@ -46,10 +46,10 @@ def test_the_misfit_with_converged_steps():
     fit = identify(Stepped(), data, starts=1)
     converged = fit.values[1] * np.exp(-fit.values[0] * TIMES)
     same = np.sum(((converged - data.values[:, 0]) / 1e-3) ** 2)
-    assert fit.integration.fitness == pytest.approx(same, rel=1e-4)
+    assert fit.integration.misfit == pytest.approx(same, rel=1e-4)
     fine = identify(Stepped(0.01), data, starts=1)
-    assert fit.integration.corrected == pytest.approx(fine.fitness, rel=0.02)
-    assert fit.integration.fitness > 2 * fine.fitness
+    assert fit.integration.corrected == pytest.approx(fine.misfit, rel=0.02)
+    assert fit.integration.misfit > 2 * fine.misfit
 
 
 def test_it_is_one_simulation():
@@ -131,7 +131,7 @@ def test_a_checkpoint_answers_for_the_finer_model_too(tmp_path):
     assert asked == [0.4, 0.4]
     np.testing.assert_array_equal(first.integration.bias, again.integration.bias)
     assert np.any(first.integration.bias)
-    assert first.integration.fitness == again.integration.fitness
+    assert first.integration.misfit == again.integration.misfit
 
 
 def test_segments_that_merged_are_one_run():
@@ -151,6 +151,6 @@ def test_a_file_gives_back_the_same_bits(tmp_path):
     again = Fit.load(tmp_path / "fit.nc")
     np.testing.assert_array_equal(again.integration.bias, fit.integration.bias)
     assert again.integration.how == fit.integration.how
-    for name in ("fitness", "corrected", "remainder"):
+    for name in ("misfit", "corrected", "remainder"):
         assert getattr(again.integration, name) == getattr(fit.integration, name)
     assert "at half the step" in again.summary()

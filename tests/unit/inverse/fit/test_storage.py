@@ -26,7 +26,7 @@ def test_everything_comes_back_bit_for_bit(fit, tmp_path):
     for name in ARRAYS:
         assert getattr(back, name).tobytes() == getattr(fit, name).tobytes(), name
         assert getattr(back, name).dtype == np.float64
-    for name in ("fitness", "success", "status", "method", "simulations", "provenance", "parameters"):
+    for name in ("misfit", "success", "status", "method", "simulations", "provenance", "parameters"):
         assert getattr(back, name) == getattr(fit, name), name
     assert back.data.fingerprint == fit.data.fingerprint
     for name in ("history", "starts"):

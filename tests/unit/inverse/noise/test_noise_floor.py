@@ -24,7 +24,7 @@ def test_the_truth_lies_under_the_floor_of_given_deviations_and_twice_the_noise_
     for _ in range(50):
         noise = 0.05 * rng.standard_normal(200)
         known = floor(TRUE + noise, deviations=0.05)
-        assert np.sum((noise / 0.05) ** 2) < known.fitness < np.sum((2 * noise / 0.05) ** 2)
+        assert np.sum((noise / 0.05) ** 2) < known.misfit < np.sum((2 * noise / 0.05) ** 2)
         assert known.source == "given"
         assert not known.conclusive
 
@@ -33,20 +33,20 @@ def test_the_truth_lies_under_the_floor_of_rounded_data():
     rounded = np.round(TRUE, 4)
     known = floor(rounded)
     misfit = np.sum((rounded - TRUE) ** 2)
-    assert misfit < known.fitness < 2 * misfit
+    assert misfit < known.misfit < 2 * misfit
     assert known.source == "rounded"
     assert known.conclusive
 
 
 def test_unrounded_data_allow_a_millionth_of_the_signal():
     known = floor(TRUE)
-    assert known.fitness == pytest.approx(200 * (1e-6 * TRUE.std()) ** 2, rel=0.4)
+    assert known.misfit == pytest.approx(200 * (1e-6 * TRUE.std()) ** 2, rel=0.4)
     assert known.source == "arithmetic"
     assert known.conclusive
 
 
 def test_the_floor_scales_with_the_weights():
-    assert floor(TRUE, weights=[4.0]).fitness == pytest.approx(4 * floor(TRUE).fitness)
+    assert floor(TRUE, weights=[4.0]).misfit == pytest.approx(4 * floor(TRUE).misfit)
 
 
 @pytest.mark.parametrize(

@@ -49,7 +49,7 @@ def test_a_fit_with_gaps_is_the_least_squares_of_what_is_there(deviations):
         (root[..., None] * DESIGN).reshape(-1, 2), (root * np.nan_to_num(data.values)).ravel(), rcond=None
     )
     np.testing.assert_allclose(fit.values, values, rtol=0, atol=1e-5 * fit.deviations.min())  # a gain below 1e-13
-    assert fit.fitness == pytest.approx(squares.item(), rel=1e-9)
+    assert fit.misfit == pytest.approx(squares.item(), rel=1e-9)
     np.testing.assert_array_equal(fit.weights == 0, ~data.present)
     np.testing.assert_array_equal(np.isnan(fit.residuals), ~data.present)
     assert f"(weighted sum of squares of {data.present.sum()} values)" in fit.summary()
@@ -59,7 +59,7 @@ def test_the_noise_is_told_from_the_values_that_are_there():
     data = gappy(measured(LINE, [1.0, 2.0], 0.1))
     fit = identify(LINE, data)
     inverse = np.linalg.inv(DESIGN[data.present].T @ DESIGN[data.present])
-    variance = fit.fitness / (data.present.sum() - 2)
+    variance = fit.misfit / (data.present.sum() - 2)
     np.testing.assert_allclose(fit.deviations, np.sqrt(variance * np.diag(inverse)), rtol=1e-6)
 
 

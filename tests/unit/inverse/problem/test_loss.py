@@ -52,7 +52,7 @@ def test_the_minimum_is_scipys(name):
         gtol=1e-13,
     )
     np.testing.assert_allclose(fit.values, theirs.x, rtol=1e-5)
-    assert fit.fitness == pytest.approx(2 * theirs.cost, rel=1e-8)
+    assert fit.misfit == pytest.approx(2 * theirs.cost, rel=1e-8)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -68,7 +68,7 @@ def test_outliers_pull_less_than_their_squares_would(name):
 def test_every_method_minimises_the_same_loss(method):
     fit = identify(DECAY, spoilt(), method=method, loss="huber", start=[1.8, 1.0])
     best = identify(DECAY, spoilt(), loss="huber")
-    assert fit.fitness == pytest.approx(best.fitness, rel=1e-3)
+    assert fit.misfit == pytest.approx(best.misfit, rel=1e-3)
     np.testing.assert_allclose(fit.values, best.values, rtol=1e-2)
 
 

@@ -201,7 +201,7 @@ def test_events_tell_of_runs_boxes_and_the_end():
     assert kinds[-1] == "finished"
     last = [event for event in events if event.kind == "paved"][-1]
     assert (last.inside, last.boundary, last.waiting) == (len(found.inside), len(found.boundary), 0)
-    assert as_record(events[-1])["fitness"] is None
+    assert as_record(events[-1])["misfit"] is None
 
 
 def test_the_same_call_gives_the_same_bits():

@@ -83,7 +83,7 @@ def test_gaps_are_closed_and_the_misfit_is_that_of_one_run():
     found = own.closed(own.search.points(together() + 0.05))
     one = identify(SWING, measured(0.01, deviations=0.01), start=TRUE, starts=1)
     assert found.gap < 1e-8
-    assert found.misfit == pytest.approx(one.fitness, rel=1e-6)
+    assert found.misfit == pytest.approx(one.misfit, rel=1e-6)
     np.testing.assert_allclose(own.search.vectors(found.point)[:3], one.values, rtol=1e-5)
 
 
@@ -321,7 +321,7 @@ def test_what_no_single_run_can_follow_is_fitted_in_segments_and_says_so():
     assert fit.success
     assert fit.nodes.segments > 1
     assert fit.nodes.growth > 1e12
-    assert fit.fitness < 1.5 * 101
+    assert fit.misfit < 1.5 * 101
     assert fit.estimates["ratio"] == pytest.approx(SHIFT, abs=1e-4)
     assert only(fit, "segments-separate").values["segments"] == fit.nodes.segments
     assert model.evaluate(fit.values[None]).only()[0, :, 0] != pytest.approx(fit.response[:, 0], abs=0.1)

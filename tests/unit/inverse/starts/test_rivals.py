@@ -53,10 +53,10 @@ def named(fit):
 
 def elsewhere(fit):
     """Whether starts ended apart from the values, by their deviations and 0.1 %, with a misfit equal in the noise."""
-    noise = max(fit.fitness / (len(TIMES) - len(fit.values)), 1e-12)
+    noise = max(fit.misfit / (len(TIMES) - len(fit.values)), 1e-12)
     apart = np.fmax(2 * fit.deviations, 1e-3 * np.abs(fit.values))
     return any(
-        start.fitness - fit.fitness < 4 * noise and np.any(np.abs(start.end - fit.values) > apart)
+        start.misfit - fit.misfit < 4 * noise and np.any(np.abs(start.end - fit.values) > apart)
         for start in fit.starts
     )
 
@@ -91,7 +91,7 @@ def test_a_named_minimum_is_the_permuted_one():
     other = [finding.values[f"other_1.{name}"] for name in ("a", "p", "b", "q")]
     np.testing.assert_allclose(np.roll(other, 2), fit.values, rtol=1e-4)
     assert finding.values["minima"] == 1
-    np.testing.assert_allclose(finding.values["other_1.fitness"], fit.fitness, rtol=1e-6)
+    np.testing.assert_allclose(finding.values["other_1.misfit"], fit.misfit, rtol=1e-6)
 
 
 def test_two_values_that_explain_one_channel_are_a_doubt_once():

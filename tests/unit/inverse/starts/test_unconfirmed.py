@@ -27,7 +27,7 @@ def problem():
 
 def end(problem, rate):
     point = problem.search.points(np.array([rate]))
-    return End(point, float(problem.fitness(point[None])[0]), True, "")
+    return End(point, float(problem.misfit(point[None])[0]), True, "")
 
 
 def codes(problem, rates, best=6.3, **changes):
@@ -47,7 +47,7 @@ def test_starts_that_lead_to_the_same_minimum_confirm_it(problem):
     assert not codes(problem, [6.3, 6.32, 1.0])  # on its way
 
 
-@pytest.mark.parametrize("changes", [{"white": True}, {"floor": replace(FLOOR, fitness=1e9)}])
+@pytest.mark.parametrize("changes", [{"white": True}, {"floor": replace(FLOOR, misfit=1e9)}])
 def test_residuals_like_noise_confirm_a_minimum(problem, changes):
     assert not codes(problem, [6.3, 1.0, 3.1], **changes)
 

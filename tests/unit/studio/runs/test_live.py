@@ -48,7 +48,7 @@ def test_a_long_run_keeps_a_short_curve(tmp_path):
     assert [y for _, y in live.convergence] == sorted((y for _, y in live.convergence), reverse=True)
 
 
-def test_a_fitness_over_more_samples_begins_another_curve(tmp_path):
+def test_a_misfit_over_more_samples_begins_another_curve(tmp_path):
     path = tmp_path / "events.jsonl"
     path.write_text(line(0, best=1e-9, samples=4) + line(1, best=0.1, samples=9))
     live = Live(path)

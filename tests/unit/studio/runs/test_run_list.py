@@ -15,7 +15,7 @@ STATE = {
     "state": "finished",
     "since": "2026-01-02T03:04:05+00:00",
     "message": "Converged.",
-    "best": {"fitness": 0.5, "values": {"drag": 0.2}, "deviations": {"drag": 0.01}},
+    "best": {"misfit": 0.5, "values": {"drag": 0.2}, "deviations": {"drag": 0.01}},
     "findings": [
         {"code": "a", "severity": "warning", "message": "The residuals are correlated."},
         {"code": "b", "severity": "note", "message": "There are few samples."},

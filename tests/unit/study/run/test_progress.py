@@ -22,10 +22,10 @@ def _printed(event: dict, names: tuple[str, ...] = ()) -> str:
         ({"event": "ran", "method": "scan", "runs": 9, "failed": 2, "most": 9}, "scan · 9 simulations, 2 failed"),
         ({"event": "sampled", "runs": 45, "simulations": 57}, "surrogate · 45 simulations"),
         (
-            {"event": "checked", "runs": 8, "simulations": 93, "fitness": 3e-7, "error": 9.3e-6},
+            {"event": "checked", "runs": 8, "simulations": 93, "misfit": 3e-7, "error": 9.3e-6},
             "check by 8 simulations · wrong by 9.3e-06",
         ),
-        ({"event": "checked", "runs": 8, "simulations": 9, "fitness": None, "error": None}, "check by 8 simulations"),
+        ({"event": "checked", "runs": 8, "simulations": 9, "misfit": None, "error": None}, "check by 8 simulations"),
         (
             {"event": "paved", "inside": 3, "boundary": 4, "waiting": 5},
             "3 boxes inside, 4 on the boundary, 5 to look at",

@@ -271,7 +271,7 @@ def test_findings_of_a_result_and_its_other_doubts_are_each_told_once():
 def test_the_list_of_runs(study):
     run_study(load(study))
     folder = new_folder("other")
-    folder.set_state("finished", task="identify", best={"fitness": 1.23456e-8, "values": {"theta": 0.785398163}})
+    folder.set_state("finished", task="identify", best={"misfit": 1.23456e-8, "values": {"theta": 0.785398163}})
     found = rows(Path("runs"))
     assert [(row["run"], row["task"], row["state"], row["best"]) for row in found] == [
         ("decay", "sweep", "finished", ""),

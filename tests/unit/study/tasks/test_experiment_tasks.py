@@ -178,7 +178,7 @@ def test_experiments_may_differ_in_constants(write, tmp_path):
         )
     folder, outcome = run_study(load(write(PENDULUM + "".join(texts) + "[identify]\n")), tmp_path / "run")
     assert outcome.best["values"] == pytest.approx({"drag": 0.2}, rel=1e-6)
-    assert outcome.best["fitness"] < 1e-15
+    assert outcome.best["misfit"] < 1e-15
     page = read_page(folder.report)
     drawn = {entries["data-name"] for tag, entries in page.tags if tag == "script" and "data-name" in entries}
     assert {"mechanism-1", "mechanism-2", "energies-1", "energies-2"} <= drawn

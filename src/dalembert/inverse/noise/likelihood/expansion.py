@@ -60,7 +60,7 @@ def expanded(
 ) -> Expansion:
     """Return the expansion from a linearised response; ``parameters`` are those of the vector."""
     count, known = at.jacobian.shape[-1], parameters.arguments(vector)
-    residual, response = problem.misfit(at.response).ravel(), at.response.ravel()
+    residual, response = problem.unweighted_residual(at.response).ravel(), at.response.ravel()
     jacobian = at.jacobian.reshape(len(residual), count)
     white, logs, means, spreads = [], [], [], []
     for channel in channels:

@@ -16,7 +16,7 @@ def guessed(
 
     They are means over the channels that share a parameter.
     """
-    residual, response = problem.misfit(there).ravel(), there.ravel()
+    residual, response = problem.unweighted_residual(there).ravel(), there.ravel()
     found: dict[str, list[float]] = {name: [] for name in parameters.names}
     for channel in channels:
         places = channel.series.rows

@@ -138,7 +138,7 @@ class Likelihood:
 
     def _compared(self, responses: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Residuals (batch, places) and responses (batch, places) of responses (batch, samples, channels)."""
-        return self.problem.misfit(responses).reshape(len(responses), -1), responses.reshape(len(responses), -1)
+        return self.problem.unweighted_residual(responses).reshape(len(responses), -1), responses.reshape(len(responses), -1)
 
     def linearise(self, vector: ArrayLike) -> tuple[float, np.ndarray]:
         """Return the log-likelihood and its exact gradient (parameters,).
@@ -158,7 +158,7 @@ class Likelihood:
         response, pull = self.problem.pulled(vector[: self._split])
         known, total = self.parameters.arguments(vector), 0.0
         gradient, cotangent = np.zeros(len(vector)), np.zeros(response.size)
-        residual = self.problem.misfit(response).ravel()
+        residual = self.problem.unweighted_residual(response).ravel()
         for channel in self.channels:
             places = channel.series.rows
             own, by_response, by_noise = channel.cotangent(
@@ -190,7 +190,7 @@ class Likelihood:
         NaN where the simulation failed.
         """
         batch, responses = self._simulated(vector)
-        residual, response = self.problem.misfit(responses[0]).ravel(), responses[0].ravel()
+        residual, response = self.problem.unweighted_residual(responses[0]).ravel(), responses[0].ravel()
         known = self.parameters.arguments(batch[0])
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.concatenate(

@@ -77,7 +77,7 @@ class Restriction:
     @cached_property
     def _flat(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Residual and response (values,), and jacobian with respect to p/scale (values, parameters)."""
-        residual = self.problem.misfit(self.at.response).ravel()
+        residual = self.problem.unweighted_residual(self.at.response).ravel()
         return residual, self.at.response.ravel(), self.at.jacobian.reshape(len(residual), -1) * self._scale
 
     @property

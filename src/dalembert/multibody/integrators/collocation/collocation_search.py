@@ -58,16 +58,16 @@ class Search:
                 fill = squares.given(self.problem, self.rule, self.models.real, step, walk, kept)
 
                 def objective(places: np.ndarray) -> np.ndarray:
-                    fitness = np.zeros(len(places))
-                    fill(middle + half * places, fitness)
-                    return fitness
+                    misfit = np.zeros(len(places))
+                    fill(middle + half * places, misfit)
+                    return misfit
 
                 seed = int(np.random.SeedSequence((self.seed, number)).generate_state(1)[0])
                 found = self.minimiser.minimise(objective, -corner, corner, seed, start=0.0 * corner)
         except DalembertError:
             return NEWTON_FAILED, 0, worst
         walk.c[:] = middle + half * found.x
-        return (DONE if np.isfinite(found.fitness) else NEWTON_FAILED), found.iterations, worst
+        return (DONE if np.isfinite(found.misfit) else NEWTON_FAILED), found.iterations, worst
 
     def kept(self, step: Step) -> Kept | None:
         """States of the Gauss points at the prediction."""

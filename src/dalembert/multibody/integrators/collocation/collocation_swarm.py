@@ -155,7 +155,7 @@ def _solve(problem, model, partition, layout, dependent, exact, state, work, gap
 
 @kernel
 def squares(
-    problem: Problem, rule: Rule, model: Address, step: Step, walk: Walk, kept: Kept, trials: Reals2, fitness: Reals
+    problem: Problem, rule: Rule, model: Address, step: Step, walk: Walk, kept: Kept, trials: Reals2, misfit: Reals
 ) -> None:
     """Weighted squares of what remains, (trials,), of accelerations (trials, unknowns); infinite where not found."""
     n, own, c, state = problem.n, walk.partition, walk.consistency, kept.trial
@@ -163,7 +163,7 @@ def squares(
     layout, columns = resized(problem.exact_layout, own.rank[0]), own.columns[own.rank[0] : n]
     h = step.end - step.begin
     for b in range(len(trials)):
-        fitness[b] = 0.0
+        misfit[b] = 0.0
     for s in range(len(rule.nodes)):
         t = step.begin + rule.nodes[s] * h
         set_signals(model, t, step.within, c.work)
@@ -172,7 +172,7 @@ def squares(
         dependent = Factors(kept.dependent[s], own.dependent.pivots, own.dependent.tops, own.dependent.buffer)
         exact = Factors(kept.exact[s], c.exact.pivots, c.exact.tops, c.exact.buffer)
         for b in range(len(trials)):
-            if not fitness[b] < np.inf:
+            if not misfit[b] < np.inf:
                 continue
             _start(base, kept, s, trials[b], state)
             place(columns, h, rule.nodes[s], rule.shapes[s], walk.old, trials[b], state)
@@ -180,6 +180,6 @@ def squares(
                 total = 0.0
                 for i in range(n):
                     total += (state.a[i] - state.w[i]) ** 2
-                fitness[b] += rule.weights[s] * total
+                misfit[b] += rule.weights[s] * total
             else:
-                fitness[b] = np.inf
+                misfit[b] = np.inf

@@ -1,4 +1,4 @@
-"""How the search went: the fitness of every start over its iterations, and the minima that the starts found."""
+"""How the search went: the misfit of every start over its iterations, and the minima that the starts found."""
 
 import numpy as np
 import plotly.graph_objects as go
@@ -10,7 +10,7 @@ from dalembert.report.thinning import thin
 
 
 def convergence(fit: Fit | BandFit, *, title: str = "Convergence") -> go.Figure:
-    """Best fitness so far over the iterations, one line a start, the winning start in colour.
+    """Best misfit so far over the iterations, one line a start, the winning start in colour.
 
     Parameters
     ----------
@@ -29,8 +29,8 @@ def convergence(fit: Fit | BandFit, *, title: str = "Convergence") -> go.Figure:
         draw(figure, [None], [None], "the others", LIGHT.muted, 1, legendgroup="others")
     for start in [*others, *(start for start in starts if start == best)]:
         steps = [step for step in fit.history if step.start == start]
-        fitness = positive(np.array([step.best for step in steps], dtype=float))
-        kept = thin(fitness, most=1000)
+        misfit = positive(np.array([step.best for step in steps], dtype=float))
+        kept = thin(misfit, most=1000)
         iterations, simulations = np.array([(step.iteration, step.simulations) for step in steps])[kept].T
         won = start == best
         colour, width, size, opacity = (LIGHT.series[0], 2.5, 5, 1) if won else (LIGHT.muted, 1, 3, 0.6)
@@ -42,19 +42,19 @@ def convergence(fit: Fit | BandFit, *, title: str = "Convergence") -> go.Figure:
         }
         name = f"start {start + 1}, the best" if won else f"start {start + 1}"
         own = {"marker_size": size, "opacity": opacity, "showlegend": won}
-        draw(figure, iterations, fitness[kept], name, colour, width, **style, **own)
+        draw(figure, iterations, misfit[kept], name, colour, width, **style, **own)
     y = {"title": "smallest misfit so far", **logarithmic(figure)}
     return themed(figure, title, 360, x="iteration", y=y, showlegend=True)
 
 
 def winner(fit: Fit | BandFit) -> int:
-    """Number of the start with the lowest fitness at its end."""
-    ends = [start.fitness if np.isfinite(start.fitness) else np.inf for start in fit.starts]
+    """Number of the start with the lowest misfit at its end."""
+    ends = [start.misfit if np.isfinite(start.misfit) else np.inf for start in fit.starts]
     return int(np.argmin(ends)) if ends else 0
 
 
 def starts(fit: Fit | BandFit, *, title: str = "Starts and their ends") -> go.Figure:
-    """Waterfall: final fitness of every start, best first, each with a stem from where it started.
+    """Waterfall: final misfit of every start, best first, each with a stem from where it started.
 
     A flat step of several starts is a minimum that many ways lead to.
 
@@ -68,7 +68,7 @@ def starts(fit: Fit | BandFit, *, title: str = "Starts and their ends") -> go.Fi
     plotly.graph_objects.Figure
     """
     order = ranked(fit)
-    ends = positive(np.array([fit.starts[number].fitness for number in order], dtype=float))
+    ends = positive(np.array([fit.starts[number].misfit for number in order], dtype=float))
     began = positive(np.array([_first(fit, number) for number in order], dtype=float))
     rank = np.arange(1, len(order) + 1)
     stems = np.stack([began, ends, np.full(len(order), np.nan)], axis=1).ravel()
@@ -90,8 +90,8 @@ def starts(fit: Fit | BandFit, *, title: str = "Starts and their ends") -> go.Fi
 
 
 def ranked(fit: Fit | BandFit) -> list[int]:
-    """Numbers of the starts, the lowest final fitness first, those that failed last."""
-    return sorted(range(len(fit.starts)), key=lambda number: np.nan_to_num(fit.starts[number].fitness, nan=np.inf))
+    """Numbers of the starts, the lowest final misfit first, those that failed last."""
+    return sorted(range(len(fit.starts)), key=lambda number: np.nan_to_num(fit.starts[number].misfit, nan=np.inf))
 
 
 def _first(fit: Fit | BandFit, number: int) -> float:

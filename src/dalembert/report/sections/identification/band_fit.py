@@ -27,10 +27,10 @@ def band_fit(fit: BandFit, options: ReportOptions) -> list[Section]:
 
 
 def _headline(fit: BandFit) -> Headline:
-    checked = fit.checked_fitness
+    checked = fit.checked_misfit
     facts = {
         **few_values(fit.parameters, map(interval, fit.box.lower, fit.box.upper)),
-        "misfit": shown(fit.fitness, digits=3),
+        "misfit": shown(fit.misfit, digits=3),
         **({} if checked is None else {"misfit by true runs": shown(checked, digits=3)}),
         "simulations": counted(fit.simulations),
     }

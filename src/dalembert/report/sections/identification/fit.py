@@ -118,7 +118,7 @@ def _headline(result: Fit) -> Headline:
     converged = sum(start.success for start in result.starts)
     facts = {
         **few_values(result.parameters, map(with_deviation, result.values, result.deviations)),
-        "misfit": shown(result.fitness, digits=3),
+        "misfit": shown(result.misfit, digits=3),
         "simulations": counted(result.simulations),
     }
     if len(result.starts) > 1:

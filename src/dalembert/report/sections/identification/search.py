@@ -85,7 +85,7 @@ def _starts(fit: Fit | BandFit) -> Table:
     ended = unless((start.success for start in starts), "not converged")
     columns = {
         "start": [number + 1 for number in numbers],
-        "misfit": cells((start.fitness for start in starts), 4),
+        "misfit": cells((start.misfit for start in starts), 4),
         "simulations": [int(start.simulations) for start in starts],
         "ended": [end if end.text else "converged" for end in ended],
         "message": [start.message for start in starts],

@@ -94,7 +94,7 @@ def test_a_line_through_a_parabola_is_seen_although_the_misfit_is_near_the_floor
     bend = (bend - bend.mean()) / bend.std()
     for seed in range(10):
         fit = fitted(straight(TIMES), np.sqrt(0.85) * bend + np.random.default_rng(seed).standard_normal(200))
-        assert 1.3 < fit.fitness / 198 < 2.4
+        assert 1.3 < fit.misfit / 198 < 2.4
         assert any(finding.doubtful for finding in fit.findings)
         assert "correlated-residuals" in codes(fit)
 

@@ -83,7 +83,7 @@ def two_experiments(seed: int) -> da.Fit:
             f"release {k + 1}",
             model,
             da.Measurements.of(LONG, {"x": oscillation(LONG, **{**TRUTH, "start": start}) + noise[k]}),
-            own=("start",),
+            local=("start",),
         )
         for k, start in enumerate((0.3, 0.2))
     ]

@@ -182,7 +182,7 @@ def _broken_profile(function: Callable) -> Any:
 def _one_rubs() -> Any:
     motions = {"a": oscillation(OSCILLATING, 30.0, 0.1, 0.3), "b": rubbing(OSCILLATING, 30.0, 0.1, 0.3, 0.3)}
     return da.identify(
-        [Experiment(name, oscillator(), recorded(x), own=("damping", "start")) for name, x in motions.items()]
+        [Experiment(name, oscillator(), recorded(x), local=("damping", "start")) for name, x in motions.items()]
     )
 
 

@@ -16,7 +16,7 @@ def _population(rates: list[float]) -> da.Population:
 def _joint() -> tuple[da.Fit, dict[str, da.Population]]:
     """A fit of three specimens, and beside it their population."""
     experiments = [
-        da.Experiment(f"part {k}", DECAY, measured(DECAY, [2.0, rate], 0.02, k, deviations=0.02), own=("rate",))
+        da.Experiment(f"part {k}", DECAY, measured(DECAY, [2.0, rate], 0.02, k, deviations=0.02), local=("rate",))
         for k, rate in enumerate((0.8, 1.0, 1.3))
     ]
     fit = da.identify(experiments, starts=1)

@@ -150,7 +150,7 @@ REFUSED = {
         "at least one experiment to be fitted",
     ),
     "validation: local": (
-        HEAD + ONE + ONE.replace("one", "two") + 'own = ["speed"]\n[identify]\nvalidation = ["two"]\n',
+        HEAD + ONE + ONE.replace("one", "two") + 'local = ["speed"]\n[identify]\nvalidation = ["two"]\n',
         "parameter 'two.speed' belongs to experiments for validation alone",
     ),
     "validation: share": (HEAD + DATA + "[identify]\nvalidation = 0.99\n", "leaves 0 of 21 samples to be fitted"),

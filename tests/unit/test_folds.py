@@ -114,7 +114,7 @@ DATA = da.Measurements.of(TIMES, {name: np.exp(-0.7 * TIMES) + 0.3 * k for k, na
 
 def joined(one):
     """Two experiments with one model, which share a parameter."""
-    return [da.Experiment("first", one, DATA), da.Experiment("second", one, DATA, own=["shift"])]
+    return [da.Experiment("first", one, DATA), da.Experiment("second", one, DATA, local=["shift"])]
 
 
 def searched(model, events, method, **options):

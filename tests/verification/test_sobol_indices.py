@@ -59,8 +59,8 @@ def test_a_function_with_kinks(record_evidence):
     total = np.array([part * np.prod(1 + np.delete(parts, k)) for k, part in enumerate(parts)]) / whole
     found = da.global_sensitivity(G_MODEL, None, Tensor((20, 20, 20)), tolerance=0.01, checks=1000)
     for quantity, reference, ours in (
-        ("first-order indices", parts / whole, found.whole_first[0]),
-        ("total indices", total, found.whole_total[0]),
+        ("first-order indices", parts / whole, found.aggregated_first[0]),
+        ("total indices", total, found.aggregated_total[0]),
     ):
         record_evidence(
             f"Sobol's g-function (kinks), {quantity}", reference, ours, tolerance=1e-2, topic=TOPIC, kind="closed form",
@@ -102,8 +102,8 @@ def test_inputs_with_normal_and_log_normal_distributions(record_evidence):
     of_c = square - mean**2
     whole = 0.5**2 + (1 + 0.2**2) * square - mean**2
     for quantity, reference, ours in (
-        ("first-order indices", np.array([0.5**2, 0.2**2 * mean**2, of_c]) / whole, found.whole_first[0]),
-        ("total indices", np.array([0.5**2, 0.2**2 * square, of_c * (1 + 0.2**2)]) / whole, found.whole_total[0]),
+        ("first-order indices", np.array([0.5**2, 0.2**2 * mean**2, of_c]) / whole, found.aggregated_first[0]),
+        ("total indices", np.array([0.5**2, 0.2**2 * square, of_c * (1 + 0.2**2)]) / whole, found.aggregated_total[0]),
     ):
         record_evidence(
             f"sum and product of normal and log-normal inputs, {quantity}", reference, ours, tolerance=5e-4,
@@ -172,7 +172,7 @@ def test_tails_that_are_cut_off_are_within_the_stated_uncertainty(spread, record
     found = da.global_sensitivity(model, {"a": da.LogNormal(1.0, spread), "b": da.Normal(0.0, np.sqrt(variance))})
     record_evidence(
         f"log-normal input of the spread {spread:g}: first-order index, to the stated uncertainty", 0.5,
-        found.whole_first[0, 0], tolerance=1.001 * found.uncertainty[0] / 0.5, topic=TOPIC, kind="closed form",
+        found.aggregated_first[0, 0], tolerance=1.001 * found.uncertainty[0] / 0.5, topic=TOPIC, kind="closed form",
         source="variance of the log-normal distribution",
     )  # fmt: skip
 

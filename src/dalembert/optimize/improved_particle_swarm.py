@@ -18,7 +18,7 @@ class ImprovedParticleSwarm(Swarm):
     All visited positions with a misfit below ``quality_misfit`` form the quality set, kept to the best
     ``quality_size``. With U the mean of a random 90 % of it, the groups move so:
 
-    1. v ← ωv + c1 r1 (own best − x) + c2 r2 (best of all − x) + c3 r3 (U − x), x ← x + v;
+    1. v ← ωv + c1 r1 (personal best − x) + c2 r2 (best of all − x) + c3 r3 (U − x), x ← x + v;
     2. with probability ½ v ← (x − best of all)·r·α, x ← x + v, else as group 1;
     3. with probability ½ x ← mean of a random 50 % of the quality set, else as group 1.
 

@@ -11,7 +11,7 @@ from dalembert.optimize.swarm import Swarm, SwarmState
 
 @dataclass(frozen=True)
 class ParticleSwarm(Swarm):
-    """Standard particle swarm: v ← ωv + c1 r1 (own best − x) + c2 r2 (best of all − x), x ← x + v.
+    """Standard particle swarm: v ← ωv + c1 r1 (personal best − x) + c2 r2 (best of all − x), x ← x + v.
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ class SwarmState:
         ``iteration`` counts evaluated swarms, the first random one included.
     lower, upper : array, shape (parameters,)
     positions, velocities : array, shape (particles, parameters)
-    own, own_misfit : array, shape (particles, parameters), (particles,)
+    personal_best, personal_misfit : array, shape (particles, parameters), (particles,)
         Best position of each particle so far.
     quality, quality_misfit : array, shape (kept, parameters), (kept,)
         Good positions that the swarm remembers, best first; empty for swarms without such a memory.
@@ -38,19 +38,19 @@ class SwarmState:
     upper: np.ndarray
     positions: np.ndarray
     velocities: np.ndarray
-    own: np.ndarray
-    own_misfit: np.ndarray
+    personal_best: np.ndarray
+    personal_misfit: np.ndarray
     quality: np.ndarray
     quality_misfit: np.ndarray
 
     @property
     def best(self) -> np.ndarray:
         """Best position of all, shape (parameters,)."""
-        return self.own[np.argmin(self.own_misfit)]
+        return self.personal_best[np.argmin(self.personal_misfit)]
 
     @property
     def best_misfit(self) -> float:
-        return float(np.min(self.own_misfit))
+        return float(np.min(self.personal_misfit))
 
 
 MOST_PARTICLES = 1_000_000  # a swarm of 1e9 would take the memory of the machine before it computes anything
@@ -104,7 +104,7 @@ class Swarm(Checked, ABC):
         rng = np.random.default_rng((state.seed, state.iteration))
         positions, velocities = self.move(state, rng)
         misfit = misfits(objective, positions)
-        better = misfit < state.own_misfit
+        better = misfit < state.personal_misfit
         return SwarmState(
             state.seed,
             state.iteration + 1,
@@ -113,8 +113,8 @@ class Swarm(Checked, ABC):
             state.upper,
             positions,
             velocities,
-            np.where(better[:, None], positions, state.own),
-            np.where(better, misfit, state.own_misfit),
+            np.where(better[:, None], positions, state.personal_best),
+            np.where(better, misfit, state.personal_misfit),
             *self.remember(state.quality, state.quality_misfit, positions, misfit),
         )
 
@@ -149,12 +149,12 @@ class Swarm(Checked, ABC):
     def steered(
         self, state: SwarmState, rng: np.random.Generator, inertia: tuple[float, float], c1: float, c2: float
     ) -> np.ndarray:
-        """Velocities ωv + c1 r1 (own best − x) + c2 r2 (best of all − x), ω falling linearly to its second value."""
+        """Velocities ωv + c1 r1 (personal best − x) + c2 r2 (best of all − x), ω falling linearly to its second value."""
         first, last = inertia
         # ω(t) = first + (last − first) t/iterations: Shi & Eberhart (1998), linear in the number of the iteration.
         kept = (first + (last - first) * state.iteration / self.iterations) * state.velocities
         x = state.positions
-        return kept + pulled(rng, c1, state.own, x) + pulled(rng, c2, state.best, x)
+        return kept + pulled(rng, c1, state.personal_best, x) + pulled(rng, c2, state.best, x)
 
     @abstractmethod
     def velocity_bound(self, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:

@@ -33,11 +33,11 @@ class Screening(Result):
         Mean of the absolute effects, μ*.
     spread : array, shape (samples, channels, parameters)
         Standard deviation of the effects, σ: 0 for a linear response without interactions.
-    whole_effects, whole_spread : array, shape (channels, parameters)
+    aggregated_effects, aggregated_spread : array, shape (channels, parameters)
         Of the whole channel: means over the trajectories of the root mean square of the effects over the samples, and
         the root mean square of σ.
     errors : array, shape (channels, parameters)
-        Standard error of ``whole_effects``.
+        Standard error of ``aggregated_effects``.
     trajectories : int
         Those without failed runs.
     runs : int
@@ -61,8 +61,8 @@ class Screening(Result):
     mean: Annotated[np.ndarray, Over("sample", "channel", "parameter")]
     effects: Annotated[np.ndarray, Over("sample", "channel", "parameter")]
     spread: Annotated[np.ndarray, Over("sample", "channel", "parameter")]
-    whole_effects: Annotated[np.ndarray, Over("channel", "parameter")]
-    whole_spread: Annotated[np.ndarray, Over("channel", "parameter")]
+    aggregated_effects: Annotated[np.ndarray, Over("channel", "parameter")]
+    aggregated_spread: Annotated[np.ndarray, Over("channel", "parameter")]
     errors: Annotated[np.ndarray, Over("channel", "parameter")]
     trajectories: int
     runs: int
@@ -83,7 +83,7 @@ class Screening(Result):
 
     def ranking(self, channel: str) -> tuple[str, ...]:
         """Return the names of the parameters, that with the largest effect on a whole channel first."""
-        order = np.argsort(-self.whole_effects[self.channels.index(channel)], kind="stable")
+        order = np.argsort(-self.aggregated_effects[self.channels.index(channel)], kind="stable")
         return tuple(self.box.names[k] for k in order)
 
     def facts(self) -> dict[str, str]:
@@ -95,15 +95,15 @@ class Screening(Result):
 
     def tables(self) -> tuple[Table, ...]:
         """Return the effects on whole channels, the largest first, and the parameters."""
-        order = np.argsort(-self.whole_effects, axis=1, kind="stable")
+        order = np.argsort(-self.aggregated_effects, axis=1, kind="stable")
         rows = [(channel, int(parameter)) for channel, ranked in enumerate(order) for parameter in ranked]
         at = tuple(np.array(rows).T)
         columns = {
             "channel": [self.channels[channel] for channel, _ in rows],
             "parameter": [self.box.names[parameter] for _, parameter in rows],
-            "mean absolute effect": [cell(float(self.whole_effects[pair]), digits=4) for pair in rows],
+            "mean absolute effect": [cell(float(self.aggregated_effects[pair]), digits=4) for pair in rows],
             "standard error": cells(self.errors[at], 2),
-            "spread": cells(self.whole_spread[at], 3),
+            "spread": cells(self.aggregated_spread[at], 3),
             "unit": [self.units[channel] for channel, _ in rows],
         }
         caption = "Effects on whole channels, over the whole intervals"

@@ -30,7 +30,7 @@ class SensitivityIndices(Result):
         Of the response over the box.
     first, total : array, shape (samples, channels, parameters)
         First-order and total indices at each sample; NaN where the response does not vary.
-    whole_first, whole_total : array, shape (channels, parameters)
+    aggregated_first, aggregated_total : array, shape (channels, parameters)
         Indices of the whole channel: parts of the variance summed over the samples.
     uncertainty : array, shape (channels,)
         Largest error of an index of the whole channel that the error of the surrogate, and tails of distributions that
@@ -60,8 +60,8 @@ class SensitivityIndices(Result):
     deviations: Table
     first: Annotated[np.ndarray, Over("sample", "channel", "parameter")]
     total: Annotated[np.ndarray, Over("sample", "channel", "parameter")]
-    whole_first: Annotated[np.ndarray, Over("channel", "parameter")]
-    whole_total: Annotated[np.ndarray, Over("channel", "parameter")]
+    aggregated_first: Annotated[np.ndarray, Over("channel", "parameter")]
+    aggregated_total: Annotated[np.ndarray, Over("channel", "parameter")]
     uncertainty: Annotated[np.ndarray, Over("channel")]
     runs: int
     checks: int
@@ -93,8 +93,8 @@ class SensitivityIndices(Result):
         columns = {
             "channel": [channel for channel in self.channels for _ in self.box.names],
             "parameter": [name for _ in self.channels for name in self.box.names],
-            "first-order index": [cell(float(value), digits=4) for value in self.whole_first.ravel()],
-            "total index": [cell(float(value), digits=4) for value in self.whole_total.ravel()],
+            "first-order index": [cell(float(value), digits=4) for value in self.aggregated_first.ravel()],
+            "total index": [cell(float(value), digits=4) for value in self.aggregated_total.ravel()],
             "± at most": cells(self.uncertainty.repeat(len(self.box.names)), 2),
         }
         indices = ResultTable.of("sobol-indices", "Parts of the variance of whole channels", columns)

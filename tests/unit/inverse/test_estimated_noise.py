@@ -144,7 +144,7 @@ def test_channels_have_different_noise():
 
 def test_experiments_share_noise_or_have_local_noise():
     def run(name, seed, scale):
-        return da.Experiment(name, decay(), measured(normal(seed, scale)), own=("height",))
+        return da.Experiment(name, decay(), measured(normal(seed, scale)), local=("height",))
 
     runs = [run("one", 10, 0.05), run("two", 11, 0.2)]
     shared = da.identify(runs, noise="constant", starts=1)

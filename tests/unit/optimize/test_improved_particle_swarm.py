@@ -51,7 +51,7 @@ def test_inertia_falls_from_0_8_by_0_7_t_over_the_iterations():
     state = swarm.start(still, LOWER, UPPER, seed=0)
     here = np.repeat([[0.8, 0.5]], 40, axis=0)
     for iteration in (1, 50, 99):
-        at = replace(state, iteration=iteration, positions=here, own=here)
+        at = replace(state, iteration=iteration, positions=here, personal_best=here)
         left = swarm.advance(at, still).velocities / at.velocities
         np.testing.assert_allclose(left, 0.8 - 0.7 * iteration / 100, rtol=1e-12)
 
@@ -64,7 +64,7 @@ def test_group_1_is_pulled_to_own_best_best_and_quality_set():
     pulls = []
     for seed in range(40):
         at = replace(
-            state, seed=seed, positions=here, own=np.repeat(goal[None], 40, axis=0), own_misfit=np.zeros(40),
+            state, seed=seed, positions=here, personal_best=np.repeat(goal[None], 40, axis=0), personal_misfit=np.zeros(40),
             quality=goal[None], quality_misfit=np.zeros(1),
         )  # fmt: skip
         pulls.append((swarm.advance(at, bowl).velocities[GROUP == 1]) / (goal - here[0]))
@@ -78,7 +78,7 @@ def test_without_a_quality_set_group_1_has_two_pulls():
     swarm = ImprovedParticleSwarm(velocity_limit=10.0, quality_misfit=-1.0)
     goal, here = np.array([0.9, 0.6]), np.repeat([[0.7, 0.5]], 40, axis=0)
     state = quiet(swarm)
-    at = replace(state, positions=here, own=np.repeat(goal[None], 40, axis=0), own_misfit=np.zeros(40))
+    at = replace(state, positions=here, personal_best=np.repeat(goal[None], 40, axis=0), personal_misfit=np.zeros(40))
     assert len(at.quality) == 0
     pulls = swarm.advance(at, bowl).velocities / (goal - here[0])
     assert np.max(pulls) <= 2

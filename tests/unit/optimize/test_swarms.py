@@ -122,7 +122,7 @@ def test_the_standard_move_is_the_textbook_formula():
     after = swarm.advance(state, sphere)
     inertia = 0.9 - 0.5 * 1 / 10
     pull = (after.velocities - inertia * state.velocities) / (state.best - state.positions + 1e-300)
-    leader = int(np.argmin(state.own_misfit))
+    leader = int(np.argmin(state.personal_misfit))
     np.testing.assert_allclose(after.velocities[leader], inertia * state.velocities[leader], atol=1e-14)
     assert np.all((pull[1 - leader] >= 0) & (pull[1 - leader] <= 2))
 

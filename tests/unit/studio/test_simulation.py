@@ -156,7 +156,7 @@ def test_a_frequency_curve_has_residuals_a_misfit_and_effects():
 
 def test_values_of_experiments_and_sensors_act(tmp_path):
     path = begin("identify", tmp_path / "mine")
-    table = path.read_text().replace("[data]", '[[experiments]]\nname = "trial"\nown = ["angle"]')
+    table = path.read_text().replace("[data]", '[[experiments]]\nname = "trial"\nlocal = ["angle"]')
     path.write_text(table + "[sensors.rod]\ndelay = [0, 0.1]\nat_rest = true\n")
     values = {"drag": 0.2, "angle": 0.0, "trial.angle": -0.7, "rod delay": 0.05}
     found, ((experiment,), _) = simulated(Kept(), source(path), "trial", values), posed(load(path))

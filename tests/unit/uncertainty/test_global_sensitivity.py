@@ -25,11 +25,11 @@ def found():
 def test_indices_over_time_and_of_whole_channels(found):
     np.testing.assert_allclose(found.first[0, 0], [1.0, 0.0, 0.0], atol=1e-9)  # at first only the gain acts
     assert np.isnan(found.first[0, 1]).all()  # at first y is 0
-    np.testing.assert_allclose(found.whole_first[1], [1.0, 0.0, 0.0], atol=1e-9)
+    np.testing.assert_allclose(found.aggregated_first[1], [1.0, 0.0, 0.0], atol=1e-9)
     variances = found.deviations[:, 0] ** 2
-    np.testing.assert_allclose(found.whole_total[0], variances @ found.total[:, 0] / variances.sum(), rtol=1e-9)
-    assert np.all(found.whole_total[0] >= found.whole_first[0] - 1e-12)
-    assert found.whole_total[0, 2] == pytest.approx(0.0, abs=1e-9)
+    np.testing.assert_allclose(found.aggregated_total[0], variances @ found.total[:, 0] / variances.sum(), rtol=1e-9)
+    assert np.all(found.aggregated_total[0] >= found.aggregated_first[0] - 1e-12)
+    assert found.aggregated_total[0, 2] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_samples_without_a_variance_are_named(found):
@@ -161,8 +161,8 @@ def ratios(scale: float) -> list[np.ndarray]:
     )
     found, screened = da.global_sensitivity(model), da.screen(model)
     gaps = [value for finding in found.findings for name, value in finding.values.items() if "variation" in name]
-    effects = [screened.effects, screened.spread, screened.whole_effects, screened.whole_spread, screened.errors]
-    indices = [found.first, found.total, found.whole_first, found.whole_total]
+    effects = [screened.effects, screened.spread, screened.aggregated_effects, screened.aggregated_spread, screened.errors]
+    indices = [found.first, found.total, found.aggregated_first, found.aggregated_total]
     return [*indices, np.array(gaps), *(np.asarray(one) / scale for one in effects)]
 
 

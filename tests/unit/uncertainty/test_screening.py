@@ -30,7 +30,7 @@ def test_effects_of_a_linear_response_are_its_changes_over_the_intervals(found):
     np.testing.assert_allclose(found.effects[:, 1, 0], 1.0 * TIMES**2, atol=1e-12)
     np.testing.assert_allclose(found.mean[:, 1, 1], -1.5 * TIMES, atol=1e-12)
     np.testing.assert_allclose(found.spread[:, 1], 0.0, atol=1e-12)
-    np.testing.assert_allclose(found.whole_effects[1, 1], 1.5 * np.sqrt(np.mean(TIMES**2)))
+    np.testing.assert_allclose(found.aggregated_effects[1, 1], 1.5 * np.sqrt(np.mean(TIMES**2)))
     assert not found.effects[..., 2:].any()  # an idle parameter, and one that is known exactly
     assert found.runs == 8 * 4
     assert found.ranking("x")[:2] == ("gain", "rate")

@@ -22,20 +22,20 @@ class Experiment:
     model : ForwardModel
         Its samples must be those of the data; it may have more channels.
     data : Measurements
-    own : tuple of str
+    local : tuple of str
         Parameters that this experiment has for itself, such as its initial state; in the fit they are named
         ``"NAME.parameter"``. Others are shared with the experiments that name them, too.
 
     Raises
     ------
     InputError
-        For an own parameter that the model lacks.
+        For a local parameter that the model lacks.
     """
 
     name: str
     model: ForwardModel
     data: Measurements
-    own: tuple[str, ...] = ()
+    local: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str):
@@ -43,10 +43,10 @@ class Experiment:
         check_model(f"Experiment {self.name!r}", self.model)
         if not isinstance(self.data, Measurements):
             raise InputError(f"Experiment {self.name!r}: data is {shown(self.data)}; expected Measurements")
-        object.__setattr__(self, "own", names_of(self.own, f"Experiment {self.name!r}", "own"))
+        object.__setattr__(self, "local", names_of(self.local, f"Experiment {self.name!r}", "local"))
         names = [item.name for item in self.model.parameters.declared]
-        for name in self.own:
-            require_known("parameter", name, names, f"experiment {self.name!r}, own")
+        for name in self.local:
+            require_known("parameter", name, names, f"experiment {self.name!r}, local")
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -63,7 +63,7 @@ class Experiment:
         return {item.name: joint[self._named(item).name] for item in self.model.parameters.declared}
 
     def _named(self, item: Parameter) -> Parameter:
-        return replace(item, name=f"{self.name}.{item.name}") if item.name in self.own else item
+        return replace(item, name=f"{self.name}.{item.name}") if item.name in self.local else item
 
 
 @dataclass(frozen=True, eq=False)

@@ -32,7 +32,7 @@ class ExperimentTable(DataTable):
     SEVERAL = True
 
     name: Name
-    own: list[str] | dict[str, OwnParameterTable] = Field(
+    local: list[str] | dict[str, OwnParameterTable] = Field(
         [],
         description="parameters that are not shared with the other experiments: names, also of sensors, such as "
         "'bar.angle offset', or a table with the bounds and first guesses that differ here",
@@ -46,7 +46,7 @@ class ExperimentTable(DataTable):
     @property
     def alone(self) -> tuple[str, ...]:
         """Parameters of this experiment alone; the time at which its motion begins is one of them."""
-        return (*self.own, *([START] if self.unknown_start else []))
+        return (*self.local, *([START] if self.unknown_start else []))
 
     def named(self, name: str) -> str:
         """Name of a parameter in a fit of all experiments."""
@@ -54,7 +54,7 @@ class ExperimentTable(DataTable):
 
     def parameters(self, shared: Mapping[str, ParameterTable]) -> dict[str, ParameterTable]:
         """The parameters' tables as they are in this experiment."""
-        given = self.own if isinstance(self.own, dict) else {}
+        given = self.local if isinstance(self.local, dict) else {}
         return {name: given[name].over(table) if name in given else table for name, table in shared.items()}
 
     def sensors(self, shared: Mapping[str, SensorTable]) -> dict[str, Sensor]:
@@ -62,12 +62,12 @@ class ExperimentTable(DataTable):
         return {name: self._local(name, sensor) for name, sensor in super().sensors(shared).items()}
 
     def _local(self, name: str, sensor: Sensor) -> Sensor:
-        given = self.own if isinstance(self.own, dict) else {}
+        given = self.local if isinstance(self.local, dict) else {}
         for what in QUANTITIES:
-            bounds, own = getattr(sensor, what), given.get(f"{name} {what}")
-            if bounds is not None and own is not None:
-                local = own.over(ParameterTable.model_validate({"lower": bounds[0], "upper": bounds[1]}))
-                sensor = replace(sensor, **{what: local.parameter(f"{name} {what}")})
+            bounds, table = getattr(sensor, what), given.get(f"{name} {what}")
+            if bounds is not None and table is not None:
+                parameter = table.over(ParameterTable.model_validate({"lower": bounds[0], "upper": bounds[1]}))
+                sensor = replace(sensor, **{what: parameter.parameter(f"{name} {what}")})
         return sensor
 
 
@@ -110,9 +110,9 @@ def wrong_experiments(file: Any) -> list[str]:
         wrong += [
             unknown("constant", name, file.constants, where) for name in table.constants if name not in file.constants
         ]
-        where = f"[[experiments]] {table.name!r}, own"
+        where = f"[[experiments]] {table.name!r}, local"
         known = [*file.parameters, *_sensor_parameters(file.sensors, table)]
-        wrong += [unknown("parameter", name, known, where) for name in table.own if name not in known]
+        wrong += [unknown("parameter", name, known, where) for name in table.local if name not in known]
         wrong += _wrong_own(table, file, where)
         if table.arguments and not (file.model.function or file.model.forward):
             wrong.append(f"[[experiments]] {table.name!r}: arguments are for a function, and there is none")

@@ -108,7 +108,7 @@ class GlobalSensitivity(_OfInputs):
     def outcome(self, study: Study, result: Any) -> Outcome:
         """Outcome with the total index of each parameter in each channel."""
         values = {
-            f"total index of {name} in {channel}": float(result.whole_total[c, p])
+            f"total index of {name} in {channel}": float(result.aggregated_total[c, p])
             for c, channel in enumerate(result.channels)
             for p, name in enumerate(result.box.names)
         }
@@ -148,7 +148,7 @@ class Screening(_OfInputs):
     def outcome(self, study: Study, result: Any) -> Outcome:
         """Outcome with the mean absolute effect of each parameter on each channel."""
         values = {
-            f"effect of {name} on {channel}": float(result.whole_effects[c, p])
+            f"effect of {name} on {channel}": float(result.aggregated_effects[c, p])
             for c, channel in enumerate(result.channels)
             for p, name in enumerate(result.box.names)
         }

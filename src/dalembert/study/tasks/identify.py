@@ -159,7 +159,7 @@ class Identification(Outcome):
             return study.motion(float(fit.data.coordinate.values[-1]), own)
         found = {}
         for table, item in list(zip(study.file.experiments, fit.experiments, strict=True))[:MOST_MOTIONS]:
-            names = [f"{table.name}.{name}" if name in table.own else name for name in study.parameters.names]
+            names = [f"{table.name}.{name}" if name in table.local else name for name in study.parameters.names]
             variant = study.variant(table)
             values = np.array([fit.estimates[name] for name in names])
             found[table.name] = variant.motion(float(item.data.coordinate.values[-1]), values)
@@ -274,12 +274,12 @@ def _wrong_population(file: Any) -> list[str]:
             f"{where}: there are {len(specimens)} experiments to fit, and a spread needs at least {FEWEST} specimens; "
             "add [[experiments]], or leave the key out"
         ]
-    common = [name for name in specimens[0].own if all(name in table.own for table in specimens)]
+    common = [name for name in specimens[0].local if all(name in table.local for table in specimens)]
     if asked is True:
-        none = f"{where}: the experiments have no local parameter in common; name those that vary in own of each"
+        none = f"{where}: the experiments have no local parameter in common; name those that vary in local of each"
         return [] if common else [none]
     return [
-        f"{where}: {name!r} is no local parameter of all experiments; name it in own of each"
+        f"{where}: {name!r} is no local parameter of all experiments; name it in local of each"
         for name in asked
         if name not in common
     ]

@@ -69,7 +69,7 @@ def test_what_the_data_did_not_see_leaves_the_band_infinite_and_the_sum_does_not
 
 def test_one_of_several_experiments_is_predicted():
     experiments = [
-        Experiment(name, DECAY, measured(DECAY, [size, 0.8], 0.05, seed, deviations=0.05), own=("size",))
+        Experiment(name, DECAY, measured(DECAY, [size, 0.8], 0.05, seed, deviations=0.05), local=("size",))
         for seed, (name, size) in enumerate({"first": 1.0, "second": 2.0}.items())
     ]
     told = predict(experiments[1], identify(experiments))

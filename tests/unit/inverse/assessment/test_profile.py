@@ -176,7 +176,7 @@ def test_a_prior_narrows_the_profile_as_it_does_the_deviation():
 
 def test_experiments_are_profiled_together():
     experiments = [
-        Experiment(name, DECAY, measured(DECAY, [size, 0.8], 0.05, seed, deviations=0.05), own=("size",))
+        Experiment(name, DECAY, measured(DECAY, [size, 0.8], 0.05, seed, deviations=0.05), local=("size",))
         for seed, (name, size) in enumerate({"first": 1.0, "second": 2.0}.items())
     ]
     fit = identify(experiments)

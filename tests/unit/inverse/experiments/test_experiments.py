@@ -37,7 +37,7 @@ def measured(name, times, noise=0.0, **options):
     return Measurements.of(times, {"x": noisy}, **options)
 
 
-def pair(noise=0.0, own=("size",), **options):
+def pair(noise=0.0, local=("size",), **options):
     return [
         Experiment(name, decay(times), measured(name, times, noise, **options), own)
         for name, times in (("short", SHORT), ("long", LONG))
@@ -187,7 +187,7 @@ X = Measurements.of(SHORT, {"x": np.exp(-SHORT)})
         (
             lambda: [Experiment("a", decay(SHORT), X, ("sise",))],
             InputError,
-            "experiment 'a', own: unknown parameter 'sise'; did you mean 'size'?",
+            "experiment 'a', local: unknown parameter 'sise'; did you mean 'size'?",
         ),
         (
             lambda: [
@@ -287,7 +287,7 @@ def test_mechanisms_are_built_first_where_the_search_starts():
         identify(model(0.3), data)
     fit = identify(model(0.3), data, start={"rod": 1.1, "mass": 1.0})
     np.testing.assert_allclose(fit.values, [1.05, 2.0], rtol=1e-5)
-    several = [Experiment(name, model(0.3), data, own=("mass",)) for name in "ab"]
+    several = [Experiment(name, model(0.3), data, local=("mass",)) for name in "ab"]
     fit = identify(several, start={"rod": 1.1, "a.mass": 1.0, "b.mass": 1.5})
     np.testing.assert_allclose(fit.values, [1.05, 2.0, 2.0], rtol=1e-5)
     seen = Sensors(model(0.3), {"crank.end.angle": Sensor(offset=(-0.1, 0.1))})

@@ -142,12 +142,12 @@ def test_a_record_that_does_not_vary_has_no_share():
 def test_own_parameters_come_from_the_first_part_of_a_record_that_is_predicted(tmp_path):
     sizes = {"a": 2.0, "b": 3.0}
     items = [
-        Experiment(name, DECAY, measured(DECAY, [size, 0.8], 0.02, seed, deviations=0.02), own=("size",))
+        Experiment(name, DECAY, measured(DECAY, [size, 0.8], 0.02, seed, deviations=0.02), local=("size",))
         for seed, (name, size) in enumerate(sizes.items())
     ]
     fit = identify(items, validation={"b": 1.0})
     assert abs(fit.estimates["b.size"] - 3.0) < 0.05
-    shorter = [items[0], Experiment("b", DECAY.first(11), items[1].data.first(11), own=("size",))]
+    shorter = [items[0], Experiment("b", DECAY.first(11), items[1].data.first(11), local=("size",))]
     np.testing.assert_allclose(fit.values, identify(shorter).values, rtol=1e-6)
     assert fit.validation.what == "the experiment 'b' after its first 1 s"
     weights = fit.experiments[1].weights

@@ -85,7 +85,7 @@ def test_a_finer_simulation_that_fails_is_said_and_the_fit_stays(finer):
 def test_only_experiments_that_can_be_refined_are():
     plain = PythonModel(lambda rate, size: size * np.exp(-rate * TIMES), STEPPED_BOX, ["x"], TIMES)
     data = exact(deviations=1e-3)
-    both = [Experiment("a", Stepped(), data, own=("size",)), Experiment("b", plain, data, own=("size",))]
+    both = [Experiment("a", Stepped(), data, local=("size",)), Experiment("b", plain, data, local=("size",))]
     fit = identify(both, starts=1)
     alone = identify(both[:1], starts=1)
     names = list(fit.parameters.names)

@@ -76,7 +76,7 @@ def test_a_delay_of_all_sensors_is_one_finding():
 
 def test_a_sensor_is_late_in_all_experiments():
     experiments = [
-        Experiment(name, oscillator(), recorded(LATE, seed), own=("start",)) for seed, name in enumerate("ab")
+        Experiment(name, oscillator(), recorded(LATE, seed), local=("start",)) for seed, name in enumerate("ab")
     ]
     (finding,) = suspected(identify(experiments))
     assert finding.values["channel"] == "x"

@@ -66,7 +66,7 @@ def test_noise_that_is_larger_than_its_given_deviation_is_no_misfit_of_the_model
 def test_each_experiment_has_its_own_misfit():
     right, wrong = recorded(oscillation(TIMES, *TRUTH), 0), recorded(RUBBING, 1)
     experiments = [Experiment(name, oscillator(), data) for name, data in {"free": right, "rubbing": wrong}.items()]
-    fit = identify([experiments[0], Experiment("rubbing", oscillator(), wrong, own=("damping", "start"))])
+    fit = identify([experiments[0], Experiment("rubbing", oscillator(), wrong, local=("damping", "start"))])
     (finding,) = misfits(fit)
     assert finding.values["experiment"] == "rubbing"
     assert "of experiment 'rubbing'" in finding.message

@@ -23,7 +23,7 @@ def fits():
 
 @pytest.fixture(scope="module")
 def joint():
-    experiments = [da.Experiment(f"part {k}", MODEL, data(1.0, k), own=("rate",) if k else ()) for k in range(3)]
+    experiments = [da.Experiment(f"part {k}", MODEL, data(1.0, k), local=("rate",) if k else ()) for k in range(3)]
     return da.identify(experiments, starts=1)
 
 

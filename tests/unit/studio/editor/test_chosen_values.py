@@ -18,10 +18,10 @@ EXPERIMENTS = """
 [[experiments]]
 name = "first"
 start = { lower = "-10 ms", upper = 0.1 } # of the record
-own = ["angle"]
+local = ["angle"]
 [[experiments]]
 name = "second"
-own = { angle = { lower = -1.0 } }
+local = { angle = { lower = -1.0 } }
 [[experiments]]
 name = "third"
 [sensors.rod]

@@ -16,7 +16,7 @@ EXPERIMENTS = """
 name = "first"
 file = "motion.csv"
 columns = { "rod.end.x" = "x" }
-own = ["angle"]
+local = ["angle"]
 [[experiments]]
 name = "second"
 file = "motion.csv"

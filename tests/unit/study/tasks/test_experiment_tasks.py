@@ -34,12 +34,12 @@ TWO = (
 name = "short"
 file = "short.csv"
 columns = { x = "x" }
-own = ["size"]
+local = ["size"]
 [[experiments]]
 name = "long"
 file = "long.csv"
 columns = { x = "x" }
-own = ["size"]
+local = ["size"]
 arguments = { end = 5.0, samples = 41 }
 """
 )
@@ -69,8 +69,8 @@ step = "2 ms"
 """
 
 
-OWN = TWO.replace('own = ["size"]', "own = { size = { lower = 1.0, upper = 1.7, start = 1.2 } }").replace(
-    "own = { size = { lower = 1.0, upper = 1.7, start = 1.2 } }", 'own = ["size"]', 1
+OWN = TWO.replace('local = ["size"]', "local = { size = { lower = 1.0, upper = 1.7, start = 1.2 } }").replace(
+    "local = { size = { lower = 1.0, upper = 1.7, start = 1.2 } }", 'local = ["size"]', 1
 )
 
 
@@ -110,10 +110,10 @@ def test_experiments_share_parameters_and_have_their_own(write, tmp_path):
 
 def test_losses_and_validation_come_from_the_study(write, tmp_path):
     task = '[identify]\nloss = "cauchy"\nloss_scale = 0.1\nvalidation = ["long"]\n'
-    text = TWO.replace('own = ["size"]\narguments', "arguments") + task
+    text = TWO.replace('local = ["size"]\narguments', "arguments") + task
     with pytest.raises(InputError, match="parameter 'size' belongs to experiments for validation alone"):
         run_study(load(write(text)), tmp_path / "refused")
-    _, outcome = run_study(load(write(text.replace('own = ["size"]', ""))), tmp_path / "run")
+    _, outcome = run_study(load(write(text.replace('local = ["size"]', ""))), tmp_path / "run")
     assert outcome.best["values"] == pytest.approx({"size": 2.0, "rate": 0.8})
     assert "Not fitted: the experiment 'long'." in outcome.summary
     assert "weighted residuals exceed 0.1" in outcome.status
@@ -263,9 +263,9 @@ def test_an_own_parameter_has_bounds_and_a_first_guess_for_one_experiment(write,
 @pytest.mark.parametrize(
     ("own", "sentence"),
     [
-        ("{ size = { lower = 5.0 } }", "[[experiments]] 'long', own: bounds are (5.0, 4.0)"),
-        ("{ sice = { lower = 1.0 } }", "[[experiments]] 'long', own: unknown parameter 'sice'; did you mean 'size'?"),
-        ('["sice"]', "[[experiments]] 'long', own: unknown parameter 'sice'; did you mean 'size'?"),
+        ("{ size = { lower = 5.0 } }", "[[experiments]] 'long', local: bounds are (5.0, 4.0)"),
+        ("{ sice = { lower = 1.0 } }", "[[experiments]] 'long', local: unknown parameter 'sice'; did you mean 'size'?"),
+        ('["sice"]', "[[experiments]] 'long', local: unknown parameter 'sice'; did you mean 'size'?"),
     ],
 )
 def test_what_is_wrong_with_own_parameters(write, own, sentence):
@@ -305,7 +305,7 @@ file = "swings.txt"
 time = "time"
 columns = { "rod.end.angle" = "angle" }
 split = "trial"
-own = ["begin"]
+local = ["begin"]
 """
 )
 
@@ -447,12 +447,12 @@ OFFSETS = """
 name = "a"
 file = "a.csv"
 columns = { "rod.end.x" = "x" }
-own = ["rod.end.x offset"]
+local = ["rod.end.x offset"]
 [[experiments]]
 name = "b"
 file = "b.csv"
 columns = { "rod.end.x" = "x" }
-own = OWN
+local = OWN
 [sensors."rod.end.x"]
 offset = [-0.3, 0.3]
 [identify]
@@ -484,9 +484,9 @@ def test_each_experiment_may_have_its_own_zero_of_a_sensor(own, write, tmp_path)
     [
         (
             '["rod.end.x gain"]',
-            "[[experiments]] 'b', own: unknown parameter 'rod.end.x gain'; did you mean 'rod.end.x offset'?",
+            "[[experiments]] 'b', local: unknown parameter 'rod.end.x gain'; did you mean 'rod.end.x offset'?",
         ),
-        ('{ "rod.end.x offset" = { lower = 0.5 } }', "[[experiments]] 'b', own: bounds are (0.5, 0.3)"),
+        ('{ "rod.end.x offset" = { lower = 0.5 } }', "[[experiments]] 'b', local: bounds are (0.5, 0.3)"),
     ],
 )
 def test_what_is_wrong_with_own_parameters_of_sensors(own, sentence, write, tmp_path):

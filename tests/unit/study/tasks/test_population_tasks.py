@@ -42,7 +42,7 @@ def write(tmp_path, monkeypatch):
     def write(key, own, names=tuple(RATES)):
         tables = [
             f'[[experiments]]\nname = "{name}"\nfile = "{name}.csv"\ncolumns = {{ x = "x" }}\ndeviations = {{ x = 0.01 }}\n'
-            f"own = {own if isinstance(own, str) else own[name]}\n"
+            f"local = {own if isinstance(own, str) else own[name]}\n"
             for name in names
         ]
         path = tmp_path / "decay.toml"

@@ -23,11 +23,11 @@ def effects(told: Screening, channel: str, *, title: str = "") -> go.Figure:
     plotly.graph_objects.Figure
     """
     column = told.channels.index(channel)
-    sizes, unit = told.whole_effects[column], told.units[column]
+    sizes, unit = told.aggregated_effects[column], told.units[column]
     figure = go.Figure()
     figure.add_scatter(
         x=sizes,
-        y=told.whole_spread[column],
+        y=told.aggregated_spread[column],
         error_x={"array": 2 * told.errors[column], "width": 4},
         text=[plain(name) for name in told.box.names],
         textposition="top center",

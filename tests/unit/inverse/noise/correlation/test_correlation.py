@@ -129,7 +129,7 @@ def test_only_the_correlated_experiment_is_corrected():
     for name, own in noise.items():
         model = straight(TIMES)
         data = Measurements.of(TIMES, {"x": 1 + 0.5 * TIMES + own}, 1.0)
-        experiments.append(Experiment(name, model, data, own=("a",)))
+        experiments.append(Experiment(name, model, data, local=("a",)))
     fit = identify(experiments, starts=1, horizon=None)
     assert [process.channel for process in fit.correlated.processes] == ["a.x"]
     names = list(fit.parameters.names)

@@ -86,7 +86,7 @@ def test_even_samples_may_have_gaps_and_jitter(along, grid):
 
 def test_each_channel_of_each_experiment_is_a_series():
     data = measured(DECAY, [2.0, 0.8], noise=0.1)
-    model, together = joint([Experiment("a", DECAY, data), Experiment("b", DECAY, data, own=("size",))])
+    model, together = joint([Experiment("a", DECAY, data), Experiment("b", DECAY, data, local=("size",))])
     problem = pose(model, together, None, Journal(len(together.values)))  # pyright: ignore
     found = list(series_of(problem))
     assert [own.name for own in found] == ["a.x", "b.x"]

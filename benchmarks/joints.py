@@ -15,7 +15,7 @@ from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.markers import direction, spin, spin_rate
 from dalembert.multibody.components.planar.prismatic_joint import PRISMATIC
 from dalembert.multibody.components.planar.revolute_joint import REVOLUTE
-from dalembert.multibody.kernels.block_table import Blocks, Model
+from dalembert.multibody.kernels.block_table import BlockModel, Blocks
 from dalembert.multibody.kernels.elementary import sin_cos
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.records import RESIDUAL, TANGENT
@@ -129,7 +129,7 @@ class _Kernel:
         kept = whole.blocks.index, whole.blocks.integers, whole.blocks.numbers
         blocks = Blocks(*({kind: columns[place]} for columns in kept))
         rows = reduction(blocks.index, whole.coordinates, whole.size)
-        self.model = Model(blocks, whole.signals, whole.callbacks, whole.size, whole.coordinates, self.dtype, rows)
+        self.model = BlockModel(blocks, whole.signals, whole.callbacks, whole.size, whole.coordinates, self.dtype, rows)
         self.state = np.random.default_rng(1).normal(size=(3, whole.size + 1))
         self.state[:, -1] = 0.0
         slots, entries, _ = chain.structure.full.separate

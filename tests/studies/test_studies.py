@@ -41,9 +41,7 @@ def found(study: Study, outcome: Outcome, row: dict[str, Any]) -> float:
             return getattr(outcome, "result").noise.estimates[quantity]  # noqa: B009
         case "identify" | "sample":
             values = outcome.best["values"]
-            return (
-                outcome.best["misfit"] if quantity == "misfit" else values[quantity] / values.get(row.get("per"), 1)
-            )
+            return outcome.best["misfit"] if quantity == "misfit" else values[quantity] / values.get(row.get("per"), 1)
         case "design" | "identify_inertias" | "exciting_trajectory" | "global_sensitivity" | "screening":
             return outcome.best["values"][quantity]
         case "identify_bands" if quantity == "simulations":

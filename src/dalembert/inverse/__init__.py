@@ -28,9 +28,9 @@ from dalembert.inverse.events import (
     Profiled,
     Sampled,
     Screened,
+    SearchIteration,
     StartBegan,
     StartEnd,
-    Step,
     as_record,
 )
 from dalembert.inverse.experiments.experiment import Experiment, ExperimentFit
@@ -106,11 +106,11 @@ __all__ = [
     "ResidualDiagnostics",
     "Sampled",
     "Screened",
+    "SearchIteration",
     "SeriesResiduals",
     "ShootingState",
     "StartBegan",
     "StartEnd",
-    "Step",
     "Validation",
     "as_record",
     "compare_models",

@@ -91,7 +91,7 @@ class Penalised:
 
 
 @dataclass(frozen=True, eq=False)
-class Step:
+class SearchIteration:
     """One iteration of one start.
 
     Parameters
@@ -167,7 +167,19 @@ class Finished:
     simulations: int
 
 
-Event = StartBegan | Screened | Sampled | Checked | Paved | Profiled | Drawn | Penalised | Step | StartEnd | Finished
+Event = (
+    StartBegan
+    | Screened
+    | Sampled
+    | Checked
+    | Paved
+    | Profiled
+    | Drawn
+    | Penalised
+    | SearchIteration
+    | StartEnd
+    | Finished
+)
 OnEvent = Callable[[Event], None]
 
 

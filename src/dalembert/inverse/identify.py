@@ -43,7 +43,7 @@ from dalembert.inverse.noise.with_noise import noise_findings as estimated_noise
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.loss import loss_of
 from dalembert.inverse.problem.prior import priors
-from dalembert.inverse.problem.problem import Linearisation, Problem, pose
+from dalembert.inverse.problem.problem import Linearisation, MisfitProblem, pose
 from dalembert.inverse.shooting.growth import growth_findings
 from dalembert.inverse.shooting.restarts import check_restart, check_segments
 from dalembert.inverse.shooting.shooting import MultipleShooting, shots
@@ -364,13 +364,13 @@ def _seen(journal: Journal) -> list[np.ndarray]:
     return [*([] if journal.first is None else [journal.first.vector]), *(start.end for start in ends)]
 
 
-def _origin(problem: Problem, start: Mapping[str, float] | ArrayLike) -> np.ndarray:
+def _origin(problem: MisfitProblem, start: Mapping[str, float] | ArrayLike) -> np.ndarray:
     """Search point of a first guess."""
     return problem.search.points(problem.model.parameters.start_vector(start))
 
 
 def _estimated(
-    problem: Problem, response: np.ndarray, at: Linearisation | None, best: End, *, known: bool, exact: bool
+    problem: MisfitProblem, response: np.ndarray, at: Linearisation | None, best: End, *, known: bool, exact: bool
 ) -> tuple[Estimate, CorrelatedResiduals | None]:
     """Deviations and correlations, NaN without a jacobian; the noise is known, or estimated from the residuals.
 

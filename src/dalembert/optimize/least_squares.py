@@ -6,7 +6,7 @@ import numpy as np
 
 from dalembert.arguments import limited
 from dalembert.optimize.minimum import Minimum, reachable
-from dalembert.optimize.path import Creeps, Path
+from dalembert.optimize.path import Creeps, SearchPath
 from dalembert.optimize.settle import settle
 from dalembert.optimize.stopping import SMOOTH, WINDOW, Stopped, Stopping
 from dalembert.optimize.sum_of_squares import SquaresMinimiser, SumOfSquares
@@ -66,7 +66,7 @@ class LeastSquares(SquaresMinimiser):
         # A curved valley needs more trial points before it shows progress, the more, the more parameters there are.
         window = max(WINDOW, (10 if self.gain < COARSE else 4) * len(start))
         most = TRIALS * (1 + len(start)) if self.trials is None else self.trials
-        path = Path(problem, start, Stopping(self.gain, window), most, type(self).__name__)
+        path = SearchPath(problem, start, Stopping(self.gain, window), most, type(self).__name__)
         try:
             end = self._trust_region(path)
         except Creeps as at:
@@ -80,7 +80,7 @@ class LeastSquares(SquaresMinimiser):
         except Stopped as stopped:
             return path.minimum(stopped)
 
-    def _trust_region(self, path: Path) -> Minimum:
+    def _trust_region(self, path: SearchPath) -> Minimum:
         from scipy.optimize import least_squares  # what does not minimise starts without it
 
         problem, start = path.problem, path.origin

@@ -22,7 +22,7 @@ class Creeps(Exception):
 
 
 @dataclass(eq=False)
-class Path:
+class SearchPath:
     """Residual and jacobian as SciPy calls them, in u = 1 + (x − origin)/unit; counts, and keeps the best point."""
 
     problem: SumOfSquares

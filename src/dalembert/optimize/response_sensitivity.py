@@ -10,7 +10,7 @@ from dalembert.optimize.identifiable_part import creeps, identifiable_part
 from dalembert.optimize.least_squares import LeastSquares
 from dalembert.optimize.linear_model import LinearModel
 from dalembert.optimize.minimum import Minimum, Progress, RegularisedStep, reachable
-from dalembert.optimize.path import Creeps, Path
+from dalembert.optimize.path import Creeps, SearchPath
 from dalembert.optimize.settle import settle
 from dalembert.optimize.stopping import WINDOW, Stopped, Stopping
 from dalembert.optimize.sum_of_squares import SquaresMinimiser, SumOfSquares
@@ -162,7 +162,7 @@ class _Descent:
     def settled(self, model: LinearModel) -> Minimum:
         """Return the end of the descent in the identifiable directions."""
         stopping, name = Stopping(self.method.gain, WINDOW), type(self.method).__name__
-        path = Path(
+        path = SearchPath(
             self.problem, self.x, stopping, self.method.trials, name, self.before, self.trials, 1 + self.iterations
         )
         return settle(path, Creeps(self.x, self.r, model.slopes), stopping, self.method.tolerance)

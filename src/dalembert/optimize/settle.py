@@ -7,13 +7,13 @@ import numpy as np
 from dalembert.optimize.identifiable_part import identifiable_part
 from dalembert.optimize.linear_model import LinearModel
 from dalembert.optimize.minimum import Minimum
-from dalembert.optimize.path import Creeps, Path
+from dalembert.optimize.path import Creeps, SearchPath
 from dalembert.optimize.stopping import SMOOTH, Stopped, Stopping
 
 HALVINGS = 10  # times that a step is halved at most
 
 
-def settle(path: Path, at: Creeps, stopping: Stopping, shortest: float) -> Minimum:
+def settle(path: SearchPath, at: Creeps, stopping: Stopping, shortest: float) -> Minimum:
     """Return where Gauss and Newton's steps end that leave out the directions which are not identifiable.
 
     These directions are computed anew at each point. ``shortest`` is the length of the shortest step.
@@ -37,7 +37,7 @@ def settle(path: Path, at: Creeps, stopping: Stopping, shortest: float) -> Minim
 
 
 def _after(
-    path: Path, x: np.ndarray, r: np.ndarray, step: np.ndarray, stopping: Stopping, shortest: float
+    path: SearchPath, x: np.ndarray, r: np.ndarray, step: np.ndarray, stopping: Stopping, shortest: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the point (parameters,) after a step, halved until the sum of squares falls, and its residual."""
     for _ in range(HALVINGS):

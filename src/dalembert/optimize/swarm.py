@@ -149,7 +149,7 @@ class Swarm(Checked, ABC):
     def steered(
         self, state: SwarmState, rng: np.random.Generator, inertia: tuple[float, float], c1: float, c2: float
     ) -> np.ndarray:
-        """Velocities ωv + c1 r1 (personal best − x) + c2 r2 (best of all − x), ω falling linearly to its second value."""
+        """Velocities ωv + c1 r1 (personal best − x) + c2 r2 (best of all − x); ω falls linearly."""
         first, last = inertia
         # ω(t) = first + (last − first) t/iterations: Shi & Eberhart (1998), linear in the number of the iteration.
         kept = (first + (last - first) * state.iteration / self.iterations) * state.velocities

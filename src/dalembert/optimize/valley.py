@@ -5,7 +5,7 @@ from typing import NoReturn
 import numpy as np
 
 from dalembert.optimize.linear_model import LinearModel
-from dalembert.optimize.path import Path
+from dalembert.optimize.path import SearchPath
 from dalembert.optimize.stopping import Stopping
 
 AHEAD = 0.1  # part of a step at which residuals are computed to see how the valley bends
@@ -14,7 +14,7 @@ HARDER, EASIER = 3.0, 5.0  # factors of the squared damping after a rejected and
 DAMPING, LEAST = 1e-3, 1e-16  # squared damping at first and at least, relative to the squared largest singular value
 
 
-def follow_valley(path: Path, start: np.ndarray, stopping: Stopping, shortest: float) -> NoReturn:
+def follow_valley(path: SearchPath, start: np.ndarray, stopping: Stopping, shortest: float) -> NoReturn:
     """Descend from ``start`` (parameters,) along a valley; the exception says why the descent ended.
 
     Notes

@@ -7,7 +7,7 @@ _NAMES = {
     "look": "dark",
     "page": "report",
     "registry": "sections_of",
-    "section": "Part",
+    "section": "ReportSection",
 }
 _ELSEWHERE = {"dalembert.tables": "Table cell"}
 _HOMES = {name: f"{__name__}.{module}" for module, names in _NAMES.items() for name in names.split()}

@@ -4,6 +4,6 @@ from dalembert.report.contents import figures as figures
 from dalembert.report.look import dark as dark
 from dalembert.report.page import report as report
 from dalembert.report.registry import sections_of as sections_of
-from dalembert.report.section import Part as Part
+from dalembert.report.section import ReportSection as ReportSection
 from dalembert.tables import Table as Table
 from dalembert.tables import cell as cell

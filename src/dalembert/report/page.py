@@ -37,7 +37,8 @@ def report(
     path : path
         The file is written whole or not at all; its folder is made.
     *beside
-        Other results that are shown with it, and sections of yours (:class:`Part`). A fit is shown with a trajectory
+        Other results that are shown with it,
+        and sections of yours (:class:`ReportSection`). A fit is shown with a trajectory
         at the identified values, a population, profiles and a prediction; of several experiments, give a mapping of
         their names. A response over frequency is shown with a comparison in time, a backbone, a deformation and
         reduction errors.

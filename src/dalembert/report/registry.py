@@ -43,13 +43,13 @@ def sections_of(kind: type | str) -> Callable[[Function], Function]:
     Examples
     --------
     >>> from dataclasses import dataclass
-    >>> from dalembert.report import Part, sections_of
+    >>> from dalembert.report import ReportSection, sections_of
     >>> @dataclass
     ... class Weather:
     ...     rain: float
     >>> @sections_of(Weather)
     ... def weather(result, options):
-    ...     return [Part("Weather", (f"{result.rain} mm of rain.",))]
+    ...     return [ReportSection("Weather", (f"{result.rain} mm of rain.",))]
     """
 
     def registered(function: Function) -> Function:

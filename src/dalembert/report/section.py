@@ -130,7 +130,7 @@ class Section:
         return Markup(environment.get_template(self.template).render(section=self))
 
 
-class Part(Section):
+class ReportSection(Section):
     """A section of a report: sentences, Plotly figures and tables.
 
     Parameters
@@ -143,7 +143,7 @@ class Part(Section):
 
     Examples
     --------
-    >>> Part("Weather", ("It rained.",)).anchor
+    >>> ReportSection("Weather", ("It rained.",)).anchor
     'weather'
     """
 

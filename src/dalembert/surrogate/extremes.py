@@ -12,7 +12,7 @@ ITERATIONS, DAMPINGS = 60, 40
 CONVERGED = 1e-15  # a step that promises less than this part of the sum of |coefficients| is not taken
 
 
-class Room(NamedTuple):
+class ExtremesWorkspace(NamedTuple):
     """Room for a box, in d directions, and for starts in it.
 
     Parameters
@@ -44,10 +44,10 @@ class Room(NamedTuple):
     places: Integers
 
 
-def room(rows: Rows, starts: int) -> Room:
+def room(rows: Rows, starts: int) -> ExtremesWorkspace:
     """Room for so many starts."""
     size = len(rows.degrees)
-    return Room(
+    return ExtremesWorkspace(
         *np.empty((5, size)),  # from ``eta`` to ``trial_gradient``
         free=np.empty(size, dtype=np.int64),
         hessian=np.empty((size, size)),
@@ -255,7 +255,7 @@ def _signed(coefficients, sign, signed):
 @kernel
 def extremes(
     values: Reals3, grid: Reals2, sides: Integers, low: Reals2, high: Reals2, rows: Rows, bounds: Reals3,
-    at: Reals4, room: Room,
+    at: Reals4, room: ExtremesWorkspace,
 ) -> None:  # fmt: skip
     """Refine the extremes of a scan; all in coordinates η of the polynomial.
 

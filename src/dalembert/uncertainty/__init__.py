@@ -1,7 +1,7 @@
 """Bounds of a response while parameters are anywhere in their intervals."""
 
 from dalembert.uncertainty.chebyshev import Chebyshev
-from dalembert.uncertainty.comparison import Comparison, Row, compare
+from dalembert.uncertainty.comparison import ComparedMethod, Comparison, compare
 from dalembert.uncertainty.events import Began, Ended, Event, Ran, as_record
 from dalembert.uncertainty.methods import methods_by_name
 from dalembert.uncertainty.morris import screen
@@ -17,6 +17,7 @@ from dalembert.uncertainty.taylor import Taylor
 __all__ = [
     "Began",
     "Chebyshev",
+    "ComparedMethod",
     "Comparison",
     "Ended",
     "Event",
@@ -25,7 +26,6 @@ __all__ = [
     "Optimise",
     "Propagation",
     "Ran",
-    "Row",
     "Sampling",
     "Scan",
     "Screening",

@@ -24,7 +24,7 @@ USUAL = ("vertex", "taylor", "latin-hypercube", "monte-carlo", "chebyshev", "opt
 
 
 @dataclass(frozen=True)
-class Row:
+class ComparedMethod:
     """One method in a comparison: mean width of its bands, and distance from the reference over all bounds.
 
     Width and distances are in the channels' units; ``largest`` and ``rms`` are zero for the reference itself.
@@ -62,14 +62,14 @@ class Comparison(EndedResult):
     refused: tuple[tuple[str, str], ...] = ()
 
     @property
-    def rows(self) -> tuple[Row, ...]:
+    def rows(self) -> tuple[ComparedMethod, ...]:
         """A row a method, in the order of ``results``."""
         reference = self.reference_result
         rows = []
         for result in self.results:
             apart = np.abs([result.lower - reference.lower, result.upper - reference.upper])
             sizes = float(result.width.mean()), float(apart.max()), float(np.sqrt(np.mean(apart**2)))
-            rows.append(Row(result.method, result.kind, *sizes, result.runs, result.seconds, result.success))
+            rows.append(ComparedMethod(result.method, result.kind, *sizes, result.runs, result.seconds, result.success))
         return tuple(rows)
 
     @property

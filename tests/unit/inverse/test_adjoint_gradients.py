@@ -12,7 +12,7 @@ from dalembert.forward import Checkpoint, Recorded, Sensor, Sensors, prefers_adj
 from dalembert.inverse import AutoregressiveNoise, Experiment, ProportionalNoise, likelihood
 from dalembert.inverse.noise.models.noise_model import NoiseModel
 from dalembert.inverse.problem.journal import Journal
-from dalembert.inverse.problem.problem import Problem, pose
+from dalembert.inverse.problem.problem import MisfitProblem, pose
 from refusals import refused
 from unknown_loads import pushed_model
 
@@ -38,7 +38,7 @@ def agree(given: np.ndarray, expected: np.ndarray) -> None:
     np.testing.assert_allclose(given, expected, rtol=0, atol=1e-10 * np.abs(expected).max())
 
 
-def posed(model: da.ForwardModel = MODEL) -> Problem:
+def posed(model: da.ForwardModel = MODEL) -> MisfitProblem:
     return pose(model, measured(), None, Journal(len(TIMES)))
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from dalembert.errors import InputError
-from dalembert.inverse import StartEnd, Step
+from dalembert.inverse import SearchIteration, StartEnd
 from dalembert.parameters import Parameter, Parameters
 from dalembert.report import charts
 from dalembert.report.charts.identification.identifiability import combination
@@ -138,7 +138,7 @@ def test_small_parts_of_a_combination_are_left_out():
 
 
 def test_gaps_of_the_best_start_stand_over_its_misfit():
-    step = partial(Step, values=np.zeros(2), samples=9)
+    step = partial(SearchIteration, values=np.zeros(2), samples=9)
     ends = [StartEnd(np.zeros(2), np.zeros(2), misfit, True, "", 9) for misfit in (5.0, 1.0)]
     history = [
         step(0, 0, 3, 9.0, gap=0.5),

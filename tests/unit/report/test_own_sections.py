@@ -9,7 +9,7 @@ from inline_snapshot import snapshot
 
 from dalembert.errors import InputError
 from dalembert.findings import Finding
-from dalembert.report import Part, Table, cell, figures, report, sections_of
+from dalembert.report import ReportSection, Table, cell, figures, report, sections_of
 from dalembert.results import Result
 from pages import read_page
 from refusals import refused
@@ -35,11 +35,13 @@ def weather(result, asked):
     rows = [(cell("rain"), cell(result.rain))]
     table = Table("rain", "Rain", ("quantity", "mm"), rows)
     figure = go.Figure(go.Scatter(y=[0.0, result.rain]), layout={"title": {"text": "Rain over time"}})
-    return [Part("Weather", (f"{result.rain} mm of rain.",), {"Each point is an hour.": figure}, (table,))]
+    return [ReportSection("Weather", (f"{result.rain} mm of rain.",), {"Each point is an hour.": figure}, (table,))]
 
 
 def test_a_section_of_the_users_stands_in_the_report_of_a_fit(tmp_path: Path) -> None:
-    own = Part("Temperatures", ("The laboratory had 21 °C.",), {"By a thermometer.": go.Figure(go.Scatter(y=[21, 22]))})
+    own = ReportSection(
+        "Temperatures", ("The laboratory had 21 °C.",), {"By a thermometer.": go.Figure(go.Scatter(y=[21, 22]))}
+    )
     page = read_page(report(fit(), tmp_path / "fit.html", motion(), own))
     assert "The laboratory had 21 °C." in page.text
     assert "By a thermometer." in page.text

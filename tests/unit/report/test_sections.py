@@ -7,7 +7,7 @@ import plotly.graph_objects as go
 import pytest
 
 from dalembert.multibody import Trajectory
-from dalembert.report import Part, Table, figures, report, sections_of
+from dalembert.report import ReportSection, Table, figures, report, sections_of
 from dalembert.report.page import environment
 from dalembert.report.registry import _SECTIONS
 from dalembert.report.section import Download, Fold, Listed, Plot, Row, Section, Source
@@ -49,7 +49,7 @@ def test_sections_of_a_user_replace_those_of_the_package(tmp_path: Path, monkeyp
     trajectory = motion()
     assert "mechanism" in figures(trajectory)  # imports the sections before the registry is replaced
     monkeypatch.setattr("dalembert.report.registry._SECTIONS", dict(_SECTIONS))
-    sections_of(Trajectory)(lambda result, asked: [Part("Mine", ("As I like it.",))])
+    sections_of(Trajectory)(lambda result, asked: [ReportSection("Mine", ("As I like it.",))])
     assert "As I like it." in read_page(report(replace(trajectory), tmp_path / "a.html")).text
     assert figures(trajectory) == {}
 
@@ -62,6 +62,6 @@ def test_a_class_of_a_layer_above_is_known_by_its_name(monkeypatch):
         height: float = 2.0
 
     sections_of(f"{Tide.__module__}.{Tide.__qualname__}")(
-        lambda result, asked: [Part("Tide", (), {"How high.": go.Figure(go.Bar(y=[result.height]))})]
+        lambda result, asked: [ReportSection("Tide", (), {"How high.": go.Figure(go.Bar(y=[result.height]))})]
     )
     assert list(figures(Tide())) == list(figures(stand_in(Tide, height=3.0))) == ["tide-1"]

@@ -161,7 +161,13 @@ def ratios(scale: float) -> list[np.ndarray]:
     )
     found, screened = da.global_sensitivity(model), da.screen(model)
     gaps = [value for finding in found.findings for name, value in finding.values.items() if "variation" in name]
-    effects = [screened.effects, screened.spread, screened.aggregated_effects, screened.aggregated_spread, screened.errors]
+    effects = [
+        screened.effects,
+        screened.spread,
+        screened.aggregated_effects,
+        screened.aggregated_spread,
+        screened.errors,
+    ]
     indices = [found.first, found.total, found.aggregated_first, found.aggregated_total]
     return [*indices, np.array(gaps), *(np.asarray(one) / scale for one in effects)]
 

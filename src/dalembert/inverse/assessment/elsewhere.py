@@ -6,9 +6,9 @@ import numpy as np
 import scipy
 
 from dalembert.errors import SolveError
-from dalembert.inverse.assessment.walk import Walk, least, walked
+from dalembert.inverse.assessment.walk import ProfileWalk, least, walked
 from dalembert.inverse.least_squares.descent import Memo
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 from dalembert.inverse.starts.neighbours import dips
 
 SCANNED = 25  # values of the parameter that are simulated across its bounds
@@ -17,7 +17,7 @@ MOST = 3  # dips of the scan that are descended into, the lowest ones
 
 
 def elsewhere(
-    problem: Problem, vector: np.ndarray, k: int, interval: tuple[float, float], walk: Walk
+    problem: MisfitProblem, vector: np.ndarray, k: int, interval: tuple[float, float], walk: ProfileWalk
 ) -> tuple[tuple[float, float], ...]:
     """Intervals of parameter ``k`` beside the one around the identified ``vector`` (parameters,), increasing.
 
@@ -35,7 +35,7 @@ def elsewhere(
 
 
 def _around(
-    k: int, walk: Walk, intervals: list[tuple[float, float]], problem: Problem, point: np.ndarray
+    k: int, walk: ProfileWalk, intervals: list[tuple[float, float]], problem: MisfitProblem, point: np.ndarray
 ) -> tuple[float, float] | None:
     """Interval around where the misfit is least near a search point, apart from those found; None if there is none."""
     memo, search = Memo(problem), problem.search
@@ -58,7 +58,7 @@ def _around(
     return lower, upper
 
 
-def _starts(problem: Problem, vector: np.ndarray, k: int, interval: tuple[float, float]) -> np.ndarray:
+def _starts(problem: MisfitProblem, vector: np.ndarray, k: int, interval: tuple[float, float]) -> np.ndarray:
     """Search points (n, parameters) at the lowest dips of a scan outside of the interval."""
     search = problem.search
     values = np.linspace(search.lower[k], search.upper[k], SCANNED)

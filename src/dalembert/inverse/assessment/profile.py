@@ -15,14 +15,14 @@ from dalembert.forward.provenance import provenance
 from dalembert.inverse.assessment.elsewhere import elsewhere
 from dalembert.inverse.assessment.profiled_likelihood import profiled_likelihood
 from dalembert.inverse.assessment.profiles import Profile, Profiles
-from dalembert.inverse.assessment.walk import Walk, walked
+from dalembert.inverse.assessment.walk import ProfileWalk, walked
 from dalembert.inverse.events import OnEvent
 from dalembert.inverse.experiments.experiment import Experiment
 from dalembert.inverse.experiments.experiments import joint, placed
 from dalembert.inverse.fit.fit import Fit, check_level
 from dalembert.inverse.least_squares.estimate import estimate
 from dalembert.inverse.problem.journal import Journal
-from dalembert.inverse.problem.problem import Linearisation, Problem, pose
+from dalembert.inverse.problem.problem import Linearisation, MisfitProblem, pose
 from dalembert.optimize import LeastSquares
 
 POINTS = 12  # values of a parameter on each side of the identified one, at most, if not given
@@ -134,7 +134,7 @@ def profile(
     likelihood = None if fit.noise is None else profiled_likelihood(problem, at, fit.noise)
     method = LeastSquares(trials=30)
     walks = [
-        Walk(best, noise * factor, threshold, points, method, likelihood)
+        ProfileWalk(best, noise * factor, threshold, points, method, likelihood)
         for factor in _factors(fit, problem, at).tolist()
     ]
     ways = [(fit.parameters.names.index(name), side) for name in chosen for side in (-1, 1)]
@@ -173,7 +173,7 @@ def _threshold(fit: Fit, level: float) -> float:
     return quantile if fit.noise is None else float(freedom * np.log1p(quantile / freedom))
 
 
-def _factors(fit: Fit, problem: Problem, at: Linearisation) -> np.ndarray:
+def _factors(fit: Fit, problem: MisfitProblem, at: Linearisation) -> np.ndarray:
     """Return the variance of each parameter relative to that for independent residuals of the weights."""
     plain, factors = fit.plain_deviations, np.ones(len(fit.values))
     if fit.noise is not None:
@@ -184,7 +184,7 @@ def _factors(fit: Fit, problem: Problem, at: Linearisation) -> np.ndarray:
     return factors
 
 
-def _ahead(at: Linearisation, walks: Sequence[Walk], problem: Problem, way: tuple[int, int]) -> None:
+def _ahead(at: Linearisation, walks: Sequence[ProfileWalk], problem: MisfitProblem, way: tuple[int, int]) -> None:
     """The same side on a worker of a cluster."""
     walked(problem, at, *way, walks[way[0]])
 
@@ -199,7 +199,7 @@ def _names(fit: Fit, names: Collection[str] | None) -> Iterable[str]:
 
 def _problem(
     model: ForwardModel | Sequence[Experiment], data: Measurements | None, fit: Fit, on_event: OnEvent | None
-) -> Problem:
+) -> MisfitProblem:
     """The problem that was solved."""
     if isinstance(model, ForwardModel):
         if data is None:

@@ -12,7 +12,7 @@ from dalembert.inverse.noise.likelihood.likelihood import Likelihood
 from dalembert.inverse.noise.likelihood.maximum import Objective, maximum
 from dalembert.inverse.noise.likelihood.placing import noises_of
 from dalembert.inverse.noise.likelihood.restricted import Restriction
-from dalembert.inverse.problem.problem import Linearisation, Problem
+from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
 from dalembert.parameters import Parameters
 
 
@@ -30,7 +30,7 @@ class ProfiledLikelihood:
         """Return the same, as it is before its first value: each side of a profile begins with the fit's noise."""
         return replace(self, _last=[])
 
-    def least(self, problem: Problem, k: int, guess: np.ndarray) -> tuple[float, np.ndarray] | str:
+    def least(self, problem: MisfitProblem, k: int, guess: np.ndarray) -> tuple[float, np.ndarray] | str:
         """Return twice the loss of log-likelihood with search coordinate k as in ``guess``, and the search point.
 
         The noise parameters are estimated again with the other parameters: they are unknown, and in noise that depends
@@ -52,7 +52,7 @@ class ProfiledLikelihood:
         return 2 * (self.value - best.value), search.points(best.vector[: len(vector)])
 
 
-def profiled_likelihood(problem: Problem, at: Linearisation, noise: EstimatedNoise) -> ProfiledLikelihood:
+def profiled_likelihood(problem: MisfitProblem, at: Linearisation, noise: EstimatedNoise) -> ProfiledLikelihood:
     """Return the likelihood of a fit whose noise was estimated.
 
     ``problem``: with the weights of the fit.

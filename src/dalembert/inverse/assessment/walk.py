@@ -9,7 +9,7 @@ from dalembert.errors import SolveError
 from dalembert.inverse.assessment.profiled_likelihood import ProfiledLikelihood
 from dalembert.inverse.events import Profiled
 from dalembert.inverse.least_squares.descent import Memo
-from dalembert.inverse.problem.problem import Linearisation, Problem
+from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
 from dalembert.optimize import LeastSquares
 
 STEP = 0.25  # growth of √excess from value to value, in parts of its threshold
@@ -20,7 +20,7 @@ LONGEST = 1 / 8  # longest step, as a part of the search box's width
 
 
 @dataclass(frozen=True)
-class Walk:
+class ProfileWalk:
     """What a walk goes by: misfit at the fit, variance of a weighted residual, threshold of the excess, most points.
 
     ``likelihood`` takes the place of the misfit where noise was estimated with the parameters.
@@ -33,7 +33,7 @@ class Walk:
     method: LeastSquares
     likelihood: ProfiledLikelihood | None = None
 
-    def fresh(self) -> "Walk":
+    def fresh(self) -> "ProfileWalk":
         """Return the same, as it is before its first value."""
         return self if self.likelihood is None else replace(self, likelihood=self.likelihood.fresh())
 
@@ -48,7 +48,9 @@ class Side:
     broken: str = ""
 
 
-def walked(problem: Problem, at: Linearisation, k: int, side: int, walk: Walk, excess: float = 0.0) -> Side:
+def walked(
+    problem: MisfitProblem, at: Linearisation, k: int, side: int, walk: ProfileWalk, excess: float = 0.0
+) -> Side:
     """One side of the profile of parameter ``k``: ``side`` −1 goes down, +1 up, from a minimum with this excess.
 
     Each value is chosen so that √excess grows by a quarter of its threshold, judging from the last two; once beyond,
@@ -97,7 +99,7 @@ def walked(problem: Problem, at: Linearisation, k: int, side: int, walk: Walk, e
     return branch
 
 
-def _first(problem: Problem, at: Linearisation, k: int, walk: Walk) -> tuple[float, np.ndarray]:
+def _first(problem: MisfitProblem, at: Linearisation, k: int, walk: ProfileWalk) -> tuple[float, np.ndarray]:
     """Deviation of search coordinate k, and how all coordinates follow it (parameters,), by the linearised response."""
     slopes = problem.slopes(at)
     free = np.arange(slopes.shape[1]) != k
@@ -108,7 +110,7 @@ def _first(problem: Problem, at: Linearisation, k: int, walk: Walk) -> tuple[flo
     return (np.sqrt(walk.variance) / length if length > 0 else np.inf), way
 
 
-def least(problem: Problem, k: int, guess: np.ndarray, walk: Walk) -> tuple[float, np.ndarray] | str:
+def least(problem: MisfitProblem, k: int, guess: np.ndarray, walk: ProfileWalk) -> tuple[float, np.ndarray] | str:
     """Excess and search point (parameters,) of the least misfit with coordinate k as in ``guess``, or why it failed."""
     if walk.likelihood is not None:
         return walk.likelihood.least(problem, k, guess)
@@ -162,7 +164,9 @@ def _step(path: list[tuple[float, np.ndarray]], k: int, goal: float) -> float:
     return 2 * run if rise <= 0 else min(2 * run, max(wanted * run / rise, run / 4))
 
 
-def _crossing(problem: Problem, k: int, path: list[tuple[float, np.ndarray]], walk: Walk, side: Side) -> float:
+def _crossing(
+    problem: MisfitProblem, k: int, path: list[tuple[float, np.ndarray]], walk: ProfileWalk, side: Side
+) -> float:
     """Value of search coordinate k where √excess passes its threshold, between the last two points of the path.
 
     The others begin where those of the points around lie on a line.

@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 
 from dalembert.findings import Finding
-from dalembert.inverse.events import StartEnd, Step
+from dalembert.inverse.events import SearchIteration, StartEnd
 from dalembert.inverse.fit.stored_data import StoredBands
 from dalembert.inverse.fit.stored_search import History, Starts
 from dalembert.inverse.least_squares.estimate import Estimate, Identifiability
@@ -94,7 +94,7 @@ class BandFit(EndedResult):
     checked_lower: OptionalTable
     checked_upper: OptionalTable
     checked_misfit: float | None
-    history: Annotated[tuple[Step, ...], History("unknown")]
+    history: Annotated[tuple[SearchIteration, ...], History("unknown")]
     starts: Annotated[tuple[StartEnd, ...], Starts("unknown")]
     success: bool
     outcome: tuple[Finding, ...]

@@ -4,13 +4,13 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from dalembert.inverse.experiments.experiment import Part
+from dalembert.inverse.experiments.experiment import ExperimentPart
 
 USUAL = 10
 """Blocks of a record, if nothing else decides."""
 
 
-def blocks_of_records(fitted: np.ndarray, parts: Sequence[Part], count: Callable[[int], int]) -> np.ndarray:
+def blocks_of_records(fitted: np.ndarray, parts: Sequence[ExperimentPart], count: Callable[[int], int]) -> np.ndarray:
     """Return the number of the block of each value, from 0, shape (samples, channels); −1 where it was not fitted.
 
     Parameters

@@ -10,7 +10,7 @@ from dalembert.inverse.assessment.predict import band_end, noise_deviations, res
 from dalembert.inverse.experiments.validation import Validation
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.noise.correlation.series import series_of
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 
 LEVEL = 0.95
 
@@ -19,7 +19,7 @@ LEAST = 0.7
 none covered less than 0.86 of an unseen record (tests/unseen_records.py)."""
 
 
-def with_coverage(fit: Fit, problem: Problem) -> Fit:
+def with_coverage(fit: Fit, problem: MisfitProblem) -> Fit:
     """Return the fit with the shares of held-out values inside their 95 % bands, in all and for each channel.
 
     Parameters

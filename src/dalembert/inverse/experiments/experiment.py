@@ -67,7 +67,7 @@ class Experiment:
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class ExperimentPart:
     """Where an experiment stands in the joint response: its samples' rows, its channels' columns.
 
     Parameters
@@ -91,7 +91,7 @@ class Part:
         """Index of its values in an array of shape (samples, channels) of the joint response."""
         return np.ix_(self.rows, self.columns)
 
-    def first(self, rows: int) -> "Part":
+    def first(self, rows: int) -> "ExperimentPart":
         """The same in the first rows of the joint response."""
         samples = int(np.searchsorted(self.rows, rows))
         along = replace(self.coordinate, values=self.coordinate.values[:samples])
@@ -141,6 +141,8 @@ class ExperimentFit:
         return bool(np.any(self.weights > 0))
 
 
-def experiment_fit(part: Part, data: Measurements, response: np.ndarray, weights: np.ndarray) -> ExperimentFit:
+def experiment_fit(
+    part: ExperimentPart, data: Measurements, response: np.ndarray, weights: np.ndarray
+) -> ExperimentFit:
     """The share of a part in joint data, response and weights (samples, channels)."""
     return ExperimentFit(part.name, part.data(data), response[part.block], weights[part.block])

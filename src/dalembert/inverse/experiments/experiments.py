@@ -27,7 +27,7 @@ from dalembert.forward import (
     refined,
     starting,
 )
-from dalembert.inverse.experiments.experiment import Experiment, Part
+from dalembert.inverse.experiments.experiment import Experiment, ExperimentPart
 from dalembert.inverse.problem.matching import check_finite, check_samples, columns_of, weights_of
 from dalembert.parameters import Parameter, Parameters
 
@@ -56,7 +56,7 @@ class JointModel:
     """
 
     models: tuple[ForwardModel, ...]
-    parts: tuple[Part, ...]
+    parts: tuple[ExperimentPart, ...]
     picked: tuple[np.ndarray, ...]
     wiring: tuple[np.ndarray, ...]
     parameters: Parameters
@@ -173,10 +173,10 @@ class JointModel:
     def _shape(self) -> tuple[int, int]:
         return len(self.coordinate.values), len(self.channels)
 
-    def _all(self) -> Iterator[tuple[Part, ForwardModel]]:
+    def _all(self) -> Iterator[tuple[ExperimentPart, ForwardModel]]:
         return zip(self.parts, self.models, strict=True)
 
-    def _simulated(self) -> Iterator[tuple[Part, ForwardModel, np.ndarray, np.ndarray]]:
+    def _simulated(self) -> Iterator[tuple[ExperimentPart, ForwardModel, np.ndarray, np.ndarray]]:
         for entry in zip(self.parts, self.models, self.picked, self.wiring, strict=True):
             if entry[0].name in self.active:
                 yield entry
@@ -203,7 +203,7 @@ def joint(experiments: Sequence[Experiment]) -> tuple[JointModel, Measurements]:
     rows, along = _rows([item.data.coordinate.values for item in experiments])
     ends = np.cumsum([0, *(len(item.data.channels) for item in experiments)])
     parts = tuple(
-        Part(item.name, item.data.coordinate, item.data.channels, own, np.arange(begin, end))
+        ExperimentPart(item.name, item.data.coordinate, item.data.channels, own, np.arange(begin, end))
         for item, own, begin, end in zip(experiments, rows, ends[:-1], ends[1:], strict=True)
     )
     channels = tuple(

@@ -8,7 +8,7 @@ import numpy as np
 from dalembert.findings import Finding
 from dalembert.inverse.noise.correlation.series import series_of
 from dalembert.inverse.noise.correlation.whiteness import LEVEL, p_value
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 
 GOOD = 0.9
 """Share of the variation from which a record counts as explained."""
@@ -54,7 +54,9 @@ WORSE = 1.5
 """Ratio of residuals from which a prediction is said to be worse than the fit."""
 
 
-def explained(problem: Problem, response: np.ndarray, weights: np.ndarray, fitted: float) -> tuple[Explained, ...]:
+def explained(
+    problem: MisfitProblem, response: np.ndarray, weights: np.ndarray, fitted: float
+) -> tuple[Explained, ...]:
     """Return the shares of all channels with held-out values.
 
     Parameters

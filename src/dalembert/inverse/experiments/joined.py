@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 from dalembert.data import Measurements
 from dalembert.errors import InputError
 from dalembert.forward import ForwardModel
-from dalembert.inverse.experiments.experiment import Experiment, Part
+from dalembert.inverse.experiments.experiment import Experiment, ExperimentPart
 from dalembert.inverse.experiments.experiments import joint, joint_weights
 from dalembert.inverse.problem.matching import check_kinds
 
@@ -17,7 +17,7 @@ def joined(
     model: ForwardModel | Sequence[Experiment],
     data: Measurements | None,
     weights: ArrayLike | Mapping[str, ArrayLike] | None,
-) -> tuple[ForwardModel, Measurements, ArrayLike | None, tuple[Part, ...]]:
+) -> tuple[ForwardModel, Measurements, ArrayLike | None, tuple[ExperimentPart, ...]]:
     """Model, data and weights, with several experiments the joint ones, and where each experiment stands in them."""
     if isinstance(model, Sequence):
         if data is not None:

@@ -11,7 +11,7 @@ from dalembert.inverse.experiments.suspect_units import suspect_units, unit_find
 from dalembert.inverse.experiments.without_outliers import without_outliers
 from dalembert.inverse.noise.correlation.series import series_of
 from dalembert.inverse.problem.journal import Journal
-from dalembert.inverse.problem.problem import Problem, pose
+from dalembert.inverse.problem.problem import MisfitProblem, pose
 
 FAR = 0.6
 """Difference of the means, as a part of the larger range, from which a zero is suspected.
@@ -35,7 +35,7 @@ def first_findings(model: ForwardModel, data: Measurements) -> tuple[Finding, ..
     return (*map(unit_finding, units), *_offsets(problem, response, judged))
 
 
-def _offsets(problem: Problem, response: np.ndarray, judged: set[str]) -> Iterator[Finding]:
+def _offsets(problem: MisfitProblem, response: np.ndarray, judged: set[str]) -> Iterator[Finding]:
     """Yield findings on channels, other than those whose unit is suspected, whose means differ much."""
     units = {channel.name: channel.unit for channel in problem.model.channels}
     for series in series_of(problem):

@@ -14,7 +14,7 @@ from dalembert.inverse.experiments.without_outliers import without_outliers
 from dalembert.inverse.least_squares.descent import End, refine
 from dalembert.inverse.noise.correlation.series import Series, series_of
 from dalembert.inverse.problem.journal import Journal
-from dalembert.inverse.problem.problem import Problem, pose
+from dalembert.inverse.problem.problem import MisfitProblem, pose
 from dalembert.optimize import LeastSquares
 
 PREFIX, ANGLE = 1e3, 180 / np.pi
@@ -58,7 +58,7 @@ class SuspectUnit:
         return "Are the data in degrees?" if self.factor > 1 else "Were data in radians converted from degrees?"
 
 
-def suspect_units(problem: Problem, response: np.ndarray) -> tuple[SuspectUnit, ...]:
+def suspect_units(problem: MisfitProblem, response: np.ndarray) -> tuple[SuspectUnit, ...]:
     """Return the channels whose ranges differ by a usual factor from those of a response (samples, channels).
 
     Channels that are constant but for rounding, and data that are mostly noise, are not judged.
@@ -72,7 +72,7 @@ def suspect_units(problem: Problem, response: np.ndarray) -> tuple[SuspectUnit, 
     return tuple(found)
 
 
-def unit_findings(problem: Problem, vector: np.ndarray, response: np.ndarray) -> Iterator[Finding]:
+def unit_findings(problem: MisfitProblem, vector: np.ndarray, response: np.ndarray) -> Iterator[Finding]:
     """Yield the units that the first response of a fit makes suspect, if another unit explains the data.
 
     A unit is wrong if the response explains a channel badly, and explains it and the suspected one where the model is
@@ -126,14 +126,14 @@ def unit_finding(suspect: SuspectUnit, changed: str = "") -> Finding:
     return Finding("suspect-unit", "warning", values, message, advice)
 
 
-def _shares(problem: Problem, response: np.ndarray) -> dict[str, float]:
+def _shares(problem: MisfitProblem, response: np.ndarray) -> dict[str, float]:
     """Part of the variation of each channel that a response explains."""
     names = [series.name for series in series_of(problem)]
     return dict(zip(names, (one.share for one in explained(problem, response, problem.weights, np.inf)), strict=True))
 
 
 def _explaining(
-    problem: Problem, first: np.ndarray, suspects: Sequence[SuspectUnit], poor: set[str]
+    problem: MisfitProblem, first: np.ndarray, suspects: Sequence[SuspectUnit], poor: set[str]
 ) -> Sequence[SuspectUnit]:
     """Return the suspects with which their channels and a poor one are explained: all together, or a single one.
 
@@ -153,12 +153,12 @@ def _explaining(
     return []
 
 
-def _good(problem: Problem, response: np.ndarray, suspects: Sequence[SuspectUnit]) -> set[str]:
+def _good(problem: MisfitProblem, response: np.ndarray, suspects: Sequence[SuspectUnit]) -> set[str]:
     """Names of the channels that a response explains after a change of the suspected units."""
     return {name for name, share in _shares(_converted(problem, suspects), response).items() if share >= GOOD}
 
 
-def _converted(problem: Problem, suspects: Sequence[SuspectUnit]) -> Problem:
+def _converted(problem: MisfitProblem, suspects: Sequence[SuspectUnit]) -> MisfitProblem:
     """The problem of data whose suspected units are changed; their weights change as those of converted deviations."""
     factors = np.ones(problem.weights.size)
     for series in series_of(problem):
@@ -168,7 +168,7 @@ def _converted(problem: Problem, suspects: Sequence[SuspectUnit]) -> Problem:
     return replace(problem, data=data, weights=problem.weights * factors**2)
 
 
-def _ratio(problem: Problem, response: np.ndarray, series: Series) -> float:
+def _ratio(problem: MisfitProblem, response: np.ndarray, series: Series) -> float:
     """Range of a channel's data over that of the response; NaN where one of them says nothing."""
     rows, column = np.divmod(series.rows, response.shape[1])
     column = column[0]
@@ -190,7 +190,7 @@ def _factors(unit: str) -> tuple[float, ...]:
     return (*angles, PREFIX, 1 / PREFIX)
 
 
-def _changed(problem: Problem, start: np.ndarray, end: np.ndarray, factor: float) -> str:
+def _changed(problem: MisfitProblem, start: np.ndarray, end: np.ndarray, factor: float) -> str:
     """Name of a parameter that changed by a factor, its square root, or their inverse; empty if there is none."""
     for name, before, after in zip(problem.model.parameters.names, start, end, strict=True):
         change = after / before if before * after > 0 else 1.0

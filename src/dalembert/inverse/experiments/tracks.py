@@ -8,7 +8,7 @@ import numpy as np
 from dalembert.data import Measurements
 from dalembert.forward import ForwardModel, begun_later
 from dalembert.inverse.experiments.experiments import JointModel
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +62,7 @@ class Track:
         return f"experiment {self.name!r}: " if self.name else ""
 
 
-def tracks(problem: Problem) -> Iterator[Track]:
+def tracks(problem: MisfitProblem) -> Iterator[Track]:
     """Yield the experiments of a problem."""
     model, data = problem.model, problem.data
     if not isinstance(model, JointModel):

@@ -7,10 +7,10 @@ from typing import Annotated
 import numpy as np
 
 from dalembert.errors import InputError, require_known
-from dalembert.inverse.experiments.experiment import Part
+from dalembert.inverse.experiments.experiment import ExperimentPart
 from dalembert.inverse.experiments.experiments import JointModel
 from dalembert.inverse.experiments.explained import WORSE, Explained, explained, percentages
-from dalembert.inverse.problem.problem import Linearisation, Problem
+from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
 from dalembert.stored_fields import Over
 
 HeldOut = float | str | Sequence[str] | Mapping[str, float] | None
@@ -68,8 +68,8 @@ class Split:
     ``fitted`` (samples, channels) masks the values of the whole problem that are fitted.
     """
 
-    whole: Problem
-    part: Problem
+    whole: MisfitProblem
+    part: MisfitProblem
     fitted: np.ndarray
     what: str
 
@@ -84,7 +84,7 @@ class Split:
         return Validation(self.what, weights, misfit, fitted, explained(self.whole, response, weights, fitted))
 
 
-def split(problem: Problem, validation: HeldOut) -> Split:
+def split(problem: MisfitProblem, validation: HeldOut) -> Split:
     """A problem without a share of its samples at the end, or without some of its experiments after their first parts.
 
     Raises
@@ -104,7 +104,7 @@ def split(problem: Problem, validation: HeldOut) -> Split:
     return _experiments(problem, lengths, everything)
 
 
-def whole_jacobian(whole: Problem, part: Problem, at: Linearisation) -> np.ndarray:
+def whole_jacobian(whole: MisfitProblem, part: MisfitProblem, at: Linearisation) -> np.ndarray:
     """Return the jacobian (samples, channels, parameters) of a part in that of the whole, NaN where it has none."""
     if part is whole:
         return at.jacobian
@@ -114,7 +114,7 @@ def whole_jacobian(whole: Problem, part: Problem, at: Linearisation) -> np.ndarr
     return found
 
 
-def _ends(problem: Problem, share: float, fitted: np.ndarray) -> Split:
+def _ends(problem: MisfitProblem, share: float, fitted: np.ndarray) -> Split:
     if not 0 < share < 1:
         raise InputError(f"validation is {share:g}; expected a share of the samples between 0 and 1, such as 0.25")
     kept = problem.samples - round(share * problem.samples)
@@ -133,7 +133,7 @@ def _ends(problem: Problem, share: float, fitted: np.ndarray) -> Split:
     return Split(problem, problem.first(kept), fitted, what)
 
 
-def _experiments(problem: Problem, lengths: Mapping[str, float], fitted: np.ndarray) -> Split:
+def _experiments(problem: MisfitProblem, lengths: Mapping[str, float], fitted: np.ndarray) -> Split:
     """The problem without experiments but for first parts of these lengths, in the unit of their coordinate."""
     model, names = problem.model, tuple(lengths)
     if not isinstance(model, JointModel):
@@ -163,7 +163,7 @@ def _experiments(problem: Problem, lengths: Mapping[str, float], fitted: np.ndar
     columns = np.concatenate([part.columns for part in model.parts if part.name in kept])
     data, weights = problem.data, np.where(missing, 0.0, problem.weights)
     channels = tuple(data.channels[column] for column in columns)
-    both = Part("", data.coordinate, channels, np.arange(problem.samples), columns)
+    both = ExperimentPart("", data.coordinate, channels, np.arange(problem.samples), columns)
     part = replace(
         problem,
         model=model.only(kept),
@@ -174,7 +174,7 @@ def _experiments(problem: Problem, lengths: Mapping[str, float], fitted: np.ndar
     return Split(problem, part, fitted, _in_words(model, lengths))
 
 
-def _samples_until(part: Part, length: float) -> int:
+def _samples_until(part: ExperimentPart, length: float) -> int:
     """Number of samples of an experiment that is predicted which belong to its first part, which is fitted.
 
     Raises

@@ -12,8 +12,8 @@ from dalembert.contents import Contents
 from dalembert.errors import InputError, shown
 from dalembert.findings import Finding
 from dalembert.inverse.diagnostics.residual_diagnostics import ResidualDiagnostics, residual_diagnostics
-from dalembert.inverse.events import StartEnd, Step
-from dalembert.inverse.experiments.experiment import ExperimentFit, Part, experiment_fit
+from dalembert.inverse.events import SearchIteration, StartEnd
+from dalembert.inverse.experiments.experiment import ExperimentFit, ExperimentPart, experiment_fit
 from dalembert.inverse.experiments.validation import Validation
 from dalembert.inverse.fit.integration import IntegrationBias
 from dalembert.inverse.fit.stored_data import StoredData, StoredParts
@@ -99,14 +99,14 @@ class Fit(EndedResult):
     response: Table
     data: StoredData
     weights: Table
-    history: Annotated[tuple[Step, ...], History("parameter")]
+    history: Annotated[tuple[SearchIteration, ...], History("parameter")]
     starts: Annotated[tuple[StartEnd, ...], Starts("parameter")]
     success: bool
     outcome: tuple[Finding, ...]
     method: str
     simulations: int
     provenance: Mapping[str, Any]
-    parts: Annotated[tuple[Part, ...], StoredParts()] = ()
+    parts: Annotated[tuple[ExperimentPart, ...], StoredParts()] = ()
     validation: Validation | None = None
     nodes: Nodes | None = None
     findings: tuple[Finding, ...] = ()

@@ -11,7 +11,7 @@ from dalembert.forward import refined
 from dalembert.inverse.least_squares.estimate import UNSEEN
 from dalembert.inverse.problem.integration_error import as_residuals, integration_error
 from dalembert.inverse.problem.prior import prior_residual
-from dalembert.inverse.problem.problem import Linearisation, Problem
+from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
 from dalembert.inverse.shooting.nodes import Nodes
 from dalembert.stored_fields import Over
 
@@ -59,7 +59,7 @@ class IntegrationBias:
         return bool(np.isnan(self.misfit))
 
 
-def integration_bias(problem: Problem, at: Linearisation | None, nodes: Nodes | None) -> IntegrationBias | None:
+def integration_bias(problem: MisfitProblem, at: Linearisation | None, nodes: Nodes | None) -> IntegrationBias | None:
     """Return the bias by the integrator at a minimum; None for a model that cannot be simulated more exactly.
 
     ``nodes`` are those of multiple shooting. Where errors grow much, the bias is not linear in that of the response.
@@ -75,7 +75,7 @@ def integration_bias(problem: Problem, at: Linearisation | None, nodes: Nodes | 
     return _unknown(at, found.how) if found.error is None else _estimated(problem, at, found.error, found.how)
 
 
-def _estimated(problem: Problem, at: Linearisation, error: np.ndarray, how: str) -> IntegrationBias:
+def _estimated(problem: MisfitProblem, at: Linearisation, error: np.ndarray, how: str) -> IntegrationBias:
     """The bias that an error (samples, channels) of the response causes."""
     scale = problem.model.parameters.scale
     slopes = problem.slopes(at, scale)
@@ -95,7 +95,7 @@ def _estimated(problem: Problem, at: Linearisation, error: np.ndarray, how: str)
     )
 
 
-def _misfit(problem: Problem, response: np.ndarray, vector: np.ndarray) -> float:
+def _misfit(problem: MisfitProblem, response: np.ndarray, vector: np.ndarray) -> float:
     return float(np.sum(problem.squares(response)) + np.sum(prior_residual(problem.model.parameters, vector) ** 2))
 
 
@@ -105,7 +105,7 @@ def _unknown(at: Linearisation, why: str) -> IntegrationBias:
 
 def integration_findings(
     found: IntegrationBias | None,
-    problem: Problem,
+    problem: MisfitProblem,
     deviations: np.ndarray,
     misfit: float,
     *,

@@ -9,7 +9,7 @@ from dalembert.findings import Finding
 from dalembert.inverse.least_squares.descent import End
 from dalembert.inverse.noise.noise_floor import NoiseFloor, signal
 from dalembert.inverse.problem.combinations import members, moved, separated
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 from dalembert.inverse.shooting.nodes import Nodes
 
 _MEDIAN = 0.6745  # of the size of a standard normal variable
@@ -27,7 +27,7 @@ _MORE = (
 
 
 def outcome(
-    problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor, *, correlated: bool, searched: float
+    problem: MisfitProblem, best: End, response: np.ndarray, floor: NoiseFloor, *, correlated: bool, searched: float
 ) -> Iterator[Finding]:
     """Yield whether the search converged, and how the residuals compare with the noise of the data.
 
@@ -72,12 +72,12 @@ def outcome(
         yield from _compared(problem, best, response, floor, correlated=correlated)
 
 
-def lacking(problem: Problem) -> bool:
+def lacking(problem: MisfitProblem) -> bool:
     """Whether there are fewer values than parameters."""
     return problem.compared < len(problem.model.parameters)
 
 
-def too_few_findings(problem: Problem, *, known: bool) -> Iterator[Finding]:
+def too_few_findings(problem: MisfitProblem, *, known: bool) -> Iterator[Finding]:
     """Return a finding where values are fewer than parameters, or leave no residual to estimate the noise from.
 
     Parameters
@@ -109,7 +109,7 @@ def converged(success: bool, reason: str, message: str = "Converged.") -> Findin
     return Finding("not-converged", "error", {"reason": reason}, f"Not converged: {reason}.")
 
 
-def _partly_converged(problem: Problem, best: End, left_out: np.ndarray) -> Finding:
+def _partly_converged(problem: MisfitProblem, best: End, left_out: np.ndarray) -> Finding:
     parameters = problem.model.parameters
     names, widths = parameters.names, parameters.upper - parameters.lower
     moves = [row * problem.search.slope(problem.search.vectors(best.point)) for row in separated(left_out)]
@@ -143,7 +143,7 @@ def _segments(nodes: Nodes) -> Finding:
 
 
 def _compared(
-    problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor, *, correlated: bool
+    problem: MisfitProblem, best: End, response: np.ndarray, floor: NoiseFloor, *, correlated: bool
 ) -> Iterator[Finding]:
     """Yield how the residuals compare with the noise of the data."""
     if best.misfit <= floor.misfit:
@@ -165,10 +165,13 @@ def _compared(
         yield Finding("uncorrelated-residuals", "note", {}, "The residuals are not correlated.", advice)
 
 
-def _usual(problem: Problem, response: np.ndarray) -> float:
+def _usual(problem: MisfitProblem, response: np.ndarray) -> float:
     """Return the standard deviation of the weighted residuals from their median size, which outliers hardly change."""
     counted = problem.weights > 0
-    return float(np.median(np.sqrt(problem.weights[counted]) * np.abs(problem.unweighted_residual(response)[counted]))) / _MEDIAN
+    return (
+        float(np.median(np.sqrt(problem.weights[counted]) * np.abs(problem.unweighted_residual(response)[counted])))
+        / _MEDIAN
+    )
 
 
 def _explained(misfit: float, variation: float) -> Finding:

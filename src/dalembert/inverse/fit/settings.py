@@ -9,7 +9,7 @@ from dalembert.inverse.experiments.experiments import JointModel
 from dalembert.inverse.experiments.validation import HeldOut
 from dalembert.inverse.noise.likelihood.estimate_noise import NoiseFit
 from dalembert.inverse.noise.models.noise_catalogue import as_table
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 from dalembert.inverse.shooting.shooting import MultipleShooting
 from dalembert.stored_fields import encoded
 
@@ -22,7 +22,7 @@ def weights_source(weights: object, smooth: np.ndarray | None, noise: object) ->
 
 
 def settings(
-    loss: str, posed: Problem, validation: HeldOut, shooting: MultipleShooting | None, settled: NoiseFit | None
+    loss: str, posed: MisfitProblem, validation: HeldOut, shooting: MultipleShooting | None, settled: NoiseFit | None
 ) -> dict[str, object]:
     """Settings of the provenance that are not the usual ones."""
     told: dict[str, object] = {}

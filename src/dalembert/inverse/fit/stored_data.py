@@ -9,7 +9,7 @@ import numpy as np
 from dalembert.data import Bands, Measurements
 from dalembert.forward import Coordinate
 from dalembert.forward.stored_coordinate import coordinate_of, stored_coordinate
-from dalembert.inverse.experiments.experiment import Part
+from dalembert.inverse.experiments.experiment import ExperimentPart
 from dalembert.stored_fields import Source, Store
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ class _Bands:
 class StoredParts:
     """What each experiment's samples lie along, over ``experiment`` and ``sample``; NaN where it has none in a row."""
 
-    def store(self, to: Store, settings: dict[str, Any], name: str, value: Sequence[Part]) -> None:
+    def store(self, to: Store, settings: dict[str, Any], name: str, value: Sequence[ExperimentPart]) -> None:
         settings[name] = [
             {
                 "name": part.name,
@@ -82,7 +82,7 @@ class StoredParts:
                 own[part.rows] = part.coordinate.values
             to.variables["experiment_coordinate"] = (("experiment", "sample"), along)
 
-    def load(self, source: Source, settings: Mapping[str, Any], name: str) -> tuple[Part, ...]:
+    def load(self, source: Source, settings: Mapping[str, Any], name: str) -> tuple[ExperimentPart, ...]:
         found = []
         for number, part in enumerate(settings[name]):
             along = source.arrays["experiment_coordinate"][number]
@@ -90,7 +90,7 @@ class StoredParts:
             label, unit = part["coordinate"]
             coordinate = Coordinate(label, unit, along[rows])
             columns = np.array(part["columns"], dtype=int)
-            found.append(Part(part["name"], coordinate, tuple(part["channels"]), rows, columns))
+            found.append(ExperimentPart(part["name"], coordinate, tuple(part["channels"]), rows, columns))
         return tuple(found)
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from dalembert.inverse.events import StartEnd, Step
+from dalembert.inverse.events import SearchIteration, StartEnd
 from dalembert.optimize import RegularisedStep
 from dalembert.stored_fields import Source, Store
 
@@ -21,7 +21,7 @@ class History:
     def __init__(self, over: str) -> None:
         self.over = over
 
-    def store(self, to: Store, settings: dict[str, Any], name: str, value: Sequence[Step]) -> None:
+    def store(self, to: Store, settings: dict[str, Any], name: str, value: Sequence[SearchIteration]) -> None:
         size = len(to.coordinates[self.over][1])
         for count in COUNTS:
             to.variables[f"step_{count}"] = ("step", _column(value, count, np.int64))
@@ -32,14 +32,14 @@ class History:
             to.variables.update({name: ("step", _column(value, own)) for name, own in OPTIONAL.items()})
         settings["samples"] = value[-1].samples if value else 0
 
-    def load(self, source: Source, settings: Mapping[str, Any], name: str) -> tuple[Step, ...]:
+    def load(self, source: Source, settings: Mapping[str, Any], name: str) -> tuple[SearchIteration, ...]:
         a, number = source.arrays, len(source.arrays["step_start"])
         samples = settings.get("samples", len(a["coordinate"]))
         counts = (a[f"step_{count}"].tolist() for count in COUNTS)
         gaps, sums = (map(_finite, a.get(variable, np.full(number, np.nan))) for variable in OPTIONAL)
         columns = zip(*counts, a["step_best"], a["step_values"], _steps_of(a, number), gaps, sums, strict=True)
         return tuple(
-            Step(start, iteration, simulations, float(best), values, samples, how, gap, least, samples)
+            SearchIteration(start, iteration, simulations, float(best), values, samples, how, gap, least, samples)
             for start, iteration, simulations, best, values, how, gap, least in columns
         )
 
@@ -76,7 +76,7 @@ def _finite(stored: float) -> float | None:
     return float(stored) if np.isfinite(stored) else None
 
 
-def _stored_steps(history: Sequence[Step]) -> dict[str, Any]:
+def _stored_steps(history: Sequence[SearchIteration]) -> dict[str, Any]:
     """Variables over ``step``, and ``curve_point`` for the L-curves, NaN where a step has no such account.
 
     None at all where no step has one.

@@ -9,7 +9,7 @@ from dalembert.errors import SolveError
 from dalembert.forward import refined
 from dalembert.inverse.noise.noise_floor import random_residuals
 from dalembert.inverse.problem.integration_error import as_residuals, integration_error
-from dalembert.inverse.problem.problem import Linearisation, Problem
+from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
 from dalembert.inverse.shooting.nodes import Nodes
 from dalembert.optimize import Progress, Squares
 
@@ -48,7 +48,7 @@ class Memo:
     accepted too; after a rejected one without.
     """
 
-    def __init__(self, problem: Problem, at: Linearisation | None = None) -> None:
+    def __init__(self, problem: MisfitProblem, at: Linearisation | None = None) -> None:
         self.problem, self.hopeful = problem, True
         self.at = self.accepted = at
         self.systematic: np.ndarray | None = None
@@ -108,7 +108,7 @@ class Memo:
         return next((at for at in both if np.array_equal(at.vector, vector)), None)
 
 
-def descend(ladder: Sequence[Problem], method: Squares, point: np.ndarray, misfit: float | None = None) -> End:
+def descend(ladder: Sequence[MisfitProblem], method: Squares, point: np.ndarray, misfit: float | None = None) -> End:
     """Least squares from a search point on each problem of a ladder, the last one the whole problem.
 
     The shorter horizons only lead the way and are left early. Where they lead to a larger misfit of the whole problem
@@ -124,7 +124,7 @@ def descend(ladder: Sequence[Problem], method: Squares, point: np.ndarray, misfi
     return _local(memo, method, led)
 
 
-def recorded(problem: Problem, point: np.ndarray, descent: Callable[[], End]) -> End:
+def recorded(problem: MisfitProblem, point: np.ndarray, descent: Callable[[], End]) -> End:
     """End of a descent from a search point (parameters,), told to the journal as a start."""
     values = problem.search.vectors(point)
     problem.journal.began(values)
@@ -133,7 +133,7 @@ def recorded(problem: Problem, point: np.ndarray, descent: Callable[[], End]) ->
     return end
 
 
-def refine(problem: Problem, method: Squares, end: End) -> End:
+def refine(problem: MisfitProblem, method: Squares, end: End) -> End:
     """Least squares from where a descent ended; what was simulated there is not simulated again."""
     return _local(Memo(problem, end.linearisation), method, end.point)
 

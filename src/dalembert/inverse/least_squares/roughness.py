@@ -8,7 +8,7 @@ from dalembert.findings import Finding
 from dalembert.inverse.least_squares.descent import End
 from dalembert.inverse.least_squares.estimate import UNSEEN
 from dalembert.inverse.problem.combinations import amounts
-from dalembert.inverse.problem.problem import Linearisation, Problem
+from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
 
 LARGE = 0.5
 """Distance to the minimum that the sensitivities foresee, in deviations, from which roughness is a warning."""
@@ -18,7 +18,7 @@ SMALL = 0.01
 
 
 def roughness_findings(
-    problem: Problem, best: End, at: Linearisation | None, deviations: np.ndarray
+    problem: MisfitProblem, best: End, at: Linearisation | None, deviations: np.ndarray
 ) -> Iterator[Finding]:
     """Yield how far the foreseen minimum is from the values, where a rough misfit ended the search.
 

@@ -13,7 +13,7 @@ from dalembert.inverse.least_squares.descent import End, refine
 from dalembert.inverse.least_squares.estimate import UNSEEN
 from dalembert.inverse.misfit.residuals import Residuals
 from dalembert.inverse.problem.journal import Journal
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 from dalembert.optimize import LeastSquares
 from dalembert.stored_fields import Over
 
@@ -93,7 +93,7 @@ def halves(residuals: Residuals) -> Halves | None:
     return made(np.clip(stepped, parameters.lower[free], parameters.upper[free]), refitted=False)
 
 
-def halves_findings(found: Halves | None, problem: Problem) -> Iterator[Finding]:
+def halves_findings(found: Halves | None, problem: MisfitProblem) -> Iterator[Finding]:
     """Yield a finding where the halves have different parameters."""
     if found is None or not np.any(found.drifting):
         return
@@ -160,7 +160,7 @@ def _halves(
     return Halves(rows[:2], rows[2:4], rows[4], refitted)
 
 
-def _refitted(problem: Problem, mask: np.ndarray, vector: np.ndarray) -> np.ndarray | None:
+def _refitted(problem: MisfitProblem, mask: np.ndarray, vector: np.ndarray) -> np.ndarray | None:
     """Values (parameters,) of a half, by least squares from those of the whole; None if it does not converge."""
     journal = Journal(problem.samples)
     weights = np.where(mask.reshape(problem.weights.shape), problem.weights, 0.0)

@@ -7,11 +7,11 @@ from dalembert.inverse.misfit.delays import delay_findings, suspect_delays
 from dalembert.inverse.misfit.halves import Halves, halves, halves_findings
 from dalembert.inverse.misfit.model_misfit import misfit_findings, model_misfits
 from dalembert.inverse.misfit.residuals import Residuals
-from dalembert.inverse.problem.problem import Linearisation, Problem
+from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
 
 
 def misfit_conclusions(
-    problem: Problem, at: Linearisation | None, *, known: bool
+    problem: MisfitProblem, at: Linearisation | None, *, known: bool
 ) -> tuple[Halves | None, tuple[Finding, ...]]:
     """Return the halves of the records, and findings on delays, on where the model leaves the data, and on the halves.
 

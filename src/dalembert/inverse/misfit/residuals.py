@@ -20,7 +20,7 @@ from dalembert.inverse.noise.correlation.correlation import (
 )
 from dalembert.inverse.noise.correlation.series import Series, series_of
 from dalembert.inverse.noise.noise_floor import quantum
-from dalembert.inverse.problem.problem import Linearisation, Problem
+from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
 from dalembert.parameters import Parameters
 
 BOUND = 1e-6
@@ -48,7 +48,7 @@ class Residuals:
         Whether the variance of a weighted residual is known to be 1.
     """
 
-    problem: Problem
+    problem: MisfitProblem
     at: Linearisation
     values: np.ndarray
     basis: np.ndarray
@@ -56,7 +56,7 @@ class Residuals:
     known: bool
 
     @classmethod
-    def of(cls, problem: Problem, at: Linearisation, *, known: bool) -> Self:
+    def of(cls, problem: MisfitProblem, at: Linearisation, *, known: bool) -> Self:
         """Return the residuals of a problem; with a robust loss their influence on the estimate."""
         plain = replace(problem, loss=None)
         slopes, values = plain.slopes(at, problem.model.parameters.scale), plain.residual(at.response)

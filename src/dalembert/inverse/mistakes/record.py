@@ -8,7 +8,7 @@ import numpy as np
 
 from dalembert.findings import Finding
 from dalembert.inverse.noise.correlation.series import Series, series_of
-from dalembert.inverse.problem.problem import Linearisation, Problem
+from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
 
 TIME = "s"
 
@@ -31,7 +31,7 @@ class FittedRecord:
         Whether the variance of a weighted residual is known to be 1.
     """
 
-    problem: Problem
+    problem: MisfitProblem
     at: Linearisation
     known: bool
 

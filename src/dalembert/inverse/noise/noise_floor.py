@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtri
 
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 
 SMALL = 1e-6
 """Noise below this fraction (0.1 % squared) of the signal's squares is small: a minimum that reaches it is the one."""
@@ -37,7 +37,7 @@ class NoiseFloor:
         return self.source == "given"
 
 
-def noise_floor(problem: Problem, smooth: np.ndarray | None = None) -> NoiseFloor:
+def noise_floor(problem: MisfitProblem, smooth: np.ndarray | None = None) -> NoiseFloor:
     """Floor from given deviations, from the digits that the data are rounded to, and from arithmetic.
 
     ``smooth`` (channels,) are deviations that were estimated by local polynomials.
@@ -61,13 +61,13 @@ def noise_floor(problem: Problem, smooth: np.ndarray | None = None) -> NoiseFloo
     )
 
 
-def signal(problem: Problem) -> float:
+def signal(problem: MisfitProblem) -> float:
     """Σ W (data − mean)²: what a response that explains nothing leaves."""
     values = _filled(problem)
     return float(np.sum(problem.weights * (values - values.mean(axis=0)) ** 2))
 
 
-def _filled(problem: Problem) -> np.ndarray:
+def _filled(problem: MisfitProblem) -> np.ndarray:
     """Data without jumps by whole turns, their gaps filled with the channel's mean."""
     data = problem.data
     values, there = data.continuous, data.present

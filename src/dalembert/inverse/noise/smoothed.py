@@ -8,7 +8,7 @@ import numpy as np
 from dalembert.data import Measurements, derivative
 from dalembert.errors import DataError
 from dalembert.findings import Finding
-from dalembert.inverse.experiments.experiment import Part
+from dalembert.inverse.experiments.experiment import ExperimentPart
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +51,7 @@ LEAST = 1e-6
 """Least noise of a channel, in parts of its spread: local polynomials leave almost none of a smooth one."""
 
 
-def smooth_noise(data: Measurements, parts: Sequence[Part]) -> np.ndarray:
+def smooth_noise(data: Measurements, parts: Sequence[ExperimentPart]) -> np.ndarray:
     """Return the standard deviation of each channel's noise, shape (channels,): what local polynomials leave.
 
     Channels of several experiments are smoothed each over its own samples. Where samples are too few it is the spread

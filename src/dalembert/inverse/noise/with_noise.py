@@ -18,7 +18,7 @@ from dalembert.inverse.noise.models.correlated_noise import AutoregressiveNoise
 from dalembert.inverse.noise.models.noise_model import NoiseModel
 from dalembert.inverse.problem.matching import weights_of
 from dalembert.inverse.problem.prior import prior_residual
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 
 
 def counted_values(weights: ArrayLike | None, data: Measurements) -> np.ndarray | None:
@@ -62,7 +62,7 @@ def check_noise(noise: Noise | None, *, loss: str, shooting: object) -> None:
         )
 
 
-def with_noise(problem: Problem, noise: Noise, best: End, *, known: bool) -> tuple[Problem, End, NoiseFit]:
+def with_noise(problem: MisfitProblem, noise: Noise, best: End, *, known: bool) -> tuple[MisfitProblem, End, NoiseFit]:
     """Return the problem with the weights of the estimated noise, the end of the search with it, and the noise.
 
     Parameters
@@ -104,17 +104,17 @@ def with_noise(problem: Problem, noise: Noise, best: End, *, known: bool) -> tup
     return weighted, end, found
 
 
-def whole_weights(parted: Split, problem: Problem) -> np.ndarray:
+def whole_weights(parted: Split, problem: MisfitProblem) -> np.ndarray:
     """Return the weights of a fitted part among those of the whole problem, (samples, channels); 0 elsewhere."""
     return np.where(parted.fitted, _whole(parted, problem, problem.weights, 0.0), 0.0)
 
 
-def whole_noise(parted: Split, problem: Problem, noise: EstimatedNoise) -> EstimatedNoise:
+def whole_noise(parted: Split, problem: MisfitProblem, noise: EstimatedNoise) -> EstimatedNoise:
     """Return the noise of a fitted part with its residuals among those of the whole problem; NaN elsewhere."""
     return replace(noise, whitened=_whole(parted, problem, noise.whitened, np.nan))
 
 
-def _whole(parted: Split, problem: Problem, table: np.ndarray, missing: float) -> np.ndarray:
+def _whole(parted: Split, problem: MisfitProblem, table: np.ndarray, missing: float) -> np.ndarray:
     whole = np.full(parted.whole.weights.shape, missing)
     columns = [parted.whole.data.channels.index(name) for name in problem.data.channels]
     whole[: problem.samples, columns] = table

@@ -9,7 +9,7 @@ from scipy.sparse.csgraph import connected_components
 
 from dalembert.findings import Finding
 from dalembert.inverse.fit.fit import Fit
-from dalembert.inverse.posterior.modes import Modes
+from dalembert.inverse.posterior.modes import PosteriorModes
 from dalembert.inverse.posterior.posed import PosedPosterior
 from dalembert.inverse.posterior.preconditioning import Centred
 from dalembert.inverse.posterior.samplers.sampler import Sampler
@@ -106,7 +106,7 @@ def _between(parameters: Parameters, draws: np.ndarray) -> np.ndarray:
     return (values - lower) / (upper - lower)
 
 
-def separate_modes(modes: Modes, places: np.ndarray, sampler: Sampler) -> Iterator[Finding]:
+def separate_modes(modes: PosteriorModes, places: np.ndarray, sampler: Sampler) -> Iterator[Finding]:
     """Yield the finding on modes between which no chain moves.
 
     A chain visits a mode where one of its draws is within the distance √(number of parameters) of it, in standard

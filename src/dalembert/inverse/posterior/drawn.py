@@ -11,7 +11,7 @@ from dalembert.inverse.noise.likelihood.likelihood import Likelihood
 from dalembert.inverse.posterior.conclusions import contradictions, draw_findings, separate_modes
 from dalembert.inverse.posterior.convergence import convergence
 from dalembert.inverse.posterior.model_variants import Remembered
-from dalembert.inverse.posterior.modes import Modes
+from dalembert.inverse.posterior.modes import PosteriorModes
 from dalembert.inverse.posterior.posed import Length
 from dalembert.inverse.posterior.posterior import Posterior
 from dalembert.inverse.posterior.samplers.delayed_acceptance import DelayedAcceptance
@@ -27,14 +27,14 @@ TOGETHER = 256  # draws of which log-likelihoods are computed at once
 class DrawnChains:
     """Chains, and what they were drawn with; ``journal`` counts the simulations of all steps before the draws."""
 
-    modes: Modes
+    modes: PosteriorModes
     chains: Chains
     sampler: Sampler
     length: Length
     journal: Journal
 
 
-def draw(modes: Modes, sampler: Sampler, length: Length, on_draws: OnDraws) -> DrawnChains:
+def draw(modes: PosteriorModes, sampler: Sampler, length: Length, on_draws: OnDraws) -> DrawnChains:
     """Draw the chains from starts in all modes."""
     problem = modes.best.target.problem
     if isinstance(sampler, DelayedAcceptance):

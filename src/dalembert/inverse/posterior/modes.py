@@ -16,7 +16,7 @@ from dalembert.inverse.posterior.preconditioning import Centred, centred
 from dalembert.inverse.posterior.prior_density import PriorDensity
 from dalembert.inverse.posterior.target import Target
 from dalembert.inverse.problem.journal import Journal
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 from dalembert.inverse.problem.search_coordinates import SearchCoordinates
 from dalembert.latin_hypercube import latin_hypercube
 from dalembert.optimize import LeastSquares
@@ -37,7 +37,7 @@ EXPLORED, FEWEST, MOST = 20, 32, 400
 
 
 @dataclass(frozen=True, eq=False)
-class Modes:
+class PosteriorModes:
     """The modes of a posterior, that of the largest density first.
 
     Parameters
@@ -60,7 +60,7 @@ class Modes:
         """The density in the coordinates in which each mode is round."""
         return tuple(mode.target for mode in self.centred)
 
-    def of(self, problem: Problem) -> "Modes":
+    def of(self, problem: MisfitProblem) -> "PosteriorModes":
         """Return the same modes with the model of another problem."""
         known = tuple(replace(mode, target=mode.target.of(problem)) for mode in self.centred)
         return replace(self, centred=known)
@@ -80,7 +80,7 @@ class Modes:
         return np.repeat(np.arange(len(counts)), counts)
 
 
-def find_modes(posed: PosedPosterior, start: SearchStart, length: Length, *, gradients: bool) -> Modes:
+def find_modes(posed: PosedPosterior, start: SearchStart, length: Length, *, gradients: bool) -> PosteriorModes:
     """Return the modes that are reached from a start, from all over the prior and from the ends of a fit's starts.
 
     ``gradients`` says whether the model has a jacobian; the effort of the search follows from the length of the chains.
@@ -108,7 +108,7 @@ def find_modes(posed: PosedPosterior, start: SearchStart, length: Length, *, gra
     shares = np.exp(masses - np.max(masses))
     shares /= shares.sum()
     kept = [k for k in range(len(modes)) if shares[k] >= LEAST_SHARE]
-    return Modes(tuple(modes[k] for k in kept), shares[kept] / np.sum(shares[kept]))
+    return PosteriorModes(tuple(modes[k] for k in kept), shares[kept] / np.sum(shares[kept]))
 
 
 def _starts(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 import numpy as np
 
 from dalembert.findings import Finding
-from dalembert.inverse.experiments.experiment import Part
+from dalembert.inverse.experiments.experiment import ExperimentPart
 from dalembert.inverse.fit.fit import check_level
 from dalembert.inverse.fit.stored_data import StoredData, StoredParts
 from dalembert.inverse.posterior.convergence import Convergence, ended
@@ -116,7 +116,7 @@ class Posterior(EndedResult):
     warmup: int
     simulations: int
     provenance: Mapping[str, Any]
-    parts: Annotated[Sequence[Part], StoredParts()] = ()
+    parts: Annotated[Sequence[ExperimentPart], StoredParts()] = ()
     findings: tuple[Finding, ...] = field(default=())
 
     @property

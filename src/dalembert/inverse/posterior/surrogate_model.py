@@ -8,7 +8,7 @@ from dalembert.forward.responses import Responses
 from dalembert.forward.wrapped import Wrapped
 from dalembert.inverse.posterior.target import Target
 from dalembert.inverse.problem.journal import Journal
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 from dalembert.inverse.problem.surrogates import surrogate_of
 from dalembert.surrogate import Surrogate
 from dalembert.surrogate.scheme import Scheme
@@ -22,7 +22,7 @@ class SurrogateModel(Wrapped):
     """A forward model whose compared values are polynomials; the others are 0."""
 
     surrogate: Surrogate  # of the compared values, over search coordinates
-    problem: Problem
+    problem: MisfitProblem
     places: np.ndarray  # (values,): of the compared values in the response (samples, channels) of the data, flattened
 
     def evaluate(self, vectors: np.ndarray) -> Responses:
@@ -38,7 +38,7 @@ class SurrogateModel(Wrapped):
         return Responses(values, tuple(None if is_inside else OUTSIDE for is_inside in inside))
 
 
-def box_of(problem: Problem, vector: np.ndarray, deviations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def box_of(problem: MisfitProblem, vector: np.ndarray, deviations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Ends (parameters,) of the box in search coordinates: some deviations around a vector, within the bounds."""
     search = problem.search
     middle, radius = search.points(vector), WIDTH * deviations / np.abs(search.slope(vector))

@@ -9,7 +9,7 @@ from dalembert.errors import SolveError
 from dalembert.inverse.noise.likelihood.likelihood import Likelihood
 from dalembert.inverse.posterior.prior_density import PriorDensity
 from dalembert.inverse.posterior.unbounded import UnboundedCoordinates
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 from dalembert.parameters import Parameters
 
 
@@ -33,10 +33,10 @@ class Target:
         return PriorDensity(self.parameters)
 
     @property
-    def problem(self) -> Problem:
+    def problem(self) -> MisfitProblem:
         return self.likelihood.problem
 
-    def of(self, problem: Problem) -> "Target":
+    def of(self, problem: MisfitProblem) -> "Target":
         """The same density with the model of another problem."""
         return replace(self, likelihood=replace(self.likelihood, problem=problem))
 

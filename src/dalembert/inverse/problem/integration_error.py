@@ -7,7 +7,7 @@ import numpy as np
 from dalembert.data.record import TURN
 from dalembert.errors import ClusterError, StorageError, told
 from dalembert.forward.refinement import Refinement
-from dalembert.inverse.problem.problem import Linearisation, Problem
+from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,7 +21,7 @@ class IntegrationError:
     error: np.ndarray | None
 
 
-def integration_error(problem: Problem, at: Linearisation, finer: Refinement) -> IntegrationError:
+def integration_error(problem: MisfitProblem, at: Linearisation, finer: Refinement) -> IntegrationError:
     """Simulate a vector more exactly, and return the error of its response."""
     problem.journal.simulations += 1
     try:
@@ -38,6 +38,6 @@ def integration_error(problem: Problem, at: Linearisation, finer: Refinement) ->
     return IntegrationError(finer.how, np.where(problem.data.present, error, 0.0))
 
 
-def as_residuals(problem: Problem, at: Linearisation, error: np.ndarray) -> np.ndarray:
-    """Return an error (samples, channels) of a response as a change of :meth:`Problem.residuals`."""
+def as_residuals(problem: MisfitProblem, at: Linearisation, error: np.ndarray) -> np.ndarray:
+    """Return an error (samples, channels) of a response as a change of :meth:`MisfitProblem.residuals`."""
     return np.concatenate([problem.weighted(error, at.response).ravel(), np.zeros(problem.priors)])

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from dalembert.inverse.events import Event, OnEvent, Screened, StartBegan, StartEnd, Step
+from dalembert.inverse.events import Event, OnEvent, Screened, SearchIteration, StartBegan, StartEnd
 from dalembert.optimize import RegularisedStep
 
 
@@ -46,7 +46,7 @@ class Journal:
     on_event: OnEvent | None = None
     simulations: int = 0
     failures: list[str] = field(default_factory=list)
-    history: list[Step] = field(default_factory=list)
+    history: list[SearchIteration] = field(default_factory=list)
     starts: list[StartEnd] = field(default_factory=list)
     first: First | None = None
     _iteration: int = 0
@@ -75,7 +75,9 @@ class Journal:
         minimised: float | None = None,
     ) -> None:
         number, spent = self._iteration, self.simulations
-        step = Step(len(self.starts), number, spent, best, values, samples, regularised, gap, minimised, self.samples)
+        step = SearchIteration(
+            len(self.starts), number, spent, best, values, samples, regularised, gap, minimised, self.samples
+        )
         self._iteration += 1
         if samples == self.samples:
             self.history.append(step)

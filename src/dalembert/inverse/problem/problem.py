@@ -44,11 +44,11 @@ class Linearisation:
 
 
 Item = TypeVar("Item")
-Work: TypeAlias = Callable[["Problem", Item], object]
+Work: TypeAlias = Callable[["MisfitProblem", Item], object]
 
 
 @dataclass(frozen=True, eq=False)
-class Problem:
+class MisfitProblem:
     """Misfit g(p) = Σ W (R(p) − data)² over samples and channels, + the squared residuals of priors.
 
     Values that are missing have W = 0; differences of wrapping channels count modulo a turn.
@@ -100,7 +100,7 @@ class Problem:
         alone = replace(self, model=cast(Any, None), journal=Journal(self.samples))
         return forward.prefetched(self.model, partial(_posed, alone, work), items)
 
-    def first(self, samples: int) -> "Problem":
+    def first(self, samples: int) -> "MisfitProblem":
         """The same problem over the first ``samples`` samples."""
         if samples == self.samples:
             return self
@@ -276,13 +276,13 @@ class Problem:
         return self.slope(vector) * unit + 2 * priors
 
 
-def _posed(alone: Problem, work: Work[Item], model: ForwardModel, item: Item) -> None:
+def _posed(alone: MisfitProblem, work: Work[Item], model: ForwardModel, item: Item) -> None:
     work(replace(alone, model=model), item)
 
 
 def pose(
     model: ForwardModel, data: Measurements, weights: ArrayLike | None, journal: Journal, *, noise_known: bool = False
-) -> Problem:
+) -> MisfitProblem:
     """The problem of explaining data by a model, after checking that they fit together.
 
     ``noise_known`` means that priors may be given, although the data have neither deviations nor weights.
@@ -302,7 +302,7 @@ def pose(
     check_sizes(data)
     weighted = _weights(data, weights)
     check_weighted(data, weighted)
-    return Problem(model, data, columns, weighted, SearchCoordinates(model.parameters), journal)
+    return MisfitProblem(model, data, columns, weighted, SearchCoordinates(model.parameters), journal)
 
 
 def _weights(data: Measurements, given: ArrayLike | None) -> np.ndarray:

@@ -16,7 +16,7 @@ from dalembert.forward.adjoint import AUTO, GRADIENTS
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.events import OnEvent, Penalised
 from dalembert.inverse.problem.journal import Journal
-from dalembert.inverse.problem.problem import Linearisation, Problem, pose
+from dalembert.inverse.problem.problem import Linearisation, MisfitProblem, pose
 from dalembert.inverse.regularised.regularised_fit import RegularisedFit
 from dalembert.inverse.regularised.smoothness import Smoothed, differences
 from dalembert.optimize import Minimiser
@@ -132,7 +132,7 @@ def regularise(
 
 
 def _identified(
-    problem: Problem, vector: np.ndarray, penalty: np.ndarray, smooth: tuple[str, ...], weight: float | str,
+    problem: MisfitProblem, vector: np.ndarray, penalty: np.ndarray, smooth: tuple[str, ...], weight: float | str,
     rounds: int,
 ) -> RegularisedFit:  # fmt: skip
     scale, before, settled, left = problem.model.parameters.scale, np.nan, False, np.inf
@@ -237,7 +237,7 @@ def _findings(before: float, mu: float, left: float) -> tuple[Finding, ...]:
 
 
 def _linearised(
-    problem: Problem, vector: np.ndarray, penalty: np.ndarray
+    problem: MisfitProblem, vector: np.ndarray, penalty: np.ndarray
 ) -> tuple[Linearisation, Smoothed, float, float]:
     """The linearised response and problem, the corner of its L-curve, and the weight by the discrepancy principle."""
     scale = problem.model.parameters.scale
@@ -283,7 +283,7 @@ class _Stage:
         self.journal.tell(Penalised(self.number, self.of, self.weight, self.journal.simulations))
 
 
-def _minimised(problem: Problem, many: Smoothed, mu: float, near: np.ndarray, stage: _Stage) -> np.ndarray:
+def _minimised(problem: MisfitProblem, many: Smoothed, mu: float, near: np.ndarray, stage: _Stage) -> np.ndarray:
     """z of the least nonlinear misfit, by L-BFGS-B in coordinates in which the linearised misfit is round.
 
     z = z₁ + C⁻ᵀ u, with C Cᵀ the normal matrix of the linearised problem, and z₁ on the way from the last values,

@@ -10,7 +10,7 @@ import numpy as np
 from dalembert.errors import SolveError
 from dalembert.inverse.least_squares.estimate import UNSEEN
 from dalembert.inverse.problem.prior import prior_residual, prior_slopes
-from dalembert.inverse.problem.problem import Linearisation, Problem
+from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
 from dalembert.inverse.problem.search_coordinates import SearchCoordinates
 from dalembert.inverse.problem.simulated import failing_at
 from dalembert.inverse.shooting.segments import Response, Segments, Tangent
@@ -81,7 +81,7 @@ class Chain:
     segments : Segments
     """
 
-    problem: Problem
+    problem: MisfitProblem
     segments: Segments
     _kept: list[Tangent] = field(default_factory=list, init=False, repr=False)
 

@@ -9,7 +9,7 @@ import numpy as np
 from dalembert.data import derivative
 from dalembert.forward import StateChart, restarted
 from dalembert.inverse.experiments.tracks import Track
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 from dalembert.inverse.shooting.segments import Piece, Segments, ShootingState
 from dalembert.parameters import Parameter, Parameters
 
@@ -17,7 +17,7 @@ TURN = 2 * np.pi
 
 
 @dataclass(frozen=True, eq=False)
-class Node:
+class SegmentNode:
     """A sample of one motion at which a segment begins.
 
     Parameters
@@ -70,7 +70,7 @@ class Cut:
     """
 
     track: Track
-    nodes: tuple[Node, ...]
+    nodes: tuple[SegmentNode, ...]
     states: Mapping[str, ShootingState] = field(default_factory=dict)
 
     @property
@@ -82,7 +82,7 @@ class Cut:
         """The same with every second node, or the middle one of three."""
         return self if len(self.nodes) < 2 else replace(self, nodes=self.nodes[1::2])
 
-    def piece(self, begin: Node | None, end: Node | None, own: np.ndarray, after: np.ndarray) -> Piece:
+    def piece(self, begin: SegmentNode | None, end: SegmentNode | None, own: np.ndarray, after: np.ndarray) -> Piece:
         """Return a segment.
 
         Parameters
@@ -111,14 +111,14 @@ class Cut:
         return Piece(model, places, rows, track.columns, track.picked, kept, after)
 
 
-def segments(problem: Problem, cuts: Sequence[Cut]) -> Segments:
+def segments(problem: MisfitProblem, cuts: Sequence[Cut]) -> Segments:
     """Return the segments of all motions as functions of the parameters and of the states at the nodes."""
     number = len(problem.model.parameters)
     states = [one for cut in cuts for node in cut.nodes for one in node.unknowns(cut.track)]
     pieces, place = [], number
     for cut in cuts:
         own = np.zeros(0, dtype=int)
-        ends: list[Node | None] = [*cut.nodes, None]
+        ends: list[SegmentNode | None] = [*cut.nodes, None]
         for begin, end in zip([None, *cut.nodes], ends, strict=True):
             after = place + np.arange(0 if end is None else len(end.names))
             pieces.append(cut.piece(begin, end, own, after))
@@ -158,7 +158,7 @@ def named_cut(
             value = value if np.isfinite(value) else (state.lower + state.upper) / 2
             own[names.index(name)] = np.clip(value, state.lower, state.upper)
         state = own[[names.index(name) for name in states]]
-        nodes.append(Node(int(end), tuple(states), units, state, lower, upper, upper - lower))
+        nodes.append(SegmentNode(int(end), tuple(states), units, state, lower, upper, upper - lower))
     return Cut(track, tuple(nodes), states), values
 
 

@@ -9,7 +9,7 @@ from dalembert.errors import DalembertError
 from dalembert.findings import Finding
 from dalembert.forward import StateChart, restartable
 from dalembert.inverse.experiments.tracks import Track, tracks
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 from dalembert.inverse.shooting.natural_cuts import MOST_STATES
 
 CHAOTIC = 100.0
@@ -19,7 +19,7 @@ PIECES = 10
 """Parts of a motion whose sensitivities are multiplied."""
 
 
-def growth_findings(problem: Problem, vector: np.ndarray) -> Iterator[Finding]:
+def growth_findings(problem: MisfitProblem, vector: np.ndarray) -> Iterator[Finding]:
     """Yield the finding that errors grow much along a motion, at a parameter vector (parameters,) of a doubtful fit."""
     growth = error_growth(problem, vector)
     if growth < CHAOTIC:
@@ -32,7 +32,7 @@ def growth_findings(problem: Problem, vector: np.ndarray) -> Iterator[Finding]:
     yield Finding("errors-grow", "warning", {"growth": growth}, message, advice)
 
 
-def error_growth(problem: Problem, vector: np.ndarray) -> float:
+def error_growth(problem: MisfitProblem, vector: np.ndarray) -> float:
     """Return how much a small change of the initial state grows along a motion, the largest of all; 1 where unknown.
 
     States are measured in parts of their ranges.

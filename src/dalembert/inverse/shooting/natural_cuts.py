@@ -10,8 +10,8 @@ from dalembert.errors import DalembertError, InputError, SolveError
 from dalembert.forward import Restartable, StateChart, restartable, restarted
 from dalembert.inverse.experiments.tracks import Track
 from dalembert.inverse.noise.smoothed import Smoothed, smoothed
-from dalembert.inverse.problem.problem import Problem
-from dalembert.inverse.shooting.cuts import TURN, Cut, Node
+from dalembert.inverse.problem.problem import MisfitProblem
+from dalembert.inverse.shooting.cuts import TURN, Cut, SegmentNode
 
 GROWTH = 10.0
 """Growth of a small change of the state within a segment, at most."""
@@ -41,7 +41,7 @@ ITERATIONS = 4
 
 
 def natural_cuts(
-    problem: Problem, tracks: Iterable[Track], values: np.ndarray, count: int | None
+    problem: MisfitProblem, tracks: Iterable[Track], values: np.ndarray, count: int | None
 ) -> tuple[list[Cut], np.ndarray]:
     """Return all motions in segments, and the parameters (parameters,) with initial states as measured.
 
@@ -90,7 +90,9 @@ def coarser(cuts: Sequence[Cut], grown: Sequence[Sequence[np.ndarray]]) -> list[
     ]
 
 
-def _chosen(nodes: Sequence[Node], grown: Sequence[np.ndarray | None], growth: float, most: int) -> list[Node]:
+def _chosen(
+    nodes: Sequence[SegmentNode], grown: Sequence[np.ndarray | None], growth: float, most: int
+) -> list[SegmentNode]:
     """Nodes between which a small change of the state grows by ``growth`` at most, at most ``most`` nodes apart.
 
     A node is left out where the growth up to the node behind it is small enough.
@@ -107,7 +109,7 @@ def _chosen(nodes: Sequence[Node], grown: Sequence[np.ndarray | None], growth: f
     return chosen
 
 
-def _passed(track: Track, begin: Node, end: Node, own: np.ndarray) -> np.ndarray | None:
+def _passed(track: Track, begin: SegmentNode, end: SegmentNode, own: np.ndarray) -> np.ndarray | None:
     """Derivative of one node's state by that of the node before, in parts of the ranges; None where a run fails."""
     span = float(track.times[end.sample] - track.times[begin.sample])
     model = restarted(track.model, float(track.times[begin.sample]), [span], begin.chart, end.chart)
@@ -168,7 +170,7 @@ class _Estimates:
             own = track.model.parameters.clip(own + step * width)
         return own
 
-    def nodes(self, own: np.ndarray, places: Sequence[int]) -> list[Node]:
+    def nodes(self, own: np.ndarray, places: Sequence[int]) -> list[SegmentNode]:
         """Nodes at samples, the first one at the beginning: each near where the one before leads to, and measured."""
         track = self.track
         chart = self.model.state_chart(own)
@@ -254,7 +256,7 @@ class _Estimates:
         return float(np.min(np.diff(self.track.times)))
 
 
-def _bounded(found: Sequence[tuple[int, StateChart, np.ndarray]]) -> list[Node]:
+def _bounded(found: Sequence[tuple[int, StateChart, np.ndarray]]) -> list[SegmentNode]:
     """Nodes whose bounds and ranges are those of all of them."""
     over: dict[str, list[float]] = {}
     scales: dict[str, float] = {}
@@ -275,5 +277,5 @@ def _bounded(found: Sequence[tuple[int, StateChart, np.ndarray]]) -> list[Node]:
         size = np.array([ranges[name] for name in chart.names])
         middle = np.array([(max(over[name]) + min(over[name])) / 2 for name in chart.names]) - chart.offsets
         lower, upper = np.maximum(middle - REACH * size, -chart.reach), np.minimum(middle + REACH * size, chart.reach)
-        nodes.append(Node(sample, chart.names, chart.units, state, lower, upper, size, replace(chart)))
+        nodes.append(SegmentNode(sample, chart.names, chart.units, state, lower, upper, size, replace(chart)))
     return nodes

@@ -7,7 +7,7 @@ import numpy as np
 from dalembert.errors import InputError, require_known, unknown
 from dalembert.forward import begun_later, restartable
 from dalembert.inverse.experiments.tracks import Track, tracks
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 from dalembert.inverse.shooting.shooting import MultipleShooting
 
 SAME = 1e-6
@@ -18,7 +18,7 @@ CONTINUED = 0.02
 begins anew differs by some of its error."""
 
 
-def check_segments(problem: Problem, shooting: MultipleShooting) -> None:
+def check_segments(problem: MisfitProblem, shooting: MultipleShooting) -> None:
     """Refuse what cannot be cut into segments.
 
     Raises
@@ -59,7 +59,7 @@ def _check_named(track: Track, shooting: MultipleShooting) -> None:
         )
 
 
-def check_restart(problem: Problem, shooting: MultipleShooting, values: np.ndarray) -> None:
+def check_restart(problem: MisfitProblem, shooting: MultipleShooting, values: np.ndarray) -> None:
     """Refuse states with which a motion does not go on as it did: one run over two segments, the second one anew.
 
     Raises

@@ -12,7 +12,7 @@ from dalembert.errors import InputError, SolveError
 from dalembert.inverse.experiments.tracks import tracks
 from dalembert.inverse.least_squares.descent import End, descend, recorded
 from dalembert.inverse.noise.noise_floor import NoiseFloor
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 from dalembert.inverse.shooting.continuity import Chain, ChainEnd
 from dalembert.inverse.shooting.cuts import Cut, guess, named_cut, segments
 from dalembert.inverse.shooting.natural_cuts import coarser, natural_cuts
@@ -112,7 +112,7 @@ class MultipleShooting(Checked):
 
 
 def shots(
-    problem: Problem,
+    problem: MisfitProblem,
     shooting: MultipleShooting,
     method: Squares,
     floor: NoiseFloor,
@@ -134,7 +134,7 @@ def shots(
 
 
 @dataclass(frozen=True, eq=False)
-class Level:
+class SegmentLevel:
     """Segments that were made to meet, and where they ended."""
 
     cuts: Sequence[Cut]
@@ -142,7 +142,9 @@ class Level:
     found: ChainEnd
 
 
-def _shot(shooting: MultipleShooting, method: Squares, floor: NoiseFloor, problem: Problem, point: np.ndarray) -> End:
+def _shot(
+    shooting: MultipleShooting, method: Squares, floor: NoiseFloor, problem: MisfitProblem, point: np.ndarray
+) -> End:
     """Segments that meet, from a search point, merged as far as they can be."""
     values = problem.search.vectors(point)
     with one_thread():  # for the many small linear systems
@@ -152,7 +154,9 @@ def _shot(shooting: MultipleShooting, method: Squares, floor: NoiseFloor, proble
             return End(problem.search.points(values), np.inf, False, f"the segments could not be simulated: {error}")
 
 
-def _merged(problem: Problem, levels: Sequence[Level], method: Squares, floor: NoiseFloor, number: int) -> End:
+def _merged(
+    problem: MisfitProblem, levels: Sequence[SegmentLevel], method: Squares, floor: NoiseFloor, number: int
+) -> End:
     """End of one run where segments merge into it, else of the fewest segments that explain the data as well."""
     last = next((level for level in reversed(levels) if level.found.closed), levels[-1])
     one = descend([problem], method, problem.search.points(_first(last, number)))
@@ -176,7 +180,7 @@ def _merged(problem: Problem, levels: Sequence[Level], method: Squares, floor: N
     )
 
 
-def _levels(problem: Problem, shooting: MultipleShooting, values: np.ndarray) -> Iterator[Level]:
+def _levels(problem: MisfitProblem, shooting: MultipleShooting, values: np.ndarray) -> Iterator[SegmentLevel]:
     """Segments that were made to meet: all of them, then half of them, down to two."""
     cuts, values = first_cuts(problem, shooting, values)
     start, merged = guess(values, cuts), False
@@ -187,7 +191,7 @@ def _levels(problem: Problem, shooting: MultipleShooting, values: np.ndarray) ->
     while True:
         chain = Chain(problem, segments(problem, cuts))
         found = chain.closed(chain.search.points(chain.segments.parameters.clip(start)), merged=merged)
-        yield Level(cuts, chain, found)
+        yield SegmentLevel(cuts, chain, found)
         if all(len(cut.nodes) < 2 for cut in cuts) or (merged and not found.closed):
             return
         merged = found.closed
@@ -201,7 +205,7 @@ def _continued(chain: Chain, found: ChainEnd, cuts: list[Cut]) -> tuple[list[Cut
     return cuts, np.array([ended[name] for name in (*chain.problem.model.parameters.names, *names)])
 
 
-def first_cuts(problem: Problem, shooting: MultipleShooting, values: np.ndarray) -> tuple[list[Cut], np.ndarray]:
+def first_cuts(problem: MisfitProblem, shooting: MultipleShooting, values: np.ndarray) -> tuple[list[Cut], np.ndarray]:
     """Return all motions in segments that begin at measured states, and the parameters with such initial states."""
     own = tracks(problem)
     if shooting.states is None:
@@ -216,12 +220,12 @@ def first_cuts(problem: Problem, shooting: MultipleShooting, values: np.ndarray)
     return cuts, values
 
 
-def _first(level: Level, number: int) -> np.ndarray:
+def _first(level: SegmentLevel, number: int) -> np.ndarray:
     """The model's own parameters where segments ended."""
     return level.chain.problem.model.parameters.clip(level.chain.search.vectors(level.found.point)[:number])
 
 
-def _nodes(level: Level, count: int) -> Nodes:
+def _nodes(level: SegmentLevel, count: int) -> Nodes:
     """The states at which segments met; of several motions one after the other."""
     begins, gaps = level.chain.met(level.found.point)
     nodes = [(cut.track, node) for cut in level.cuts for node in cut.nodes]

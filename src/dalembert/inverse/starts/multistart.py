@@ -10,7 +10,7 @@ import numpy as np
 
 from dalembert.inverse.least_squares.descent import End, descend, recorded
 from dalembert.inverse.noise.noise_floor import NoiseFloor, random_residuals
-from dalembert.inverse.problem.problem import Problem, Work
+from dalembert.inverse.problem.problem import MisfitProblem, Work
 from dalembert.inverse.problem.search_coordinates import SearchCoordinates
 from dalembert.inverse.starts.neighbours import neighbours
 from dalembert.inverse.starts.spread import spread_points
@@ -36,7 +36,7 @@ APART = 0.05
 
 
 def multistart(
-    problem: Problem,
+    problem: MisfitProblem,
     method: Squares,
     floor: NoiseFloor,
     *,
@@ -65,13 +65,13 @@ def multistart(
     return ends if starts == 1 else ends + _beside(problem, hasty, min(ends, key=lambda end: end.misfit), starts)
 
 
-def _ahead(sizes: Sequence[int], method: Squares, problem: Problem, attempt: Attempt) -> None:
+def _ahead(sizes: Sequence[int], method: Squares, problem: MisfitProblem, attempt: Attempt) -> None:
     """The same descent on a worker of a cluster."""
     point, rung, misfit = attempt
     descend([problem.first(samples) for samples in sizes[rung:]], method, point, misfit)
 
 
-def _beside(problem: Problem, method: Squares, best: End, most: int) -> list[End]:
+def _beside(problem: MisfitProblem, method: Squares, best: End, most: int) -> list[End]:
     """Ends of up to ``most`` descents from beside the best end, and from beside a better one that they lead to."""
     ends: list[End] = []
     ahead = partial(_ahead, [problem.samples], method)
@@ -86,7 +86,7 @@ def _beside(problem: Problem, method: Squares, best: End, most: int) -> list[End
             return ends
 
 
-def horizons(problem: Problem, horizon: str | None) -> list[int]:
+def horizons(problem: MisfitProblem, horizon: str | None) -> list[int]:
     """Numbers of samples from short to all: an eighth, a quarter, a half, all, but none too few to tell anything."""
     if horizon is None:
         return [problem.samples]
@@ -97,7 +97,7 @@ def horizons(problem: Problem, horizon: str | None) -> list[int]:
 
 
 def _attempts(
-    ladder: list[Problem],
+    ladder: list[MisfitProblem],
     ahead: Work[Attempt],
     starts: int,
     seed: int,
@@ -139,7 +139,7 @@ def _chosen(search: SearchCoordinates, points: np.ndarray, scores: np.ndarray) -
         yield points[chosen], rung, float(scores[-1, chosen])
 
 
-def _screen(ladder: list[Problem], number: int, seed: int, spread: str) -> tuple[np.ndarray, np.ndarray]:
+def _screen(ladder: list[MisfitProblem], number: int, seed: int, spread: str) -> tuple[np.ndarray, np.ndarray]:
     """Points (number, parameters) over the box, and their misfit over each horizon, (rungs, number)."""
     whole = ladder[-1]
     points = spread_points(whole, number, seed, spread)
@@ -150,7 +150,7 @@ def _screen(ladder: list[Problem], number: int, seed: int, spread: str) -> tuple
     return points, scores
 
 
-def _reproduced(problem: Problem, ends: list[End]) -> bool:
+def _reproduced(problem: MisfitProblem, ends: list[End]) -> bool:
     """Whether a second end cannot be told from the best one by the data, and the residuals look like noise.
 
     Two ends cannot be told apart when misfit and linearised residuals differ by less than one variance of the noise,

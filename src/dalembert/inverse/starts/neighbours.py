@@ -3,7 +3,7 @@
 import numpy as np
 
 from dalembert.inverse.least_squares.descent import End
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 
 POINTS = 14
 """Points on each side of a line."""
@@ -18,7 +18,7 @@ WORSE = 9.0
 """Most that a point may be worse, in variances of a residual, for its minimum to be thought better."""
 
 
-def neighbours(problem: Problem, end: End) -> np.ndarray:
+def neighbours(problem: MisfitProblem, end: End) -> np.ndarray:
     """Search points (n, parameters) near other minima, the most promising first.
 
     They are the local minima of the misfit, simulated in one batch, along a line through ``end`` for each combination
@@ -42,7 +42,7 @@ def neighbours(problem: Problem, end: End) -> np.ndarray:
     return np.array([point for _, point in sorted(found)]).reshape(-1, len(end.point))
 
 
-def _distances(problem: Problem, point: np.ndarray, way: np.ndarray, first: float) -> np.ndarray:
+def _distances(problem: MisfitProblem, point: np.ndarray, way: np.ndarray, first: float) -> np.ndarray:
     """Distances from a point along a way, growing, inside the box."""
     search, moving = problem.search, way != 0
     walls = (np.where(way > 0, search.upper, search.lower) - point)[moving] / way[moving]

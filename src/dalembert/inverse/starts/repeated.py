@@ -7,13 +7,13 @@ import numpy as np
 from dalembert.findings import Finding
 from dalembert.forward import ForwardModel, Recorded
 from dalembert.inverse.experiments.experiments import JointModel
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 
 SAME = 1e-9
 """Difference of two responses, as a part of their largest value, up to which they are the same but for rounding."""
 
 
-def repeated(problem: Problem, vector: np.ndarray, response: np.ndarray) -> tuple[Finding, ...]:
+def repeated(problem: MisfitProblem, vector: np.ndarray, response: np.ndarray) -> tuple[Finding, ...]:
     """Simulate a vector (parameters,) again and compare with its response (samples, channels).
 
     Checkpoints are left out, because they repeat what they hold. The response may come from a simulation with

@@ -9,7 +9,7 @@ from dalembert.findings import Finding
 from dalembert.inverse.least_squares.descent import End, refine
 from dalembert.inverse.noise.noise_floor import NoiseFloor
 from dalembert.inverse.problem.journal import Journal
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 from dalembert.inverse.problem.simulated import named
 from dalembert.optimize import LeastSquares
 
@@ -23,7 +23,7 @@ SAME = 1e-3
 """Relative difference of values up to which two minima count as one."""
 
 
-def rivals(problem: Problem, best: End, floor: NoiseFloor, deviations: np.ndarray, *, known: bool) -> list[End]:
+def rivals(problem: MisfitProblem, best: End, floor: NoiseFloor, deviations: np.ndarray, *, known: bool) -> list[End]:
     """Return other minima in which starts ended and whose misfit equals that of ``best`` within the noise.
 
     Parameters
@@ -66,7 +66,7 @@ def rivals(problem: Problem, best: End, floor: NoiseFloor, deviations: np.ndarra
     return found
 
 
-def rival_findings(problem: Problem, best: End, others: list[End], floor: NoiseFloor) -> Iterator[Finding]:
+def rival_findings(problem: MisfitProblem, best: End, others: list[End], floor: NoiseFloor) -> Iterator[Finding]:
     """Yield the finding on other minima that explain the data as well as ``best``."""
     if not others:
         return
@@ -85,14 +85,16 @@ def rival_findings(problem: Problem, best: End, others: list[End], floor: NoiseF
     yield Finding("equal-minima", "warning", values, message, advice)
 
 
-def _new(problem: Problem, end: End, known: list[End], reach: np.ndarray) -> bool:
+def _new(problem: MisfitProblem, end: End, known: list[End], reach: np.ndarray) -> bool:
     """Return True if an end lies apart from the known ones."""
     here, *others = (problem.search.vectors(one.point) for one in (end, *known))
     sizes = [np.fmax(reach, SAME * np.maximum(np.abs(here), np.abs(there))) for there in others]
     return all(np.any(np.abs(here - there) > size) for there, size in zip(others, sizes, strict=True))
 
 
-def _one_valley(problem: Problem, best: End, end: End, deviations: np.ndarray, most: float, reach: np.ndarray) -> bool:
+def _one_valley(
+    problem: MisfitProblem, best: End, end: End, deviations: np.ndarray, most: float, reach: np.ndarray
+) -> bool:
     """Return True if a combination is not identifiable, and a descent between two ends keeps their misfit."""
     widths = problem.model.parameters.upper - problem.model.parameters.lower
     if not np.any(deviations > widths / np.sqrt(12)):

@@ -7,7 +7,7 @@ import numpy as np
 
 from dalembert.inverse.least_squares.descent import End, refine
 from dalembert.inverse.noise.noise_floor import NoiseFloor
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 from dalembert.inverse.starts.spread import spread_points
 from dalembert.optimize import Minimiser, Progress, Squares, Swarm
 
@@ -16,7 +16,7 @@ Method: TypeAlias = Swarm | Minimiser
 
 
 def runs(
-    problem: Problem,
+    problem: MisfitProblem,
     method: Method,
     floor: NoiseFloor,
     *,
@@ -42,7 +42,7 @@ def runs(
     return ends
 
 
-def polished(problem: Problem, method: Squares, best: End) -> End:
+def polished(problem: MisfitProblem, method: Squares, best: End) -> End:
     """Where least squares ends from ``best``, as a start of its own; ``best`` if it comes no further."""
     journal, vector = problem.journal, problem.search.vectors(best.point)
     journal.began(vector)
@@ -51,7 +51,7 @@ def polished(problem: Problem, method: Squares, best: End) -> End:
     return end if end.misfit <= best.misfit else best
 
 
-def _run(method: Method, problem: Problem, attempt: tuple[int, np.ndarray | None]) -> End:
+def _run(method: Method, problem: MisfitProblem, attempt: tuple[int, np.ndarray | None]) -> End:
     """End of a run with a seed, from a search point if there is one."""
     (seed, point), journal, search = attempt, problem.journal, problem.search
     begin = None if point is None else search.vectors(point)

@@ -3,13 +3,13 @@
 import numpy as np
 import scipy
 
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 from dalembert.latin_hypercube import latin_hypercube
 
 SPREADS = ("latin-hypercube", "sobol")
 
 
-def spread_points(problem: Problem, number: int, seed: int, spread: str) -> np.ndarray:
+def spread_points(problem: MisfitProblem, number: int, seed: int, spread: str) -> np.ndarray:
     """Search points (number, parameters) over the box: a Latin hypercube, or a scrambled sequence of Sobol's.
 
     Sobol's sequence is even in all parameters together where the hypercube is in each alone; it is whole where the

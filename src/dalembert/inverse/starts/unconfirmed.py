@@ -9,7 +9,7 @@ from dalembert.findings import Finding
 from dalembert.inverse.least_squares.descent import End, refine
 from dalembert.inverse.noise.noise_floor import NoiseFloor, random_residuals
 from dalembert.inverse.problem.journal import Journal
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 from dalembert.inverse.starts.rivals import ALIKE, PROMISING
 from dalembert.optimize import LeastSquares
 
@@ -21,7 +21,7 @@ REFINED = 3
 
 
 def unconfirmed_findings(
-    problem: Problem, best: End, ends: Sequence[End], floor: NoiseFloor, *, white: bool
+    problem: MisfitProblem, best: End, ends: Sequence[End], floor: NoiseFloor, *, white: bool
 ) -> Iterator[Finding]:
     """Yield a finding if one of several starts reached the smallest misfit and the residuals are not noise.
 
@@ -50,7 +50,7 @@ def unconfirmed_findings(
     yield Finding("unconfirmed-minimum", "error", {"at_best": 1, "starts": len(ends)}, message, advice)
 
 
-def _refined(problem: Problem, end: End, alike: float) -> bool:
+def _refined(problem: MisfitProblem, end: End, alike: float) -> bool:
     """Return True if a start's end, refined where it may be in the same valley, has a misfit below ``alike``."""
     if end.misfit < alike:
         return True
@@ -62,6 +62,6 @@ def _refined(problem: Problem, end: End, alike: float) -> bool:
     return misfit < alike
 
 
-def look_white(problem: Problem, response: np.ndarray) -> bool:
+def look_white(problem: MisfitProblem, response: np.ndarray) -> bool:
     """Return True if the residuals of a response (samples, channels) look like white noise."""
     return random_residuals(problem.residual(response), problem.weights.shape, problem.data.present)

@@ -8,11 +8,11 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.kernels.preparation import prepare
-from dalembert.multibody.integrators.generalized_alpha.adjoint_sweep import Path, Steps
+from dalembert.multibody.integrators.generalized_alpha.adjoint_sweep import StateHistory, Steps
 from dalembert.multibody.integrators.generalized_alpha.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.integrators.generalized_alpha.replay import ReplayRoom, replay, replay_room
 from dalembert.multibody.integrators.shared.consistent import accelerate, consistency
-from dalembert.multibody.integrators.shared.problem import DONE, Models, Problem
+from dalembert.multibody.integrators.shared.problem import DONE, IntegrationProblem, SampleModels
 from dalembert.multibody.integrators.shared.run import cut_down, explain
 from dalembert.multibody.kernels.block_table import Call
 from dalembert.multibody.kernels.states import MotionState, resting
@@ -33,18 +33,18 @@ class Stretch(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Player:
+class ReplayedMotion:
     """A motion whose steps are known: it starts its stretches, and repeats some of its steps."""
 
     lowered: Lowered
     solver: GeneralizedAlpha
-    problem: Problem
+    problem: IntegrationProblem
     steps: Steps
 
     @cached_property
-    def _models(self) -> Models:
+    def _models(self) -> SampleModels:
         real, tangents = self.lowered.real.need("rates"), self.lowered.tangents
-        return Models(real.address, tangents.address, np.zeros(0, np.int64))
+        return SampleModels(real.address, tangents.address, np.zeros(0, np.int64))
 
     @cached_property
     def _calls(self) -> tuple[Call, Call]:
@@ -65,10 +65,10 @@ class Player:
             accelerate(self.problem, self._models, stretch.begin, stretch.within, before, still, room)
         return before
 
-    def play(self, state: MotionState, own: slice, kept: bool) -> Path:
+    def play(self, state: MotionState, own: slice, kept: bool) -> StateHistory:
         """Take steps from a state, which is overwritten; return the states at their ends, none if not ``kept``."""
         count = own.stop - own.start if kept else 0
-        path = Path(*np.zeros((3, count, len(state.x))))
+        path = StateHistory(*np.zeros((3, count, len(state.x))))
         solver, steps = self.solver, Steps(*(part[own] for part in self.steps))
         status = replay(
             self.problem, self._models, solver.spectral_radius, solver.newton_tolerance, steps, state, path, self._room
@@ -82,10 +82,10 @@ class Player:
 class Checkpoints:
     """States before some of the steps, by the number of the step."""
 
-    player: Player
+    player: ReplayedMotion
     states: dict[int, MotionState]
 
-    def backwards(self, stretch: Stretch) -> Iterator[tuple[slice, Path]]:
+    def backwards(self, stretch: Stretch) -> Iterator[tuple[slice, StateHistory]]:
         """Yield the steps of a stretch in blocks from the last to the first, with the states at their ends."""
         last = stretch.last
         for first in sorted((k for k in self.states if stretch.first <= k < stretch.last), reverse=True):
@@ -100,7 +100,7 @@ def copied(state: MotionState) -> MotionState:
 
 
 def checkpoints(
-    player: Player, stretches: tuple[Stretch, ...], start: MotionState
+    player: ReplayedMotion, stretches: tuple[Stretch, ...], start: MotionState
 ) -> tuple[Checkpoints, tuple[MotionState, ...]]:
     """Repeat a motion; return the states each root of the number of steps, and those at the starts of the stretches."""
     distance = int(np.ceil(np.sqrt(len(player.steps.ends))))

@@ -8,8 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dalembert.multibody.integrators.generalized_alpha.adjoint_sweep import Part, SweepRoom, fixed_masses, sweep_room
-from dalembert.multibody.kernels.block_table import Model
+from dalembert.multibody.integrators.generalized_alpha.adjoint_sweep import (
+    ResidualDerivatives,
+    SweepRoom,
+    fixed_masses,
+    sweep_room,
+)
+from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.records import TANGENT
 from dalembert.multibody.kernels.states import MotionState
@@ -25,19 +30,21 @@ class Matrices:
     couplings: tuple[Couplings, ...]
 
 
-def matrices_of(lowered: Lowered, model: Model, work: int, state: MotionState) -> Matrices:
+def matrices_of(lowered: Lowered, model: BlockModel, work: int, state: MotionState) -> Matrices:
     """Return the room for a sweep, with the masses that do not change, filled at a state."""
     structure, kept = lowered.structure, []
 
-    def part(chosen: Callable[[Kind], bool]) -> Part:
+    def part(chosen: Callable[[Kind], bool]) -> ResidualDerivatives:
         kinds = {kind: index for kind, index in structure.index.items() if chosen(kind)}
         numbers = [number for number, kind in enumerate(structure.index) if kind in kinds]
         none = np.zeros(0, np.int64)
         if not kinds:
-            return Part(none, none, none, none, none, np.zeros(0))
+            return ResidualDerivatives(none, none, none, none, none, np.zeros(0))
         kept.append(Couplings(kinds, structure.size))
         slots, rows, columns = kept[-1].entries
-        return Part(np.array(numbers), slots, rows, columns, structure.full.places(rows, columns), np.zeros(len(rows)))
+        return ResidualDerivatives(
+            np.array(numbers), slots, rows, columns, structure.full.places(rows, columns), np.zeros(len(rows))
+        )
 
     rates = set(_of_velocities(lowered))
     varying = {kind for kind, data in lowered.data.items() if kind.varies(data)}

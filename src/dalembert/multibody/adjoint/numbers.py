@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from dalembert.multibody.integrators.generalized_alpha.adjoint_sweep import Pulls
-from dalembert.multibody.kernels.block_table import Model
+from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.pullbacks import PULL, PULL_SIGNALS, SIGNAL_PULL
 from dalembert.multibody.model.lowered import Lowered
@@ -99,7 +99,7 @@ class NumberGradient:
 class NumberPulls:
     """What the sweep needs to collect the gradient by a model's active numbers; :meth:`collect` adds it up."""
 
-    def __init__(self, gradient: NumberGradient, model: Model) -> None:
+    def __init__(self, gradient: NumberGradient, model: BlockModel) -> None:
         self._gradient = gradient
         self._kept: list[np.ndarray] = []
         lowered, signals = gradient.lowered, gradient.active_signals

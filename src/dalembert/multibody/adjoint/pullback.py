@@ -15,7 +15,7 @@ from dalembert.multibody.adjoint.recorded_motion import StoredMotion, stored_mot
 from dalembert.multibody.adjoint.start_adjoint import SecondRates, accelerations_back
 from dalembert.multibody.integrators.generalized_alpha.adjoint_sweep import (
     Cotangents,
-    Path,
+    StateHistory,
     Steps,
     SweepRoom,
     fixed_masses,
@@ -25,9 +25,9 @@ from dalembert.multibody.integrators.generalized_alpha.adjoint_sweep import (
 from dalembert.multibody.integrators.generalized_alpha.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.integrators.shared.consistent import accelerate
 from dalembert.multibody.integrators.shared.integrator import Integrator
-from dalembert.multibody.integrators.shared.problem import SINGULAR, Problem
+from dalembert.multibody.integrators.shared.problem import SINGULAR, IntegrationProblem
 from dalembert.multibody.integrators.shared.run import cut_down, explain
-from dalembert.multibody.kernels.block_table import Model
+from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.states import MotionState, resting
 from dalembert.multibody.kernels.transposed import transposed
 from dalembert.multibody.model.lowered import Lowered
@@ -84,7 +84,12 @@ class MotionPullback:
 
     @classmethod
     def of(
-        cls, lowered: Lowered, solver: GeneralizedAlpha, observer: Observer, problem: Problem, times: np.ndarray
+        cls,
+        lowered: Lowered,
+        solver: GeneralizedAlpha,
+        observer: Observer,
+        problem: IntegrationProblem,
+        times: np.ndarray,
     ) -> "MotionPullback":
         """Integrate a motion and keep its states."""
         return cls(lowered, solver, observer, stored_motion(lowered, solver, problem, times, observer.counted), times)
@@ -123,7 +128,8 @@ class MotionPullback:
         return gradient.whole
 
     def _sweep(
-        self, own: slice, path: Path, model: Model, given: MotionState, pulls: NumberPulls, bar: MotionState,
+        self, own: slice, path: StateHistory, model: BlockModel, given: MotionState, pulls: NumberPulls,
+        bar: MotionState,
         room: SweepRoom,
     ) -> None:  # fmt: skip
         """Take the adjoint over a block of steps."""
@@ -137,7 +143,7 @@ class MotionPullback:
             raise explain(self.lowered, SINGULAR, float(steps.ends[status]), 0, cut_down(self.solver.step))
 
     def _accelerations_back(
-        self, stretch: Stretch, state: MotionState, model: Model, gradient: NumberGradient, pulls: NumberPulls,
+        self, stretch: Stretch, state: MotionState, model: BlockModel, gradient: NumberGradient, pulls: NumberPulls,
         bar: MotionState, room: SweepRoom,
     ) -> None:  # fmt: skip
         """Take the adjoint through the accelerations at the start of a stretch."""

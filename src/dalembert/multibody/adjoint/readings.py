@@ -4,7 +4,7 @@ import numpy as np
 
 from dalembert.errors import InputError
 from dalembert.multibody.adjoint.numbers import NumberGradient, readers
-from dalembert.multibody.kernels.block_table import Model
+from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.states import MotionState
@@ -25,7 +25,7 @@ def refuse_energies(observer: Observer) -> None:
 
 
 def pull_readings(
-    gradient: NumberGradient, model: Model, states: MotionState, times: np.ndarray, cotangent: np.ndarray,
+    gradient: NumberGradient, model: BlockModel, states: MotionState, times: np.ndarray, cotangent: np.ndarray,
     signal_bars: np.ndarray,
 ) -> MotionState:  # fmt: skip
     """Return the cotangents of sampled states (samples, N + 1), and add to the gradient by numbers of channels.
@@ -49,7 +49,7 @@ def pull_readings(
 
 
 def _pull_kind(
-    gradient: NumberGradient, kind: Kind, chosen: list[int], model: Model, states: MotionState, times: np.ndarray,
+    gradient: NumberGradient, kind: Kind, chosen: list[int], model: BlockModel, states: MotionState, times: np.ndarray,
     weights: np.ndarray, bars: MotionState, signal_bars: np.ndarray,
 ) -> None:  # fmt: skip
     """The channels of one kind: their local unknowns one after the other, for all samples and channels at once."""
@@ -99,7 +99,7 @@ def _number_part(gradient: NumberGradient, number: int) -> np.ndarray:
 
 
 def _pull_signals(
-    block: OutputBlock, model: Model, local: list[np.ndarray], times: np.ndarray, weights: np.ndarray,
+    block: OutputBlock, model: BlockModel, local: list[np.ndarray], times: np.ndarray, weights: np.ndarray,
     pairs: np.ndarray, signal_bars: np.ndarray,
 ) -> None:  # fmt: skip
     """Adjoints of the signals that channels read, sample by sample."""

@@ -7,11 +7,11 @@ from typing import Protocol
 import numpy as np
 
 from dalembert.errors import InputError
-from dalembert.multibody.adjoint.checkpoints import Player, Stretch, checkpoints
-from dalembert.multibody.integrators.generalized_alpha.adjoint_sweep import Path, Steps
+from dalembert.multibody.adjoint.checkpoints import ReplayedMotion, Stretch, checkpoints
+from dalembert.multibody.integrators.generalized_alpha.adjoint_sweep import StateHistory, Steps
 from dalembert.multibody.integrators.generalized_alpha.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.integrators.shared.batch import Batch, make_batch, restarts
-from dalembert.multibody.integrators.shared.problem import Problem
+from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.integrators.shared.run import Run
 from dalembert.multibody.kernels.states import MotionState
 from dalembert.multibody.model.lowered import Lowered
@@ -24,7 +24,7 @@ ROOM = 20_000_000
 class Keeper(Protocol):
     """What keeps the states of all steps, or computes them again."""
 
-    def backwards(self, stretch: Stretch) -> Iterator[tuple[slice, Path]]:
+    def backwards(self, stretch: Stretch) -> Iterator[tuple[slice, StateHistory]]:
         """Yield the steps of a stretch in blocks from the last to the first, with the states at their ends."""
         ...
 
@@ -33,12 +33,12 @@ class Keeper(Protocol):
 class Stored:
     """The states at the ends of all steps, (steps, N + 1)."""
 
-    path: Path
+    path: StateHistory
 
-    def backwards(self, stretch: Stretch) -> Iterator[tuple[slice, Path]]:
+    def backwards(self, stretch: Stretch) -> Iterator[tuple[slice, StateHistory]]:
         """Yield all steps of a stretch."""
         own = slice(stretch.first, stretch.last)
-        yield own, Path(*(part[own] for part in self.path))
+        yield own, StateHistory(*(part[own] for part in self.path))
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +50,7 @@ class StoredMotion:
     in, -1 for the start, and the share of that step.
     """
 
-    problem: Problem
+    problem: IntegrationProblem
     steps: Steps
     stretches: tuple[Stretch, ...]
     starts: tuple[MotionState, ...]
@@ -64,7 +64,7 @@ class StoredMotion:
 def stored_motion(
     lowered: Lowered,
     solver: GeneralizedAlpha,
-    problem: Problem,
+    problem: IntegrationProblem,
     times: np.ndarray,
     counted: Sequence[CountedAngle] = (),
 ) -> StoredMotion:
@@ -87,7 +87,7 @@ def stored_motion(
             "Use larger steps or a shorter motion"
         )
     steps, stretches = _steps(solver, batch, ends)
-    player = Player(lowered, solver, batch.problem, steps)
+    player = ReplayedMotion(lowered, solver, batch.problem, steps)
     start = MotionState(*(part[0].copy() for part in run.states))
     keeper: Keeper
     if 4 * width * len(ends) > ROOM:
@@ -98,7 +98,7 @@ def stored_motion(
             grid = np.union1d(times, expected)
             run, batch = _run(lowered, solver, problem, grid, end, counted)
         rows = np.searchsorted(grid, expected)
-        path = Path(*(part[1:] if len(rows) == len(part) else part[rows[1:]] for part in run.states[:3]))
+        path = StateHistory(*(part[1:] if len(rows) == len(part) else part[rows[1:]] for part in run.states[:3]))
         before = (MotionState(*(part[s.first - 1].copy() for part in (*path, path.a))) for s in stretches[1:])
         starts = (start, *(player.begun(*pair) for pair in zip(stretches[1:], before, strict=True)))
         keeper = Stored(path)
@@ -109,7 +109,7 @@ def stored_motion(
 
 
 def _run(
-    lowered: Lowered, solver: GeneralizedAlpha, problem: Problem, grid: np.ndarray, end: float,
+    lowered: Lowered, solver: GeneralizedAlpha, problem: IntegrationProblem, grid: np.ndarray, end: float,
     counted: Sequence[CountedAngle],
 ) -> tuple[Run, Batch]:  # fmt: skip
     batch = make_batch([lowered], (), problem._replace(times=grid), end, True, counted)

@@ -12,7 +12,7 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 from dalembert.multibody.adjoint.numbers import NumberGradient, readers
-from dalembert.multibody.kernels.block_table import Call, Model
+from dalembert.multibody.kernels.block_table import BlockModel, Call
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.states import MotionState
@@ -44,7 +44,7 @@ class SecondRates:
     """mu^T times the second derivatives of the constraints, differentiated by complex steps."""
 
     def __init__(
-        self, lowered: Lowered, model: Model, state: MotionState, t: float, within: float, mu: np.ndarray
+        self, lowered: Lowered, model: BlockModel, state: MotionState, t: float, within: float, mu: np.ndarray
     ) -> None:
         self._lowered, self._model, self._mu = lowered, model.need("rates"), mu
         self._state = [part.astype(complex) for part in state[:3]]

@@ -41,7 +41,7 @@ class Signals:
 
 
 @dataclass(frozen=True, eq=False)
-class Model:
+class BlockModel:
     """A whole model in real numbers, or in complex ones as a direction of differentiation.
 
     ``size``: unknowns; ``coordinates``: unknowns that are no multipliers; ``reduction``: rows of the reduced system;
@@ -98,7 +98,7 @@ class Model:
             block["real_numbers"] = self._real_numbers[kind].ctypes.data
         return table
 
-    def need(self, *roles: str) -> "Model":
+    def need(self, *roles: str) -> "BlockModel":
         """Load the kernels of these roles, and hand the model back."""
         for block, kind in zip(self._words[1], self.blocks.index, strict=False):
             # Kernels are loaded by role when they are first needed: loading, or even compiling, is most of a cold
@@ -110,7 +110,7 @@ class Model:
                     block[role] = kernel.address
         return self
 
-    def reduced(self, nodes: bool = True) -> "Model":
+    def reduced(self, nodes: bool = True) -> "BlockModel":
         """Load the kernels of the reduced system, those of its ``nodes`` unless only tangents are wanted."""
         if self.reduction.nodes:
             head = self._words[0]
@@ -185,6 +185,6 @@ class Call:
         return self
 
 
-def addresses(models: Iterable[Model]) -> np.ndarray:
+def addresses(models: Iterable[BlockModel]) -> np.ndarray:
     """Addresses of models, which the caller keeps alive."""
     return np.array([model.address for model in models], dtype=np.int64)

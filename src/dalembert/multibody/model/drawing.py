@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from dalembert.multibody.model.lowered import Lowered
-from dalembert.multibody.model.system import Mechanism
+from dalembert.multibody.model.system import BaseSystem
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Drawing:
         return own[:, :1] + self.surfaces[body].corners @ own[:, 1:]
 
 
-def draw(system: Mechanism, lowered: Lowered, times: np.ndarray, x: np.ndarray, points: int) -> Drawing:
+def draw(system: BaseSystem, lowered: Lowered, times: np.ndarray, x: np.ndarray, points: int) -> Drawing:
     """Drawing from unknowns (frames, N + 1)."""
     lines, axes, surfaces = {}, {}, {}
     for body in system.bodies:

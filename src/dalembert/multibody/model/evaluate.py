@@ -6,7 +6,7 @@ from scipy.sparse import csr_matrix
 from dalembert.kernels.kernel import Compiled, kernel
 from dalembert.kernels.words import Address, Reals, Reals2
 from dalembert.multibody.kernels import assembly
-from dalembert.multibody.kernels.block_table import Model
+from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.histories import energy_history
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.records import RESIDUAL, TANGENT
@@ -15,7 +15,7 @@ from dalembert.multibody.model.lowered import Lowered
 
 def residual(
     lowered: Lowered,
-    model: Model,
+    model: BlockModel,
     x: np.ndarray,
     v: np.ndarray,
     a: np.ndarray,
@@ -67,7 +67,7 @@ def constraint_jacobian(lowered: Lowered, x: np.ndarray, t: float = 0.0) -> csr_
 
 
 def constraint_rates(
-    lowered: Lowered, model: Model, x: np.ndarray, v: np.ndarray, a: np.ndarray, t: float = 0.0
+    lowered: Lowered, model: BlockModel, x: np.ndarray, v: np.ndarray, a: np.ndarray, t: float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
     """First and second time derivatives of the constraints, (m,) each."""
     x, v, a = map(np.ascontiguousarray, (x, v, a))
@@ -101,7 +101,7 @@ def energy_kernels(lowered: Lowered, derivatives: bool) -> list[Compiled]:
     return [energy_history, *(kind.kernel("energy", dtype) for dtype in types for kind in kinds)]
 
 
-def energies(model: Model, x: np.ndarray, v: np.ndarray, times: np.ndarray, within: np.ndarray) -> np.ndarray:
+def energies(model: BlockModel, x: np.ndarray, v: np.ndarray, times: np.ndarray, within: np.ndarray) -> np.ndarray:
     """Kinetic energy, potential energy, power of what is not conservative, (samples, 3)."""
     totals, call = np.zeros((len(times), 3), dtype=x.dtype), model.need("energy").call()
     x, v = np.ascontiguousarray(x), np.ascontiguousarray(v)

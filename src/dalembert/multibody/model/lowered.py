@@ -9,7 +9,7 @@ import numpy as np
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.components.base_body import BaseBody
 from dalembert.multibody.components.laws.friction_law import FORCE, NUMBERS
-from dalembert.multibody.kernels.block_table import Blocks, Model, Signals
+from dalembert.multibody.kernels.block_table import BlockModel, Blocks, Signals
 from dalembert.multibody.kernels.callbacks import Callback, Failures
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.signal_values import EVALUATORS
@@ -69,13 +69,13 @@ class Lowered:
         own = [kind.kernel(*role) for role in roles for kind in self.data if role[0] in kind.roles]
         return [*own, *EVALUATORS[len(self.structure.signals) > 1].values()]
 
-    def model(self, dtype: type, *roles: str) -> Model:
+    def model(self, dtype: type, *roles: str) -> BlockModel:
         """The arrays in real or in complex numbers, with the kernels of these roles."""
         numbers = {kind: np.ascontiguousarray(_cast(data, dtype)) for kind, data in self.data.items()}
         address = "complex" if dtype is complex else "real"
         callbacks = np.array([getattr(entry, address) for entry in self.callbacks], dtype=np.int64)
         data = np.ascontiguousarray(_cast(self.signal_data, dtype))
-        return Model(
+        return BlockModel(
             Blocks(self.structure.index, self.structure.meta, numbers),
             Signals(self.structure.signals, self.knots, data),
             callbacks,
@@ -87,22 +87,22 @@ class Lowered:
         )
 
     @cached_property
-    def real(self) -> Model:
+    def real(self) -> BlockModel:
         """The model in real numbers."""
         return self.model(float)
 
     @cached_property
-    def complex_model(self) -> Model:
+    def complex_model(self) -> BlockModel:
         """The model in complex numbers."""
         return self.model(complex, "residual", "tangent")
 
     @cached_property
-    def unperturbed(self) -> Model:
+    def unperturbed(self) -> BlockModel:
         """The model in complex numbers without imaginary parts."""
         return self._unperturbed.complex_model if self.is_complex else self.complex_model
 
     @cached_property
-    def tangents(self) -> Model:
+    def tangents(self) -> BlockModel:
         """The model in complex numbers without imaginary parts, for tangents alone."""
         return self._unperturbed.model(complex, "tangent")
 

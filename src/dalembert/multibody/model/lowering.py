@@ -23,7 +23,7 @@ from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.model.carried_rates import carried_rates
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.structure import Structure
-from dalembert.multibody.model.system import Mechanism
+from dalembert.multibody.model.system import BaseSystem
 
 _ABSENT = -1
 _ROUNDING = 1e-14  # relative, of differences of times
@@ -32,7 +32,7 @@ _ROUNDING = 1e-14  # relative, of differences of times
 class MechanismLowering(ABC):
     """Collects the rows of the kernels while the components write them."""
 
-    def __init__(self, system: Mechanism, begin: float = 0.0) -> None:
+    def __init__(self, system: BaseSystem, begin: float = 0.0) -> None:
         self.gravity = system.gravity
         self.kinks: list[tuple[float, str]] = []
         self._system = system
@@ -228,12 +228,12 @@ class MechanismLowering(ABC):
         return lowered
 
 
-def lower(system: Mechanism, begin: float = 0.0) -> Lowered:
+def lower(system: BaseSystem, begin: float = 0.0) -> Lowered:
     """Arrays of a system, with its bodies as placed; its motion starts at the time ``begin`` (s) of its signals.
 
     Raises InputError: for what is no System.
     """
-    if not isinstance(system, Mechanism):
+    if not isinstance(system, BaseSystem):
         advice = f": {system.INSTEAD}" if hasattr(system, "INSTEAD") else ""
         raise InputError(f"{shown(system)} was given as the mechanism; expected a System{advice}")
     module, _, name = system.LOWERING.rpartition(".")

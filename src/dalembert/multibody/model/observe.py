@@ -10,13 +10,13 @@ import numpy as np
 from dalembert.errors import InputError, unknown
 from dalembert.forward import Channel
 from dalembert.kernels.kernel import Compiled
-from dalembert.multibody.kernels.block_table import Model
+from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.histories import outputs_history
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.records import BLOCK
 from dalembert.multibody.model.evaluate import energies, energy_kernels
 from dalembert.multibody.model.lowered import Lowered
-from dalembert.multibody.model.system import Mechanism
+from dalembert.multibody.model.system import BaseSystem
 from dalembert.multibody.model.turns import CountedAngle, turn_kernels
 
 _OF_SYSTEM = {"kinetic_energy": (1.0, 0.0), "potential_energy": (0.0, 1.0), "total_energy": (1.0, 1.0)}
@@ -81,7 +81,7 @@ class Observer:
         return [angles.index(angle) for angle in self.counted]
 
     def read(
-        self, lowered: Lowered, model: Model, states: Sequence[np.ndarray], times: np.ndarray,
+        self, lowered: Lowered, model: BlockModel, states: Sequence[np.ndarray], times: np.ndarray,
         turns: Mapping[CountedAngle, np.ndarray] = _NO_TURNS,
     ) -> np.ndarray:  # fmt: skip
         """Values (samples, channels) from states x, v and a (samples, N + 1), real or complex, at times in s.
@@ -107,7 +107,7 @@ class Observer:
 
 
 def _outputs(
-    kind: Kind, rows: list[_Row], lowered: Lowered, model: Model, x: np.ndarray, v: np.ndarray, a: np.ndarray,
+    kind: Kind, rows: list[_Row], lowered: Lowered, model: BlockModel, x: np.ndarray, v: np.ndarray, a: np.ndarray,
     times: np.ndarray,
 ) -> np.ndarray:  # fmt: skip
     """All outputs of components of a kind, (samples, components, outputs)."""
@@ -138,7 +138,7 @@ class OutputBlock:
         """Address of the block."""
         return self._words.ctypes.data
 
-    def read(self, model: Model, states: Sequence[np.ndarray], stamps: np.ndarray) -> np.ndarray:
+    def read(self, model: BlockModel, states: Sequence[np.ndarray], stamps: np.ndarray) -> np.ndarray:
         """Outputs (samples, components, outputs) of contiguous states (samples, -); without stamps no signals."""
         x, places = states[0], [array.ctypes.data for array in states]
         own, stamps = self.address, np.ascontiguousarray(stamps, dtype=float)
@@ -156,7 +156,7 @@ def beside(times: np.ndarray, side: int) -> np.ndarray:
     return np.maximum(times + side * 1e-9 * times[-1], 0.0) if len(times) else times
 
 
-def observer(system: Mechanism, lowered: Lowered, names: Sequence[str]) -> Observer:
+def observer(system: BaseSystem, lowered: Lowered, names: Sequence[str]) -> Observer:
     """Channels by name.
 
     Raises InputError: for an unknown name, with the nearest ones.
@@ -165,7 +165,7 @@ def observer(system: Mechanism, lowered: Lowered, names: Sequence[str]) -> Obser
     return Observer(tuple(Channel(name, row.unit) for name, row in zip(names, rows, strict=True)), rows)
 
 
-def channel_units(system: Mechanism) -> dict[str, str]:
+def channel_units(system: BaseSystem) -> dict[str, str]:
     """All channels that a system offers, with their units."""
     units = dict.fromkeys((f"system.{entry}" for entry in _OF_SYSTEM), "J")
     of_components = {
@@ -188,12 +188,12 @@ def channel_units(system: Mechanism) -> dict[str, str]:
     return {**of_points, **of_components, **of_parts, **units}
 
 
-def channel_names(system: Mechanism) -> tuple[str, ...]:
+def channel_names(system: BaseSystem) -> tuple[str, ...]:
     """All channels that a system offers."""
     return tuple(channel_units(system))
 
 
-def _row(system: Mechanism, lowered: Lowered, name: str) -> _Row:
+def _row(system: BaseSystem, lowered: Lowered, name: str) -> _Row:
     structure = lowered.structure
     owner, _, entry = name.rpartition(".")
     if owner == "system" and entry in _OF_SYSTEM:

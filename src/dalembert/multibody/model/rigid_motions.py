@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from dalembert.multibody.components.base_body import BaseBody
-from dalembert.multibody.kernels.block_table import Model
+from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.model.evaluate import constraint_jacobian, constraint_rates, residual
 from dalembert.multibody.model.lowered import Lowered
@@ -57,7 +57,7 @@ def size_of(values: np.ndarray) -> tuple[float, float]:
     return np.abs(np.real(values)).max(initial=0.0), np.abs(np.imag(values)).max(initial=0.0) / STEP
 
 
-def smallest(lowered: Lowered, model: Model, x: np.ndarray, modes: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+def smallest(lowered: Lowered, model: BlockModel, x: np.ndarray, modes: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     """Smallest change of frames (free,), with ``modes`` (n, free), that changes the constraints as ``wanted`` (m,).
 
     With J the jacobian of the constraints by the frames it is J^T p, J J^T p = wanted. Both products are taken from the

@@ -9,10 +9,10 @@ from dalembert.multibody.components.spatial.ground_points import Ground
 from dalembert.multibody.components.spatial.joint import Joint
 from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.shapes import Shape, Surface, surface_of
-from dalembert.multibody.model.system import PLACED, Mechanism
+from dalembert.multibody.model.system import PLACED, BaseSystem
 
 
-class SpatialSystem(Mechanism):
+class SpatialSystem(BaseSystem):
     """A mechanism in space, built by adding components of :mod:`dalembert.multibody.spatial`.
 
     Parameters

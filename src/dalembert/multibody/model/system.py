@@ -23,7 +23,7 @@ PLACED, EQUILIBRIUM = STARTS = "placed", "equilibrium"
 Component = TypeVar("Component", bound=BaseBody | BaseJoint | BaseLoad)
 
 
-class Mechanism(Displayed):
+class BaseSystem(Displayed):
     """What mechanisms in the plane and in space share: a mechanism is built by adding components.
 
     Parameters
@@ -144,7 +144,7 @@ class Mechanism(Displayed):
         return bodies[name]
 
 
-class System(Mechanism):
+class System(BaseSystem):
     """A planar mechanism, built by adding components.
 
     Parameters

@@ -11,15 +11,15 @@ from dalembert.findings import Finding
 from dalembert.multibody.components.planar.ancf_beam import AncfBeam
 from dalembert.multibody.components.planar.slenderness import NOTE, WARNING
 from dalembert.multibody.model.lowered import Lowered
-from dalembert.multibody.model.system import Mechanism
+from dalembert.multibody.model.system import BaseSystem
 
 
-def stretching(system: Mechanism) -> list[AncfBeam]:
+def stretching(system: BaseSystem) -> list[AncfBeam]:
     """Return the beams with Green's strain."""
     return [body for body in system.bodies if isinstance(body, AncfBeam)]
 
 
-def strain_findings(system: Mechanism, lowered: Lowered, times: np.ndarray, states: np.ndarray) -> tuple[Finding, ...]:
+def strain_findings(system: BaseSystem, lowered: Lowered, times: np.ndarray, states: np.ndarray) -> tuple[Finding, ...]:
     """Return a finding for each beam whose axial force differs by 1 % or more from Hooke's.
 
     ``times`` (samples,): s; ``states`` (samples, N + 1): coordinates.

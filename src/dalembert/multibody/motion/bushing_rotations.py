@@ -5,10 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from dalembert.findings import Finding
-from dalembert.multibody.model.system import Mechanism
+from dalembert.multibody.model.system import BaseSystem
 
 
-def turning_bushings(system: Mechanism) -> dict[str, tuple[str, ...]]:
+def turning_bushings(system: BaseSystem) -> dict[str, tuple[str, ...]]:
     """Return the channels of the rotation vectors that torques of loads depend on, by the names of the loads."""
     return {load.name: load.rotation_vector for load in system.loads if load.rotation_vector}
 

@@ -18,17 +18,17 @@ from dalembert.multibody.integrators.shared.run import make_problem
 from dalembert.multibody.kernels.callbacks import in_complex_numbers
 from dalembert.multibody.model.fingerprint import fingerprint
 from dalembert.multibody.model.lowering import lower
-from dalembert.multibody.model.system import Mechanism
+from dalembert.multibody.model.system import BaseSystem
 from dalembert.multibody.motion.simulation import prepared, simulate
 from dalembert.multibody.motion.trajectory import Trajectory
 from dalembert.results import Result
 from dalembert.stored_fields import Source, Store
 
-OnRow = Callable[["Row"], None]
+OnRow = Callable[["IntegratorRun"], None]
 
 
 @dataclass(frozen=True)
-class Row:
+class IntegratorRun:
     """One run of one integrator.
 
     Parameters
@@ -65,13 +65,13 @@ class Row:
 class _Rows:
     """Rows as variables over the dimension ``run``."""
 
-    def store(self, to: Store, settings: dict[str, Any], name: str, value: Sequence[Row]) -> None:
-        for part in Row.__dataclass_fields__:
+    def store(self, to: Store, settings: dict[str, Any], name: str, value: Sequence[IntegratorRun]) -> None:
+        for part in IntegratorRun.__dataclass_fields__:
             to.variables[part] = ("run", [getattr(row, part) for row in value])
 
-    def load(self, source: Source, settings: Mapping[str, Any], name: str) -> tuple[Row, ...]:
-        columns = (source.arrays[part].tolist() for part in Row.__dataclass_fields__)
-        return tuple(map(Row, *columns))
+    def load(self, source: Source, settings: Mapping[str, Any], name: str) -> tuple[IntegratorRun, ...]:
+        columns = (source.arrays[part].tolist() for part in IntegratorRun.__dataclass_fields__)
+        return tuple(map(IntegratorRun, *columns))
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +97,7 @@ class WorkPrecision(Result):
     end: float
     reference: str
     apart: float
-    rows: Annotated[tuple[Row, ...], _Rows()]
+    rows: Annotated[tuple[IntegratorRun, ...], _Rows()]
 
     @property
     def methods(self) -> tuple[str, ...]:
@@ -119,7 +119,7 @@ class WorkPrecision(Result):
             f"which is itself known to about {self.apart:.1e}{told}"
         )
 
-    def fastest(self, error: float) -> Row | None:
+    def fastest(self, error: float) -> IntegratorRun | None:
         """The fastest run whose error is at most ``error``; None if there is none."""
         good = [row for row in self.rows if row.error <= error]
         return min(good, key=lambda row: row.seconds, default=None)
@@ -140,7 +140,7 @@ class WorkPrecision(Result):
 
 @takes_checked()
 def work_precision(
-    system: Mechanism,
+    system: BaseSystem,
     end: float,
     channels: Sequence[str],
     solvers: Mapping[str, Sequence[Integrator]],
@@ -174,7 +174,7 @@ def work_precision(
         Where the references and the rows are kept as they are found, with their times; begun again with the same file
         the comparison goes on with those that are missing.
     on_row : callable, optional
-        Is called with each `Row` when it is there.
+        Is called with each `IntegratorRun` when it is there.
 
     Returns
     -------
@@ -226,7 +226,7 @@ def work_precision(
 class _Comparison:
     """A motion whose runs are kept where there is a checkpoint."""
 
-    system: Mechanism
+    system: BaseSystem
     end: float
     times: np.ndarray
     channels: tuple[str, ...]
@@ -238,26 +238,26 @@ class _Comparison:
         """Channels of a run, (samples, channels)."""
         return self._once(lambda: self._simulated(solver).channels(self.channels), "motion", solver)
 
-    def row(self, method: str, solver: Integrator, known: np.ndarray) -> Row:
+    def row(self, method: str, solver: Integrator, known: np.ndarray) -> IntegratorRun:
         """An integrator beside the channels of the reference."""
 
         def compute() -> np.ndarray:
             return np.frombuffer(json.dumps(asdict(self._row(method, solver, known))).encode(), np.uint8)
 
-        return Row(**json.loads(self._once(compute, "row", method, solver, self.repeats).tobytes()))
+        return IntegratorRun(**json.loads(self._once(compute, "row", method, solver, self.repeats).tobytes()))
 
     def _simulated(self, solver: Integrator) -> Trajectory:
         return simulate(self.system, self.end, solver, self.times)
 
-    def _row(self, method: str, solver: Integrator, known: np.ndarray) -> Row:
+    def _row(self, method: str, solver: Integrator, known: np.ndarray) -> IntegratorRun:
         try:
             motion = self._simulated(solver)
             seconds = _seconds(self.system, self.end, solver, self.times, self.repeats)
         except DalembertError as error:  # it ended early, or is not made for this mechanism
-            return Row(method, str(solver), failure=str(error))
+            return IntegratorRun(method, str(solver), failure=str(error))
         worst: Any = {level: float(np.max(values)) for level, values in motion.violations.items()}
         error, steps = _distance(motion.channels(self.channels), known), int(motion.run.counts[0])
-        return Row(method, str(solver), error, seconds, steps, **worst, energy=_imbalance(motion))
+        return IntegratorRun(method, str(solver), error, seconds, steps, **worst, energy=_imbalance(motion))
 
     def _once(self, compute: Callable[[], np.ndarray], *what: object) -> np.ndarray:
         """What the checkpoint holds of this, or what is computed now."""
@@ -272,7 +272,7 @@ class _Comparison:
             return fingerprint(lower(self.system), self.times, self.end, self.channels, self.reference)
 
 
-def _seconds(system: Mechanism, end: float, solver: Integrator, times: np.ndarray, repeats: int) -> float:
+def _seconds(system: BaseSystem, end: float, solver: Integrator, times: np.ndarray, repeats: int) -> float:
     """Shortest time of the integration alone, to the output times and no others."""
     lowered, chosen = prepared(system, end, solver)
     problem = make_problem(lowered, times)

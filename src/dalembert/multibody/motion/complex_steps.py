@@ -16,7 +16,7 @@ import numpy as np
 from dalembert.errors import InputError
 from dalembert.forward.complex_steps import DROPPING, REMEDY, Lost, attempted, check_steps, check_together, lost_step
 from dalembert.multibody.components.signals import Custom
-from dalembert.multibody.kernels.block_table import Model
+from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.callbacks import in_complex_numbers
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.states import MotionState
@@ -24,7 +24,7 @@ from dalembert.multibody.model.evaluate import residual
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.lowering import lower
 from dalembert.multibody.model.observe import Observer
-from dalembert.multibody.model.system import Mechanism
+from dalembert.multibody.model.system import BaseSystem
 from dalembert.parameters import Parameters
 
 _STATES = 5  # of a motion at which functions are compared
@@ -56,7 +56,7 @@ class Along:
 
 
 def check_numbers(
-    builder: Callable[..., Mechanism], parameters: Parameters, vector: np.ndarray, thorough: bool = True
+    builder: Callable[..., BaseSystem], parameters: Parameters, vector: np.ndarray, thorough: bool = True
 ) -> None:
     """Raise where a number of the model, or a function of time, loses the complex step of a parameter.
 
@@ -73,7 +73,7 @@ def check_numbers(
         check_steps(parameters, vector, lambda at: _numbers(lowered(at)), place, thorough=thorough)
 
 
-def check_numbers_together(builder: Callable[..., Mechanism], parameters: Parameters, vector: np.ndarray) -> None:
+def check_numbers_together(builder: Callable[..., BaseSystem], parameters: Parameters, vector: np.ndarray) -> None:
     """Compare as :func:`check_numbers`, along one direction of all parameters at once; they are few builds.
 
     Raises InputError: it names the parameter, the component and its number.
@@ -85,7 +85,7 @@ def check_numbers_together(builder: Callable[..., Mechanism], parameters: Parame
         )  # fmt: skip
 
 
-def _built(builder: Callable[..., Mechanism], parameters: Parameters, vector: np.ndarray) -> Mechanism:
+def _built(builder: Callable[..., BaseSystem], parameters: Parameters, vector: np.ndarray) -> BaseSystem:
     """The system with functions of the user's as Python runs them, since compiling one takes a second."""
     given = [value if value.imag else value.real for value in vector.tolist()]
     system = copy(builder(**parameters.arguments(given)))
@@ -113,7 +113,9 @@ def _place(lowered: Lowered, entry: int) -> str:
     return names[entry]
 
 
-def check_closures(builder: Callable[..., Mechanism], parameters: Parameters, vector: np.ndarray, along: Along) -> None:
+def check_closures(
+    builder: Callable[..., BaseSystem], parameters: Parameters, vector: np.ndarray, along: Along
+) -> None:
     """Raise where a function of the user's, or a kind of another package, loses the complex step of a parameter.
 
     Raises InputError: it names the parameter and the component.
@@ -133,7 +135,7 @@ def check_closures(builder: Callable[..., Mechanism], parameters: Parameters, ve
             check_steps(parameters, vector, lambda at: np.concatenate([own for _, own in answers(at)]), place)
 
 
-def _of_signals(system: Mechanism, along: Along) -> Iterator[tuple[str, np.ndarray]]:
+def _of_signals(system: BaseSystem, along: Along) -> Iterator[tuple[str, np.ndarray]]:
     """Values and rates of functions of time."""
     for component in (*system.bodies, *system.joints, *system.loads):
         for name, signal in vars(component).items():
@@ -218,7 +220,7 @@ def _check_force(
 def _check_channels(
     lowered: Lowered, observer: Observer, direction: Sequence[np.ndarray], state: list, t: float
 ) -> None:
-    def read(model: Model, *moved: np.ndarray) -> np.ndarray:
+    def read(model: BlockModel, *moved: np.ndarray) -> np.ndarray:
         return observer.read(lowered, model, [part[None] for part in moved], np.array([t]))[0]
 
     lost = _lost(lowered, direction, state, read)

@@ -16,15 +16,15 @@ from dalembert.forward.complex_steps import Compared
 from dalembert.forward.differences import COMPLEX_STEP, central_differences
 from dalembert.kernels.preparation import prepare
 from dalembert.multibody.integrators.shared.integrator import Integrator
-from dalembert.multibody.integrators.shared.problem import Problem
+from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.integrators.shared.run import Run, make_problem
-from dalembert.multibody.kernels.block_table import Model
+from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.callbacks import in_complex_numbers
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.lowering import lower
 from dalembert.multibody.model.observe import Observer, observer
-from dalembert.multibody.model.system import Mechanism
+from dalembert.multibody.model.system import BaseSystem
 from dalembert.multibody.motion.complex_steps import (
     Along,
     check_closures,
@@ -66,7 +66,7 @@ class MotionModel(ABC):
         return Coordinate("time", "s", self.times)
 
     @cached_property
-    def problem(self) -> Problem:
+    def problem(self) -> IntegrationProblem:
         return make_problem(self._built.shared, self.times)
 
     def evaluate(self, vectors: np.ndarray) -> Responses:
@@ -150,7 +150,7 @@ class MotionModel(ABC):
         lowered, columns = self._lower(vector), range(len(vector))
         return lowered, [self._built.perturbed_at(vector, column, self.begin, closed=True) for column in columns]
 
-    def _read(self, lowered: Lowered, model: Model, states: Any, turns: np.ndarray | None = None) -> np.ndarray:
+    def _read(self, lowered: Lowered, model: BlockModel, states: Any, turns: np.ndarray | None = None) -> np.ndarray:
         """Channels of states x, v and a (samples, N + 1), (samples, channels), with turns (samples, angles)."""
         observer = self._built.observer
         counted = {} if turns is None else dict(zip(observer.counted, turns.T, strict=True))
@@ -165,7 +165,7 @@ class MotionModel(ABC):
 class BuiltModel(MotionModel):
     """A model of motions whose mechanism a function builds from parameters."""
 
-    builder: Callable[..., Mechanism]
+    builder: Callable[..., BaseSystem]
     parameters: Parameters
     channel_names: tuple[str, ...]
     times: np.ndarray
@@ -184,12 +184,12 @@ class BuiltModel(MotionModel):
         """Channels with their units."""
         return self.observer.channels
 
-    def system(self, vector: np.ndarray) -> Mechanism:
+    def system(self, vector: np.ndarray) -> BaseSystem:
         """The mechanism at a parameter vector (parameters,)."""
-        return built(self.builder, self.parameters.mapping(vector), Mechanism)
+        return built(self.builder, self.parameters.mapping(vector), BaseSystem)
 
     @cached_property
-    def first_system(self) -> Mechanism:
+    def first_system(self) -> BaseSystem:
         """The mechanism that all samples share their structure with."""
         return self.system(self.parameters.start if self.built_at is None else self.built_at)
 
@@ -306,7 +306,7 @@ class BuiltModel(MotionModel):
             name: complex(value, STEP * slopes[name]) if slopes.get(name) else value
             for name, value in self.parameters.mapping(vector).items()
         }
-        system = built(self.builder, moved, Mechanism)
+        system = built(self.builder, moved, BaseSystem)
         placed = lower(system, begin)
         moves = moves_start(system, placed)
         return self._fit(assembled(system, perturbed=True, placed=placed, begin=begin) if moves else placed)
@@ -315,7 +315,7 @@ class BuiltModel(MotionModel):
         """The arrays of :meth:`lowered_at`, moved by a complex step of the scale of one parameter."""
         name, value = self.parameters.names[column], complex(vector[column], STEP * self.parameters.scale[column])
         try:
-            system = built(self.builder, self.parameters.mapping(vector) | {name: value}, Mechanism)
+            system = built(self.builder, self.parameters.mapping(vector) | {name: value}, BaseSystem)
             return self._fit(assembled(system, perturbed=True, begin=begin) if closed else lower(system, begin))
         except (TypeError, ModelError, np.exceptions.ComplexWarning) as error:
             cause = error.__cause__ if isinstance(error, ModelError) else error

@@ -10,7 +10,7 @@ from scipy.linalg import null_space, qr
 from dalembert.errors import SolveError
 from dalembert.forward import Channel, StateChart
 from dalembert.multibody.components.base_body import ANGLE, DISPLACEMENT, POSITION
-from dalembert.multibody.kernels.block_table import Model
+from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.model.evaluate import constraint_jacobian, constraint_rates, residual
 from dalembert.multibody.model.fingerprint import fingerprint
@@ -272,7 +272,7 @@ class MotionSegment(MotionModel):
             perturbed.append(completion.applied(placed, shifted))
         return lowered, perturbed
 
-    def _read(self, lowered: Lowered, model: Model, states: Any, turns: np.ndarray | None = None) -> np.ndarray:
+    def _read(self, lowered: Lowered, model: BlockModel, states: Any, turns: np.ndarray | None = None) -> np.ndarray:
         """Channels of the model and numbers of the state, (samples, channels)."""
         n = lowered.structure.n
         if turns is not None and self.chart is not None and turns.size:

@@ -16,7 +16,7 @@ from dalembert.multibody.kernels.callbacks import in_complex_numbers
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.lowering import lower
 from dalembert.multibody.model.observe import Observer
-from dalembert.multibody.model.system import Mechanism
+from dalembert.multibody.model.system import BaseSystem
 from dalembert.multibody.model.turns import counted_angles, turn_kernels
 from dalembert.multibody.motion.long_runs import MOST_STEPS, check_pace, check_steps, works
 from dalembert.multibody.motion.trajectory import Trajectory
@@ -29,7 +29,7 @@ _ROOM = 20_000_000  # numbers up to which the states of all steps are kept, wher
 
 @takes_checked("system", "end", "solver", "times", "most_steps")
 def simulate(
-    system: Mechanism,
+    system: BaseSystem,
     end: float,
     solver: Integrator | str | None = None,
     times: np.ndarray | None = None,
@@ -95,7 +95,7 @@ def simulate(
 
 
 def posed(
-    system: Mechanism,
+    system: BaseSystem,
     end: float,
     solver: Integrator | str | None,
     times: np.ndarray | None,
@@ -149,7 +149,7 @@ def begin_time(where: str, begin: Any) -> float:
 
 
 def prepared(
-    system: Mechanism, end: float, solver: Integrator, begin: float = 0.0, readers: Observer | None = None
+    system: BaseSystem, end: float, solver: Integrator, begin: float = 0.0, readers: Observer | None = None
 ) -> tuple[Lowered, Integrator]:
     """Return the assembled mechanism and the integrator that suits it, compiled and checked; with its channels."""
     placed = lower(system, begin)

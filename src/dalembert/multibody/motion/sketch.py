@@ -13,7 +13,7 @@ from dalembert.multibody.model.drawing import Drawing, draw
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.lowering import lower
 from dalembert.multibody.model.observe import observer
-from dalembert.multibody.model.system import Mechanism
+from dalembert.multibody.model.system import BaseSystem
 from dalembert.multibody.start.assemble import assembled
 
 SIDES = ("a", "b", "at", "joint")
@@ -31,7 +31,7 @@ class Sketch:
     3,): forces in N along the fixed axes, by the names of their loads: amplitudes of those that change over time.
     """
 
-    system: Mechanism
+    system: BaseSystem
     drawing: Drawing
     ends: dict[str, np.ndarray]
     marks: dict[str, np.ndarray] = field(default_factory=dict)
@@ -48,7 +48,7 @@ class Sketch:
         return np.concatenate([np.reshape(array, (-1, across)) for array in known])
 
 
-def sketch(system: Mechanism, points: int = 8, *, marks: Sequence[str] = (), assemble: bool = True) -> Sketch:
+def sketch(system: BaseSystem, points: int = 8, *, marks: Sequence[str] = (), assemble: bool = True) -> Sketch:
     """Return the mechanism as it begins: assembled, or as its bodies are placed.
 
     ``points``: drawn points of a beam element; ``marks``: points of bodies to locate, ``"body.point"``; ``assemble``:
@@ -76,7 +76,7 @@ def size_of(course: Any) -> float:
     return float(np.real(course)) if np.isscalar(course) else 1.0
 
 
-def _ends(system: Mechanism, lowered: Lowered, x: np.ndarray) -> dict[str, np.ndarray]:
+def _ends(system: BaseSystem, lowered: Lowered, x: np.ndarray) -> dict[str, np.ndarray]:
     """Positions of the points that joints and loads act on; of a joint that they act on, the middle of its points."""
     parts = {part.name: _sides(part) for part in (*system.joints, *system.loads)}
     held = list(dict.fromkeys(str(side) for sides in parts.values() for side in sides if isinstance(side, Point)))
@@ -100,7 +100,7 @@ def _sides(component: Any) -> list[Any]:
     return [side for name in SIDES if (side := getattr(component, name, None)) is not None]
 
 
-def _forces(system: Mechanism, lowered: Lowered, x: np.ndarray, drawing: Drawing) -> dict[str, np.ndarray]:
+def _forces(system: BaseSystem, lowered: Lowered, x: np.ndarray, drawing: Drawing) -> dict[str, np.ndarray]:
     """Forces along the fixed axes."""
     found = {}
     for load in system.loads:
@@ -111,7 +111,7 @@ def _forces(system: Mechanism, lowered: Lowered, x: np.ndarray, drawing: Drawing
     return found
 
 
-def _axes(system: Mechanism, lowered: Lowered, x: np.ndarray, drawing: Drawing, point: Point) -> np.ndarray:
+def _axes(system: BaseSystem, lowered: Lowered, x: np.ndarray, drawing: Drawing, point: Point) -> np.ndarray:
     """Axes of a point of a body in the fixed axes, as columns."""
     if point.body.name in drawing.axes:
         return drawing.axes[point.body.name][0, 1:].T @ np.real(point.body.marker(point.name).axes)
@@ -126,13 +126,13 @@ def _fixed(side: Any) -> np.ndarray | None:
     return np.real(np.array(side.position if hasattr(side, "position") else (side.x, side.y))).astype(float)
 
 
-def _positions(system: Mechanism, lowered: Lowered, x: np.ndarray, points: list[str]) -> np.ndarray:
+def _positions(system: BaseSystem, lowered: Lowered, x: np.ndarray, points: list[str]) -> np.ndarray:
     """Positions of points of bodies, (points, 2 or 3)."""
     axes = system.AXES
     return _read(system, lowered, x, [f"{point}.{axis}" for point in points for axis in axes]).reshape(-1, len(axes))
 
 
-def _read(system: Mechanism, lowered: Lowered, x: np.ndarray, channels: list[str]) -> np.ndarray:
+def _read(system: BaseSystem, lowered: Lowered, x: np.ndarray, channels: list[str]) -> np.ndarray:
     """Channels of the mechanism at rest, (channels,)."""
     if not channels:
         return np.zeros(0)

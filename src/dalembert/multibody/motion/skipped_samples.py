@@ -6,7 +6,7 @@ import numpy as np
 
 from dalembert.findings import Finding
 from dalembert.multibody.components.signals import Table
-from dalembert.multibody.model.system import Mechanism
+from dalembert.multibody.model.system import BaseSystem
 
 LOST = 0.05  # part of an input's variation that steps may miss
 LATE = 0.25  # time before the first sample, in parts of that from the first to the last
@@ -28,7 +28,7 @@ def late_samples(times: np.ndarray) -> tuple[Finding, ...]:
     )
 
 
-def skipped_samples(system: Mechanism, step: float | None, begin: float, end: float) -> tuple[Finding, ...]:
+def skipped_samples(system: BaseSystem, step: float | None, begin: float, end: float) -> tuple[Finding, ...]:
     """Return a finding for each table of a system that fixed steps sample too coarsely.
 
     Parameters

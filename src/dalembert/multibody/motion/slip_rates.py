@@ -6,7 +6,7 @@ import numpy as np
 
 from dalembert.findings import Finding
 from dalembert.multibody.components.base_joint import Smoothing
-from dalembert.multibody.model.system import Mechanism
+from dalembert.multibody.model.system import BaseSystem
 
 CROSSING = 1.0  # steps, at least, in which the motion should cross the smoothed zone
 SMOOTH = 3.0  # steps in a crossing with the proposed slip rate
@@ -17,7 +17,7 @@ REVERSALS = 5  # of a slow rate between neighbouring samples, from which the sti
 STAY = 10.0  # crossings at the mean acceleration, after which friction holds the joint
 
 
-def rubbing(system: Mechanism) -> dict[str, Smoothing]:
+def rubbing(system: BaseSystem) -> dict[str, Smoothing]:
     """Return how joints with Coulomb friction smooth it, by their names."""
     return {joint.name: joint.smoothing for joint in system.joints if joint.smoothing}
 

@@ -17,7 +17,7 @@ from dalembert.forward.builders import check_function, cores
 from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES
 from dalembert.multibody.integrators.shared.integrator import Integrator
 from dalembert.multibody.model.fingerprint import fingerprint
-from dalembert.multibody.model.system import Mechanism
+from dalembert.multibody.model.system import BaseSystem
 from dalembert.multibody.motion.beam_strains import stretching
 from dalembert.multibody.motion.bushing_rotations import turning_bushings
 from dalembert.multibody.motion.long_runs import check_steps
@@ -76,7 +76,7 @@ class TimeResponse(BuiltModel):
 
     def __init__(
         self,
-        builder: Callable[..., Mechanism],
+        builder: Callable[..., BaseSystem],
         parameters: Parameters | Mapping[str, Parameter | tuple[float, float]],
         channels: Sequence[str],
         times: ArrayLike,
@@ -278,7 +278,7 @@ class TimeResponse(BuiltModel):
         except (ModelError, SolveError, InputError):  # no motion, or one that does not fit into memory
             return (*system.findings, *late)
 
-    def _start_findings(self, system: Mechanism) -> tuple[Finding, ...]:
+    def _start_findings(self, system: BaseSystem) -> tuple[Finding, ...]:
         """Findings on components that act on joints, which need no motion."""
         if not joined(system):
             return ()

@@ -23,7 +23,7 @@ from dalembert.multibody.model.drawing import Drawing, draw
 from dalembert.multibody.model.evaluate import energies, energy_kernels, violations
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.observe import beside, channel_names, observer
-from dalembert.multibody.model.system import Mechanism
+from dalembert.multibody.model.system import BaseSystem
 from dalembert.multibody.model.turns import CountedAngle, counted_angles
 from dalembert.multibody.motion.beam_strains import strain_findings
 from dalembert.multibody.motion.bushing_rotations import half_turns, turning_bushings
@@ -57,7 +57,7 @@ class Trajectory(Displayed):
         Indices of the output times among the times of the run.
     """
 
-    system: Mechanism
+    system: BaseSystem
     lowered: Lowered
     solver: Integrator
     run: Run

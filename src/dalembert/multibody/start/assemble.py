@@ -16,7 +16,7 @@ from scipy.sparse.linalg import norm, splu
 
 from dalembert.errors import ModelError, require_known
 from dalembert.multibody.components.base_body import BaseBody
-from dalembert.multibody.kernels.block_table import Model
+from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.callbacks import AnswerError
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.model.evaluate import constraint_jacobian, residual
@@ -34,7 +34,7 @@ from dalembert.multibody.model.rigid_motions import (
     unknowns,
 )
 from dalembert.multibody.model.stated_state import closing, kept_coordinates, like, moving
-from dalembert.multibody.model.system import EQUILIBRIUM, Mechanism
+from dalembert.multibody.model.system import EQUILIBRIUM, BaseSystem
 from dalembert.multibody.start.equilibrium_start import begin_at_rest, unstable_body
 from dalembert.multibody.start.initial_velocities import initial_velocities
 from dalembert.multibody.start.lost_freedom import refuse_locked
@@ -44,7 +44,9 @@ _SWING = 0.5  # rad or m of a joint's coordinate that one step towards a stated 
 _APART = 1e-6  # squared distance of a constraint's row, of length one, from the others at which it is independent
 
 
-def assembled(system: Mechanism, perturbed: bool = False, placed: Lowered | None = None, begin: float = 0.0) -> Lowered:
+def assembled(
+    system: BaseSystem, perturbed: bool = False, placed: Lowered | None = None, begin: float = 0.0
+) -> Lowered:
     """Arrays of a system whose joints are closed and whose velocities are consistent, at the time ``begin`` (s).
 
     A system that starts at its equilibrium is moved there once its joints are closed.
@@ -80,7 +82,7 @@ def assembled(system: Mechanism, perturbed: bool = False, placed: Lowered | None
     return lowered.moved(v=initial_velocities(bodies, turns, lowered, model))
 
 
-def _refuse_misalignment(system: Mechanism, lowered: Lowered, placed: np.ndarray, closed: np.ndarray) -> None:
+def _refuse_misalignment(system: BaseSystem, lowered: Lowered, placed: np.ndarray, closed: np.ndarray) -> None:
     """Raise where a joint is closed in another position than the one that is meant, such as with opposite axes."""
     for joint in system.joints:
         kind, row = lowered.structure.rows[joint.name]
@@ -94,7 +96,7 @@ def _refuse_misalignment(system: Mechanism, lowered: Lowered, placed: np.ndarray
             )
 
 
-def moves_start(system: Mechanism, placed: Lowered) -> bool:
+def moves_start(system: BaseSystem, placed: Lowered) -> bool:
     """Whether a complex step in the numbers of a placed system may change its initial state: if not, nothing is solved.
 
     Loads, stiffnesses and masses do not, unless the system starts at its equilibrium.
@@ -113,7 +115,7 @@ def moves_start(system: Mechanism, placed: Lowered) -> bool:
 
 
 def _posed(
-    system: Mechanism, bodies: Sequence[BaseBody], lowered: Lowered, model: Model, free: np.ndarray, begin: float
+    system: BaseSystem, bodies: Sequence[BaseBody], lowered: Lowered, model: BlockModel, free: np.ndarray, begin: float
 ) -> Lowered:
     """Arrays with frames where the joints have the stated coordinates, which are approached in small steps."""
     kept = kept_coordinates(system)
@@ -138,7 +140,7 @@ def _posed(
 
 
 def _held(
-    system: Mechanism, lowered: Lowered, kept: Mapping[tuple[str, str], Any], placed: Lowered, begin: float
+    system: BaseSystem, lowered: Lowered, kept: Mapping[tuple[str, str], Any], placed: Lowered, begin: float
 ) -> tuple[Lowered, dict[str, Any]]:
     """Arrays with constraints of stated coordinates and of those kept as ``placed``, and by how much these are open."""
     closed, names = closing(system, kept, placed)
@@ -150,7 +152,7 @@ def _held(
 
 
 def _moving(
-    system: Mechanism, bodies: Sequence[BaseBody], turns: np.ndarray, lowered: Lowered, begin: float
+    system: BaseSystem, bodies: Sequence[BaseBody], turns: np.ndarray, lowered: Lowered, begin: float
 ) -> np.ndarray:
     """Initial velocities (N + 1,) with which the joints have the stated rates."""
     held = like(lower(moving(system, lowered), begin), lowered)
@@ -165,7 +167,7 @@ def _moving(
     return velocities
 
 
-def _model(lowered: Lowered) -> Model:
+def _model(lowered: Lowered) -> BlockModel:
     return lowered.complex_model if np.iscomplexobj(lowered.x) else lowered.real
 
 
@@ -183,7 +185,7 @@ def refuse_kinks(lowered: Lowered, end: float) -> None:
             )
 
 
-def refuse_unstable_start(system: Mechanism, lowered: Lowered) -> None:
+def refuse_unstable_start(system: BaseSystem, lowered: Lowered) -> None:
     """Raise where a system that starts at its equilibrium would fall away from it.
 
     Raises ModelError: with the body that moves most.
@@ -259,7 +261,7 @@ def refuse_redundancy(lowered: Lowered) -> None:
         )
 
 
-def _free(system: Mechanism, bodies: Sequence[BaseBody], turns: np.ndarray) -> np.ndarray:
+def _free(system: BaseSystem, bodies: Sequence[BaseBody], turns: np.ndarray) -> np.ndarray:
     """Mask of the frame coordinates that assembly may change, (bodies, rates)."""
     names = [body.name for body in bodies]
     free = turns.copy()
@@ -275,7 +277,7 @@ def _free(system: Mechanism, bodies: Sequence[BaseBody], turns: np.ndarray) -> n
 def _close(
     bodies: Sequence[BaseBody],
     lowered: Lowered,
-    model: Model,
+    model: BlockModel,
     free: np.ndarray,
     open_by: np.ndarray | float = 0.0,
 ) -> tuple[np.ndarray, np.ndarray]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from dalembert.errors import ModelError
 from dalembert.multibody.components.base_body import BaseBody
-from dalembert.multibody.kernels.block_table import Model
+from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.model.carried_rates import carried_rates
 from dalembert.multibody.model.evaluate import constraint_rates
 from dalembert.multibody.model.lowered import Lowered
@@ -20,7 +20,9 @@ from dalembert.multibody.model.rigid_motions import CLOSED, modes_of, size_of, s
 _ROUNDING = 1e-9  # of the largest velocity: what stated velocities may leave of a constraint's rate
 
 
-def initial_velocities(bodies: Sequence[BaseBody], rates: np.ndarray, lowered: Lowered, model: Model) -> np.ndarray:
+def initial_velocities(
+    bodies: Sequence[BaseBody], rates: np.ndarray, lowered: Lowered, model: BlockModel
+) -> np.ndarray:
     """Velocities of rigid motions that satisfy the joints, (N + 1,); ``rates`` are the rates that the bodies have.
 
     Raises ModelError: where the stated velocities contradict a joint, with the velocities that are stated and the
@@ -43,7 +45,7 @@ def initial_velocities(bodies: Sequence[BaseBody], rates: np.ndarray, lowered: L
 class _RigidMotion:
     """The first rigid motion of a mechanism as a function of the chosen rates, (bodies, rates)."""
 
-    def __init__(self, bodies: Sequence[BaseBody], lowered: Lowered, model: Model) -> None:
+    def __init__(self, bodies: Sequence[BaseBody], lowered: Lowered, model: BlockModel) -> None:
         self.bodies, self.lowered, self.model = bodies, lowered, model
         first = [lowered.structure.first[body.name] for body in bodies]
         self._slots = [slice(*ends) for ends in pairwise([*first, lowered.structure.n])]

@@ -14,18 +14,18 @@ from dalembert.multibody.components.spatial.joint_limit import Limit
 from dalembert.multibody.components.spatial.motor import Motor
 from dalembert.multibody.components.spatial.torsion_spring import TorsionSpring
 from dalembert.multibody.model.lowered import Lowered
-from dalembert.multibody.model.system import Mechanism
+from dalembert.multibody.model.system import BaseSystem
 
 PARALLEL = np.cos(np.deg2rad(1.0))  # of axes that are meant to be the same
 _BEYOND = 1e-9  # of the range, or rad and m: rounding of a start at the limit
 
 
-def joined(system: Mechanism) -> list[Any]:
+def joined(system: BaseSystem) -> list[Any]:
     """Return the components that act on the coordinate of a joint."""
     return [load for load in system.loads if isinstance(load, Limit | Motor | Armature | TorsionSpring)]
 
 
-def start_findings(system: Mechanism, lowered: Lowered, x: np.ndarray) -> tuple[Finding, ...]:
+def start_findings(system: BaseSystem, lowered: Lowered, x: np.ndarray) -> tuple[Finding, ...]:
     """Return findings on limits that the start violates, and on axes that no joint between the same bodies has.
 
     ``x`` (N + 1,): unknowns at the start.
@@ -59,7 +59,7 @@ def _violated(limit: Limit, lowered: Lowered, x: np.ndarray) -> Iterator[Finding
         yield Finding("limit-violated", "warning", values, message, advice)
 
 
-def _off_axis(load: Any, system: Mechanism, lowered: Lowered, x: np.ndarray) -> Iterator[Finding]:
+def _off_axis(load: Any, system: BaseSystem, lowered: Lowered, x: np.ndarray) -> Iterator[Finding]:
     """Yield that no joint between the bodies of a load has the coordinate that the load acts on."""
     slides = isinstance(load, Armature) and load.slides
     wanted = DISPLACEMENT if slides else ANGLE

@@ -11,7 +11,7 @@ from dalembert.multibody.model.drawing import Drawing, draw
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.lowering import lower
 from dalembert.multibody.model.observe import observer
-from dalembert.multibody.model.system import Mechanism
+from dalembert.multibody.model.system import BaseSystem
 from dalembert.multibody.start.assemble import assembled, refuse_redundancy
 from dalembert.multibody.start.equilibrium_start import resting_place
 
@@ -30,7 +30,7 @@ class Equilibrium:
         Newton iterations.
     """
 
-    system: Mechanism
+    system: BaseSystem
     lowered: Lowered
     x: np.ndarray
     iterations: int
@@ -48,7 +48,7 @@ class Equilibrium:
         return draw(self.system, self.lowered, np.zeros(1), self.x[None], points)
 
 
-def equilibrium(system: Mechanism) -> Equilibrium:
+def equilibrium(system: BaseSystem) -> Equilibrium:
     """State of rest under gravity and the loads at time 0, nearest to the first placement.
 
     Newton's method; where it does not converge at once, gravity, loads and springs are raised in steps from the
@@ -79,7 +79,7 @@ def equilibrium(system: Mechanism) -> Equilibrium:
     return resting(system, placed_at_start(system))
 
 
-def placed_at_start(system: Mechanism) -> Lowered:
+def placed_at_start(system: BaseSystem) -> Lowered:
     """Return the assembled mechanism, compiled and checked."""
     placed = lower(system)
     prepare(placed.kernels(False))
@@ -88,7 +88,7 @@ def placed_at_start(system: Mechanism) -> Lowered:
     return lowered
 
 
-def resting(system: Mechanism, lowered: Lowered) -> Equilibrium:
+def resting(system: BaseSystem, lowered: Lowered) -> Equilibrium:
     """Return the equilibrium nearest to an assembled placement."""
     x, iterations = resting_place(lowered)
     return Equilibrium(system, lowered, x, iterations)

@@ -7,7 +7,7 @@ import numpy as np
 
 from dalembert.arguments import is_number, takes_checked
 from dalembert.errors import InputError, ModelError, shown
-from dalembert.multibody.model.system import Mechanism
+from dalembert.multibody.model.system import BaseSystem
 from dalembert.multibody.steady.small_vibrations import Modes, modes
 from dalembert.multibody.steady.steady_motion import FIXED
 from dalembert.structure.campbell import Campbell, SpeedModes, followed
@@ -17,7 +17,7 @@ OnSpeed = Callable[[float, Modes], None]
 
 @takes_checked()
 def campbell(
-    builder: Callable[[float], Mechanism],
+    builder: Callable[[float], BaseSystem],
     speeds: Sequence[float] | np.ndarray,
     count: int | None = None,
     *,

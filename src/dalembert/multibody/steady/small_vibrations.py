@@ -13,7 +13,7 @@ from dalembert.multibody.kernels.states import MotionState
 from dalembert.multibody.model.evaluate import tangent
 from dalembert.multibody.model.lowered import Lowered, scales
 from dalembert.multibody.model.observe import Observer
-from dalembert.multibody.model.system import Mechanism
+from dalembert.multibody.model.system import BaseSystem
 from dalembert.multibody.motion.complex_steps import Along, check_forces
 from dalembert.multibody.start.lost_freedom import refuse_locked
 from dalembert.multibody.start.statics import Equilibrium, placed_at_start, resting
@@ -65,7 +65,7 @@ class Modes:
 
 
 @takes_checked()
-def modes(state: Mechanism | Equilibrium, count: int | None = None, *, frame: str | None = None) -> Modes:
+def modes(state: BaseSystem | Equilibrium, count: int | None = None, *, frame: str | None = None) -> Modes:
     """Frequencies, damping ratios and shapes of small vibrations that satisfy the joints.
 
     The equations of motion are linearised about the state, with damping and with the stiffness of the joint forces
@@ -110,7 +110,7 @@ def modes(state: Mechanism | Equilibrium, count: int | None = None, *, frame: st
     """
     if frame is not None:
         require_known("frame", frame, FRAMES, "modes")
-    if isinstance(state, Mechanism):
+    if isinstance(state, BaseSystem):
         placed = placed_at_start(state)
         if moves(placed):
             return _about_rotation(placed, count, frame)

@@ -12,7 +12,7 @@ from dalembert.multibody.model.evaluate import residual, tangent
 from dalembert.multibody.model.lowered import Lowered, scales
 from dalembert.multibody.model.observe import Observer
 from dalembert.multibody.motion.complex_steps import Along, check_forces
-from dalembert.multibody.steady.steady_nodes import Frame, Motion, Node, nodes_of
+from dalembert.multibody.steady.steady_nodes import Frame, Motion, SteadyNode, nodes_of
 
 FIXED, ROTATING = FRAMES = "fixed", "rotating"
 _MOST_ITERATIONS = 40
@@ -103,7 +103,7 @@ def steady_equations(lowered: Lowered, frame: str | None = None) -> SteadyEquati
     )
 
 
-def _frames(lowered: Lowered, nodes: list[Node], spins: list[np.ndarray]) -> list[tuple[str, Frame]]:
+def _frames(lowered: Lowered, nodes: list[SteadyNode], spins: list[np.ndarray]) -> list[tuple[str, Frame]]:
     """The fixed frame, and frames that turn with bodies, the fastest first."""
     x, v = np.real(lowered.x), np.real(lowered.v)
     still = Frame(np.zeros_like(spins[0]), np.zeros(lowered.dimension))
@@ -123,7 +123,7 @@ class _Steady:
 
     lowered: Lowered
     frame: Frame
-    nodes: list[Node] = field(init=False)
+    nodes: list[SteadyNode] = field(init=False)
     x: np.ndarray = field(init=False)
     """Multipliers, behind zeros."""
 

@@ -52,7 +52,7 @@ def skew(rate: np.ndarray) -> np.ndarray:
 
 
 @dataclass
-class Node:
+class SteadyNode:
     """Coordinates that one twist moves.
 
     ``position`` (d,): coordinates of a position; ``vectors`` (vectors, d): coordinates of vectors that turn with the
@@ -204,7 +204,7 @@ def _stacked(parts: list[Motion]) -> Motion:
     return Motion(*(np.concatenate(own) for own in zip(*parts, strict=True)))
 
 
-def nodes_of(lowered: Lowered) -> list[Node]:
+def nodes_of(lowered: Lowered) -> list[SteadyNode]:
     """Nodes of all bodies, in the order of their coordinates."""
     found, d = [], lowered.dimension
     none, flat = np.zeros(0, dtype=int), np.zeros((0, d), dtype=int)
@@ -213,18 +213,18 @@ def nodes_of(lowered: Lowered) -> list[Node]:
         index = np.arange(first, first + len(kinds))
         if body.rigid and body.turns:
             vectors = index[d:].reshape(-1, 3) if d == 3 else flat
-            found.append(Node(index[:d], vectors, index[d:] if d == 2 else none, turns=True, absolute=d == 2))
+            found.append(SteadyNode(index[:d], vectors, index[d:] if d == 2 else none, turns=True, absolute=d == 2))
             continue
         k = 0
         while k < len(kinds):
             if kinds[k] == POSITION:
-                found.append(Node(index[k : k + d], flat, none, turns=False, absolute=False))
+                found.append(SteadyNode(index[k : k + d], flat, none, turns=False, absolute=False))
                 k += d
             elif len(kinds) - k < d or kinds[k] != kinds[min(k + d, len(kinds)) - 1] or body.size == 1:
                 absolute = d == 2 and kinds[k] == ANGLE
-                found.append(Node(none, flat, index[k : k + 1], turns=False, absolute=absolute))
+                found.append(SteadyNode(none, flat, index[k : k + 1], turns=False, absolute=absolute))
                 k += 1
             else:
-                found.append(Node(none, index[k : k + d][None], none, turns=False, absolute=False))
+                found.append(SteadyNode(none, index[k : k + d][None], none, turns=False, absolute=False))
                 k += d
     return found

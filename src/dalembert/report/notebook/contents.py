@@ -8,7 +8,7 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.multibody import Trajectory
-from dalembert.multibody.model.system import Mechanism
+from dalembert.multibody.model.system import BaseSystem
 from dalembert.report.charts.motion.diagnostics import energies
 from dalembert.report.charts.motion.mechanism import mechanism
 from dalembert.report.contents import contents
@@ -73,11 +73,11 @@ def _(result: Trajectory) -> Summary:
 
 
 @shown_in_notebook.register
-def _(model: Mechanism) -> Summary | None:
+def _(model: BaseSystem) -> Summary | None:
     drawing = picture(model)
     kinds = {"bodies": model.bodies, "joints": model.joints, "loads and sensors": model.loads}
     facts = {name: ", ".join(_named(own)) for name, own in kinds.items() if own}
-    return None if drawing is None else Summary("Mechanism", facts=facts, pictures=[drawing])
+    return None if drawing is None else Summary("BaseSystem", facts=facts, pictures=[drawing])
 
 
 @shown_in_notebook.register

@@ -3,7 +3,7 @@
 from functools import singledispatch
 from typing import Any
 
-from dalembert.multibody.model.system import Mechanism
+from dalembert.multibody.model.system import BaseSystem
 from dalembert.multibody.motion.sketch import Sketch, sketch
 from dalembert.report.pictures.canvas import SIZE
 from dalembert.report.pictures.mechanism import mechanism_picture
@@ -44,7 +44,7 @@ def picture(model: Any, label: str = "Drawing of the model", size: tuple[int, in
 
 
 @picture.register
-def _(model: Mechanism, label: str = "Drawing of the mechanism", size: tuple[int, int] = SIZE) -> str | None:
+def _(model: BaseSystem, label: str = "Drawing of the mechanism", size: tuple[int, int] = SIZE) -> str | None:
     return mechanism_picture(sketch(model), label, size) if model.bodies else None
 
 

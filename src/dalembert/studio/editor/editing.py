@@ -13,7 +13,7 @@ from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import Item
 
 from dalembert.errors import InputError
-from dalembert.studio.editor.fields import Field, tables_of
+from dalembert.studio.editor.fields import TableField, tables_of
 from dalembert.studio.editor.lines import Place, is_within, tables
 
 
@@ -129,7 +129,7 @@ def with_table(text: str, place: Place, values: Mapping[str, Any]) -> tuple[str,
     return "".join(lines), place
 
 
-def value_of(text: str, field: Field) -> Any:
+def value_of(text: str, field: TableField) -> Any:
     """Return the value that a text in a form stands for, by the shape of its field; None if it is empty.
 
     Raises

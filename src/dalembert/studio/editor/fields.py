@@ -31,7 +31,7 @@ _OF_KEYS = {"columns": "channel", "deviations": "channel", "weights": "channel",
 
 
 @dataclass(frozen=True)
-class Field:
+class TableField:
     """A key of a table.
 
     Parameters
@@ -75,7 +75,7 @@ class Field:
         return ", ".join(filter(None, (unit, rule)))
 
 
-def fields_at(document: Any, place: Place) -> tuple[Field, ...]:
+def fields_at(document: Any, place: Place) -> tuple[TableField, ...]:
     """Return the keys of the table at a place of a document; none where there is no table with known keys.
 
     Parameters
@@ -95,11 +95,11 @@ def fields_at(document: Any, place: Place) -> tuple[Field, ...]:
     keys, required, kinds = chosen.get("properties", {}), chosen.get("required", ()), tuple(_kinds(tables))
     found = [_field(key, node, key in required, kinds if key == KIND else ()) for key, node in keys.items()]
     if kinds and KIND not in keys:  # it chooses among the tables
-        found.insert(0, Field(KIND, "choice", _OF_KIND, required=not keys, choices=kinds))
+        found.insert(0, TableField(KIND, "choice", _OF_KIND, required=not keys, choices=kinds))
     return tuple(found)
 
 
-def field_at(document: Any, place: Place) -> Field | None:
+def field_at(document: Any, place: Place) -> TableField | None:
     """Return the key that a place is; None if it is not known."""
     if not place or isinstance(place[-1], int):
         return None
@@ -220,7 +220,7 @@ def _kinds(tables: Sequence[Node]) -> dict[str, str]:
     }
 
 
-def _field(key: str, node: Node, required: bool, kinds: tuple[str, ...]) -> Field:
+def _field(key: str, node: Node, required: bool, kinds: tuple[str, ...]) -> TableField:
     choices = list(_alternatives(node))
     whole = next(_alternatives({name: value for name, value in node.items() if name not in ("anyOf", "oneOf")}))
     inner = [*choices, *(one for choice in choices if "items" in choice for one in _alternatives(choice["items"]))]
@@ -231,7 +231,7 @@ def _field(key: str, node: Node, required: bool, kinds: tuple[str, ...]) -> Fiel
             for text in one.get("enum", [one["const"]] if "const" in one else _kinds([one]))
         )
     )
-    return Field(
+    return TableField(
         key,
         _shape(choices, texts),
         _OF_KIND if kinds else _meaning(whole),

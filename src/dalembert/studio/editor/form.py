@@ -6,7 +6,7 @@ from typing import Any
 
 from dalembert.studio.editor.cursor import tolerant
 from dalembert.studio.editor.editing import text_of, value_of, with_value, without
-from dalembert.studio.editor.fields import KIND, Field, child, field_at, fields_at, kinds_at
+from dalembert.studio.editor.fields import KIND, TableField, child, field_at, fields_at, kinds_at
 from dalembert.studio.editor.lines import Place, is_within, table_of
 from dalembert.studio.editor.model_kind import fits_model
 from dalembert.studio.editor.reading import Mistake
@@ -16,7 +16,7 @@ AXES = ("x", "y", "z")
 
 
 @dataclass(frozen=True)
-class Row:
+class FormRow:
     """A key of a form.
 
     Parameters
@@ -28,7 +28,7 @@ class Row:
         What is wrong with the value.
     """
 
-    field: Field
+    field: TableField
     value: Any = None
     mistakes: tuple[str, ...] = ()
 
@@ -66,7 +66,7 @@ class Form:
     place: Place
     title: str
     meaning: str
-    rows: tuple[Row, ...]
+    rows: tuple[FormRow, ...]
     mistakes: tuple[str, ...] = ()
 
     @property
@@ -103,14 +103,14 @@ def form_at(text: str, selection: Place | None, mistakes: Iterable[Mistake] = ()
         return None
     keys = {field.key for field in fields}
     about = [mistake for mistake in mistakes if is_within(mistake.place, place)]
-    rows = tuple(Row(field, values.get(field.key), _sentences(about, (*place, field.key))) for field in fields)
+    rows = tuple(FormRow(field, values.get(field.key), _sentences(about, (*place, field.key))) for field in fields)
     rest = tuple(one.sentence for one in about if one.place == place or one.place[len(place)] not in keys)
     kinds = kinds_at(document, place)
     kind = next((row.value or row.field.default for row in rows if row.field.key == KIND), None)
     return Form(place, _title(document, place), kinds.get(str(kind), ""), rows, rest)
 
 
-def with_row(text: str, place: Place, field: Field, written: str) -> str:
+def with_row(text: str, place: Place, field: TableField, written: str) -> str:
     """Return the text with what is written in a form; a key is removed where nothing is.
 
     Raises

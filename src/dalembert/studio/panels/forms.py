@@ -10,7 +10,7 @@ from dalembert.studio.editor.cursor import tolerant
 from dalembert.studio.editor.draft import Draft
 from dalembert.studio.editor.editing import without
 from dalembert.studio.editor.fields import shown
-from dalembert.studio.editor.form import Form, Row, form_at, with_row
+from dalembert.studio.editor.form import Form, FormRow, form_at, with_row
 from dalembert.studio.editor.names import Channels, Names, names_in
 from dalembert.studio.frame import button, complaints, icon_button, tipped
 from dalembert.studio.page_services import PageServices
@@ -34,10 +34,10 @@ class FormField:
 
     def __init__(
         self,
-        row: Row,
+        row: FormRow,
         names: Sequence[str],
-        commit: Callable[[Row, str], object],
-        explain: Callable[[Row], object],
+        commit: Callable[[FormRow, str], object],
+        explain: Callable[[FormRow], object],
         enter: Callable[[], object] | None = None,
     ) -> None:
         self.row, self._commit = row, commit
@@ -71,7 +71,7 @@ class FormField:
             self.element.on("blur", self._changed)
             self.element.on("keydown.enter", self._changed)
 
-    def show(self, row: Row) -> None:
+    def show(self, row: FormRow) -> None:
         """Show a value, and what is wrong with it."""
         self.row = row
         text = row.text if row.field.shape != "switch" or row.value is None else str(row.value).lower()
@@ -257,18 +257,18 @@ class Editor:
                     self._grid(form, others)
             self.help = ui.label().classes("text-sm opacity-90 break-words").props("aria-live=polite")
 
-    def _grid(self, form: Form, rows: list[Row]) -> None:
+    def _grid(self, form: Form, rows: list[FormRow]) -> None:
         with ui.element("div").classes("grid grid-cols-1 sm:grid-cols-2 gap-x-3 gap-y-3 w-full py-1"):
             for row in rows:
                 enter = partial(self._enter, row.field.key) if row.field.shape == "table" or row.is_table else None
                 known = self.names.get(row.field.names, ())
                 self.fields[row.field.key] = FormField(row, known, partial(self._commit, form), self._explain, enter)
 
-    def _commit(self, form: Form, row: Row, written: str) -> None:
+    def _commit(self, form: Form, row: FormRow, written: str) -> None:
         with complaints(("set", row.field.key)):
             self.draft.set_text(with_row(self.draft.text, form.place, row.field, written))
 
-    def _explain(self, row: Row) -> None:
+    def _explain(self, row: FormRow) -> None:
         self.help.set_text(": ".join(filter(None, (row.field.key, row.field.meaning))))
 
     def _enter(self, key: str) -> None:

@@ -13,7 +13,7 @@ from dalembert.report.look import plain
 from dalembert.report.player import Film, film_of, frames
 from dalembert.studio.editor.reading import study_of
 from dalembert.studio.simulation.curves import Curves, curves, on_page
-from dalembert.studio.simulation.parts import OVER_FREQUENCY, NothingToSimulateError, Part, part
+from dalembert.studio.simulation.parts import OVER_FREQUENCY, NothingToSimulateError, StudyMotion, part
 from dalembert.studio.worker import Kept
 
 if TYPE_CHECKING:
@@ -149,7 +149,7 @@ def influences(kept: Kept, source: Source, name: str, values: Mapping[str, float
     return Influences(tuple(channels[column] for column in columns), effects)
 
 
-def _ranges(own: Part, response: np.ndarray, largest: np.ndarray) -> np.ndarray:
+def _ranges(own: StudyMotion, response: np.ndarray, largest: np.ndarray) -> np.ndarray:
     """What effects on channels are relative to: the range of response or data; of a channel at rest the largest one."""
     ranges = np.ptp(response, axis=0)
     if own.data is not None:
@@ -157,19 +157,19 @@ def _ranges(own: Part, response: np.ndarray, largest: np.ndarray) -> np.ndarray:
     return np.where(ranges > REST * largest, ranges, np.maximum(largest, 1e-300))
 
 
-def _part(kept: Kept, source: Source, name: str) -> Part:
+def _part(kept: Kept, source: Source, name: str) -> StudyMotion:
     study = study_of(kept, source.path, source.text)
     return kept.newest("part", (source, name), lambda: part(study, name))
 
 
-def _columns(own: Part) -> list[int]:
+def _columns(own: StudyMotion) -> list[int]:
     """Columns of the model that are shown: those of the data, or all."""
     assert own.model is not None
     channels = [channel.name for channel in own.model.channels]
     return [channels.index(name) for name in (channels if own.data is None else own.data.channels)]
 
 
-def response_at(own: Part, values: Mapping[str, float]) -> np.ndarray:
+def response_at(own: StudyMotion, values: Mapping[str, float]) -> np.ndarray:
     """Return the channels that are shown, (samples, channels), at values of parameters by name."""
     assert own.model is not None
     found = own.model.evaluate(own.vector(values)[None])
@@ -178,7 +178,7 @@ def response_at(own: Part, values: Mapping[str, float]) -> np.ndarray:
     return found.values[0][:, _columns(own)]
 
 
-def _motion(own: Part, values: Mapping[str, float]) -> "tuple[np.ndarray | None, tuple[Trajectory, np.ndarray]]":
+def _motion(own: StudyMotion, values: Mapping[str, float]) -> "tuple[np.ndarray | None, tuple[Trajectory, np.ndarray]]":
     """Response and motion, by one simulation where the model reads its channels off a motion and does no more.
 
     The motion has its frames in some of its rows.
@@ -196,7 +196,7 @@ def _motion(own: Part, values: Mapping[str, float]) -> "tuple[np.ndarray | None,
     return channels[np.searchsorted(times, model.times)], (trajectory, np.searchsorted(times, shown))
 
 
-def _film(own: Part, trajectory: "Trajectory", rows: np.ndarray) -> Film:
+def _film(own: StudyMotion, trajectory: "Trajectory", rows: np.ndarray) -> Film:
     from dalembert.report.sections.motion.trajectory import measured
 
     whole = trajectory.drawing()
@@ -210,7 +210,7 @@ def _film(own: Part, trajectory: "Trajectory", rows: np.ndarray) -> Film:
     return film_of(drawing, {} if own.data is None else measured(own.data.channels, own.data.values, axes))
 
 
-def _misfit(own: Part, response: np.ndarray) -> tuple[float, dict[str, float]]:
+def _misfit(own: StudyMotion, response: np.ndarray) -> tuple[float, dict[str, float]]:
     """Weighted sum of squares, with the weights of an identification, and root mean squares by channel."""
     data: Any = own.data
     given, residual = getattr(own.study.table, "weights", None), data.difference(response)
@@ -223,7 +223,7 @@ def _misfit(own: Part, response: np.ndarray) -> tuple[float, dict[str, float]]:
     return float(weights @ squares), dict(zip(data.channels, means.tolist(), strict=True))
 
 
-def _followed(own: Part, values: Mapping[str, float], began: float) -> Simulated:
+def _followed(own: StudyMotion, values: Mapping[str, float], began: float) -> Simulated:
     """The curve of a structure over frequency."""
     from dalembert.report.charts import frequency_curve
     from dalembert.study.tasks.frequency_response import drawn_dofs
@@ -234,7 +234,7 @@ def _followed(own: Part, values: Mapping[str, float], began: float) -> Simulated
     return Simulated(curves=(Curves(figure=on_page(figure)),), seconds=seconds)
 
 
-def _curve_at(own: Part, vector: np.ndarray, harmonics: int | None = None) -> "FrequencyCurve":
+def _curve_at(own: StudyMotion, vector: np.ndarray, harmonics: int | None = None) -> "FrequencyCurve":
     from dalembert.study.tasks.frequency_response import balance_of, curve_options
     from dalembert.vibration import frequency_response
 
@@ -243,7 +243,7 @@ def _curve_at(own: Part, vector: np.ndarray, harmonics: int | None = None) -> "F
     return frequency_response(study.system(vector), study.table.along, method, **curve_options(study))
 
 
-def _over_frequency(own: Part, values: Mapping[str, float]) -> Influences:
+def _over_frequency(own: StudyMotion, values: Mapping[str, float]) -> Influences:
     """Effects on amplitudes over given frequencies, by differences; none where the curves would take long.
 
     A curve that is followed by arc length has other points at other values, and no effects.

@@ -11,7 +11,7 @@ from dalembert.quantities import by_quantity, common, quantity
 from dalembert.report.charts.drawing import colour_of, draw
 from dalembert.report.look import plain, themed
 from dalembert.report.thinning import thinned
-from dalembert.studio.simulation.parts import Part
+from dalembert.studio.simulation.parts import StudyMotion
 from dalembert.tables import labelled
 
 HEIGHT = 320
@@ -33,19 +33,19 @@ class Curves:
     figure: dict[str, Any] = field(default_factory=dict)
 
 
-def curves(part: Part, response: np.ndarray, *, figures: bool) -> tuple[Curves, ...]:
+def curves(part: StudyMotion, response: np.ndarray, *, figures: bool) -> tuple[Curves, ...]:
     """Return the channels (samples, channels) of a part in figures by their quantity."""
     names = _channels(part)
     return tuple(_group(part, group, response, figures) for group in by_quantity(names))
 
 
-def _channels(part: Part) -> tuple[str, ...]:
+def _channels(part: StudyMotion) -> tuple[str, ...]:
     if part.data is not None:
         return part.data.channels
     return () if part.model is None else tuple(channel.name for channel in part.model.channels)
 
 
-def _group(part: Part, group: Sequence[str], response: np.ndarray, figures: bool) -> Curves:
+def _group(part: StudyMotion, group: Sequence[str], response: np.ndarray, figures: bool) -> Curves:
     columns = [_channels(part).index(name) for name in group]
     if part.data is None:
         assert part.model is not None
@@ -61,7 +61,7 @@ def _group(part: Part, group: Sequence[str], response: np.ndarray, figures: bool
     return Curves(numbered, on_page(figure) if figure else {})
 
 
-def _plain(part: Part, group: Sequence[str], lines: Sequence[tuple[np.ndarray, np.ndarray]]) -> dict[str, Any]:
+def _plain(part: StudyMotion, group: Sequence[str], lines: Sequence[tuple[np.ndarray, np.ndarray]]) -> dict[str, Any]:
     """The figure of channels that are compared with no data."""
     assert part.model is not None
     figure, along = go.Figure(), part.model.coordinate

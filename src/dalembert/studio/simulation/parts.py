@@ -23,7 +23,7 @@ OVER_FREQUENCY = "frequency_response"
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class StudyMotion:
     """One motion or response of a study.
 
     Parameters
@@ -73,7 +73,7 @@ def parameters_of(study: "Study") -> dict[str, tuple[Parameter, ...]]:
     return fitted_parameters(study) if study.task in FROM_DATA else {"": tuple(study.parameters)}
 
 
-def part(study: "Study", name: str) -> Part:
+def part(study: "Study", name: str) -> StudyMotion:
     """Return the part with a name.
 
     Raises
@@ -87,13 +87,13 @@ def part(study: "Study", name: str) -> Part:
         return _moving(study)
     if study.file.model.forward is not None:
         model = study.forward(tuple(getattr(study.table, "channels", None) or ()), np.zeros(0))
-        return Part(study, model, None, 0.0)
+        return StudyMotion(study, model, None, 0.0)
     if study.task == OVER_FREQUENCY:
-        return Part(study, None, None, 0.0)
+        return StudyMotion(study, None, None, 0.0)
     raise NothingToSimulateError(f"There is nothing to simulate for [{study.task}]. Run the study to see its result.")
 
 
-def _measured(study: "Study", name: str) -> Part:
+def _measured(study: "Study", name: str) -> StudyMotion:
     from dalembert.study.tables.posing import posed
 
     named: Callable[[str], str] = str
@@ -105,10 +105,10 @@ def _measured(study: "Study", name: str) -> Part:
         named = table.named
         study, model, data = study.variant(table), found[name].model, found[name].data
     assert data is not None
-    return Part(study, model, data, float(data.coordinate.values[-1]) if study.has_system else 0.0, named)
+    return StudyMotion(study, model, data, float(data.coordinate.values[-1]) if study.has_system else 0.0, named)
 
 
-def _moving(study: "Study") -> Part:
+def _moving(study: "Study") -> StudyMotion:
     """A mechanism without data: until the last time that the task names, with its channels."""
     table, end = study.table, last_time(study)
     if end is None:
@@ -119,7 +119,7 @@ def _moving(study: "Study") -> Part:
     points = [f"{point}.{axis}" for point in named for axis in study.system().AXES] if named else []
     channels = tuple(getattr(table, "channels", None) or points)
     model = study.forward(channels, np.linspace(0.0, end, POINTS)) if channels else None
-    return Part(study, model, None, end)
+    return StudyMotion(study, model, None, end)
 
 
 def last_time(study: "Study") -> float | None:

@@ -15,7 +15,7 @@ from dalembert.study.text.places import JointName, Place
 from dalembert.study.text.table import placed
 
 if TYPE_CHECKING:
-    from dalembert.multibody.model.system import Mechanism
+    from dalembert.multibody.model.system import BaseSystem
     from dalembert.multibody.spatial import SpatialSystem
     from dalembert.multibody.trees import Tree
 
@@ -42,7 +42,7 @@ class SystemBuilder:
     constants: Mapping[str, float | Expression]
     inputs: Mapping[str, MeasuredInput] = field(default_factory=dict)
 
-    def __call__(self, **parameters: complex) -> "Mechanism":
+    def __call__(self, **parameters: complex) -> "BaseSystem":
         values = named_values(self.constants, parameters)
         gravity = self.model.gravity
         options: dict[str, Any] = {
@@ -67,7 +67,7 @@ class SystemBuilder:
                 raise InputError(f"[model]: {error}") from None
         return system
 
-    def _system(self, options: dict[str, Any]) -> "Mechanism":
+    def _system(self, options: dict[str, Any]) -> "BaseSystem":
         if self.model.space:
             from dalembert.multibody.spatial import SpatialSystem
 
@@ -148,9 +148,9 @@ class FunctionBuilder:
             from dalembert.vibration import VibrationSystem
 
             return VibrationSystem
-        from dalembert.multibody.model.system import Mechanism
+        from dalembert.multibody.model.system import BaseSystem
 
-        return Mechanism
+        return BaseSystem
 
 
 def named_values(constants: Mapping[str, float | Expression], parameters: Values) -> dict[str, Any]:

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
-from dalembert.vibration.balance.newton import Plane, Solution
+from dalembert.vibration.balance.newton import CrossingPlane, Solution
 from dalembert.vibration.balance.tangents import bordered, orientation
 from dalembert.vibration.interface.condensation import norm
 
@@ -37,7 +37,9 @@ class PathProblem(Protocol):
     @property
     def method(self) -> HarmonicBalance: ...
 
-    def solve(self, unknowns: np.ndarray, omega: float, samples: int, plane: Plane | None = None, /) -> Solution: ...
+    def solve(
+        self, unknowns: np.ndarray, omega: float, samples: int, plane: CrossingPlane | None = None, /
+    ) -> Solution: ...
 
     def first(self, omega: float, /) -> Solution: ...
 
@@ -92,7 +94,7 @@ def along(
     onward = np.zeros(known.unknowns.size + 1)
     onward[-1] = np.sign(end - begin)
     step, points, progress = longest / 4, 1, Progress(longest)
-    path = Path(known, direction_at(known, onward, width), width)
+    path = PathTangent(known, direction_at(known, onward, width), width)
     while points < MOST_POINTS:
         solution, direction = path.step(equations, step)
         # Behind a corner, such as a contact that opens at once, no shorter step converges: halving would only creep up
@@ -125,13 +127,13 @@ def along(
         points += 1
         if progress.ends(step):
             return
-        path = Path(solution, direction_at(solution, direction, width), width)
+        path = PathTangent(solution, direction_at(solution, direction, width), width)
         # The number of iterations measures how much the path bends in a step.
         step = min(longest, step * (1.5 if solution.iterations <= EASY else 0.7))
 
 
 @dataclass(frozen=True)
-class Path:
+class PathTangent:
     """A point of a curve and the direction of the curve there, in scaled unknowns."""
 
     known: Solution
@@ -149,13 +151,13 @@ class Path:
         # that bend too much for it.
         moved = self.direction[:-1].reshape(self.known.unknowns.shape) * (length * self.size)
         guess, omega = self.known.unknowns + moved, self.known.omega + self.direction[-1] * length * self.width
-        plane = Plane(self.direction, guess, omega, self.size, self.width)
+        plane = CrossingPlane(self.direction, guess, omega, self.size, self.width)
         solution = equations.solve(guess, omega, self.known.samples, plane)
         if not solution.converged:
             return solution, None
         return solution, direction_at(solution, self.direction, self.width, self.size)
 
-    def turned(self, equations: PathProblem, failed: Solution, length: float) -> "Path | None":
+    def turned(self, equations: PathProblem, failed: Solution, length: float) -> "PathTangent | None":
         """Return the path behind a sharp turn, from the tangent where a step over it failed.
 
         The tangent is oriented by the sign of the determinant with the direction as a row, which a path keeps.
@@ -177,7 +179,7 @@ class Path:
             if direction is None or float(direction @ beyond) < STEADY:
                 continue
             if _sign(solution, direction, self.width, self.size) == sign:
-                return Path(solution, direction_at(solution, direction, self.width), self.width)
+                return PathTangent(solution, direction_at(solution, direction, self.width), self.width)
         return None
 
 
@@ -205,7 +207,7 @@ def on_border(before: Solution, after: Solution, border: float) -> tuple[np.ndar
     return before.unknowns + part * (after.unknowns - before.unknowns), border
 
 
-def _fold(equations: PathProblem, path: Path, step: float) -> Solution | None:
+def _fold(equations: PathProblem, path: PathTangent, step: float) -> Solution | None:
     """Return the fold within a step: the point at which the last component of the direction is zero."""
 
     def turning(length: float) -> tuple[Solution, float]:

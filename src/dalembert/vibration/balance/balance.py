@@ -20,7 +20,7 @@ import numpy as np
 
 from dalembert.vibration.balance.tangents import BlockTangent, DenseTangent, Tangent
 from dalembert.vibration.fourier import Fourier, real_blocks
-from dalembert.vibration.interface.condensation import Point
+from dalembert.vibration.interface.condensation import CondensedStructure
 from dalembert.vibration.interface.free_motions import HeldByElements
 from dalembert.vibration.interface.lowering import ELASTIC, FrictionBlock, Lowered
 from dalembert.vibration.laws.contact_sums import ContactSums, Shape, contact_sums
@@ -88,17 +88,17 @@ class Balance:
         phasors = self.series.phasors(unknowns)
         return self.series.coefficients((stiffness @ phasors[:, :, None])[:, :, 0] - force)
 
-    def linearised(self, point: Point, unknowns: np.ndarray) -> tuple[Evaluation, Tangent]:
+    def linearised(self, point: CondensedStructure, unknowns: np.ndarray) -> tuple[Evaluation, Tangent]:
         """Residual at a point, with its exact Jacobian and its derivative by ω."""
         tangent = self.tangent(point, unknowns)
         return self.at(point, unknowns, tangent), tangent
 
-    def at(self, point: Point, unknowns: np.ndarray, tangent: Tangent | None = None) -> Evaluation:
+    def at(self, point: CondensedStructure, unknowns: np.ndarray, tangent: Tangent | None = None) -> Evaluation:
         """Residual at a point; see :meth:`residual`."""
         linear = self.linear(point.stiffness, point.force, unknowns)
         return self.residual(linear, unknowns, point.omega, tangent, point.rate)
 
-    def tangent(self, point: Point, unknowns: np.ndarray) -> Tangent:
+    def tangent(self, point: CondensedStructure, unknowns: np.ndarray) -> Tangent:
         """The tangent of the structure alone, to which :meth:`residual` adds the elements."""
         # ∂R/∂ω of the structure at fixed U; laws that see velocities add their part in `_add_laws`.
         slope = self.linear(point.slope, point.force_slope, unknowns)
@@ -109,7 +109,7 @@ class Balance:
             return BlockTangent(point, self.series, slope, self._reference(point), self._rigid, support)
         return DenseTangent(real_blocks(point.stiffness, self.series.mean), slope, support)
 
-    def stuck(self, point: Point) -> np.ndarray:
+    def stuck(self, point: CondensedStructure) -> np.ndarray:
         """Unknowns where all elastic contacts are closed and stick, without preload, (q, coefficients)."""
         stiffness, force = point.stiffness.copy(), point.force.copy()
         for block in self.lowered.blocks:
@@ -332,7 +332,7 @@ class Balance:
             rigid[self._retained[block.rows]] = block.kind != ELASTIC
         return rigid
 
-    def _reference(self, point: Point) -> np.ndarray:
+    def _reference(self, point: CondensedStructure) -> np.ndarray:
         """Stiffness of the element of each retained coordinate, (q,), with which no motion of the structure is free."""
         stiffness = self._stuck
         if not point.held:
@@ -342,11 +342,11 @@ class Balance:
             stiffness = np.where(stiffness > 0, stiffness, np.where(closed > 0, closed, point.stiffest))
         return stiffness[self.lowered.coordinates.rows]
 
-    def _mean_stiffness(self, point: Point) -> np.ndarray:
+    def _mean_stiffness(self, point: CondensedStructure) -> np.ndarray:
         """Stiffness of the mean of each row's element where it is closed, (rows,); of the structure if not known."""
         return np.where(np.isnan(self._closed), point.stiffest, self._closed)
 
-    def _held_by_elements(self, point: Point) -> HeldByElements:
+    def _held_by_elements(self, point: CondensedStructure) -> HeldByElements:
         moved = self._combination @ point.free_motions
         return HeldByElements(point.free_motions, moved.T @ (self._mean_stiffness(point)[:, None] * moved))
 

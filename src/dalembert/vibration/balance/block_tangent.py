@@ -24,7 +24,7 @@ from scipy.linalg import lu_factor, lu_solve
 from scipy.sparse.linalg import LinearOperator, gmres
 
 from dalembert.vibration.fourier import Fourier, complex_blocks, real_blocks
-from dalembert.vibration.interface.condensation import Point
+from dalembert.vibration.interface.condensation import CondensedStructure
 from dalembert.vibration.interface.free_motions import HeldByElements
 
 ACTIVE = 1e-11
@@ -47,7 +47,7 @@ class BlockTangent:
     (cells, unknowns, unknowns).
     """
 
-    point: Point
+    point: CondensedStructure
     series: Fourier
     slope: np.ndarray
     reference: np.ndarray

@@ -12,10 +12,10 @@ from dalembert.forward import Checkpoint
 from dalembert.vibration.balance.balance import Balance
 from dalembert.vibration.balance.first_guesses import first_guesses
 from dalembert.vibration.balance.harmonic_balance import AUTOMATIC, MOST_SAMPLES, HarmonicBalance
-from dalembert.vibration.balance.newton import Plane, Solution, correct, scale_of
+from dalembert.vibration.balance.newton import CrossingPlane, Solution, correct, scale_of
 from dalembert.vibration.balance.preparation import prepare_balance
 from dalembert.vibration.fourier import Fourier
-from dalembert.vibration.interface.condensation import Condensation, Point, norm
+from dalembert.vibration.interface.condensation import Condensation, CondensedStructure, norm
 from dalembert.vibration.interface.lowering import Lowered, lower
 from dalembert.vibration.laws.law_block import LawBlock
 from dalembert.vibration.laws.sampled_sums import forces_from_rest
@@ -65,7 +65,12 @@ class Equations:
         return self._balances[samples]
 
     def solve(
-        self, unknowns: np.ndarray, omega: float, samples: int, plane: Plane | None = None, point: Point | None = None
+        self,
+        unknowns: np.ndarray,
+        omega: float,
+        samples: int,
+        plane: CrossingPlane | None = None,
+        point: CondensedStructure | None = None,
     ) -> Solution:
         """Solve the equations by Newton's method from a guess. Samples are doubled until they suffice.
 
@@ -93,7 +98,12 @@ class Equations:
         return computed[0] if computed else self._restored(values, *numbers.tolist())
 
     def newton(
-        self, unknowns: np.ndarray, omega: float, samples: int, plane: Plane | None, point: Point | None
+        self,
+        unknowns: np.ndarray,
+        omega: float,
+        samples: int,
+        plane: CrossingPlane | None,
+        point: CondensedStructure | None,
     ) -> Solution:
         """Solve as :meth:`solve` does, without a look at the checkpoint."""
 
@@ -164,7 +174,7 @@ class Equations:
             bool(converged), int(samples), sampling_error,
         )  # fmt: skip
 
-    def _key(self, unknowns: np.ndarray, omega: float, samples: int, plane: Plane | None) -> bytes:
+    def _key(self, unknowns: np.ndarray, omega: float, samples: int, plane: CrossingPlane | None) -> bytes:
         """Hash of all that a solution depends on."""
         parts = [np.array([omega, samples]), unknowns]
         if plane is not None:

@@ -10,9 +10,9 @@ from scipy.optimize import brentq
 from dalembert.vibration.balance.arc_length import along
 from dalembert.vibration.balance.balance import Balance
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
-from dalembert.vibration.balance.newton import Plane, Solution, correct
+from dalembert.vibration.balance.newton import CrossingPlane, Solution, correct
 from dalembert.vibration.fourier import Fourier
-from dalembert.vibration.interface.condensation import Point, norm
+from dalembert.vibration.interface.condensation import CondensedStructure, norm
 from dalembert.vibration.interface.lowering import ELASTIC
 
 STEPS = 50
@@ -29,7 +29,7 @@ MOST_STEPS = 120
 """Points after which continuation stops."""
 
 
-def first_guesses(balance: Balance, method: HarmonicBalance, point: Point) -> Iterator[np.ndarray]:
+def first_guesses(balance: Balance, method: HarmonicBalance, point: CondensedStructure) -> Iterator[np.ndarray]:
     """Yield guesses of a first point; the later ones are made if those before lead to no solution."""
     lowered = balance.lowered
     pressed = any(block.normal and block.kind == ELASTIC for block in lowered.blocks)
@@ -55,7 +55,7 @@ def first_guesses(balance: Balance, method: HarmonicBalance, point: Point) -> It
 
 
 @np.errstate(over="ignore", invalid="ignore")
-def at_rest(balance: Balance, point: Point) -> np.ndarray:
+def at_rest(balance: Balance, point: CondensedStructure) -> np.ndarray:
     """Return the unknowns (q, coefficients) of the place of rest, or where the search for it ended.
 
     Newton's method with an exact line search on the potential energy, whose slope along a step is that of the forces.
@@ -85,7 +85,7 @@ def at_rest(balance: Balance, point: Point) -> np.ndarray:
     return np.pad(places, ((0, 0), (0, balance.series.count - 1)))
 
 
-def _lowest(still: Balance, mean: Point, places: np.ndarray, step: np.ndarray) -> float | None:
+def _lowest(still: Balance, mean: CondensedStructure, places: np.ndarray, step: np.ndarray) -> float | None:
     """Return the part of a step with the least energy; None if the energy falls without end."""
 
     def slope(part: float) -> float:
@@ -114,9 +114,9 @@ class Loading:
 
     balance: Balance
     method: HarmonicBalance
-    point: Point
+    point: CondensedStructure
 
-    def at(self, load: float) -> Point:
+    def at(self, load: float) -> CondensedStructure:
         """The structure with a part of the varying forces, and its derivatives by that."""
         # f(p) = f_0 + p f_varying at one frequency: ∂R/∂p = -f_varying, and no matrix depends on p. Static forces stay,
         # as they may be what presses the contacts.
@@ -126,7 +126,7 @@ class Loading:
             force=self.point.force + (load - 1.0) * varying, force_slope=varying, rate=0.0,
         )  # fmt: skip
 
-    def solve(self, unknowns: np.ndarray, load: float, samples: int, plane: Plane | None = None) -> Solution:
+    def solve(self, unknowns: np.ndarray, load: float, samples: int, plane: CrossingPlane | None = None) -> Solution:
         """Newton's method from a guess."""
         return correct(self.balance, self.at, self.method, unknowns, load, plane)
 

@@ -15,7 +15,7 @@ import numpy as np
 from dalembert.vibration.balance.balance import Balance, Evaluation
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.tangents import Tangent, bordered
-from dalembert.vibration.interface.condensation import Point, norm
+from dalembert.vibration.interface.condensation import CondensedStructure, norm
 
 DAMPINGS = (1.0, 0.5, 0.25, 0.125, 0.03125)
 """Parts of a Newton step of the line search, until the residual falls."""
@@ -30,7 +30,7 @@ VERIFIED = 1e-8
 
 
 @dataclass(frozen=True)
-class Plane:
+class CrossingPlane:
     """A plane across a path in scaled unknowns: direction · (y - place) = 0, with y = (U/size, ω/width).
 
     ``direction`` (unknowns + 1,); ``unknowns`` (q, coefficients); ``omega``: a place on the plane; ``size``, ``width``:
@@ -60,7 +60,7 @@ class Solution:
 
     omega: float
     unknowns: np.ndarray
-    point: Point
+    point: CondensedStructure
     evaluation: Evaluation
     tangent: Tangent
     scale: float
@@ -76,7 +76,7 @@ class Solution:
         return -self.tangent.solve(self.tangent.slope[:, :, None], COARSE)[:, :, 0]
 
 
-def scale_of(point: Point, evaluation: Evaluation) -> float:
+def scale_of(point: CondensedStructure, evaluation: Evaluation) -> float:
     """Return the size of the forces that are in balance, of which residuals are parts."""
     # Of load and element forces, since a free or self-excited motion has no load; 1 N where there is no force at all.
     return point.load + norm(evaluation.forces) or 1.0
@@ -104,12 +104,12 @@ def line_search(trial: Callable[[float], Trial], error: float) -> Trial | None:
 @np.errstate(over="ignore", invalid="ignore")  # a trial may lie beyond what a law is for: the search returns
 def correct(
     balance: Balance,
-    structure: Callable[[float], Point],
+    structure: Callable[[float], CondensedStructure],
     method: HarmonicBalance,
     unknowns: np.ndarray,
     omega: float,
-    plane: Plane | None = None,
-    point: Point | None = None,
+    plane: CrossingPlane | None = None,
+    point: CondensedStructure | None = None,
 ) -> Solution:
     """Solve by Newton's method from a guess, at ω or on a plane.
 
@@ -117,7 +117,7 @@ def correct(
     that at ω if it is known.
     """
 
-    def place(unknowns: np.ndarray, omega: float, point: Point | None, step: bool = True) -> Solution:
+    def place(unknowns: np.ndarray, omega: float, point: CondensedStructure | None, step: bool = True) -> Solution:
         point = structure(omega) if point is None else point
         linearised: Any = balance.linearised(point, unknowns) if step else (balance.at(point, unknowns), None)
         evaluation, tangent = linearised
@@ -164,7 +164,7 @@ def _stalls(errors: list[float]) -> bool:
     return len(errors) > PATIENCE and min(errors[-PATIENCE:]) > PROGRESS * min(errors[:-PATIENCE])
 
 
-def _step(at: Solution, plane: Plane | None) -> tuple[np.ndarray, float] | None:
+def _step(at: Solution, plane: CrossingPlane | None) -> tuple[np.ndarray, float] | None:
     """Newton's step of U and ω; None where the matrix is singular."""
     residual = at.evaluation.residual
     try:

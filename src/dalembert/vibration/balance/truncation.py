@@ -130,7 +130,7 @@ class Motion(Protocol):
 M = TypeVar("M", bound=Motion)
 
 
-class Level(Protocol[M]):
+class HarmonicLevel(Protocol[M]):
     """Equations with a number of harmonics, and the truncation error of their motions."""
 
     @property
@@ -140,12 +140,12 @@ class Level(Protocol[M]):
         """Return the truncation error of a converged motion."""
         ...
 
-    def padded(self, motion: M, method: HarmonicBalance, /) -> "tuple[Level[M], M]":
+    def padded(self, motion: M, method: HarmonicBalance, /) -> "tuple[HarmonicLevel[M], M]":
         """Return the equations with the harmonics of another method, and the motion solved with them."""
         ...
 
 
-def enough_harmonics(first: Level[M], motions: Sequence[M]) -> tuple[HarmonicBalance, Truncation | None]:
+def enough_harmonics(first: HarmonicLevel[M], motions: Sequence[M]) -> tuple[HarmonicBalance, Truncation | None]:
     """Return the method whose truncation errors of some motions are small, up to the limit, and the largest of them.
 
     The error is None where the harmonics are more than those of the motions: all motions have to be computed with them
@@ -169,7 +169,7 @@ def enough_harmonics(first: Level[M], motions: Sequence[M]) -> tuple[HarmonicBal
     return method, largest if method == first.method else None
 
 
-def _confirmed(level: Level[M], motion: M) -> Truncation:
+def _confirmed(level: HarmonicLevel[M], motion: M) -> Truncation:
     """Return the truncation error of a motion; with few harmonics, the larger one of this and the next error.
 
     The first few harmonics may change a motion less than those after them.

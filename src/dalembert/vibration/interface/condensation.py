@@ -37,7 +37,7 @@ DECOUPLED = 1e-10
 
 
 @dataclass(frozen=True)
-class Point:
+class CondensedStructure:
     """A condensed structure at one frequency, and the matrices that recover all coordinates.
 
     ``omega``: rad/s; ``frequencies`` (orders,): h ω, rad/s; ``stiffness``, ``slope`` (orders, q, q), complex: Z_q and
@@ -122,13 +122,13 @@ class Condensation:
         if self.orders[0] == 0 and self.inner_loads.shape[1]:
             self._set_free(free_motions(self.inner[0]))
 
-    def at(self, omega: float) -> Point:
+    def at(self, omega: float) -> CondensedStructure:
         """The condensed structure at ω, rad/s."""
         s = self.orders * omega
         (outer, across, *inner), (outer_slope, across_slope, *inner_slope) = self._together(s)
         if not self.inner_loads.shape[1]:
             nothing = self.inner_loads
-            return Point(
+            return CondensedStructure(
                 omega, s, outer, outer_slope, self.outer_loads, 0 * self.outer_loads, np.swapaxes(across, 1, 2),
                 nothing, shared=self._shared,
             )  # fmt: skip
@@ -141,7 +141,7 @@ class Condensation:
         turned = np.swapaxes(follow, 1, 2)
         moved = _times(inner_slope[0], solved) if inner_slope else self._inner_slope(s, solved)
         crossed = across_slope @ solved
-        return Point(
+        return CondensedStructure(
             omega=omega,
             frequencies=s,
             stiffness=outer - across @ follow,
@@ -254,7 +254,7 @@ class Condensation:
                 raise _resonance(s[order : order + 1], f", at {moving_names(self.names, np.abs(self.back[:, mode]))},")
         return np.where(still, NEARLY * np.abs(self.inner[0]), inner)
 
-    def interior_slope(self, point: Point, retained: np.ndarray) -> np.ndarray:
+    def interior_slope(self, point: CondensedStructure, retained: np.ndarray) -> np.ndarray:
         """Derivative of the interior coordinates by ω where the retained ones (orders, q) are held, (orders, l)."""
         s, interior = point.frequencies, point.interior(retained)
         across = np.swapaxes(self._slope(self.across, s), 1, 2) @ retained[:, :, None]

@@ -158,7 +158,7 @@ class Sums(NamedTuple):
     gradient: np.ndarray
 
 
-class Room(NamedTuple):
+class EventWorkspace(NamedTuple):
     """Room: a table of waves (5, coefficients), signals' values (5, 3) at an event and where a piece begins."""
 
     table: np.ndarray
@@ -332,7 +332,7 @@ def _sums(
     states: Bytes2, result: Numbers3,
 ) -> None:  # fmt: skip
     constants, none = small[0, 0], slopes[0, 0]
-    places = Room(room[3:8], small[1], small[2])
+    places = EventWorkspace(room[3:8], small[1], small[2])
     for c in range(len(displacements)):
         contact = Contact(numbers[c], tangents, normal, memory)
         signals = signals_of(displacements[c], numbers[c], tangents, normal, orders, mean, room[:3], constants)
@@ -351,7 +351,7 @@ def sums_and_slopes(
     slopes: Reals3, given: Reals2, forces: Reals3, states: Bytes2, result: Reals3, jacobians: Reals4,
 ) -> None:  # fmt: skip
     constants, count = small[0, 0], analysis.shape[0]
-    places = Room(room[3:8], small[1], small[2])
+    places = EventWorkspace(room[3:8], small[1], small[2])
     for c in range(len(displacements)):
         contact = Contact(numbers[c], tangents, normal, memory)
         signals = signals_of(displacements[c], numbers[c], tangents, normal, orders, mean, room[:3], constants)

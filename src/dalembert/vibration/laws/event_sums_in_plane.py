@@ -14,7 +14,7 @@ from dalembert.kernels.words import Address, Bytes2, Complexes, Integers, Reals2
 from dalembert.vibration.laws.friction_law import FRICTION, SEPARATED, SLIPPING, STUCK, TANGENTIAL
 from dalembert.vibration.laws.friction_period import NEUTRAL, SWEEPS
 from dalembert.vibration.laws.friction_period import SETTLED as PERIODIC
-from dalembert.vibration.laws.march_in_plane import Room, Sums, march
+from dalembert.vibration.laws.march_in_plane import PlanarMarchWorkspace, Sums, march
 from dalembert.vibration.laws.signal_zeros import LEAST, PRESSED, at, signals_of
 from dalembert.vibration.laws.slip_in_plane import MOVE, OPENED, PLACE, direction
 
@@ -98,7 +98,7 @@ def _sums(
     rows: Numbers2, tables: Numbers3, small: Numbers3, radau: Numbers2, grads: Numbers2, vectors: Numbers2,
     seeds: Complexes, forces: Numbers3, states: Bytes2, result: Numbers3,
 ) -> None:  # fmt: skip
-    room, y, before = Room(tables, small, radau, vectors[0], vectors[1], seeds), vectors[2], vectors[3]
+    room, y, before = PlanarMarchWorkspace(tables, small, radau, vectors[0], vectors[1], seeds), vectors[2], vectors[3]
     for c in range(len(displacements)):
         signals = signals_of(displacements[c], numbers[c], 2, normal, orders, mean, rows, small[0, 0])
         sums = Sums(forces[c], states[c], result[c], tables, tables)
@@ -119,7 +119,7 @@ def sums_and_slopes(
     vectors: Reals2, seeds: Complexes, sampled: Reals3, slopes: Reals3, local: Reals2, forces: Reals3, states: Bytes2,
     result: Reals3, jacobians: Reals4,
 ) -> None:  # fmt: skip
-    room, y, before = Room(tables, small, radau, vectors[0], vectors[1], seeds), vectors[2], vectors[3]
+    room, y, before = PlanarMarchWorkspace(tables, small, radau, vectors[0], vectors[1], seeds), vectors[2], vectors[3]
     count, unknowns = analysis.shape[0], jacobians.shape[3]
     for c in range(len(displacements)):
         signals = signals_of(displacements[c], numbers[c], 2, normal, orders, mean, rows, small[0, 0])

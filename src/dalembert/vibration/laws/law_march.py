@@ -70,7 +70,7 @@ class Called(NamedTuple):
     numbers: Complexes
 
 
-class Room(NamedTuple):
+class MarchWorkspace(NamedTuple):
     """Displacements, velocities, forces (columns,), events at the begin, at the end and between; waves (2, 1, -)."""
 
     u: Complexes
@@ -217,7 +217,8 @@ def _march(law, motion, z, largest, rule, room, sampled, pieces):
 
 @kernel
 def marches(
-    law: Called, motion: Motion, start: Complexes2, directions: Integers, periods: int, rule: Rule, room: Room,
+    law: Called, motion: Motion, start: Complexes2, directions: Integers, periods: int, rule: Rule,
+    room: MarchWorkspace,
     largest: Reals, sampled: Complexes3, pieces: Complexes3,
 ) -> None:  # fmt: skip
     """A march of some periods in each direction from each start (directions, states), which it replaces by the end.

@@ -60,7 +60,7 @@ class Sums(NamedTuple):
     slopes: np.ndarray
 
 
-class Room(NamedTuple):
+class PlanarMarchWorkspace(NamedTuple):
     """Room: tables of waves (4, 5, coefficients), signals' values (7, 5, 3), stages of a step (7, 3), jumps (9,).
 
     ``x`` and ``seeds`` (11,): arguments of the derivatives of a slipping force.

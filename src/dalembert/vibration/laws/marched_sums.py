@@ -14,7 +14,7 @@ import numpy as np
 
 from dalembert.vibration.fourier import Fourier, synthesis
 from dalembert.vibration.laws.law_block import LawBlock
-from dalembert.vibration.laws.law_march import UNPERTURBED, Called, Motion, Room, Rule, marches
+from dalembert.vibration.laws.law_march import UNPERTURBED, Called, MarchWorkspace, Motion, Rule, marches
 from dalembert.vibration.laws.sampled_sums import STEP, derivatives, require_complex_steps, sampled_motion
 
 GAUSS = 3
@@ -180,7 +180,8 @@ class _Run:
         sampled = np.empty((len(directions), *place.shape), complex)
         marches(
             self.called, motion, start, np.array(directions, dtype=np.int64), periods, self.rule,
-            Room(u, v, force, first, last, values, np.zeros((2, 1, count), complex)), largest, sampled, pieces,
+            MarchWorkspace(u, v, force, first, last, values, np.zeros((2, 1, count), complex)), largest, sampled,
+            pieces,
         )  # fmt: skip
         # Integrals over pieces and weighted samples of whole intervals, divided by π as Euler and Fourier's formulas
         # demand; half of that for the mean.

@@ -22,7 +22,7 @@ STEP = 1e-30
 """Size of the imaginary step; second-order terms vanish below the rounding of the first."""
 
 
-class Room(NamedTuple):
+class SampledSumsWorkspace(NamedTuple):
     """Room for one element: displacements, velocities, forces (columns,), and internal numbers (states,)."""
 
     u: Complexes
@@ -31,7 +31,7 @@ class Room(NamedTuple):
     state: Complexes
 
     @classmethod
-    def of(cls, columns: int, states: int) -> "Room":
+    def of(cls, columns: int, states: int) -> "SampledSumsWorkspace":
         """Room for an element with these numbers of columns and of internal numbers."""
         u, v, force = np.zeros((3, columns), complex)
         return cls(u, v, force, np.zeros(states, complex))
@@ -46,7 +46,12 @@ def _place(place, velocity, t, room):
 
 @kernel
 def sampled_forces(
-    law: Address, numbers: Complexes2, place: Complexes3, velocity: Complexes3, room: Room, result: Complexes3
+    law: Address,
+    numbers: Complexes2,
+    place: Complexes3,
+    velocity: Complexes3,
+    room: SampledSumsWorkspace,
+    result: Complexes3,
 ) -> None:
     """Forces (elements, columns, samples) from rest over a motion (elements, columns, samples)."""
     for e in range(len(place)):
@@ -61,7 +66,7 @@ def sampled_forces(
 @kernel
 def law_derivatives(
     law: Address, numbers: Complexes2, place: Complexes3, velocity: Complexes3, start: Complexes2, directions: int,
-    room: Room, moved: Complexes, force: Reals3, slopes: Reals4,
+    room: SampledSumsWorkspace, moved: Complexes, force: Reals3, slopes: Reals4,
 ) -> None:  # fmt: skip
     """Forces (elements, columns, samples), and derivatives of forces and next state, at each sample.
 
@@ -138,7 +143,7 @@ def sampled_motion(displacements: np.ndarray, omega: float, series: Fourier) -> 
 def forces_from_rest(block: LawBlock, place: np.ndarray, velocity: np.ndarray) -> np.ndarray:
     """Forces at samples of a motion, all (elements, columns, samples), complex."""
     result = np.empty_like(place)
-    room = Room.of(place.shape[1], block.states)
+    room = SampledSumsWorkspace.of(place.shape[1], block.states)
     sampled_forces(block.law.address, block.complex_numbers, place, velocity, room, result)
     return result
 
@@ -151,7 +156,7 @@ def derivatives(
     force, slopes = np.empty(place.shape), np.empty((elements, columns + states, directions, samples))
     law_derivatives(
         block.law.address, block.complex_numbers, place, velocity, start.astype(complex), directions,
-        Room.of(columns, states), np.empty(states, complex), force, slopes,
+        SampledSumsWorkspace.of(columns, states), np.empty(states, complex), force, slopes,
     )  # fmt: skip
     return force, slopes
 

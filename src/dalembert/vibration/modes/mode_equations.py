@@ -56,7 +56,7 @@ class FreeMotion:
 
 
 @dataclass(frozen=True)
-class Plane:
+class ModePlane:
     """A plane across the path of motions, in (Y/scale, log ω, ξ/ω, log a), through a motion."""
 
     direction: np.ndarray
@@ -213,9 +213,9 @@ class ModeEquations:
         level = np.zeros(guess.harmonics.size + 3)
         level[-1] = 1.0
         at = replace(guess, size=size)
-        return self.solve(at, Plane(level, at, self.scale(guess)), samples)
+        return self.solve(at, ModePlane(level, at, self.scale(guess)), samples)
 
-    def solve(self, guess: FreeMotion, plane: Plane, samples: int) -> FreeMotion:
+    def solve(self, guess: FreeMotion, plane: ModePlane, samples: int) -> FreeMotion:
         """Newton's method on a plane across the path, with as many samples as it needs, and at least those given."""
 
         def compute() -> tuple[np.ndarray, np.ndarray]:
@@ -248,7 +248,7 @@ class ModeEquations:
         return self.problem.lowered.fingerprint(self.problem.method, self.row, *part).encode()
 
     @np.errstate(over="ignore", invalid="ignore")
-    def newton(self, guess: FreeMotion, plane: Plane, samples: int) -> FreeMotion:
+    def newton(self, guess: FreeMotion, plane: ModePlane, samples: int) -> FreeMotion:
         """Solve as :meth:`solve` does, without a look at the checkpoint."""
         method = self.problem.method
         motion = self._corrected(guess, plane, samples)
@@ -266,7 +266,7 @@ class ModeEquations:
 
     def tangent(self, motion: FreeMotion, before: np.ndarray) -> np.ndarray:
         """As :meth:`direction`, without a look at the checkpoint."""
-        plane = Plane(before, motion, self.scale(motion))
+        plane = ModePlane(before, motion, self.scale(motion))
         system = self.system(motion.samples)
         matrix = self._jacobian(system, self._at(system, motion, plane), plane)
         # The plane is across the direction before: the last right-hand side is 1, so that the tangent keeps its sense.
@@ -303,7 +303,7 @@ class ModeEquations:
         inertia = mass @ (omega * velocity @ turn.T)
         return stiffness @ harmonics + (damping - growth * mass) @ velocity + inertia - self.static
 
-    def _at(self, system: Uncondensed, motion: FreeMotion, plane: Plane) -> _Trial:
+    def _at(self, system: Uncondensed, motion: FreeMotion, plane: ModePlane) -> _Trial:
         count, harmonics, size = system.retained, motion.harmonics, motion.size
         linear = self._linear_part(system, harmonics, motion.omega, motion.growth)
         local = system.elements(linear[:count], harmonics[:count], motion.omega)
@@ -329,7 +329,7 @@ class ModeEquations:
         elastic = np.linalg.norm(stiffness @ motion.harmonics) + np.linalg.norm(local.evaluation.forces)
         return float(elastic + np.linalg.norm(mass @ motion.harmonics) * motion.omega**2)
 
-    def _corrected(self, guess: FreeMotion, plane: Plane, samples: int) -> FreeMotion:
+    def _corrected(self, guess: FreeMotion, plane: ModePlane, samples: int) -> FreeMotion:
         system, method = self.system(samples), self.problem.method
         at, iterations = self._at(system, guess, plane), 0
         while not (converged := at.error <= max(method.tolerance, at.floor)) and iterations < method.iterations:
@@ -343,10 +343,12 @@ class ModeEquations:
             at, iterations = best, iterations + 1
         return replace(at.motion, iterations=iterations, error=at.error, converged=converged, samples=samples)
 
-    def _moved(self, system: Uncondensed, plane: Plane, motion: FreeMotion, step: np.ndarray, part: float) -> _Trial:
+    def _moved(
+        self, system: Uncondensed, plane: ModePlane, motion: FreeMotion, step: np.ndarray, part: float
+    ) -> _Trial:
         return self._at(system, plane.moved(motion, part * step), plane)
 
-    def _jacobian(self, system: Uncondensed, at: _Trial, plane: Plane) -> np.ndarray:
+    def _jacobian(self, system: Uncondensed, at: _Trial, plane: ModePlane) -> np.ndarray:
         """Of the residual by Y, log ω, ξ and log a in the scales of the plane."""
         (stiffness, mass, damping), turn = system.matrices, system.series.derivative
         motion = at.motion

@@ -7,7 +7,7 @@ from itertools import islice
 import numpy as np
 
 from dalembert.vibration.balance.arc_length import EASY, MOST_POINTS, SHORTEST, STEADY, Progress
-from dalembert.vibration.modes.mode_equations import FreeMotion, Linear, ModeEquations, Plane
+from dalembert.vibration.modes.mode_equations import FreeMotion, Linear, ModeEquations, ModePlane
 from dalembert.vibration.paths.continuation import MOST_AROUND
 
 SMALLER = (1.0, 0.1, 1e-2, 1e-3, 1e-4)
@@ -126,7 +126,7 @@ def motions_along(
     step, direction, progress = longest / 4, mode.direction(known, onward), Progress(longest)
     for _ in range(MOST_POINTS):
         scale = mode.scale(known)
-        plane = Plane(direction, known, scale)
+        plane = ModePlane(direction, known, scale)
         # Predictor and corrector as for forced motions; the plane is across the direction at the predicted motion.
         guess = plane.moved(known, step * direction)
         motion = mode.solve(guess, replace(plane, at=guess), known.samples)
@@ -165,10 +165,10 @@ def _around_a_corner(
     """
     scale = mode.scale(known)
     # The tangent at a point beyond the corner, though that is no solution: contacts there have the states behind it.
-    beyond = Plane(direction, known, scale).moved(known, step * direction)
+    beyond = ModePlane(direction, known, scale).moved(known, step * direction)
     tangent = mode.direction(beyond, direction)
     for way in (tangent, -tangent):
-        plane = Plane(way, known, scale)
+        plane = ModePlane(way, known, scale)
         guess = plane.moved(known, step * way)
         motion = mode.solve(guess, replace(plane, at=guess), known.samples)
         if not same_mode(mode, known, motion):

@@ -8,7 +8,7 @@ from dalembert.errors import InputError
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.newton import Solution
 from dalembert.vibration.fourier import in_orders
-from dalembert.vibration.interface.condensation import Point
+from dalembert.vibration.interface.condensation import CondensedStructure
 from dalembert.vibration.interface.lowering import Lowered
 from dalembert.vibration.paths.curve import FrequencyCurve
 
@@ -50,7 +50,7 @@ def response_of(problem: Equations, solution: Solution) -> np.ndarray:
     return whole_motion(problem, solution.point, solution.unknowns, solution.samples)
 
 
-def whole_motion(problem: Equations, point: Point, unknowns: np.ndarray, samples: int) -> np.ndarray:
+def whole_motion(problem: Equations, point: CondensedStructure, unknowns: np.ndarray, samples: int) -> np.ndarray:
     """Return the coefficients of all degrees of freedom from those of the retained coordinates, (n, coefficients)."""
     series = problem.balance(samples).series
     retained = series.phasors(unknowns)

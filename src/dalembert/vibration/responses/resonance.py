@@ -18,10 +18,10 @@ from dalembert.findings import Finding
 from dalembert.forward import Checkpoint
 from dalembert.forward.builders import check_function
 from dalembert.threads import one_thread
-from dalembert.vibration.balance.arc_length import Path, direction_at, zero_between
+from dalembert.vibration.balance.arc_length import PathTangent, direction_at, zero_between
 from dalembert.vibration.balance.equations import Equations, equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
-from dalembert.vibration.balance.newton import Plane, Solution
+from dalembert.vibration.balance.newton import CrossingPlane, Solution
 from dalembert.vibration.balance.truncation import ForcedLevel, Truncation, choice_findings, enough_harmonics, hardest
 from dalembert.vibration.fourier import synthesis
 from dalembert.vibration.interface.lowering import lower
@@ -267,7 +267,7 @@ def _carried(problem: Equations, known: _Peak, before: _Peak | None, value: floa
             omega = omega + part * (omega - before.solution.omega)
         # Across the path, not at a frequency: beside a fold the peak's frequency may have no solution at the next
         # value.
-        plane = Plane(direction, guess, omega, float(np.linalg.norm(last.unknowns)) or 1.0, width)
+        plane = CrossingPlane(direction, guess, omega, float(np.linalg.norm(last.unknowns)) or 1.0, width)
         solution = problem.solve(guess, omega, last.samples, plane)
         if solution.converged and solution.omega > 0:
             return solution, number + 1
@@ -291,12 +291,12 @@ class _Climber:
         """Return the peak next to a solution, and the number of solutions."""
         width = WIDTH * solution.omega
         direction = direction_at(solution, _upwards(solution), width)
-        rise = self._rise(problem, solution, direction, Path(solution, direction, width).size, width)
+        rise = self._rise(problem, solution, direction, PathTangent(solution, direction, width).size, width)
         if rise < 0:
             rise, direction = -rise, -direction
         length = FIRST if np.isnan(bend) else float(np.clip(BEYOND * abs(rise / bend), SHORTEST, LONGEST))
         for count in range(1, MOST_STEPS + 1):
-            path = Path(solution, direction, width)
+            path = PathTangent(solution, direction, width)
             ahead, onward = path.step(problem, length)
             if onward is None:
                 length /= 4
@@ -313,7 +313,7 @@ class _Climber:
         return None, MOST_STEPS
 
     def _narrowed(
-        self, problem: Equations, path: Path, ahead: Solution, rises: tuple[float, float], length: float
+        self, problem: Equations, path: PathTangent, ahead: Solution, rises: tuple[float, float], length: float
     ) -> tuple[_Peak | None, int]:
         """Return the peak between the ends of a step: a zero of the slope of the amplitude."""
 

@@ -9,7 +9,7 @@ from dalembert.errors import counted
 from dalembert.findings import Finding
 from dalembert.vibration.balance.arc_length import PathPoint, zero_between
 from dalembert.vibration.balance.equations import Equations
-from dalembert.vibration.balance.newton import Plane, Solution
+from dalembert.vibration.balance.newton import CrossingPlane, Solution
 from dalembert.vibration.stability.stability import REAL, Exponents, exponents, remembers
 
 FOLD, TORUS, DOUBLING, BRANCH = "fold", "torus", "period doubling", "branch point"
@@ -129,7 +129,7 @@ def _located(
     def growth(part: float) -> tuple[tuple[Solution, Exponents], float]:
         guess = first.unknowns + part * (last.unknowns - first.unknowns)
         omega = first.omega + part * (last.omega - first.omega)
-        plane = Plane(chord / np.linalg.norm(chord), guess, omega, size, width)
+        plane = CrossingPlane(chord / np.linalg.norm(chord), guess, omega, size, width)
         solution = problem.solve(guess, omega, max(first.samples, last.samples), plane)
         current = exponents(problem, solution) if solution.converged else Exponents(np.zeros(0))
         return (solution, current), float(current.values[rank].real) if len(current.values) > rank else float("nan")

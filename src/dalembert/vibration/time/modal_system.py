@@ -22,7 +22,7 @@ from dalembert.vibration.laws.friction_law import NORMAL, TANGENTIAL
 from dalembert.vibration.system.requirements import require_viscous
 from dalembert.vibration.system.system import StaticForce
 from dalembert.vibration.time.elements import Elements, Ruled
-from dalembert.vibration.time.steps import Modes, Scheme
+from dalembert.vibration.time.steps import ModalStructure, Scheme
 
 MASSLESS = 1e-12
 """Mass of a mode, as part of its mass and stiffness, below which it has no inertia of its own."""
@@ -81,7 +81,7 @@ def spectral(structure: Any, omega: float) -> Spectral:
 
 
 @dataclass(frozen=True)
-class InTime:
+class ModalSystem:
     """A lowered system in its modes, at one frequency.
 
     ``lowered``: real; ``steps``: of a period; ``stand_in``: stiffness of the springs in place of rigid contacts, in
@@ -122,7 +122,7 @@ class InTime:
         samples = series.synthesis @ (np.real(self.lowered.loads(series)).T @ self.spectral.shapes)
         return np.ascontiguousarray(np.roll(samples, -1, axis=0))
 
-    def arrays(self, scheme: Scheme) -> tuple[Modes, Elements]:
+    def arrays(self, scheme: Scheme) -> tuple[ModalStructure, Elements]:
         """Arrays of the structure for a method, and of the elements with matched stiffnesses."""
         modal, seen = self.spectral, self.seen
         ratio = (1 - scheme.alpha_f) / (1 - scheme.alpha_m)
@@ -138,7 +138,7 @@ class InTime:
         # Contacts are matched to the compliance behind them: a single stiff contact then needs one iteration, whatever
         # its stiffness is.
         elements, shifts = _matched(self.elements, np.diag(compliance))
-        modes = Modes(
+        modes = ModalStructure(
             modal.mass, modal.damping, modal.stiffness, inverse, modal.coupled, solver, seen,
             np.ascontiguousarray(pushed.T),
             np.ascontiguousarray(compliance - np.diag(shifts)), self.forces,

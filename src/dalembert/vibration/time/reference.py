@@ -22,10 +22,10 @@ from dalembert.vibration.storage import versions
 from dalembert.vibration.system.requirements import require_force
 from dalembert.vibration.system.system import VibrationSystem
 from dalembert.vibration.time.elements import Elements, Instant, Reaction, react, reaction, settle
-from dalembert.vibration.time.modal_system import InTime, address
+from dalembert.vibration.time.modal_system import ModalSystem, address
 from dalembert.vibration.time.newmark import Newmark
 from dalembert.vibration.time.periodic_motion import PeriodicMotion
-from dalembert.vibration.time.steps import LOST, Modes, Record, Scheme, State, go_through, room
+from dalembert.vibration.time.steps import LOST, ModalState, ModalStructure, Record, Scheme, go_through, room
 
 LONG_RUN, SHOOTING = "long run", "shooting"
 WARMING = 5
@@ -93,7 +93,7 @@ def steady_state(
     require_force(system.forces, "steady_state")
     require_known("way", way, (LONG_RUN, SHOOTING), "steady_state")
     lowered = lower(system).real
-    problem = InTime(lowered, 2 * np.pi * frequency, method.steps_per_period, method.stand_in)
+    problem = ModalSystem(lowered, 2 * np.pi * frequency, method.steps_per_period, method.stand_in)
     rows = observed(lowered, observe)
     kernels = [react, go_through]
     if start is not None:  # the motion starts as the method of the curve has it
@@ -186,7 +186,7 @@ def _slope(period: Period, state: np.ndarray, after: np.ndarray) -> Any:
 class _Ended:
     """Where a run ended, with its last period."""
 
-    state: State
+    state: ModalState
     record: Record
     periods: int
     change: float
@@ -196,7 +196,7 @@ class _Ended:
 class _Run:
     """Runs of a system with a method; failures of the user's laws are kept."""
 
-    problem: InTime
+    problem: ModalSystem
     method: Newmark
     failures: list[Exception]
 
@@ -205,19 +205,19 @@ class _Run:
         return self.problem.users(self.failures)
 
     @cached_property
-    def _arrays(self) -> tuple[Modes, Elements]:
+    def _arrays(self) -> tuple[ModalStructure, Elements]:
         return self.problem.arrays(self._scheme)
 
     @cached_property
     def _scheme(self) -> Scheme:
         return self.method.scheme(self.problem.omega)
 
-    def rest(self) -> State:
+    def rest(self) -> ModalState:
         """At rest, with sliders where they stand."""
         modes = self.problem.seen.shape[1]
         return self._balanced(np.zeros(modes), np.zeros(modes), *self._memory())
 
-    def on_curve(self, system: VibrationSystem, curve: FrequencyCurve, point: int) -> State:
+    def on_curve(self, system: VibrationSystem, curve: FrequencyCurve, point: int) -> ModalState:
         """On a point of a curve, with sliders as its motion moves them."""
         balance = equations(system, HarmonicBalance(**curve.provenance["method"]))
         x = response_of(balance, restarted(balance, curve, point, "steady_state"))
@@ -234,7 +234,7 @@ class _Run:
         place, velocity = np.linalg.solve(self.problem.spectral.shapes, places).T
         return self._balanced(place, velocity, sliders, states)
 
-    def long(self, state: State, most: int, tolerance: float) -> _Ended:
+    def long(self, state: ModalState, most: int, tolerance: float) -> _Ended:
         """Period after period."""
         modes, elements = self._arrays
         steps, rows = self.method.steps_per_period, len(modes.seen)
@@ -242,7 +242,7 @@ class _Run:
             np.empty((steps, len(modes.mass))), np.empty((steps, rows)), np.empty((steps, rows)),
             np.zeros((steps, len(self.problem.lowered.contacts)), dtype=np.uint8),
         )  # fmt: skip
-        state = State(*(array.copy() for array in state))
+        state = ModalState(*(array.copy() for array in state))
         status, count, change = go_through(
             modes, elements, address(self._users), self._scheme, state, self.problem.omega, most, tolerance, record,
             self._reaction(), room(modes, state),
@@ -257,7 +257,7 @@ class _Run:
             )
         return _Ended(state, record, int(count), float(change))
 
-    def shot(self, state: State) -> _Ended:
+    def shot(self, state: ModalState) -> _Ended:
         """By shooting, after some periods."""
         # A few periods first: transients of strongly damped modes are gone, and Newton's method starts near the motion.
         warm = self.long(state, min(WARMING, self.method.periods), self.method.tolerance)
@@ -283,19 +283,19 @@ class _Run:
         modes, states = np.repeat(each, len(self.problem.spectral.mass)), np.abs(warm.state.states)
         return np.concatenate([modes, np.full(warm.state.sliders.size, widest), np.where(states > 0, states, 1.0)])
 
-    def _flat(self, state: State, scale: np.ndarray) -> np.ndarray:
+    def _flat(self, state: ModalState, scale: np.ndarray) -> np.ndarray:
         return np.concatenate([part.ravel() for part in state]) / scale
 
-    def _state(self, flat: np.ndarray, scale: np.ndarray) -> State:
+    def _state(self, flat: np.ndarray, scale: np.ndarray) -> ModalState:
         modes, cells = 4 * len(self.problem.spectral.mass), 2 * len(self.problem.elements.tangents)
         modal, sliders, states = np.split(flat * scale, [modes, modes + cells])
-        return State(modal.reshape(4, -1), sliders.reshape(-1, 2), states)
+        return ModalState(modal.reshape(4, -1), sliders.reshape(-1, 2), states)
 
     def _memory(self) -> tuple[np.ndarray, np.ndarray]:
         still = self._reaction()
         return np.zeros_like(still.moved), np.zeros_like(still.next)
 
-    def _balanced(self, place: np.ndarray, velocity: np.ndarray, sliders: np.ndarray, states: np.ndarray) -> State:
+    def _balanced(self, place: np.ndarray, velocity: np.ndarray, sliders: np.ndarray, states: np.ndarray) -> ModalState:
         """With the accelerations that the forces at the start of a period ask for."""
         seen, response = self.problem.seen, self._reaction()
         instant = Instant(seen @ place, seen @ velocity, 0.0, sliders, states)
@@ -306,7 +306,7 @@ class _Run:
         push = self.problem.forces[-1] - seen.T @ response.force
         # Auxiliary accelerations begin as the real ones.
         acceleration = self.problem.spectral.accelerations(push, place, velocity)
-        return State(np.stack([place, velocity, acceleration, acceleration]), sliders, states)
+        return ModalState(np.stack([place, velocity, acceleration, acceleration]), sliders, states)
 
     def _reaction(self) -> Reaction:
         return reaction(len(self.problem.seen), self.problem.elements, len(self.problem.lowered.contacts))

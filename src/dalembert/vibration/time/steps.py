@@ -46,7 +46,7 @@ class Scheme(NamedTuple):
     alpha_f: float
 
 
-class Modes(NamedTuple):
+class ModalStructure(NamedTuple):
     """A structure in modes.
 
     ``mass``, ``damping``, ``stiffness`` and ``inverse`` (S⁻¹) are diagonals (n,); where modes are coupled by damping,
@@ -67,7 +67,7 @@ class Modes(NamedTuple):
     force: Reals2
 
 
-class State(NamedTuple):
+class ModalState(NamedTuple):
     """At an instant: modes (4, n) of displacements, velocities, accelerations, auxiliary ones; what elements remember.
 
     ``sliders`` (cells, 2); ``states`` of all elements that follow a law, one after the other.
@@ -90,7 +90,7 @@ class Record(NamedTuple):
     states: Bytes2
 
 
-class Room(NamedTuple):
+class StepWorkspace(NamedTuple):
     """Room for a step: vectors of rows, matrices (rows, rows), vectors of modes; sliders (cells, 2), states.
 
     ``gemv``: the BLAS's address. ``largest``: of the states over a period.
@@ -113,11 +113,11 @@ class Room(NamedTuple):
     largest: Reals
 
 
-def room(modes: Modes, state: State) -> Room:
+def room(modes: ModalStructure, state: ModalState) -> StepWorkspace:
     """Room for steps from a state."""
     rows, n = modes.seen.shape
     vectors = *np.zeros((5, rows)), *np.zeros((2, rows, rows)), *np.zeros((4, n))
-    return Room._make([gemv(), *vectors, np.zeros_like(state.sliders), *np.zeros((2, len(state.states)))])
+    return StepWorkspace._make([gemv(), *vectors, np.zeros_like(state.sliders), *np.zeros((2, len(state.states)))])
 
 
 @inner
@@ -268,8 +268,9 @@ def _change(state, record, omega, room):
 
 @kernel
 def go_through(
-    modes: Modes, elements: Elements, users: Address, scheme: Scheme, state: State, omega: float, most: int,
-    tolerance: float, record: Record, reaction: Reaction, room: Room,
+    modes: ModalStructure, elements: Elements, users: Address, scheme: Scheme, state: ModalState, omega: float,
+    most: int,
+    tolerance: float, record: Record, reaction: Reaction, room: StepWorkspace,
 ) -> tuple[int, int, float]:  # fmt: skip
     """Go through periods until one changes nothing, in place; how it ended, periods or step, change of the last one."""
     steps, change = len(modes.force), np.inf

@@ -39,7 +39,7 @@ def measured(name, times, noise=0.0, **options):
 
 def pair(noise=0.0, local=("size",), **options):
     return [
-        Experiment(name, decay(times), measured(name, times, noise, **options), own)
+        Experiment(name, decay(times), measured(name, times, noise, **options), local)
         for name, times in (("short", SHORT), ("long", LONG))
     ]
 

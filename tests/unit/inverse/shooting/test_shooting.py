@@ -12,7 +12,7 @@ from dalembert.inverse.experiments.tracks import tracks
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import pose
 from dalembert.inverse.shooting.continuity import Chain
-from dalembert.inverse.shooting.cuts import Cut, Node, guess, segments
+from dalembert.inverse.shooting.cuts import Cut, SegmentNode, guess, segments
 from dalembert.inverse.shooting.shooting import first_cuts
 from support import says
 
@@ -47,7 +47,7 @@ def chain(noise=0.01, states=STATES, cuts=(10, 21)):
     problem = pose(SWING, measured(noise, deviations=0.01), None, Journal(41))
     (track,) = tracks(problem)
     lower, upper = (np.array([getattr(state, side) for state in states.values()]) for side in ("lower", "upper"))
-    nodes = [Node(cut, tuple(states), ("", ""), np.zeros(2), lower, upper, upper - lower) for cut in cuts]
+    nodes = [SegmentNode(cut, tuple(states), ("", ""), np.zeros(2), lower, upper, upper - lower) for cut in cuts]
     return Chain(problem, segments(problem, [Cut(track, tuple(nodes), states)]))
 
 

@@ -56,8 +56,7 @@ def elsewhere(fit):
     noise = max(fit.misfit / (len(TIMES) - len(fit.values)), 1e-12)
     apart = np.fmax(2 * fit.deviations, 1e-3 * np.abs(fit.values))
     return any(
-        start.misfit - fit.misfit < 4 * noise and np.any(np.abs(start.end - fit.values) > apart)
-        for start in fit.starts
+        start.misfit - fit.misfit < 4 * noise and np.any(np.abs(start.end - fit.values) > apart) for start in fit.starts
     )
 
 

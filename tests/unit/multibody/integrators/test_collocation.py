@@ -7,11 +7,11 @@ import dalembert as da
 from dalembert.errors import InputError, ModelError, SolveError
 from dalembert.multibody.integrators.collocation.collocation_descent import descend, descent
 from dalembert.multibody.integrators.collocation.collocation_rule import make_rule
-from dalembert.multibody.integrators.collocation.collocation_search import Search
+from dalembert.multibody.integrators.collocation.collocation_search import CollocationSearch
 from dalembert.multibody.integrators.collocation.collocation_step import begin, finish, prepare, step_of
 from dalembert.multibody.integrators.collocation.collocation_swarm import squares
 from dalembert.multibody.integrators.shared.batch import cut
-from dalembert.multibody.integrators.shared.problem import DONE, Models
+from dalembert.multibody.integrators.shared.problem import DONE, SampleModels
 from dalembert.multibody.integrators.shared.run import make_problem
 from dalembert.multibody.kernels.block_table import addresses
 from dalembert.multibody.kernels.states import resting
@@ -143,10 +143,10 @@ def test_gauss_and_newton_leave_no_more_than_fireflies():
     walk = prepare(problem, rule, *calls, 0, linear=True)
     room = descent(problem, walk)
     walk.old.x[:], walk.old.v[:] = lowered.x, lowered.v
-    models = Models(real.address, complex_one.address, addresses([]))
+    models = SampleModels(real.address, complex_one.address, addresses([]))
     moving = models._replace(directions=addresses([complex_one, complex_one]))
     out, dout = resting(0, len(lowered.x)), resting(0, 0, len(lowered.x))
-    search = Search(da.Firefly(), 0, problem, rule, moving, schedule, walk)
+    search = CollocationSearch(da.Firefly(), 0, problem, rule, moving, schedule, walk)
     for number in range(len(schedule.begins)):
         step = step_of(schedule, number)
         assert begin(problem, rule, models, step, walk) == DONE

@@ -5,7 +5,7 @@ import pytest
 
 import dalembert.multibody as mb
 from dalembert.multibody.integrators.shared import partitioning
-from dalembert.multibody.integrators.shared.problem import ACCELERATION, Models
+from dalembert.multibody.integrators.shared.problem import ACCELERATION, SampleModels
 from dalembert.multibody.integrators.shared.run import make_problem
 from dalembert.multibody.kernels.block_table import Call, addresses
 from dalembert.multibody.kernels.elementary import STEP
@@ -85,7 +85,7 @@ def test_dependent_entries_satisfy_the_constraints_at_all_levels(bars: int) -> N
     state.a[own] = 5.0
     given = [values[own].copy() for values in state[:3]]
     assert partitioning.settle(
-        problem, Models(lowered.real.address, lowered.complex_model.address, addresses([])), 0.0, 0.0,
+        problem, SampleModels(lowered.real.address, lowered.complex_model.address, addresses([])), 0.0, 0.0,
         ACCELERATION, state, resting(0, len(state.x)), call.address, complex_call.address, complex_state,
         partition,
     )  # fmt: skip
@@ -112,7 +112,7 @@ def test_derivatives_of_the_dependent_entries() -> None:
             values[:, own] = 1.0
         directions = addresses(own.complex_model.need("rates") for own in along)
         assert partitioning.settle(
-            problem, Models(lowered.real.address, lowered.complex_model.address, directions), 0.0, 0.0,
+            problem, SampleModels(lowered.real.address, lowered.complex_model.address, directions), 0.0, 0.0,
             ACCELERATION, state, dstates, call.address, complex_call.address, complex_state, partition,
         )  # fmt: skip
         return state, dstates

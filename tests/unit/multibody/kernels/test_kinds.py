@@ -7,7 +7,7 @@ import pytest
 
 import mechanisms
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.kernels.block_table import Model
+from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.constraints import forces_of, rates_of
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.kind import Kind
@@ -59,7 +59,7 @@ def test_a_kernel_does_what_its_python_does(kind: Kind, role: str, dtype: type) 
     np.testing.assert_allclose(compiled.imag, expected.imag, rtol=1e-12, atol=1e-13 * size)
 
 
-def component(model: Model, kind: Kind, dtype: type) -> tuple:
+def component(model: BlockModel, kind: Kind, dtype: type) -> tuple:
     """Local states, numbers, integers and inputs of the first component of a kind."""
     numbers = model.blocks.numbers[kind].view(kind.number_record(dtype)).view(np.recarray).ravel()[0]
     integers = model.blocks.integers[kind].view(kind.integer_record).view(np.recarray).ravel()[0]

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from dalembert.errors import InputError
 from dalembert.studio.editor.editing import text_of, value_of, with_table, with_value, without
-from dalembert.studio.editor.fields import Field, child
+from dalembert.studio.editor.fields import TableField, child
 from dalembert.studio.editor.lines import tables
 from dalembert.study.template import templates
 
@@ -132,7 +132,7 @@ def test_invalid_text_and_stale_places_are_refused():
 
 
 def test_values_of_texts():
-    number, text = Field("mass", "number"), Field("at", "text")
+    number, text = TableField("mass", "number"), TableField("at", "text")
     assert value_of(" 2 ", number) == 2
     assert value_of("2", text) == "2"
     assert value_of("[0.1, 0]", text) == [0.1, 0]
@@ -154,7 +154,7 @@ def test_any_value_is_written_and_read_back(value, key):
     text = with_value(TEXT, ("model", "body", 0, key), value)
     assert tomllib.loads(text)["model"]["body"][0][key] == value
     if isinstance(value, list | dict):
-        assert value_of(text_of(value), Field(key, "text")) == value
+        assert value_of(text_of(value), TableField(key, "text")) == value
 
 
 def test_templates_stay_as_they_are():

@@ -31,7 +31,7 @@ from dalembert.vibration import (
 )
 from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.time.elements import Instant, react, reaction
-from dalembert.vibration.time.modal_system import InTime, address
+from dalembert.vibration.time.modal_system import ModalSystem, address
 from support import says
 from vibrating_systems import chain, duffing, one_mass, two_masses
 
@@ -116,7 +116,7 @@ def test_slopes_of_the_elements_are_those_of_their_forces() -> None:
     law = UserElement("pair", ["a.x", "b.x"], lambda u: u**3 + u[::-1] * u**2)
     stop, cubic = BilinearStop("stop", "b.x", stiffness=6.0, gap=0.3), CubicSpring("cubic", "a.x", stiffness=0.7)
     lowered = lower(rubbing(PLANE, law, stop, cubic, Gap("gap", "a.y", stiffness=2.0, gap=0.1))).real
-    problem = InTime(lowered, 1.0, 16, 1.0)
+    problem = ModalSystem(lowered, 1.0, 16, 1.0)
     users, rows, rng = problem.users([]), len(problem.places), np.random.default_rng(3)
     states = set()
     for _ in range(40):

@@ -12,7 +12,7 @@ from dalembert.inverse.noise.correlation.correlated_residuals import CorrelatedR
 from dalembert.inverse.noise.correlation.ornstein_uhlenbeck import OrnsteinUhlenbeck, ornstein_uhlenbeck
 from dalembert.inverse.noise.correlation.series import Series, series_of
 from dalembert.inverse.noise.correlation.whiteness import LEVEL, is_first_order, p_value
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 
 ROUNDS = 4
 """Corrections of the autocovariances for the parameters that were fitted; each reduces the bias by an order of 1/n."""
@@ -30,7 +30,7 @@ Process = Autoregression | OrnsteinUhlenbeck
 
 
 def correlation(
-    problem: Problem,
+    problem: MisfitProblem,
     response: np.ndarray,
     slopes: np.ndarray | None,
     residual: np.ndarray,

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.data import Measurements
-from dalembert.inverse.experiments.experiment import Part
+from dalembert.inverse.experiments.experiment import ExperimentPart
 from dalembert.inverse.experiments.tracks import tracks
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 
 EVEN = 0.1
 """Largest deviation of a sample interval from a multiple of the usual one, in parts of it, for even samples."""
@@ -56,7 +56,7 @@ class Series:
         return float(self.along[-1] - self.along[0])
 
 
-def series_of(problem: Problem, weights: np.ndarray | None = None, *, fewest: int = 2) -> Iterator[Series]:
+def series_of(problem: MisfitProblem, weights: np.ndarray | None = None, *, fewest: int = 2) -> Iterator[Series]:
     """Yield the series of each channel that has at least ``fewest`` fitted values.
 
     ``weights`` (samples, channels) replace those of the problem: only values of positive weight are part of a series.
@@ -68,7 +68,7 @@ def series_of(problem: Problem, weights: np.ndarray | None = None, *, fewest: in
 
 
 def series_of_record(
-    data: Measurements, weights: np.ndarray, parts: Sequence[Part], *, fewest: int = 2
+    data: Measurements, weights: np.ndarray, parts: Sequence[ExperimentPart], *, fewest: int = 2
 ) -> Iterator[Series]:
     """Yield the series of the data of a fit, whose ``parts`` are those of several experiments; empty for a single one.
 

@@ -19,7 +19,7 @@ from dalembert.inverse.noise.models.correlated_noise import CorrelatedNoise
 from dalembert.inverse.noise.models.independent_noise import ProportionalNoise
 from dalembert.inverse.noise.models.noise_model import NoiseModel
 from dalembert.inverse.problem.prior import prior_slopes, priors
-from dalembert.inverse.problem.problem import Linearisation, Problem
+from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
 
 STEP = 1e-4
 """Step of differences of the gradient, in standard deviations of a noise parameter."""
@@ -63,7 +63,7 @@ class NoiseFit:
         return self.maximum.expansion.at
 
 
-def estimate_noise(problem: Problem, noise: Noise, at: Linearisation, *, known: bool) -> NoiseFit:
+def estimate_noise(problem: MisfitProblem, noise: Noise, at: Linearisation, *, known: bool) -> NoiseFit:
     """Return model and noise at the maximum of the restricted likelihood, from a plain minimum.
 
     Parameters
@@ -103,7 +103,7 @@ def estimate_noise(problem: Problem, noise: Noise, at: Linearisation, *, known: 
     )
 
 
-def _check_count(problem: Problem) -> None:
+def _check_count(problem: MisfitProblem) -> None:
     """Refuse fewer values than parameters, from which no noise can be estimated.
 
     Raises
@@ -120,7 +120,7 @@ def _check_count(problem: Problem) -> None:
 
 
 def _largest(
-    problem: Problem, picked: Mapping[Series, NoiseModel], at: Linearisation, *, known: bool
+    problem: MisfitProblem, picked: Mapping[Series, NoiseModel], at: Linearisation, *, known: bool
 ) -> tuple[Likelihood, Maximum]:
     """Return the likelihood with these noise models, and its maximum near a linearised response."""
     found = placed_likelihood(problem, picked, {own.name: model for own, model in picked.items()}, known=known)

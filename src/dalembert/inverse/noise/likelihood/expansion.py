@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.inverse.noise.likelihood.channel_noise import HALF_LOG_2_PI, ChannelNoise
-from dalembert.inverse.problem.problem import Linearisation, Problem
+from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
 from dalembert.parameters import Parameters
 
 
@@ -56,7 +56,11 @@ class Expansion:
 
 
 def expanded(
-    problem: Problem, channels: Sequence[ChannelNoise], parameters: Parameters, at: Linearisation, vector: np.ndarray
+    problem: MisfitProblem,
+    channels: Sequence[ChannelNoise],
+    parameters: Parameters,
+    at: Linearisation,
+    vector: np.ndarray,
 ) -> Expansion:
     """Return the expansion from a linearised response; ``parameters`` are those of the vector."""
     count, known = at.jacobian.shape[-1], parameters.arguments(vector)

@@ -5,12 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from dalembert.inverse.noise.likelihood.channel_noise import ChannelNoise
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 from dalembert.parameters import Parameters
 
 
 def guessed(
-    channels: Sequence[ChannelNoise], parameters: Parameters, problem: Problem, there: np.ndarray
+    channels: Sequence[ChannelNoise], parameters: Parameters, problem: MisfitProblem, there: np.ndarray
 ) -> np.ndarray:
     """Return first guesses (parameters,) of noise parameters at a response (samples, channels).
 

@@ -19,7 +19,7 @@ from dalembert.inverse.noise.likelihood.expansion import Expansion, expanded
 from dalembert.inverse.noise.likelihood.placing import Noise, noises_of, picked_models
 from dalembert.inverse.noise.models.noise_model import NoiseModel
 from dalembert.inverse.problem.journal import Journal
-from dalembert.inverse.problem.problem import Problem, pose
+from dalembert.inverse.problem.problem import MisfitProblem, pose
 from dalembert.parameters import Parameters
 
 
@@ -56,7 +56,7 @@ class Likelihood:
     deviation s_i of value i after those before it in its channel. Independent noise has m_i = ŷ_i, the response.
     """
 
-    problem: Problem
+    problem: MisfitProblem
     noise: Noise
     parameters: Parameters
     channels: tuple[ChannelNoise, ...]
@@ -138,7 +138,9 @@ class Likelihood:
 
     def _compared(self, responses: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Residuals (batch, places) and responses (batch, places) of responses (batch, samples, channels)."""
-        return self.problem.unweighted_residual(responses).reshape(len(responses), -1), responses.reshape(len(responses), -1)
+        return self.problem.unweighted_residual(responses).reshape(len(responses), -1), responses.reshape(
+            len(responses), -1
+        )
 
     def linearise(self, vector: ArrayLike) -> tuple[float, np.ndarray]:
         """Return the log-likelihood and its exact gradient (parameters,).
@@ -280,7 +282,7 @@ def likelihood(
     return likelihood_of(problem, noise, weighted=weights is not None)
 
 
-def likelihood_of(problem: Problem, noise: Noise | None, *, weighted: bool = False) -> Likelihood:
+def likelihood_of(problem: MisfitProblem, noise: Noise | None, *, weighted: bool = False) -> Likelihood:
     """Return the likelihood of a problem; ``weighted`` means that its weights are 1/variance."""
     known = weighted or problem.data.deviations is not None
     picked, given = picked_models(problem, noise, known=known)
@@ -288,7 +290,7 @@ def likelihood_of(problem: Problem, noise: Noise | None, *, weighted: bool = Fal
 
 
 def placed_likelihood(
-    problem: Problem, picked: Mapping[Series, NoiseModel], given: Noise, *, known: bool
+    problem: MisfitProblem, picked: Mapping[Series, NoiseModel], given: Noise, *, known: bool
 ) -> Likelihood:
     """Return the likelihood of a problem with a noise model for each of its series."""
     channels, own = noises_of(problem, picked, known=known)

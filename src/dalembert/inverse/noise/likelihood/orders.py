@@ -13,7 +13,7 @@ from dalembert.inverse.noise.likelihood.maximum import Objective, linear_expansi
 from dalembert.inverse.noise.likelihood.placing import base_of, noises_of
 from dalembert.inverse.noise.models.correlated_noise import SAMPLES, AutoregressiveNoise
 from dalembert.inverse.noise.models.noise_model import NoiseModel
-from dalembert.inverse.problem.problem import Linearisation, Problem
+from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
 from dalembert.inverse.problem.search_coordinates import SearchCoordinates
 from dalembert.parameters import Parameters
 
@@ -25,7 +25,7 @@ PATIENCE = 3
 
 
 def ordered(
-    problem: Problem, picked: Mapping[Series, NoiseModel], at: Linearisation, *, known: bool
+    problem: MisfitProblem, picked: Mapping[Series, NoiseModel], at: Linearisation, *, known: bool
 ) -> dict[Series, NoiseModel]:
     """Return the noise models with the order of each autoregressive one that leaves it open.
 
@@ -58,7 +58,7 @@ def ordered(
     return found
 
 
-def _best(problem: Problem, alike: Sequence[Series], model: NoiseModel, at: Linearisation, *, known: bool) -> int:
+def _best(problem: MisfitProblem, alike: Sequence[Series], model: NoiseModel, at: Linearisation, *, known: bool) -> int:
     most = min(MOST, min(len(series.rows) for series in alike) // SAMPLES)
     best, chosen = np.inf, 0
     for order, criterion in enumerate(_criteria(problem, alike, model, at, most, known=known)):
@@ -70,7 +70,7 @@ def _best(problem: Problem, alike: Sequence[Series], model: NoiseModel, at: Line
 
 
 def _criteria(
-    problem: Problem, alike: Sequence[Series], model: NoiseModel, at: Linearisation, most: int, *, known: bool
+    problem: MisfitProblem, alike: Sequence[Series], model: NoiseModel, at: Linearisation, most: int, *, known: bool
 ) -> Iterator[float]:
     """Yield the criterion of each order from 0."""
     number = sum(len(series.rows) for series in alike)
@@ -81,7 +81,7 @@ def _criteria(
         yield -2 * value + 2 * count + 2 * count * (count + 1) / max(number - count - 1, 1)
 
 
-def _largest(problem: Problem, channels: tuple[ChannelNoise, ...], own: Parameters, at: Linearisation) -> float:
+def _largest(problem: MisfitProblem, channels: tuple[ChannelNoise, ...], own: Parameters, at: Linearisation) -> float:
     """Return the largest log-likelihood of some channels over their noise parameters."""
     model = problem.model.parameters
     parameters = Parameters((*model.items, *own.items), (*model.fixed, *own.fixed))

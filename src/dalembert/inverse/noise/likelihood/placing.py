@@ -13,7 +13,7 @@ from dalembert.inverse.noise.likelihood.estimated_noise import EstimatedNoise
 from dalembert.inverse.noise.models.independent_noise import ConstantNoise, KnownNoise
 from dalembert.inverse.noise.models.noise_catalogue import noise_model
 from dalembert.inverse.noise.models.noise_model import Extent, NoiseModel
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 from dalembert.parameters import Parameter, Parameters
 
 Noise: TypeAlias = NoiseModel | str | Mapping[str, NoiseModel | str] | EstimatedNoise
@@ -21,7 +21,7 @@ Noise: TypeAlias = NoiseModel | str | Mapping[str, NoiseModel | str] | Estimated
 
 
 def picked_models(
-    problem: Problem, given: Noise | None, *, known: bool
+    problem: MisfitProblem, given: Noise | None, *, known: bool
 ) -> tuple[dict[Series, NoiseModel], NoiseModel | Mapping[str, NoiseModel]]:
     """Return the noise model of each channel with compared values, and the models by which it was chosen.
 
@@ -47,7 +47,7 @@ def picked_models(
 
 
 def noises_of(
-    problem: Problem, picked: Mapping[Series, NoiseModel], *, known: bool
+    problem: MisfitProblem, picked: Mapping[Series, NoiseModel], *, known: bool
 ) -> tuple[tuple[ChannelNoise, ...], Parameters]:
     """Return the noise of each series, and the parameters of all of them.
 
@@ -60,7 +60,7 @@ def noises_of(
     return channels, noise_parameters(problem, channels)
 
 
-def _channel_noise(problem: Problem, series: Series, model: NoiseModel, *, known: bool) -> ChannelNoise:
+def _channel_noise(problem: MisfitProblem, series: Series, model: NoiseModel, *, known: bool) -> ChannelNoise:
     if isinstance(model, KnownNoise) and not known:
         raise InputError(
             f"noise of channel {series.name!r}: KnownNoise was given, but the data have no deviations; give them, or "
@@ -76,7 +76,7 @@ def base_of(series: Series, model: NoiseModel) -> str:
     return f"noise.{series.name if model.local else series.channel}"
 
 
-def noise_parameters(problem: Problem, channels: tuple[ChannelNoise, ...]) -> Parameters:
+def noise_parameters(problem: MisfitProblem, channels: tuple[ChannelNoise, ...]) -> Parameters:
     """Return the parameters of the noise of all channels; those of the same name are one, if they are alike.
 
     Raises
@@ -111,7 +111,7 @@ def _joint(first: Extent, second: Extent) -> Extent:
     )
 
 
-def _extent(problem: Problem, series: Series) -> Extent:
+def _extent(problem: MisfitProblem, series: Series) -> Extent:
     data = problem.data
     values = data.continuous.ravel()[series.rows]
     size = float(np.std(values)) or float(np.max(np.abs(values))) or 1.0

@@ -9,7 +9,7 @@ import numpy as np
 
 from dalembert.inverse.noise.likelihood.channel_noise import STEP, ChannelNoise
 from dalembert.inverse.problem.prior import prior_slopes
-from dalembert.inverse.problem.problem import Linearisation, Problem
+from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
 from dalembert.parameters import Parameters
 
 RIDGE = 1e-12
@@ -40,7 +40,7 @@ class Restriction:
     58 (1971).
     """
 
-    problem: Problem
+    problem: MisfitProblem
     channels: Sequence[ChannelNoise]
     parameters: Parameters
     at: Linearisation

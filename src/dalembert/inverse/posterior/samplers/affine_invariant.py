@@ -8,7 +8,7 @@ import numpy as np
 
 from dalembert.arguments import limited
 from dalembert.errors import SolveError
-from dalembert.inverse.posterior.modes import Modes
+from dalembert.inverse.posterior.modes import PosteriorModes
 from dalembert.inverse.posterior.packages import package
 from dalembert.inverse.posterior.posed import Length
 from dalembert.inverse.posterior.samplers.sampler import Chains, OnDraws, Sampler, moved
@@ -49,7 +49,7 @@ class AffineInvariant(Sampler):
     def check(self) -> None:
         package("emcee", "the sampler AffineInvariant")
 
-    def sampled(self, modes: Modes, length: Length, on_draws: OnDraws) -> Chains:
+    def sampled(self, modes: PosteriorModes, length: Length, on_draws: OnDraws) -> Chains:
         """Sample one ensemble.
 
         Raises
@@ -80,7 +80,7 @@ class AffineInvariant(Sampler):
         return Chains(np.moveaxis(places, 0, 1), density.T, {"acceptance_rate": accepted})
 
 
-def _starts(modes: Modes, walkers: int, random: np.random.RandomState) -> np.ndarray:
+def _starts(modes: PosteriorModes, walkers: int, random: np.random.RandomState) -> np.ndarray:
     """Starts (walkers, parameters) that can be simulated, around the modes."""
     target, mode = modes.best.target, modes.of_chains(walkers)
     starts = _around(modes, mode, random.standard_normal((walkers, len(target.centre))))
@@ -97,7 +97,7 @@ def _starts(modes: Modes, walkers: int, random: np.random.RandomState) -> np.nda
     )
 
 
-def _around(modes: Modes, mode: np.ndarray, places: np.ndarray) -> np.ndarray:
+def _around(modes: PosteriorModes, mode: np.ndarray, places: np.ndarray) -> np.ndarray:
     """Places (walkers, parameters) around the mode (walkers,) of each, in the coordinates of the best one."""
     result = places.copy()
     for k, target in enumerate(modes.targets):
@@ -105,7 +105,7 @@ def _around(modes: Modes, mode: np.ndarray, places: np.ndarray) -> np.ndarray:
     return result
 
 
-def _jumped(modes: Modes, places: np.ndarray, random: np.random.RandomState) -> tuple[np.ndarray, np.ndarray]:
+def _jumped(modes: PosteriorModes, places: np.ndarray, random: np.random.RandomState) -> tuple[np.ndarray, np.ndarray]:
     """Places (walkers, parameters) from one mode to another, and the logarithm of the ratio of volumes (walkers,).
 
     The map y_j = y_i, with y_i the coordinates in which mode i is round, is affine, and its inverse is proposed as

@@ -10,7 +10,7 @@ from scipy.special import erfc
 from dalembert.arguments import limited
 from dalembert.errors import SolveError
 from dalembert.findings import Finding
-from dalembert.inverse.posterior.modes import Modes
+from dalembert.inverse.posterior.modes import PosteriorModes
 from dalembert.inverse.posterior.posed import Length
 from dalembert.inverse.posterior.samplers.sampler import Chains, OnDraws, Sampler, moved
 from dalembert.inverse.posterior.surrogate_model import SurrogateModel, with_surrogate
@@ -54,7 +54,7 @@ class DelayedAcceptance(Sampler):
     scheme: Scheme = field(default_factory=lambda: Adaptive(tolerance=1e-4))
     walk: int | None = limited(None, least=1)
 
-    def sampled(self, modes: Modes, length: Length, on_draws: OnDraws) -> Chains:
+    def sampled(self, modes: PosteriorModes, length: Length, on_draws: OnDraws) -> Chains:
         """Sample the chains of each mode together: their simulations are batches, and each mode has its surrogate.
 
         Raises

@@ -12,13 +12,13 @@ from dalembert.arguments import limited
 from dalembert.findings import Finding
 from dalembert.forward import ensemble
 from dalembert.forward.prefetch import on_several_machines
-from dalembert.inverse.posterior.modes import Modes
+from dalembert.inverse.posterior.modes import PosteriorModes
 from dalembert.inverse.posterior.packages import package
 from dalembert.inverse.posterior.posed import Length
 from dalembert.inverse.posterior.samplers.sampler import Chains, OnDraws, Sampler, moved
 from dalembert.inverse.posterior.target import Target
 from dalembert.inverse.problem.journal import Journal
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import MisfitProblem
 
 # What is kept of nutpie's statistics.
 STATISTICS = {
@@ -59,7 +59,7 @@ class NUTS(Sampler):
     def check(self) -> None:
         package("nutpie", "the sampler NUTS")
 
-    def sampled(self, modes: Modes, length: Length, on_draws: OnDraws) -> Chains:
+    def sampled(self, modes: PosteriorModes, length: Length, on_draws: OnDraws) -> Chains:
         """Sample the chains, several at a time in threads, or on the workers of a cluster.
 
         Each chain moves in the coordinates of the mode in which it starts.
@@ -97,7 +97,7 @@ def _apart(targets: Sequence[Target], chain_of: Callable[[Target, int], Chains],
     return replace(result, simulations=problem.journal.simulations)
 
 
-def _on_worker(targets: Sequence[Target], sampler: NUTS, length: Length, problem: Problem, chain: int) -> None:
+def _on_worker(targets: Sequence[Target], sampler: NUTS, length: Length, problem: MisfitProblem, chain: int) -> None:
     _chain(sampler, length, _silent, Event(), targets[chain].of(problem), chain)
 
 

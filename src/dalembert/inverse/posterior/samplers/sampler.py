@@ -9,7 +9,7 @@ import numpy as np
 
 from dalembert.arguments import Checked
 from dalembert.findings import Finding
-from dalembert.inverse.posterior.modes import Modes
+from dalembert.inverse.posterior.modes import PosteriorModes
 from dalembert.inverse.posterior.posed import Length
 from dalembert.inverse.posterior.target import Target
 
@@ -52,7 +52,7 @@ class Sampler(Checked, ABC):
         """
 
     @abstractmethod
-    def sampled(self, modes: Modes, length: Length, on_draws: OnDraws) -> Chains:
+    def sampled(self, modes: PosteriorModes, length: Length, on_draws: OnDraws) -> Chains:
         """Sample from starts in all modes; places are in the coordinates of the best mode.
 
         Raises

@@ -39,7 +39,7 @@ RIGID = Kind(
 
 
 @dataclass(frozen=True)
-class Rigid(Body):
+class PlanarRigid(Body):
     """What rigid bodies share: three coordinates (x, y, theta) of the centre of mass."""
 
     @property

@@ -7,11 +7,11 @@ from typing import Any
 
 from dalembert.multibody.components.base_body import with_points
 from dalembert.multibody.components.fields import Number, number, pair
-from dalembert.multibody.components.planar.rigid import Rigid
+from dalembert.multibody.components.planar.rigid import PlanarRigid
 from dalembert.multibody.components.points import Place
 
 
-class Bar(Rigid):
+class Bar(PlanarRigid):
     """What bars have in common. The centre of mass lies at the fraction ``balance`` of the length."""
 
     origin: Place

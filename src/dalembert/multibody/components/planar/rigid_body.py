@@ -8,13 +8,13 @@ from dataclasses import dataclass, field
 from dalembert.errors import InputError, require_known
 from dalembert.multibody.components.base_body import with_points
 from dalembert.multibody.components.fields import Number, number, pair
-from dalembert.multibody.components.planar.rigid import Rigid
+from dalembert.multibody.components.planar.rigid import PlanarRigid
 from dalembert.multibody.components.points import Place
 
 
 @with_points("centre")
 @dataclass(frozen=True)
-class RigidBody(Rigid):
+class RigidBody(PlanarRigid):
     """A rigid body with named points.
 
     Parameters

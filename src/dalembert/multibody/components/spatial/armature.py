@@ -28,7 +28,7 @@ from dalembert.multibody.components.spatial.pairs import (
     twist_pair,
 )  # fmt: skip
 from dalembert.multibody.components.spatial.rotor import SLIDING_ROTOR, TURNING_ROTOR
-from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import dot, times
 
 _a3, _push_e3 = A_AXES[2], push_a_axis(3)
@@ -114,7 +114,7 @@ class Armature(Load):
 
     kind = TURNING
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         require_direction(f"armature {self.name!r}", "a rigid body", self.a, self.b)
         own = Orientation.by_axes(self.axis).matrix
         pair = lowering.pair(self.a, self.b, self.name, (own, own))

@@ -13,7 +13,7 @@ from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.spatial import markers
 from dalembert.multibody.components.spatial.orientation import Orientation, turned
 from dalembert.multibody.components.spatial.sensor import AXIAL, SENSOR
-from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 
 DIRECTOR = "director"
 FREE = None, None, None
@@ -52,7 +52,7 @@ class Body(BaseBody):
         """The marker of a point."""
 
     @abstractmethod
-    def lower(self, lowering: SpatialLowering, first: int) -> None:
+    def lower(self, lowering: SpatialRows, first: int) -> None:
         """Write the rows of the kernels; ``first`` is the body's first coordinate."""
 
     def frame(self, position: Any, axes: np.ndarray | None = None) -> np.ndarray:

@@ -36,7 +36,7 @@ from dalembert.multibody.components.spatial.pairs import (
     twist_pair,
 )  # fmt: skip
 from dalembert.multibody.components.spatial.rotations import rotation_vector, vector_rate, vector_torque
-from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import at, combined, dot, times
 
 _ROUNDING = 1e-9  # of the smallest eigenvalue
@@ -231,7 +231,7 @@ class Bushing(Load):
         for what in ("stiffness", "damping"):
             _matrix(f"Bushing {self.name!r}", what, getattr(self, what))
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         owner = f"Bushing {self.name!r}"
         require_direction(owner, "a spring, or a rigid body", self.a, self.b)
         axes = lowering.pair(self.a, self.b, self.name).axes

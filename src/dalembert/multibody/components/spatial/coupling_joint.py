@@ -14,7 +14,7 @@ from dalembert.multibody.components.base_body import ANGLE, DISPLACEMENT
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.spatial.joint import Joint
 from dalembert.multibody.components.spatial.joint_coordinate import CHANNELS, JointCoordinate, chosen_coordinate
-from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.kernels.kind import Kind
 
 
@@ -98,7 +98,7 @@ class Coupling(Joint):
     def coupled(self) -> tuple[Joint, str]:
         return self.b, f"{CHANNELS[self.coordinates[1].coordinate][2][0]}_b"
 
-    def _couple(self, lowering: SpatialLowering, ratio: Number, offset: Number | None) -> None:
+    def _couple(self, lowering: SpatialRows, ratio: Number, offset: Number | None) -> None:
         (i, at_a), (j, at_b) = map(lowering.coordinate, self.coordinates)
         if offset is None:
             offset = at_b - ratio * at_a
@@ -152,7 +152,7 @@ class CouplingJoint(Coupling):
     def near(self) -> tuple[float, float]:
         return self.near_a, self.near_b
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         self._couple(lowering, self.ratio, self.offset)
 
 
@@ -207,7 +207,7 @@ class GearJoint(Coupling):
         super().__post_init__()
         _require_ratio(f"gear joint {self.name!r}", "ratio", self.ratio)
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         self._couple(lowering, self.ratio, self.offset)
 
 
@@ -262,5 +262,5 @@ class RackJoint(Coupling):
         super().__post_init__()
         _require_ratio(f"rack joint {self.name!r}", "radius", self.radius)
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         self._couple(lowering, self.radius, self.offset)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from dalembert.multibody.components.spatial.conditions import level, perpendicular
 from dalembert.multibody.components.spatial.joint import Joint, joint_kind
 from dalembert.multibody.components.spatial.orientation import Vector
-from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 
 KIND = joint_kind(
     "cylindrical", __name__, level(1), level(2), perpendicular(1, 3), perpendicular(2, 3), angle=True, displacement=True
@@ -33,6 +33,6 @@ class CylindricalJoint(Joint):
     kind = KIND
     aligned = (3,)
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         self._oriented()
         super().lower(lowering)

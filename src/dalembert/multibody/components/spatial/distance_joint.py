@@ -12,7 +12,7 @@ from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.spatial.conditions import Condition
 from dalembert.multibody.components.spatial.joint import Joint, joint_kind
 from dalembert.multibody.components.spatial.pairs import push_pair, separation
-from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import dot, times
 
 
@@ -63,7 +63,7 @@ class DistanceJoint(Joint):
     def stated_coordinates(self) -> tuple[str, ...]:
         return ("azimuth", "elevation", *self._rotations)
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         pair = self.pair(lowering)
         length = pair.distance if self.length is None else self.length
         if not np.real(length) > 0.0:

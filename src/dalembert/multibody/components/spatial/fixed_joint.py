@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from dalembert.multibody.components.spatial.conditions import MEETS, perpendicular
 from dalembert.multibody.components.spatial.joint import Joint, joint_kind
-from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 
 KIND = joint_kind("fixed_in_space", __name__, MEETS, perpendicular(1, 2), perpendicular(2, 3), perpendicular(3, 1))
 
@@ -26,6 +26,6 @@ class FixedJoint(Joint):
     kind = KIND
     aligned = (1, 2, 3)
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         self._oriented()
         super().lower(lowering)

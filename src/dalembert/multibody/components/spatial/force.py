@@ -20,7 +20,7 @@ from dalembert.multibody.components.spatial.pairs import (
     separation_rate,
     twist_pair,
 )
-from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import combined, dot
 from dalembert.multibody.kernels.kind import Kind
 
@@ -90,7 +90,7 @@ class Force(Load):
 
     kind = FORCE
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         if self.follower:
             require_direction(f"follower force {self.name!r}", "a force that does not follow, or a rigid body", self.at)
         _lower(self, lowering, FORCE)
@@ -120,12 +120,12 @@ class Torque(Load):
 
     kind = TORQUE
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         require_direction(f"torque {self.name!r}", "a force, or a rigid body", self.at, self.against)
         _lower(self, lowering, TORQUE)
 
 
-def _lower(load: Force | Torque, lowering: SpatialLowering, kind: Kind) -> None:
+def _lower(load: Force | Torque, lowering: SpatialRows, kind: Kind) -> None:
     pair = lowering.pair(load.at, load.against, load.name)
     signals = [lowering.signal(course) for course in (load.x, load.y, load.z)]
     lowering.add(kind, pair.slots, pair.data, [*pair.integers, int(load.follower), *signals])

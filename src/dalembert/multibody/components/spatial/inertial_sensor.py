@@ -18,7 +18,7 @@ from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.markers import position_rate, spin
 from dalembert.multibody.components.spatial.orientation import Vector
 from dalembert.multibody.components.spatial.pairs import a_point, along_axes
-from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import combined, minus, plus
 
 _GRAVITY = ("gravity_x", "gravity_y", "gravity_z")
@@ -134,7 +134,7 @@ class InertialSensor(Load):
             if not np.all(np.any(np.reshape(np.real(_gain("", what, getattr(self, what))), (3, 3)) != 0, axis=0))
         )
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         owner = f"InertialSensor {self.name!r}"
         require_direction(owner, "the channels ax, ay and az of the point mass, or a rigid body", self.at)
         pair = lowering.pair(self.at, None, self.name)

@@ -31,7 +31,7 @@ from dalembert.multibody.components.spatial.pairs import (
     separation,
     separation_rate,
 )  # fmt: skip
-from dalembert.multibody.components.spatial.spatial_rows import Pair, SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import Pair, SpatialRows
 from dalembert.multibody.components.spatial.vectors import at, cross, dot, minus, plus, times
 from dalembert.multibody.kernels.elementary import angle_of
 from dalembert.multibody.kernels.kind import Kind
@@ -203,15 +203,15 @@ class Joint(BaseJoint):
         gap = _point(1, numbers, integers, x) - _point(0, numbers, integers, x)
         return kept(self, coordinate, course, (e, f, gap))
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         self._add(lowering, self.pair(lowering))
 
-    def pair(self, lowering: SpatialLowering) -> Pair:
+    def pair(self, lowering: SpatialRows) -> Pair:
         """The markers of both sides, with the axes of the joint."""
         return lowering.pair(self.a, self.b, self.name, self.turned)
 
     def _add(
-        self, lowering: SpatialLowering, pair: Pair, numbers: Sequence[Any] = (), integers: Sequence[int] = ()
+        self, lowering: SpatialRows, pair: Pair, numbers: Sequence[Any] = (), integers: Sequence[int] = ()
     ) -> list[int | None]:
         """Add the joint with the numbers and integers that follow those of its markers; its unknowns."""
         index = pair.slots + lowering.multipliers(self.name, self.kind.multipliers)

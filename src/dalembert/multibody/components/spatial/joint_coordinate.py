@@ -18,7 +18,7 @@ from dalembert.multibody.components.spatial import pairs
 from dalembert.multibody.components.spatial.body import FREE, Body
 from dalembert.multibody.components.spatial.joint import Joint, joint_displacement
 from dalembert.multibody.components.spatial.pairs import e1, e2, e3, f1, push_a_axis, push_b_axis, push_pair, separation
-from dalembert.multibody.components.spatial.spatial_rows import Pair, SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import Pair, SpatialRows
 from dalembert.multibody.components.spatial.vectors import dot, minus, times
 from dalembert.multibody.kernels.charts import flat
 from dalembert.multibody.kernels.elementary import sin_cos
@@ -123,7 +123,7 @@ def _turns(angle: float, least: float, most: float) -> float:
 class Paired(Protocol):
     """What has two markers with an axis: a joint, or a torsion spring."""
 
-    def pair(self, lowering: SpatialLowering) -> Pair:
+    def pair(self, lowering: SpatialRows) -> Pair:
         """The markers of both sides, with their axis as the third one."""
         ...
 
@@ -147,7 +147,7 @@ class JointCoordinate(Body):
     def place(self) -> Any:
         return self._initial
 
-    def _initial(self, lowering: SpatialLowering) -> tuple[Number, Number, Number]:
+    def _initial(self, lowering: SpatialRows) -> tuple[Number, Number, Number]:
         pair = self.joint.pair(lowering)
         if self.coordinate == DISPLACEMENT:
             return pair.displacement, 0.0, 0.0
@@ -174,7 +174,7 @@ class JointCoordinate(Body):
     def marker(self, point: str) -> Any:
         raise NotImplementedError  # it has no points
 
-    def lower(self, lowering: SpatialLowering, first: int) -> None:
+    def lower(self, lowering: SpatialRows, first: int) -> None:
         pair = self.joint.pair(lowering)
         index = [*pair.slots, first, *lowering.multipliers(self.name, 1)]
         lowering.add(TIES[self.coordinate], index, pair.data, pair.integers)

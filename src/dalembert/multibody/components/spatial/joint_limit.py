@@ -20,7 +20,7 @@ from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.spatial.joint import Joint
 from dalembert.multibody.components.spatial.joint_coordinate import CHANNELS, JointCoordinate, chosen_coordinate
 from dalembert.multibody.components.spatial.load import Load
-from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.kernels.elementary import root
 from dalembert.multibody.kernels.kind import Kind
 
@@ -118,7 +118,7 @@ class Limit(Load):
             return middle - np.pi, middle + np.pi
         return float(np.real(self.lower_limit)), float(np.real(self.upper_limit))
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         index, _ = lowering.coordinate(self.coordinates[0])
         ends = self.lower_limit, self.upper_limit
         numbers = [0.0 if end is None else end for end in ends]

@@ -13,7 +13,7 @@ from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.orientation import Orientation
 from dalembert.multibody.components.spatial.pairs import LENGTHS, along_axes, f1, f2, f3, separation
 from dalembert.multibody.components.spatial.rotations import rotation_vector
-from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.kernels.elementary import angle_of, root, wrapped
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.time_inputs import signal
@@ -83,7 +83,7 @@ class JointState(Joint):
     def turned(self) -> tuple[np.ndarray, np.ndarray]:
         return self.axes
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         pair = lowering.pair(self.a, self.b, self.name, self.axes)
         index = pair.slots + lowering.multipliers(self.name, 1)
         lowering.add(self.measures, index, pair.data, [*pair.integers, lowering.signal(self.course)], self.name)

@@ -6,7 +6,7 @@ from abc import abstractmethod
 from dataclasses import dataclass
 
 from dalembert.multibody.components.base_load import BaseLoad
-from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 
 
 @dataclass(frozen=True)
@@ -14,5 +14,5 @@ class Load(BaseLoad):
     """Base of all that acts without a constraint in space."""
 
     @abstractmethod
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         """Write the rows of the kernels."""

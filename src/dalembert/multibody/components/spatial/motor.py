@@ -14,7 +14,7 @@ from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.orientation import Vector
 from dalembert.multibody.components.spatial.pairs import e3, relative_spin, twist_pair
 from dalembert.multibody.components.spatial.rotor import TURNING_ROTOR
-from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import dot, times
 
 
@@ -104,7 +104,7 @@ class Motor(MotorNumbers, Load):
 
     kind = MOTOR
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         owner = f"motor {self.name!r}"
         require_direction(owner, "a force, or a rigid body", self.a, self.b)
         pair = lowering.pair(self.a, self.b, self.name, turned_to(self.axis, owner))

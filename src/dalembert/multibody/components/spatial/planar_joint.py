@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from dalembert.multibody.components.spatial.conditions import level, perpendicular
 from dalembert.multibody.components.spatial.joint import Joint, joint_kind
 from dalembert.multibody.components.spatial.orientation import Vector
-from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 
 KIND = joint_kind("planar_joint", __name__, level(3), perpendicular(3, 1), perpendicular(3, 2), angle=True)
 
@@ -38,6 +38,6 @@ class PlanarJoint(Joint):
     def stated_coordinates(self) -> tuple[str, ...]:
         return ("angle", "displacement_1", "displacement_2")
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         self._oriented()
         super().lower(lowering)

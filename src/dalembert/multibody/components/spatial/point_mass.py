@@ -13,7 +13,7 @@ from dalembert.multibody.components.spatial import markers
 from dalembert.multibody.components.spatial.body import Body, Marker
 from dalembert.multibody.components.spatial.ground_points import Place
 from dalembert.multibody.components.spatial.orientation import Vector
-from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import add_at, at, dot, minus, times
 from dalembert.multibody.kernels.kind import Kind
 
@@ -84,7 +84,7 @@ class PointMass(Body):
     def marker(self, point: str) -> Marker:
         return Marker(markers.MASS, (0, 1, 2, *(None,) * 9), np.zeros(3), np.eye(3))
 
-    def lower(self, lowering: SpatialLowering, first: int) -> None:
+    def lower(self, lowering: SpatialRows, first: int) -> None:
         lowering.add(POINT_MASS, [first, first + 1, first + 2], [self.mass, *lowering.gravity])
 
     def outline(self, coordinates: np.ndarray, points: int) -> np.ndarray:

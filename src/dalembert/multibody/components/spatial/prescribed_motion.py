@@ -23,7 +23,7 @@ from dalembert.multibody.components.spatial.joint import (
 from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.orientation import Vector
 from dalembert.multibody.components.spatial.pairs import COORDINATES, LENGTHS, e1, e2, f1
-from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import dot
 from dalembert.multibody.kernels.constraints import forces_of
 from dalembert.multibody.kernels.elementary import angle_of, sin_cos
@@ -114,7 +114,7 @@ class PrescribedMotion(Joint):
         require_known("coordinate", self.coordinate, _COORDINATES, owner)
         refuse_jumps(owner, self.motion)
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         self._oriented()
         lowering.kinks += [(time, self.name) for time in as_signal(self.motion).kinks]
         integers = [_COORDINATES[self.coordinate], lowering.signal(self.motion)]

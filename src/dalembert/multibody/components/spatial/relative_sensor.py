@@ -22,7 +22,7 @@ from dalembert.multibody.components.spatial.pairs import (
     separation_rate,
 )
 from dalembert.multibody.components.spatial.rotations import euler_angles, quaternion, rotation_vector
-from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import cross, dot, minus
 from dalembert.multibody.kernels.elementary import reciprocal, root
 
@@ -125,7 +125,7 @@ class RelativeSensor(Load):
     def __post_init__(self) -> None:
         require_known("angles", self.angles, CONVENTIONS, f"RelativeSensor {self.name!r}")
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         require_direction(f"RelativeSensor {self.name!r}", "a rigid body", self.a, self.b)
         pair = lowering.pair(self.a, self.b, self.name)
         fixed = self.angles.isupper()

@@ -9,7 +9,7 @@ from dalembert.multibody.components.spatial.conditions import MEETS, perpendicul
 from dalembert.multibody.components.spatial.friction import Friction, friction_kind
 from dalembert.multibody.components.spatial.joint import Joint, joint_kind
 from dalembert.multibody.components.spatial.orientation import Vector
-from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.kernels.kind import Kind
 
 KIND = joint_kind("revolute_in_space", __name__, MEETS, perpendicular(1, 3), perpendicular(2, 3), angle=True)
@@ -56,7 +56,7 @@ class RevoluteJoint(Joint):
     def parts(self) -> dict[str, Kind]:
         return {"friction": FRICTION} if self.friction else {}
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         self._oriented()
         pair = self.pair(lowering)
         index = self._add(lowering, pair)

@@ -18,7 +18,7 @@ from dalembert.multibody.components.spatial.ground_points import Place
 from dalembert.multibody.components.spatial.inertia import Inertia
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose, Vector
 from dalembert.multibody.components.spatial.shapes import Shape, Surface, surface_of
-from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import add_at, at, dot, minus, plus, times
 from dalembert.multibody.kernels.kind import Kind
 
@@ -160,7 +160,7 @@ class RigidBody(Body):
         pose = self.pose(point)
         return Marker(markers.BODY, tuple(range(markers.SLOTS)), np.array(pose.position), pose.orientation.matrix)
 
-    def lower(self, lowering: SpatialLowering, first: int) -> None:
+    def lower(self, lowering: SpatialRows, first: int) -> None:
         index = list(range(first, first + markers.SLOTS))
         lowering.add(RIGID, index, [*self.inertia.pseudo[np.triu_indices(4)].tolist(), *lowering.gravity])
         lowering.add(DIRECTORS, index[3:] + lowering.multipliers(self.name, 6), [])

@@ -16,7 +16,7 @@ from dalembert.multibody.components.spatial.conditions import Condition, forces_
 from dalembert.multibody.components.spatial.joint import Joint, joint_displacement, joint_kind, observed
 from dalembert.multibody.components.spatial.orientation import Vector
 from dalembert.multibody.components.spatial.pairs import e1, e2, e3, f1, push_a_axis, push_b_axis, push_pair, separation
-from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import dot, minus, times
 from dalembert.multibody.kernels.elementary import angle_of, reciprocal, sin_cos
 
@@ -141,7 +141,7 @@ class ScrewJoint(Joint):
         """The displacement, which gives the angle with its turns."""
         return ("displacement",)
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         self._oriented()
         pair, offset = self.pair(lowering), self.offset
         if offset is None:

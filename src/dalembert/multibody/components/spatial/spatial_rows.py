@@ -43,7 +43,7 @@ class Pair(NamedTuple):
         return self.axes[0][:, 2] @ self.separation
 
 
-class SpatialLowering(Rows, Protocol):
+class SpatialRows(Rows, Protocol):
     """Collects the rows of the kernels of a mechanism in space."""
 
     gravity: tuple[Number, Number, Number]

@@ -14,7 +14,7 @@ from dalembert.multibody.components.spatial.joint import turned_to
 from dalembert.multibody.components.spatial.joint_coordinate import JointCoordinate
 from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.orientation import Vector
-from dalembert.multibody.components.spatial.spatial_rows import Pair, SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import Pair, SpatialRows
 
 TORSION_SPRING = counted_spring("torsion_spring_in_space", __name__, (("twist", "rad"), ("torque", "N*m")))
 
@@ -78,13 +78,13 @@ class TorsionSpring(TwistSpring, Load):
             middle = 0.0 if self.free_angle is None else float(np.real(self.free_angle))
         return (JointCoordinate(f"{self.name}.joint", self, within=(middle - np.pi, middle + np.pi)),)
 
-    def pair(self, lowering: SpatialLowering) -> Pair:
+    def pair(self, lowering: SpatialRows) -> Pair:
         """The markers of both sides, with the axis as their third one."""
         owner = f"torsion spring {self.name!r}"
         require_direction(owner, "a spring, or a rigid body", self.a, self.b)
         return lowering.pair(self.a, self.b, self.name, turned_to(self.axis, owner))
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         index, angle = lowering.coordinate(self.coordinates[0])
         free = angle if self.free_angle is None else self.free_angle
         lowering.add(self.kind, [index], [free, self.stiffness, self.damping, self.cubic], name=self.name)

@@ -22,7 +22,7 @@ from dalembert.multibody.components.spatial.pairs import (
     push_b_axis,
     relative_spin,
 )
-from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import dot, times
 from dalembert.multibody.kernels.elementary import angle_of
 
@@ -123,7 +123,7 @@ class UniversalJoint(Joint):
         second = Orientation.by_axes(self.axis_b, None if parallel else tuple(across)).matrix
         return first[:, [2, 0, 1]], second[:, [1, 2, 0]]  # the pin as the first axis of a, the second of b
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         self._oriented()
         super().lower(lowering)
 
@@ -154,6 +154,6 @@ class ConstantVelocityJoint(Joint):
     def stated_coordinates(self) -> tuple[str, ...]:
         return ("rotation_1", "rotation_2")
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         self._oriented()
         super().lower(lowering)

@@ -30,7 +30,7 @@ from dalembert.multibody.components.spatial.pairs import (
     separation_rate,
     twist_pair,
 )
-from dalembert.multibody.components.spatial.spatial_rows import SpatialLowering
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import at, dot
 from dalembert.multibody.kernels.callbacks import Sizes
 
@@ -118,7 +118,7 @@ class UserForce(Load):
 
     kind = USER_FORCE
 
-    def lower(self, lowering: SpatialLowering) -> None:
+    def lower(self, lowering: SpatialRows) -> None:
         pair = lowering.pair(self.at, self.against, self.name)
         integers = [*pair.integers, lowering.callback(self.function, self.name, _SIZES)]
         lowering.add(USER_FORCE, pair.slots, pair.data, integers)

@@ -12,14 +12,21 @@ from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.collocation.collocation_descent import Descent, descent, march, respond
 from dalembert.multibody.integrators.collocation.collocation_gap import measure
 from dalembert.multibody.integrators.collocation.collocation_rule import make_rule
-from dalembert.multibody.integrators.collocation.collocation_search import Search
+from dalembert.multibody.integrators.collocation.collocation_search import CollocationSearch
 from dalembert.multibody.integrators.collocation.collocation_step import Schedule, begin, finish, prepare, step_of
 from dalembert.multibody.integrators.collocation.collocation_swarm import squares
 from dalembert.multibody.integrators.shared.batch import Batch, Sample
 from dalembert.multibody.integrators.shared.consistent import accelerate_along
 from dalembert.multibody.integrators.shared.integrator import Integrator
 from dalembert.multibody.integrators.shared.partitioning import settle_along
-from dalembert.multibody.integrators.shared.problem import DONE, SINGULAR, Log, Models, Problem, note_step
+from dalembert.multibody.integrators.shared.problem import (
+    DONE,
+    SINGULAR,
+    IntegrationProblem,
+    Log,
+    SampleModels,
+    note_step,
+)
 from dalembert.multibody.integrators.shared.run import Run, explain
 from dalembert.multibody.kernels.linear import DENSE_KERNELS
 from dalembert.multibody.kernels.states import Histories, MotionStates, resting
@@ -142,7 +149,7 @@ class Collocation(Integrator):
         within = (edges[stretch] + edges[stretch + 1]) / 2
         return Schedule(begins, ends, within, opens.astype(np.int64), np.append(0, reached))
 
-    def _run(self, batch: Batch, problem: Problem, sample: Sample) -> Run:
+    def _run(self, batch: Batch, problem: IntegrationProblem, sample: Sample) -> Run:
         lowered, models, schedule = sample.lowered, sample.models, self.schedule(sample.edges, problem.times)
         rule = make_rule(self.degree, self.gauss_points)
         calls = lowered.real.call(), lowered.complex_model.need("rates").call()
@@ -160,14 +167,14 @@ class Collocation(Integrator):
                 problem, rule, self.minimiser.iterations, moving, models, schedule, walk, out, dout, log, work
             )
         else:
-            search = Search(self.minimiser, self.seed, problem, rule, moving, schedule, walk)
+            search = CollocationSearch(self.minimiser, self.seed, problem, rule, moving, schedule, walk)
             status, time, worst = _search(search, models, out, dout, log, work)
         given = lowered, int(status), float(time), int(worst), f"the step is {self.step:g} s"
         return batch.result(None if status == DONE else explain(*given), out, dout, log)
 
 
 def _search(
-    search: Search, models: Models, out: MotionStates, dout: Histories, log: Log, room: Descent
+    search: CollocationSearch, models: SampleModels, out: MotionStates, dout: Histories, log: Log, room: Descent
 ) -> tuple[int, float, int]:
     """All steps by a minimiser of the package: status, time reached, the coordinate to blame."""
     problem, rule, schedule, walk = search.problem, search.rule, search.schedule, search.walk

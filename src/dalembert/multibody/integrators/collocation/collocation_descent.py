@@ -8,14 +8,21 @@ from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Reals, Reals2
 from dalembert.multibody.integrators.collocation.collocation_gap import measure
 from dalembert.multibody.integrators.collocation.collocation_rule import Rule
-from dalembert.multibody.integrators.collocation.collocation_step import Schedule, Step, Walk, begin, finish, step_of
+from dalembert.multibody.integrators.collocation.collocation_step import (
+    CollocationRun,
+    Schedule,
+    ScheduleStep,
+    begin,
+    finish,
+    step_of,
+)
 from dalembert.multibody.integrators.shared.problem import (
     DONE,
     NEWTON_FAILED,
     SINGULAR,
+    IntegrationProblem,
     Log,
-    Models,
-    Problem,
+    SampleModels,
     note_step,
 )
 from dalembert.multibody.kernels.linear import Factors, factorise, resized, solve, storage
@@ -39,7 +46,7 @@ class Descent(NamedTuple):
     respond: Address
 
 
-def descent(problem: Problem, walk: Walk) -> Descent:
+def descent(problem: IntegrationProblem, walk: CollocationRun) -> Descent:
     """Room for the normal equations of a run."""
     directions, unknowns = walk.dc.shape
     along = respond.address if directions else 0
@@ -74,7 +81,13 @@ def _square(n, rule, gaps, slopes, unknowns, count, matrix, lead, right):
 
 @kernel
 def descend(
-    problem: Problem, rule: Rule, iterations: int, models: Models, step: Step, walk: Walk, room: Descent
+    problem: IntegrationProblem,
+    rule: Rule,
+    iterations: int,
+    models: SampleModels,
+    step: ScheduleStep,
+    walk: CollocationRun,
+    room: Descent,
 ) -> tuple[int, int, int]:
     """Gauss and Newton's iterations: status, how many they were, and the coordinate that moved most."""
     n, own, unknowns = problem.n, walk.partition, len(walk.c)
@@ -104,7 +117,14 @@ def descend(
 
 
 @kernel
-def respond(problem: Problem, rule: Rule, models: Models, step: Step, walk: Walk, room: Descent) -> bool:
+def respond(
+    problem: IntegrationProblem,
+    rule: Rule,
+    models: SampleModels,
+    step: ScheduleStep,
+    walk: CollocationRun,
+    room: Descent,
+) -> bool:
     """Derivatives of the minimum along the directions, by the derivative of its gradient.
 
     The first derivatives of what remains are exact. Its second ones, which stand beside what remains at the minimum,
@@ -160,7 +180,8 @@ _respond_at = respond.at
 
 @kernel
 def march(
-    problem: Problem, rule: Rule, most: int, moving: Models, models: Models, schedule: Schedule, walk: Walk,
+    problem: IntegrationProblem, rule: Rule, most: int, moving: SampleModels, models: SampleModels,
+    schedule: Schedule, walk: CollocationRun,
     out: MotionStates, dout: Histories, log: Log, room: Descent,
 ) -> tuple[int, float, int]:  # fmt: skip
     """All steps by at most so many iterations: status, time reached, the coordinate that moved most.

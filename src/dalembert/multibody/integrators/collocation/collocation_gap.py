@@ -7,10 +7,10 @@ multipliers are taken from the equations, so that their gap is zero (`docs/theor
 
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.multibody.integrators.collocation.collocation_rule import Rule
-from dalembert.multibody.integrators.collocation.collocation_step import Step, Walk, place
+from dalembert.multibody.integrators.collocation.collocation_step import CollocationRun, ScheduleStep, place
 from dalembert.multibody.integrators.shared.consistent import add_masses, differentiate_acceleration
 from dalembert.multibody.integrators.shared.partitioning import settle
-from dalembert.multibody.integrators.shared.problem import ACCELERATION, Models, Problem
+from dalembert.multibody.integrators.shared.problem import ACCELERATION, IntegrationProblem, SampleModels
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals
 from dalembert.multibody.kernels.linear import factorise, solve
 from dalembert.multibody.kernels.states import row, subtract
@@ -67,7 +67,15 @@ def _perturb(columns, h, s, shape, unknowns, dolds, dstates):
 
 
 @kernel
-def measure(problem: Problem, rule: Rule, models: Models, step: Step, walk: Walk, perturbs: bool, s: int) -> bool:
+def measure(
+    problem: IntegrationProblem,
+    rule: Rule,
+    models: SampleModels,
+    step: ScheduleStep,
+    walk: CollocationRun,
+    perturbs: bool,
+    s: int,
+) -> bool:
     """What remains at a Gauss point, and its derivatives by c and, where it ``perturbs``, along the directions.
 
     ``directions`` are the unperturbed model for each unknown, then the perturbed ones.

@@ -8,9 +8,9 @@ import numpy as np
 from dalembert.errors import DalembertError
 from dalembert.multibody.integrators.collocation.collocation_gap import measure
 from dalembert.multibody.integrators.collocation.collocation_rule import Rule
-from dalembert.multibody.integrators.collocation.collocation_step import Schedule, Step, Walk, step_of
+from dalembert.multibody.integrators.collocation.collocation_step import CollocationRun, Schedule, ScheduleStep, step_of
 from dalembert.multibody.integrators.collocation.collocation_swarm import Kept, keep, kept_room, squares
-from dalembert.multibody.integrators.shared.problem import DONE, NEWTON_FAILED, Models, Problem
+from dalembert.multibody.integrators.shared.problem import DONE, NEWTON_FAILED, IntegrationProblem, SampleModels
 from dalembert.optimize import Firefly, Minimiser, Squares, Swarm
 
 _WIDE = 2.0  # half the box, against what remains at its middle: where that falls evenly the minimum lies at one half
@@ -19,7 +19,7 @@ _STILL = 1e-9  # the same, where next to nothing remains
 
 
 @dataclass(frozen=True, eq=False)
-class Search:
+class CollocationSearch:
     """Minimises what remains in the steps of one run.
 
     The box lies around the prediction: twice what remains there of each independent coordinate's acceleration.
@@ -28,11 +28,11 @@ class Search:
 
     minimiser: Squares | Firefly | Swarm | Minimiser
     seed: int
-    problem: Problem
+    problem: IntegrationProblem
     rule: Rule
-    models: Models
+    models: SampleModels
     schedule: Schedule
-    walk: Walk
+    walk: CollocationRun
 
     def __call__(self, number: int) -> tuple[int, int, int]:
         """Find the accelerations of a step, into ``walk.c``: status, iterations, the coordinate to blame."""
@@ -69,7 +69,7 @@ class Search:
         walk.c[:] = middle + half * found.x
         return (DONE if np.isfinite(found.misfit) else NEWTON_FAILED), found.iterations, worst
 
-    def kept(self, step: Step) -> Kept | None:
+    def kept(self, step: ScheduleStep) -> Kept | None:
         """States of the Gauss points at the prediction."""
         walk, measured = self.walk, self._measured(step)
         kept = kept_room(walk)
@@ -79,11 +79,11 @@ class Search:
             keep(walk, kept, s)
         return kept
 
-    def _measured(self, step: Step) -> Callable[[int], bool]:
+    def _measured(self, step: ScheduleStep) -> Callable[[int], bool]:
         """A function that measures what remains at a Gauss point, and its derivatives by the unknown accelerations."""
         return measure.given(self.problem, self.rule, self.models, step, self.walk, False)
 
-    def _squares(self, step: Step, middle: np.ndarray, half: np.ndarray) -> tuple:
+    def _squares(self, step: ScheduleStep, middle: np.ndarray, half: np.ndarray) -> tuple:
         """What remains and its derivatives, in the coordinates of the box."""
         walk, n, measured = self.walk, self.problem.n, self._measured(step)
         roots = np.sqrt(self.rule.weights)

@@ -19,7 +19,14 @@ from dalembert.multibody.integrators.shared.partitioning import (
     room,
     settle,
 )
-from dalembert.multibody.integrators.shared.problem import DONE, NEWTON_FAILED, SINGULAR, VELOCITY, Models, Problem
+from dalembert.multibody.integrators.shared.problem import (
+    DONE,
+    NEWTON_FAILED,
+    SINGULAR,
+    VELOCITY,
+    IntegrationProblem,
+    SampleModels,
+)
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.block_table import Call
 from dalembert.multibody.kernels.states import Histories, MotionState, MotionStates, copy, resting, row, rows
@@ -38,7 +45,7 @@ class Schedule(NamedTuple):
     due: Integers
 
 
-class Step(NamedTuple):
+class ScheduleStep(NamedTuple):
     """One step of a schedule: begin and end, s, a time within its smooth stretch, whether it opens one, its outputs."""
 
     begin: float
@@ -52,13 +59,13 @@ class Step(NamedTuple):
 @inner
 def step_of(schedule, number):
     """A step by its number."""
-    return Step(
+    return ScheduleStep(
         schedule.begins[number], schedule.ends[number], schedule.within[number], schedule.opens[number] != 0,
         schedule.due[number], schedule.due[number + 1],
     )  # fmt: skip
 
 
-class Walk(NamedTuple):
+class CollocationRun(NamedTuple):
     """State and work of a run.
 
     ``c`` (count u,): the unknown accelerations of u independent coordinates; ``dc`` (directions, count u). ``points``
@@ -86,13 +93,15 @@ class Walk(NamedTuple):
     consistency: Consistency
 
 
-def prepare(problem: Problem, rule: Rule, call: Call, complex_call: Call, directions: int, linear: bool) -> Walk:
-    """Room for a run along that many directions, whose calls the caller keeps alive; ``linear`` as in `Walk`."""
+def prepare(
+    problem: IntegrationProblem, rule: Rule, call: Call, complex_call: Call, directions: int, linear: bool
+) -> CollocationRun:
+    """Workspace of a run along that many directions, whose calls the caller keeps alive; ``linear`` as in the class."""
     width = problem.exact_layout.size + 1
     count, points = len(rule.powers), len(rule.nodes)
     unknowns = count * (2 * problem.n - width + 1)
     both = unknowns + directions
-    return Walk(
+    return CollocationRun(
         resting(width), resting(width), resting(directions, width), resting(directions, width), np.zeros(unknowns),
         np.zeros((directions, unknowns)), resting(points, width), resting(unknowns, width), resting(both, width),
         np.zeros((points, width)), np.zeros((points, both, width)), np.zeros((3, count)), np.zeros(2), linear,
@@ -181,7 +190,9 @@ def _shape(powers, s, shape):
 
 
 @kernel
-def begin(problem: Problem, rule: Rule, models: Models, step: Step, walk: Walk) -> int:
+def begin(
+    problem: IntegrationProblem, rule: Rule, models: SampleModels, step: ScheduleStep, walk: CollocationRun
+) -> int:
     """Begin a step: accelerations at a jump of the loads, independent coordinates, a prediction."""
     t, within = step.begin, step.within
     # Behind a jump the accelerations before it say nothing.
@@ -233,7 +244,13 @@ def _record(state, dstates, out, dout, due):
 
 @kernel
 def finish(
-    problem: Problem, rule: Rule, models: Models, step: Step, walk: Walk, out: MotionStates, dout: Histories
+    problem: IntegrationProblem,
+    rule: Rule,
+    models: SampleModels,
+    step: ScheduleStep,
+    walk: CollocationRun,
+    out: MotionStates,
+    dout: Histories,
 ) -> int:
     """End a step with the accelerations that were found: the states at its output times, and the next state."""
     ended = False

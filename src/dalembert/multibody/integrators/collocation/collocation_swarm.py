@@ -11,9 +11,9 @@ import numpy as np
 from dalembert.kernels.kernel import inlined, inner, kernel
 from dalembert.kernels.words import Address, Reals, Reals2
 from dalembert.multibody.integrators.collocation.collocation_rule import Rule
-from dalembert.multibody.integrators.collocation.collocation_step import Step, Walk, place
+from dalembert.multibody.integrators.collocation.collocation_step import CollocationRun, ScheduleStep, place
 from dalembert.multibody.integrators.shared.partitioning import fill_gap
-from dalembert.multibody.integrators.shared.problem import ACCELERATION, POSITION, VELOCITY, Problem
+from dalembert.multibody.integrators.shared.problem import ACCELERATION, POSITION, VELOCITY, IntegrationProblem
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals
 from dalembert.multibody.kernels.linear import Factors, resized, solve
 from dalembert.multibody.kernels.states import MotionState, MotionStates, copy, resting, row
@@ -39,7 +39,7 @@ class Kept(NamedTuple):
     vectors: Reals2
 
 
-def kept_room(walk: Walk) -> Kept:
+def kept_room(walk: CollocationRun) -> Kept:
     """Room for what is kept of the prediction that ``walk`` holds."""
     (points, width), unknowns = walk.gaps.shape, len(walk.c)
     dependent = np.zeros((points, len(walk.partition.dependent.matrix)))
@@ -48,7 +48,7 @@ def kept_room(walk: Walk) -> Kept:
     return Kept(walk.c.copy(), *states, dependent, exact, resting(width), np.zeros((3, width)))
 
 
-def keep(walk: Walk, kept: Kept, s: int) -> None:
+def keep(walk: CollocationRun, kept: Kept, s: int) -> None:
     """Keep what was measured at a Gauss point."""
     unknowns = len(walk.c)
     own = slice(s * unknowns, (s + 1) * unknowns)
@@ -155,7 +155,14 @@ def _solve(problem, model, partition, layout, dependent, exact, state, work, gap
 
 @kernel
 def squares(
-    problem: Problem, rule: Rule, model: Address, step: Step, walk: Walk, kept: Kept, trials: Reals2, misfit: Reals
+    problem: IntegrationProblem,
+    rule: Rule,
+    model: Address,
+    step: ScheduleStep,
+    walk: CollocationRun,
+    kept: Kept,
+    trials: Reals2,
+    misfit: Reals,
 ) -> None:
     """Weighted squares of what remains, (trials,), of accelerations (trials, unknowns); infinite where not found."""
     n, own, c, state = problem.n, walk.partition, walk.consistency, kept.trial

@@ -11,7 +11,7 @@ import numpy as np
 from dalembert.kernels.kernel import inlined, kernel
 from dalembert.kernels.views import address_of, call
 from dalembert.kernels.words import Address, Integers, Integers2, Reals, Reals2
-from dalembert.multibody.integrators.shared.problem import Problem
+from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.linear import Factors, Layout, factorise, storage
 from dalembert.multibody.kernels.records import BLOCK_SIZE, TANGENT, block_at, call_at, model_at
@@ -27,7 +27,7 @@ class Steps(NamedTuple):
     sides: Reals
 
 
-class Path(NamedTuple):
+class StateHistory(NamedTuple):
     """Unknowns, velocities and accelerations of several states, (states, N + 1)."""
 
     x: Reals2
@@ -58,7 +58,7 @@ class Pulls(NamedTuple):
     bars: Reals2
 
 
-class Part(NamedTuple):
+class ResidualDerivatives(NamedTuple):
     """Derivatives of the residuals of some blocks, each entry once.
 
     ``blocks``: their numbers, with the ``slots`` of their entries. ``rows``, ``columns`` and ``values`` of the entries,
@@ -84,9 +84,9 @@ class SweepRoom(NamedTuple):
     factors: Factors
     solve: Address
     masses: Reals
-    by_x: Part
-    by_v: Part
-    by_a: Part
+    by_x: ResidualDerivatives
+    by_v: ResidualDerivatives
+    by_a: ResidualDerivatives
     right: Reals
     mu: Reals
     of_q: Reals
@@ -94,7 +94,9 @@ class SweepRoom(NamedTuple):
     past: MotionState
 
 
-def sweep_room(layout: Layout, width: int, work: int, parts: tuple[Part, Part, Part]) -> SweepRoom:
+def sweep_room(
+    layout: Layout, width: int, work: int, parts: tuple[ResidualDerivatives, ResidualDerivatives, ResidualDerivatives]
+) -> SweepRoom:
     """Room for a sweep over vectors of ``width``, without the masses."""
     right, mu, of_q, of_v, *past = np.zeros((8, width))
     factors = storage(layout)
@@ -150,7 +152,9 @@ def _fill_matrix(model, n, c, x, v, a, room):
 
 
 @kernel
-def fixed_masses(model: Address, n: int, x: Reals, v: Reals, a: Reals, part: Part, room: SweepRoom) -> None:
+def fixed_masses(
+    model: Address, n: int, x: Reals, v: Reals, a: Reals, part: ResidualDerivatives, room: SweepRoom
+) -> None:
     """Fill the masses of the blocks of a part, which do not change, in the places of the matrix."""
     clear(room.masses)
     if len(part.blocks) > 0:
@@ -218,7 +222,8 @@ def _step_back(n, c, bar, past):
 
 @kernel
 def sweep(
-    problem: Problem, model: Address, radius: float, steps: Steps, first: int, path: Path, given: Cotangents,
+    problem: IntegrationProblem, model: Address, radius: float, steps: Steps, first: int, path: StateHistory,
+    given: Cotangents,
     pulls: Pulls, bar: MotionState, room: SweepRoom,
 ) -> int:  # fmt: skip
     """Run the adjoint over steps in reverse order; return -1, or the number of a step whose matrix is singular.

@@ -6,7 +6,7 @@ import numpy as np
 
 from dalembert.kernels.kernel import inlined, kernel
 from dalembert.kernels.words import Address, Complexes, Complexes2, Integers, Reals
-from dalembert.multibody.integrators.shared.problem import Problem
+from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.kernels.assembly import (
     has_nodes,
     reduced_residual,
@@ -47,7 +47,7 @@ class Differentiation(NamedTuple):
     change: Reals
 
 
-def differentiation(problem: Problem, complex_work: int) -> Differentiation:
+def differentiation(problem: IntegrationProblem, complex_work: int) -> Differentiation:
     """Room for the derivatives."""
     layout, width = problem.reduced.exact_layout, len(problem.scale)
     right, delta = np.zeros((2, layout.size + 1))
@@ -60,7 +60,7 @@ def differentiation(problem: Problem, complex_work: int) -> Differentiation:
 
 @kernel
 def differentiate(
-    problem: Problem, complex_model: Address, directions: Integers, c: Coefficients, t: float, within: float,
+    problem: IntegrationProblem, complex_model: Address, directions: Integers, c: Coefficients, t: float, within: float,
     new: MotionState, dolds: MotionStates, dnews: MotionStates, room: Differentiation,
 ) -> bool:  # fmt: skip
     """Compute the derivatives of the converged step along all directions; return whether the tangent is regular.

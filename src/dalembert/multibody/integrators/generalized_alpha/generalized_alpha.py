@@ -26,9 +26,9 @@ from dalembert.multibody.integrators.shared.problem import (
     NEWTON_FAILED,
     SINGULAR,
     TOO_MANY_STEPS,
+    IntegrationProblem,
     Log,
-    Models,
-    Problem,
+    SampleModels,
     note_step,
 )
 from dalembert.multibody.integrators.shared.run import Run, explain
@@ -121,7 +121,7 @@ class GeneralizedAlpha(Integrator):
         opens, turns = restarts(samples, problem), batch.begin_counting()
         out = resting(len(samples), *dout.x.shape[1:])
         steps = self.step, self.spectral_radius, self.initial_acceleration == "consistent", self.adaptive
-        settings = Settings(*steps, self.tolerance, self.newton_tolerance, self.most_steps)
+        settings = AlphaSettings(*steps, self.tolerance, self.newton_tolerance, self.most_steps)
         ends = np.zeros((len(samples), 3))
         real = [entry.real.need("rates").reduced() for entry in samples]
         complex_models = [entry.tangents.reduced(nodes=len(perturbed) > 0) for entry in samples]
@@ -140,7 +140,7 @@ class GeneralizedAlpha(Integrator):
         return runs
 
 
-class Settings(NamedTuple):
+class AlphaSettings(NamedTuple):
     """What the compiled loop needs of `GeneralizedAlpha`."""
 
     step: float
@@ -152,7 +152,7 @@ class Settings(NamedTuple):
     most_steps: int
 
 
-class Workspace(NamedTuple):
+class AlphaWorkspace(NamedTuple):
     """States of a step, Newton's iteration, consistent accelerations, derivatives.
 
     ``differentiate``: address of the kernel for the derivatives of a step, 0 if there are none.
@@ -167,10 +167,10 @@ class Workspace(NamedTuple):
     differentiate: Address
 
 
-def _workspace(problem: Problem, work: int, complex_work: int, directions: int) -> Workspace:
+def _workspace(problem: IntegrationProblem, work: int, complex_work: int, directions: int) -> AlphaWorkspace:
     width = len(problem.scale)
     along = differentiate.address if directions else 0
-    return Workspace(
+    return AlphaWorkspace(
         resting(width), resting(width), resting(directions, width), newton(problem, work, complex_work),
         consistency(problem, work, complex_work, directions), differentiation(problem, complex_work), along,
     )  # fmt: skip
@@ -178,9 +178,9 @@ def _workspace(problem: Problem, work: int, complex_work: int, directions: int) 
 
 @kernel
 def integrate(
-    problem: Problem, opens: Integers2, settings: Settings, models: Integers, complex_models: Integers,
+    problem: IntegrationProblem, opens: Integers2, settings: AlphaSettings, models: Integers, complex_models: Integers,
     directions: Integers, turns: Integers, states: MotionStates, dstates: MotionStates, out: Histories,
-    dout: Histories, log: Log, ends: Reals2, room: Workspace,
+    dout: Histories, log: Log, ends: Reals2, room: AlphaWorkspace,
 ) -> None:  # fmt: skip
     """Run a stack of samples from ``problem.edges[sample, 0]`` to the last edge; fill the states at the output times.
 
@@ -197,7 +197,8 @@ def integrate(
         edges = problem.edges[sample, : problem.stretches[sample] + 1]
         ends[sample, 0], ends[sample, 1], ends[sample, 2] = _integrate(
             problem, edges, opens[sample], settings,
-            Models(models[sample], complex_models[sample], directions, turns[sample]), row(states, sample), dstates,
+            SampleModels(models[sample], complex_models[sample], directions, turns[sample]), row(states, sample),
+            dstates,
             rows(out, sample), dout, log, room,
         )  # fmt: skip
 

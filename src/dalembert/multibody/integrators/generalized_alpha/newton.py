@@ -17,7 +17,7 @@ import numpy as np
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.kernels.words import Address, Reals
 from dalembert.multibody.integrators.shared.convergence import BALANCED, MAGNIFIED, NOISE, ROUNDING, largest_entry
-from dalembert.multibody.integrators.shared.problem import DONE, NEWTON_FAILED, SINGULAR, Problem
+from dalembert.multibody.integrators.shared.problem import DONE, NEWTON_FAILED, SINGULAR, IntegrationProblem
 from dalembert.multibody.kernels.assembly import displace, reduced_residual, reduced_tangent, restore, set_signals
 from dalembert.multibody.kernels.linear import Factors, factorise, solve, storage
 from dalembert.multibody.kernels.states import advance, shift
@@ -45,7 +45,7 @@ class Newton(NamedTuple):
     slope: Reals
 
 
-def newton(problem: Problem, work: int, complex_work: int) -> Newton:
+def newton(problem: IntegrationProblem, work: int, complex_work: int) -> Newton:
     """Room for the iteration."""
     layout, width = problem.reduced.layout, len(problem.scale)
     r, delta = np.zeros((2, layout.size + 1))

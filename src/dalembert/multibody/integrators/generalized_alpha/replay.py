@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.kernels.kernel import kernel
-from dalembert.multibody.integrators.generalized_alpha.adjoint_sweep import Path, Steps
+from dalembert.multibody.integrators.generalized_alpha.adjoint_sweep import StateHistory, Steps
 from dalembert.multibody.integrators.generalized_alpha.newton import Newton, converge, keep_slope, newton
-from dalembert.multibody.integrators.shared.problem import DONE, Log, Models, Problem
+from dalembert.multibody.integrators.shared.problem import DONE, IntegrationProblem, Log, SampleModels
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.states import MotionState, clear, coefficients, copy, resting
 
@@ -21,7 +21,7 @@ class ReplayRoom(NamedTuple):
     log: Log
 
 
-def replay_room(problem: Problem, work: int, complex_work: int) -> ReplayRoom:
+def replay_room(problem: IntegrationProblem, work: int, complex_work: int) -> ReplayRoom:
     """Room for a replay, with calls in real and in complex numbers."""
     width, none = len(problem.scale), np.zeros(0)
     log = Log(np.zeros(4, np.int64), none.astype(np.int64), none)
@@ -30,7 +30,8 @@ def replay_room(problem: Problem, work: int, complex_work: int) -> ReplayRoom:
 
 @kernel
 def replay(
-    problem: Problem, models: Models, radius: float, tolerance: float, steps: Steps, state: MotionState, path: Path,
+    problem: IntegrationProblem, models: SampleModels, radius: float, tolerance: float, steps: Steps,
+    state: MotionState, path: StateHistory,
     room: ReplayRoom,
 ) -> int:  # fmt: skip
     """Take the steps from a state, which is overwritten with the last one; return the status, or the reason.

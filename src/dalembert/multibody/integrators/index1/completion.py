@@ -31,15 +31,15 @@ from dalembert.multibody.integrators.shared.problem import (
     NEWTON_FAILED,
     SINGULAR,
     VELOCITY,
-    Models,
-    Problem,
+    IntegrationProblem,
+    SampleModels,
 )
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.linear import storage
 from dalembert.multibody.kernels.states import MotionState, MotionStates, resting
 
 
-def make_tools(problem: Problem, terms: Terms, work: int, complex_work: int, directions: int) -> Tools:
+def make_tools(problem: IntegrationProblem, terms: Terms, work: int, complex_work: int, directions: int) -> Tools:
     """Work for a model, with derivatives if there are any directions."""
     width, parted, projected = problem.exact_layout.size + 1, terms.way == PARTITIONED, terms.way == PROJECTED
     vector = np.zeros((4, width))
@@ -61,7 +61,8 @@ def kernels(way: int, derivatives: bool) -> list[Compiled]:
 
 @kernel
 def partition(
-    problem: Problem, terms: Terms, complex_model: Address, t: float, within: float, state: MotionState, work: Address,
+    problem: IntegrationProblem, terms: Terms, complex_model: Address, t: float, within: float, state: MotionState,
+    work: Address,
     own: Partition,
 ) -> bool:  # fmt: skip
     """Choose the independent coordinates if that is needed: at first, or where the present ones have become bad.
@@ -87,7 +88,8 @@ def _finite(n, state):
 
 @kernel
 def complete(
-    problem: Problem, terms: Terms, models: Models, state: MotionState, dstates: MotionStates, tools: Tools, t: float,
+    problem: IntegrationProblem, terms: Terms, models: SampleModels, state: MotionState, dstates: MotionStates,
+    tools: Tools, t: float,
     within: float, projected: bool,
 ) -> int:  # fmt: skip
     """Bring a state to the constraints as its stabilisation has it, then find what it demands: status.

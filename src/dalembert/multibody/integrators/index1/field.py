@@ -9,7 +9,7 @@ import numpy as np
 from dalembert.multibody.integrators.index1.completion import complete, make_tools, partition
 from dalembert.multibody.integrators.index1.index1 import PARTITIONED, PROJECTED, Terms
 from dalembert.multibody.integrators.shared.batch import Sample
-from dalembert.multibody.integrators.shared.problem import DONE, Models, Problem
+from dalembert.multibody.integrators.shared.problem import DONE, IntegrationProblem, SampleModels
 from dalembert.multibody.kernels.states import MotionState, resting
 from dalembert.multibody.model.turns import STEP_END, count_turns
 
@@ -17,12 +17,12 @@ from dalembert.multibody.model.turns import STEP_END, count_turns
 class _Along(NamedTuple):
     """Models, derivatives of the state along them, and `complete` of time, stretch, and whether to project."""
 
-    models: Models
+    models: SampleModels
     dstates: MotionState
     complete: Callable[[float, float, bool], int]
 
 
-class Field:
+class RateField:
     """Rates of a sample's coordinates and velocities, and of their derivatives along directions.
 
     The vectors hold coordinates (n,) and velocities (n,), then those of each direction. The state that was asked for
@@ -31,7 +31,9 @@ class Field:
     ``dstates``: derivatives of the state at the start; overwritten; ``implicit``: whether the `jacobian` is needed.
     """
 
-    def __init__(self, problem: Problem, terms: Terms, sample: Sample, dstates: MotionState, implicit: bool) -> None:
+    def __init__(
+        self, problem: IntegrationProblem, terms: Terms, sample: Sample, dstates: MotionState, implicit: bool
+    ) -> None:
         self.problem, self.terms, self.lowered = problem, terms, sample.lowered
         self.n, self.width, self.count = problem.n, len(sample.start.x), len(dstates.x)
         shape = len(problem.times), self.width
@@ -113,7 +115,7 @@ class Field:
         directions = np.full(2 * self.n, self.lowered.unperturbed.need("rates").address)
         return self._along(self._perturbed.models._replace(directions=directions), resting(2 * self.n, self.width))
 
-    def _along(self, models: Models, dstates: MotionState) -> _Along:
+    def _along(self, models: SampleModels, dstates: MotionState) -> _Along:
         own = complete.given(self.problem, self.terms, models, self.state, dstates, self._tools)
         return _Along(models, dstates, own)
 

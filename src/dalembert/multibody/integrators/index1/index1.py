@@ -15,7 +15,7 @@ from dalembert.multibody.integrators.index1.least_squares import (
 )
 from dalembert.multibody.integrators.shared.consistent import fill_motion
 from dalembert.multibody.integrators.shared.partitioning import Partition
-from dalembert.multibody.integrators.shared.problem import Models, Problem
+from dalembert.multibody.integrators.shared.problem import IntegrationProblem, SampleModels
 from dalembert.multibody.integrators.shared.settling import balanced, largest
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals
 from dalembert.multibody.kernels.elementary import STEP
@@ -102,7 +102,8 @@ def _rests(problem, model, state, tools):
 
 @kernel
 def demand(
-    problem: Problem, terms: Terms, models: Models, t: float, within: float, state: MotionState, dstates: MotionStates,
+    problem: IntegrationProblem, terms: Terms, models: SampleModels, t: float, within: float, state: MotionState,
+    dstates: MotionStates,
     tools: Tools,
 ) -> bool:  # fmt: skip
     """Fill accelerations and multipliers of a state by the equations of index 1, and their derivatives; whether it can.
@@ -142,7 +143,7 @@ def demand(
 
 @kernel
 def demand_along(
-    problem: Problem, terms: Terms, directions: Integers, t: float, within: float, state: MotionState,
+    problem: IntegrationProblem, terms: Terms, directions: Integers, t: float, within: float, state: MotionState,
     dstates: MotionStates, tools: Tools,
 ) -> None:  # fmt: skip
     """Derivatives of the accelerations and multipliers that a state demands, along all directions."""

@@ -12,7 +12,7 @@ import numpy as np
 from dalembert.kernels.kernel import inlined, inner, kernel
 from dalembert.kernels.words import Address, Complexes2, Reals, Reals2
 from dalembert.multibody.integrators.shared.partitioning import Partition, choose, invert, room
-from dalembert.multibody.integrators.shared.problem import Problem
+from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.kernels.assembly import constraint_rates
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import Factors, factorise, resized, solve, storage
@@ -42,7 +42,7 @@ class Surplus(NamedTuple):
     turn: Address
 
 
-def surplus_room(problem: Problem, redundant: bool, directions: int) -> Surplus:
+def surplus_room(problem: IntegrationProblem, redundant: bool, directions: int) -> Surplus:
     """Room for redundant constraints; without them for the Jacobian only."""
     layout = problem.exact_layout
     m = layout.size - problem.n if redundant else 0
@@ -157,7 +157,7 @@ def _extend(n, size, lead, rank, surplus, matrix, small_lead):
 
 
 @kernel
-def invert_on_range(problem: Problem, surplus: Surplus, matrix: Reals) -> bool:
+def invert_on_range(problem: IntegrationProblem, surplus: Surplus, matrix: Reals) -> bool:
     """Replace a dense flat matrix, of motion beside constraints, by the inverse on the multipliers in the range.
 
     For redundant but consistent constraints this is the solution of least norm; others are met in least squares. The
@@ -174,7 +174,7 @@ def invert_on_range(problem: Problem, surplus: Surplus, matrix: Reals) -> bool:
 
 @kernel
 def turn_range(
-    problem: Problem, perturbed: Address, state: MotionState, dstate: MotionState, complex_work: Address,
+    problem: IntegrationProblem, perturbed: Address, state: MotionState, dstate: MotionState, complex_work: Address,
     complex_state: Complexes2, surplus: Surplus,
 ) -> None:  # fmt: skip
     """Give the multipliers' derivative the part across the range that keeps the multipliers in it.

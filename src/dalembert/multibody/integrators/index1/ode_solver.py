@@ -13,7 +13,7 @@ from dalembert.arguments import limited
 from dalembert.errors import InputError, SolveError, require_known
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.index1.completion import kernels
-from dalembert.multibody.integrators.index1.field import Field
+from dalembert.multibody.integrators.index1.field import RateField
 from dalembert.multibody.integrators.index1.index1 import PROJECTED
 from dalembert.multibody.integrators.index1.stabilisation import Projection, Stabilisation, posed
 from dalembert.multibody.integrators.shared.batch import Batch
@@ -97,9 +97,9 @@ class OdeSolver(Integrator):
         """Runs of samples, one after another."""
         problem, terms = posed(self.stabilisation, batch.samples, batch.problem, None)
         implicit = self.method in IMPLICIT
-        return [self._run(Field(problem, terms, sample, batch.dstates, implicit), sample.edges) for sample in batch]
+        return [self._run(RateField(problem, terms, sample, batch.dstates, implicit), sample.edges) for sample in batch]
 
-    def _run(self, own: Field, edges: np.ndarray) -> Run:
+    def _run(self, own: RateField, edges: np.ndarray) -> Run:
         """The motion of one sample."""
         ends: list[float] = []
         due, reason = 0, None
@@ -119,7 +119,7 @@ class OdeSolver(Integrator):
         counts, iterations = np.array([len(ends), 0, own.evaluations, 0]), np.zeros(len(ends), dtype=np.int64)
         return Run(reason, own.problem.times, own.out, own.dout, counts, iterations, np.array(ends))
 
-    def _stretch(self, own: Field, begin: float, end: float, due: int, ends: list[float]) -> int:
+    def _stretch(self, own: RateField, begin: float, end: float, due: int, ends: list[float]) -> int:
         """Run one smooth stretch, and return the number of the next output."""
         times, solver, short = own.problem.times, self._solver(own, begin, end), 0
         while solver.status == "running":
@@ -156,7 +156,7 @@ class OdeSolver(Integrator):
             own.complete(end, projected=True)
         return due
 
-    def _solver(self, own: Field, begin: float, end: float, first_step: float | None = None):
+    def _solver(self, own: RateField, begin: float, end: float, first_step: float | None = None):
         """SciPy's object for the rest of a stretch."""
         scale = np.tile(own.problem.scale[: own.n], 2)
         rtol, atol = self.relative_tolerance, np.tile(self.absolute_tolerance * scale, 1 + own.count)
@@ -171,7 +171,7 @@ class OdeSolver(Integrator):
             options["jac"] = lambda t, y: block_diag([own.jacobian(t, y)] * (1 + own.count), format="csc")
         return kind(own, begin, own.gathered(), end, rtol=rtol, atol=atol, first_step=first_step, **options)
 
-    def _moved(self, solver, own: Field, end: float):
+    def _moved(self, solver, own: RateField, end: float):
         """The solver, going on from a state that has been moved."""
         if solver.status != "running":
             return solver
@@ -184,7 +184,7 @@ class OdeSolver(Integrator):
             solver.f = own.rates()
         return solver
 
-    def _explain(self, own: Field, time: float, message: str | None) -> SolveError:
+    def _explain(self, own: RateField, time: float, message: str | None) -> SolveError:
         if error := users_error(own.lowered, time) or singular_position(own.lowered, own.state.x, time):
             return error
         why = f"{message[0].lower()}{message[1:].rstrip('.')}" if message else "no reason was given"

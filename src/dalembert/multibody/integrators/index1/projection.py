@@ -8,7 +8,7 @@ from dalembert.kernels.words import Integers
 from dalembert.multibody.integrators.index1.index1 import Terms, Tools, factorise_motion
 from dalembert.multibody.integrators.shared.convergence import MAGNIFIED
 from dalembert.multibody.integrators.shared.partitioning import fill_gap
-from dalembert.multibody.integrators.shared.problem import POSITION, VELOCITY, Models, Problem
+from dalembert.multibody.integrators.shared.problem import POSITION, VELOCITY, IntegrationProblem, SampleModels
 from dalembert.multibody.integrators.shared.settling import largest, weigh_along
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.elementary import STEP
@@ -36,7 +36,7 @@ def _move(problem, level, tools, state, change):
 
 @kernel
 def project_along(
-    problem: Problem, level: int, directions: Integers, t: float, within: float, state: MotionState,
+    problem: IntegrationProblem, level: int, directions: Integers, t: float, within: float, state: MotionState,
     dstates: MotionStates, tools: Tools,
 ) -> None:  # fmt: skip
     """Derivatives of the projection of coordinates or of velocities (``level``), along all directions."""
@@ -83,7 +83,8 @@ def _follow(problem, level, model, t, within, state, dstate, tools, change):
 
 @kernel
 def project(
-    problem: Problem, terms: Terms, models: Models, t: float, within: float, state: MotionState, dstates: MotionStates,
+    problem: IntegrationProblem, terms: Terms, models: SampleModels, t: float, within: float, state: MotionState,
+    dstates: MotionStates,
     tools: Tools,
 ) -> bool:  # fmt: skip
     """Move coordinates, then velocities, onto the constraints in place; return True if both iterations converged.

@@ -16,7 +16,14 @@ from dalembert.multibody.integrators.index1.stabilisation import Projection, Sta
 from dalembert.multibody.integrators.shared.batch import Batch
 from dalembert.multibody.integrators.shared.ends import write
 from dalembert.multibody.integrators.shared.integrator import Integrator
-from dalembert.multibody.integrators.shared.problem import DIVERGED, DONE, SINGULAR, Log, Models, Problem
+from dalembert.multibody.integrators.shared.problem import (
+    DIVERGED,
+    DONE,
+    SINGULAR,
+    IntegrationProblem,
+    Log,
+    SampleModels,
+)
 from dalembert.multibody.integrators.shared.run import Run, explain
 from dalembert.multibody.kernels.states import (
     Histories,
@@ -102,7 +109,7 @@ class Stage(NamedTuple):
     dstates: MotionStates
 
 
-class Workspace(NamedTuple):
+class RungeKuttaWorkspace(NamedTuple):
     """States of a step with their derivatives: at a stage, between steps, at the step's begin, and their sum.
 
     And the ``tools`` that complete states.
@@ -115,13 +122,15 @@ class Workspace(NamedTuple):
     tools: Tools
 
 
-def _workspace(width: int, directions: int, tools: Tools) -> Workspace:
+def _workspace(width: int, directions: int, tools: Tools) -> RungeKuttaWorkspace:
     stages, shape = [], (1 + directions, width)
     for _ in range(2):
         stack = MotionStates(*resting(*shape))
         parts = MotionState(*(values[0] for values in stack)), MotionStates(*(values[1:] for values in stack))
         stages.append(Stage(stack, *parts))
-    return Workspace(stages[0], stages[1], MotionStates(*resting(*shape)), MotionStates(*resting(*shape)), tools)
+    return RungeKuttaWorkspace(
+        stages[0], stages[1], MotionStates(*resting(*shape)), MotionStates(*resting(*shape)), tools
+    )
 
 
 def _fill(target: NamedTuple, source: NamedTuple) -> None:
@@ -180,8 +189,9 @@ def _choose(problem, terms, models, t, within, state, tools):
 
 @kernel
 def integrate(
-    problem: Problem, edges: Reals, step: float, terms: Terms, models: Models, out: Histories, counts: Integers,
-    room: Workspace,
+    problem: IntegrationProblem, edges: Reals, step: float, terms: Terms, models: SampleModels, out: Histories,
+    counts: Integers,
+    room: RungeKuttaWorkspace,
 ) -> tuple[int, float]:  # fmt: skip
     """Run one sample: status and time reached.
 

@@ -10,7 +10,7 @@ import numpy as np
 from dalembert.arguments import Checked, limited
 from dalembert.errors import InputError
 from dalembert.multibody.integrators.index1.index1 import AS_THEY_COME, PARTITIONED, PROJECTED, Terms
-from dalembert.multibody.integrators.shared.problem import Problem
+from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.model.evaluate import constraint_jacobian
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.start.assemble import redundancy
@@ -131,8 +131,8 @@ class Partitioning(Stabilisation):
 
 
 def posed(
-    stabilisation: Stabilisation, samples: Sequence[Lowered], problem: Problem, step: float | None
-) -> tuple[Problem, Terms]:
+    stabilisation: Stabilisation, samples: Sequence[Lowered], problem: IntegrationProblem, step: float | None
+) -> tuple[IntegrationProblem, Terms]:
     """The problem with the matrices that the index-1 methods need, and what they need to know.
 
     Partitions and least squares need dense matrices.
@@ -149,7 +149,7 @@ def posed(
     return problem, Terms(float(alpha), float(beta), redundant, stabilisation.way, limit, nonlinear)
 
 
-def _weighed(problem: Problem, lowered: Lowered) -> np.ndarray:
+def _weighed(problem: IntegrationProblem, lowered: Lowered) -> np.ndarray:
     """Scales with those of the multipliers: one for forces, a lever for torques, (N + 1,).
 
     The lever is the power of ten, in m, nearest to the mechanism's extent where the model is built first, so that it is

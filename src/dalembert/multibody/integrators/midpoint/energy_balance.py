@@ -13,12 +13,12 @@ import numpy as np
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Complexes, Complexes2, Complexes3, Integers, Reals, Reals2
 from dalembert.multibody.integrators.midpoint import midpoint_step as midpoint
-from dalembert.multibody.integrators.midpoint.midpoint_step import Along, Step
+from dalembert.multibody.integrators.midpoint.midpoint_step import Along, MidpointStep
 from dalembert.multibody.integrators.shared.matrices import Matrices, add_product
-from dalembert.multibody.integrators.shared.problem import Problem
+from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.integrators.shared.settling import weigh_along
 from dalembert.multibody.kernels.assembly import energies
-from dalembert.multibody.kernels.block_table import Model
+from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.elementary import STEP, reciprocal
 from dalembert.multibody.kernels.states import MotionState
 from dalembert.multibody.model import evaluate
@@ -29,7 +29,7 @@ _MOST = 12  # strengths that are tried
 _STRONGEST = 0.5  # part of the velocities that the force may take or give in a step
 
 
-class Rigid(NamedTuple):
+class FreeRigidMotions(NamedTuple):
     """Rigid motions that are free, as velocities ``spin`` sign x[partner] + shift of the coordinates.
 
     ``partner`` and ``sign`` (n,), ``spin`` (motions,), ``shift`` (motions, n), ``shifts`` (directions, motions, n): the
@@ -50,7 +50,7 @@ class Balance(NamedTuple):
     both are 0 if the energy is not balanced, the second one is 0 if there are no directions, too.
     """
 
-    rigid: Rigid
+    rigid: FreeRigidMotions
     motions: Reals2
     weighed: Reals2
     force: Reals
@@ -63,11 +63,11 @@ class Balance(NamedTuple):
     converge_along: Address
 
 
-def balance_room(width: int, rigid: Rigid | None = None) -> Balance:
+def balance_room(width: int, rigid: FreeRigidMotions | None = None) -> Balance:
     """Room for the balance of steps of N + 1 = ``width`` unknowns; without rigid motions the energy is not balanced."""
     addresses = (converge.address, converge_along.address if len(rigid.shifts) else 0) if rigid else (0, 0)
     none = np.zeros(0)
-    own = rigid or Rigid(np.zeros(0, np.int64), none, none, np.zeros((0, 0)), np.zeros((0, 0, 0), complex))
+    own = rigid or FreeRigidMotions(np.zeros(0, np.int64), none, none, np.zeros((0, 0)), np.zeros((0, 0, 0), complex))
     motions, complex_motions = np.zeros((2, len(own.spin), width)), np.zeros((2, len(own.spin), width), complex)
     return Balance(
         own, motions[0], motions[1], np.zeros(width), np.zeros(3), complex_motions[0], complex_motions[1],
@@ -87,7 +87,7 @@ def first_energies(
     return energy, derivatives
 
 
-def _energy_at_start(model: Model, x: np.ndarray, v: np.ndarray, within: float) -> complex:
+def _energy_at_start(model: BlockModel, x: np.ndarray, v: np.ndarray, within: float) -> complex:
     totals = evaluate.energies(model, x[None], v[None], np.zeros(1), np.array([within]))
     return totals[0, 0] + totals[0, 1]
 
@@ -160,7 +160,8 @@ def _energy(model, h, at, middle, end, totals):
 
 @kernel
 def converge(
-    problem: Problem, matrices: Matrices, model: Address, h: float, goal: float, step: Step, balance: Balance,
+    problem: IntegrationProblem, matrices: Matrices, model: Address, h: float, goal: float, step: MidpointStep,
+    balance: Balance,
     tolerance: float, least: float,
 ) -> tuple[bool, int, float, int, float, float]:  # fmt: skip
     """A step whose energy is ``goal`` and the work in it.
@@ -207,8 +208,9 @@ def _direct_along(perturbed, n, shift, at, middle, buffers, e):
 
 @kernel
 def converge_along(
-    problem: Problem, matrices: Matrices, perturbed: Address, d: int, strength: float, h: float, dgoal: float,
-    step: Step, along: Along, balance: Balance,
+    problem: IntegrationProblem, matrices: Matrices, perturbed: Address, d: int, strength: float, h: float,
+    dgoal: float,
+    step: MidpointStep, along: Along, balance: Balance,
 ) -> float:  # fmt: skip
     """Derivative of the step along direction ``d``; the derivative of the work in it."""
     n, s, ds, at, push = problem.n, step.rows, along.rows, along.complex_state, along.push

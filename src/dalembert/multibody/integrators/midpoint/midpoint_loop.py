@@ -10,7 +10,7 @@ from dalembert.kernels.words import Address, Complexes2, Integers, Reals, Reals2
 from dalembert.multibody.integrators.midpoint import energy_balance as balancing
 from dalembert.multibody.integrators.midpoint import midpoint_step as midpoint
 from dalembert.multibody.integrators.midpoint.energy_balance import Balance
-from dalembert.multibody.integrators.midpoint.midpoint_step import Along, Step
+from dalembert.multibody.integrators.midpoint.midpoint_step import Along, MidpointStep
 from dalembert.multibody.integrators.shared.consistent import Consistency, accelerate, consistency
 from dalembert.multibody.integrators.shared.convergence import HALVINGS
 from dalembert.multibody.integrators.shared.ends import append
@@ -21,9 +21,9 @@ from dalembert.multibody.integrators.shared.problem import (
     NEWTON_FAILED,
     SINGULAR,
     VELOCITY,
+    IntegrationProblem,
     Log,
-    Models,
-    Problem,
+    SampleModels,
     note_step,
 )
 from dalembert.multibody.integrators.shared.settling import settle, settle_along
@@ -36,7 +36,7 @@ _AGED = 0.05  # contraction at which the next step begins with new matrices
 _ENDS = 2  # of steps, between which outputs are interpolated
 
 
-class Settings(NamedTuple):
+class MidpointSettings(NamedTuple):
     """What the compiled loop needs of an integrator; whether forces may be ``damped``; the ``energy`` at the start."""
 
     step: float
@@ -60,7 +60,7 @@ class Derivatives(NamedTuple):
     differentiate: Address
 
 
-class Workspace(NamedTuple):
+class MidpointWorkspace(NamedTuple):
     """Work of one sample; ``slope`` (2, N + 1) is what a step missed.
 
     The loop takes each part by itself: a record of them all triples its compilation.
@@ -68,7 +68,7 @@ class Workspace(NamedTuple):
 
     matrices: Matrices
     consistency: Consistency
-    step: Step
+    step: MidpointStep
     balance: Balance
     slope: Reals2
     outputs: Outputs
@@ -76,9 +76,10 @@ class Workspace(NamedTuple):
 
 
 def workspace(
-    problem: Problem, pattern: Pattern, calls: Sequence[Call], complex_calls: Sequence[Call], balance: Balance,
+    problem: IntegrationProblem, pattern: Pattern, calls: Sequence[Call], complex_calls: Sequence[Call],
+    balance: Balance,
     denergies: np.ndarray, dstates: MotionState,
-) -> Workspace:  # fmt: skip
+) -> MidpointWorkspace:  # fmt: skip
     """Room for one sample; two calls in real numbers, and two in complex ones, for the middle and the end of a step."""
     directions, width = dstates.x.shape
     works, complex_works = [call.address for call in calls], [call.address for call in complex_calls]
@@ -87,7 +88,7 @@ def workspace(
         midpoint.along_room(width, *complex_works), np.zeros((directions, 2, width)), denergies, resting(width),
         out.complex_state, differentiate.address if directions else 0,
     )  # fmt: skip
-    return Workspace(
+    return MidpointWorkspace(
         room(pattern, 0), consistency(problem, works[0], complex_works[0], directions),
         midpoint.step_room(width, *works), balance, np.zeros((2, width)), out, derivatives,
     )  # fmt: skip
@@ -104,7 +105,8 @@ def _read(n, s, new):
 
 @kernel
 def differentiate(
-    problem: Problem, matrices: Matrices, directions: Integers, step: Step, balance: Balance, strength: float, h: float,
+    problem: IntegrationProblem, matrices: Matrices, directions: Integers, step: MidpointStep, balance: Balance,
+    strength: float, h: float,
     t: float, target: float, within: float, new: MotionState, dnews: MotionStates, moved: Reals2, room: Derivatives,
 ) -> None:  # fmt: skip
     """Derivatives of a step along all directions."""
@@ -140,8 +142,9 @@ def _clear(array):
 
 @kernel
 def integrate(
-    problem: Problem, edges: Reals, settings: Settings, models: Models, new: MotionState, dnews: MotionStates,
-    out: MotionStates, dout: Histories, log: Log, matrices: Matrices, consistent: Consistency, step: Step,
+    problem: IntegrationProblem, edges: Reals, settings: MidpointSettings, models: SampleModels, new: MotionState,
+    dnews: MotionStates,
+    out: MotionStates, dout: Histories, log: Log, matrices: Matrices, consistent: Consistency, step: MidpointStep,
     balance: Balance, slope: Reals2, outputs: Outputs, derivatives: Derivatives,
 ) -> tuple[int, float, int]:  # fmt: skip
     """Run one sample between ``edges`` (s): status, time reached, and the unknown that moved most.

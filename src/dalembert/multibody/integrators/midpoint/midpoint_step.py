@@ -25,7 +25,7 @@ from dalembert.multibody.integrators.shared.convergence import (
     largest_entry,
 )
 from dalembert.multibody.integrators.shared.matrices import Matrices, add_product
-from dalembert.multibody.integrators.shared.problem import Problem
+from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.integrators.shared.settling import weigh_along
 from dalembert.multibody.kernels.assembly import constraint_forces, constraint_rates, residual
 from dalembert.multibody.kernels.elementary import STEP
@@ -38,7 +38,7 @@ ROWS = 8
 _MOST_ITERATIONS = 20
 
 
-class Step(NamedTuple):
+class MidpointStep(NamedTuple):
     """Work of a step: calls for its middle and its end, its rows, a force ``push`` (N + 1,) against it, vectors."""
 
     middle: Address
@@ -59,9 +59,9 @@ class Along(NamedTuple):
     vectors: Complexes2
 
 
-def step_room(width: int, middle: int, end: int) -> Step:
+def step_room(width: int, middle: int, end: int) -> MidpointStep:
     """Room for a step of N + 1 = ``width`` unknowns; the calls are those of real numbers."""
-    return Step(middle, end, np.zeros((ROWS, width)), np.zeros(width), np.zeros((7, width)))
+    return MidpointStep(middle, end, np.zeros((ROWS, width)), np.zeros(width), np.zeros((7, width)))
 
 
 def along_room(width: int, middle: int, end: int) -> Along:
@@ -182,7 +182,13 @@ def _sizes(n, h, scale, f, gap, s):
 
 @kernel
 def converge(
-    problem: Problem, matrices: Matrices, model: Address, h: float, step: Step, tolerance: float, least: float
+    problem: IntegrationProblem,
+    matrices: Matrices,
+    model: Address,
+    h: float,
+    step: MidpointStep,
+    tolerance: float,
+    least: float,
 ) -> tuple[bool, int, float, int]:
     """Newton's iteration on a step that a force resists.
 
@@ -236,7 +242,7 @@ def perturb_step(s, ds, at):
 
 @kernel
 def converge_along(
-    problem: Problem, matrices: Matrices, perturbed: Address, h: float, step: Step, along: Along
+    problem: IntegrationProblem, matrices: Matrices, perturbed: Address, h: float, step: MidpointStep, along: Along
 ) -> None:
     """Derivative of a converged step along a direction, by the same iteration on imaginary parts."""
     s, b, ds, at, vectors, push = step.rows, step.vectors, along.rows, along.complex_state, along.vectors, along.push

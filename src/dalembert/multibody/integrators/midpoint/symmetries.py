@@ -5,12 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from dalembert.multibody.components.planar.markers import GROUND
-from dalembert.multibody.integrators.midpoint.energy_balance import Rigid
+from dalembert.multibody.integrators.midpoint.energy_balance import FreeRigidMotions
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.model.lowered import Lowered
 
 
-def rigid_motions(lowered: Lowered, perturbed: Sequence[Lowered]) -> Rigid:
+def rigid_motions(lowered: Lowered, perturbed: Sequence[Lowered]) -> FreeRigidMotions:
     """The free translations and the free rotation of a mechanism, by its gravity and what holds it to the ground.
 
     Without any hold, those are the translations across gravity, and without gravity the rotation, too. Pins, rods and
@@ -42,10 +42,10 @@ def rigid_motions(lowered: Lowered, perturbed: Sequence[Lowered]) -> Rigid:
         shifts.append(np.array(rows).reshape(len(rows), len(kinds)))
     spin = np.array([0.0] * sum(free) + [1.0] * turns)
     along = np.array(shifts[1:], dtype=complex).reshape(len(perturbed), *shifts[0].shape)
-    return Rigid(partner, sign, spin, np.ascontiguousarray(shifts[0].real), along)
+    return FreeRigidMotions(partner, sign, spin, np.ascontiguousarray(shifts[0].real), along)
 
 
-def _translations(lowered: Lowered, directions: int) -> Rigid:
+def _translations(lowered: Lowered, directions: int) -> FreeRigidMotions:
     """The free translations of a mechanism in space: across gravity, where nothing holds it."""
     kinds = np.array(lowered.structure.kinds)
     held = any(kind.holds and np.any(_grounded(lowered, kind)) for kind in lowered.data)
@@ -54,7 +54,7 @@ def _translations(lowered: Lowered, directions: int) -> Rigid:
     for row, axis in enumerate(free):
         shift[row, np.flatnonzero(kinds == "position")[axis::3]] = 1.0
     along = np.tile(shift.astype(complex), (directions, 1, 1))
-    return Rigid(np.arange(len(kinds)), np.zeros(len(kinds)), np.zeros(len(free)), shift, along)
+    return FreeRigidMotions(np.arange(len(kinds)), np.zeros(len(kinds)), np.zeros(len(free)), shift, along)
 
 
 def _grounded(lowered: Lowered, kind: Kind) -> np.ndarray:

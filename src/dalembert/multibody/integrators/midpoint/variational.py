@@ -10,7 +10,7 @@ import numpy as np
 from dalembert.arguments import limited
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.midpoint.energy_balance import Balance, balance_room
-from dalembert.multibody.integrators.midpoint.midpoint_loop import Settings, differentiate, integrate, workspace
+from dalembert.multibody.integrators.midpoint.midpoint_loop import MidpointSettings, differentiate, integrate, workspace
 from dalembert.multibody.integrators.shared.batch import Batch
 from dalembert.multibody.integrators.shared.consistent import accelerate_along
 from dalembert.multibody.integrators.shared.integrator import Integrator
@@ -74,7 +74,7 @@ class Variational(Integrator):
             log = batch.log(self.step_ends(batch.end, lowered.jumps))
             states, middle = resting(*batch.shape), 0.5 * (edges[0] + edges[1])
             energy, denergies, balance = self._balance(lowered, batch.perturbed, start, batch.dstates, middle)
-            settings = Settings(float(self.step), float(self.newton_tolerance), lowered.dissipates, energy)
+            settings = MidpointSettings(float(self.step), float(self.newton_tolerance), lowered.dissipates, energy)
             calls, complex_calls = ([own.call(), own.call()] for own in (lowered.real, lowered.tangents))
             room = workspace(batch.problem, pattern, calls, complex_calls, balance, denergies, batch.dstates)
             status, time, unknown = integrate(

@@ -20,7 +20,7 @@ from dalembert.multibody.integrators.radau.radau_stages import (
 )
 from dalembert.multibody.integrators.shared.matrices import Matrices
 from dalembert.multibody.integrators.shared.outputs import Outputs
-from dalembert.multibody.integrators.shared.problem import VELOCITY, Problem
+from dalembert.multibody.integrators.shared.problem import VELOCITY, IntegrationProblem
 from dalembert.multibody.integrators.shared.settling import settle_along, weigh_along
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals
 from dalembert.multibody.kernels.elementary import STEP
@@ -29,7 +29,8 @@ from dalembert.multibody.kernels.states import MotionState, MotionStates, copy, 
 
 @kernel
 def differentiate(
-    problem: Problem, method: Coefficients, matrices: Matrices, directions: Integers, t: float, target: float,
+    problem: IntegrationProblem, method: Coefficients, matrices: Matrices, directions: Integers, t: float,
+    target: float,
     within: float, s: Stages, dold: MotionState, dnews: MotionStates, ds: Stages, b: Buffers, complex_works: Integers,
 ) -> None:  # fmt: skip
     """Derivatives of a step along all directions: those of the equations of its stages (`docs/theory/radau.md`)."""
@@ -87,7 +88,7 @@ def _converge_along(problem, method, matrices, perturbed, works, h, s, dstart, d
 
 @kernel
 def settle_end_along(
-    problem: Problem, matrices: Matrices, directions: Integers, within: float, room: Outputs, j: int
+    problem: IntegrationProblem, matrices: Matrices, directions: Integers, within: float, room: Outputs, j: int
 ) -> None:
     """Settle the derivatives of end ``j`` along all directions."""
     last, work = room.last, room.complex_work

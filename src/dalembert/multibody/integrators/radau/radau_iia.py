@@ -12,7 +12,7 @@ from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.radau.radau_coefficients import coefficients
 from dalembert.multibody.integrators.radau.radau_derivatives import differentiate, settle_end_along
 from dalembert.multibody.integrators.radau.radau_loop import integrate
-from dalembert.multibody.integrators.radau.radau_workspace import Settings, workspace
+from dalembert.multibody.integrators.radau.radau_workspace import RadauSettings, workspace
 from dalembert.multibody.integrators.shared.batch import Batch
 from dalembert.multibody.integrators.shared.consistent import accelerate_along
 from dalembert.multibody.integrators.shared.integrator import Integrator
@@ -116,7 +116,7 @@ class RadauIIA(Integrator):
             log, states = batch.log(fixed), resting(*batch.shape)
             slow = _STICKING * slip_scale(lowered) / self.tolerance
             steps = self.step or 0.0, self.tolerance, self.newton_tolerance, self.most_steps
-            settings = Settings(*steps, lowered.dissipates, slow)
+            settings = RadauSettings(*steps, lowered.dissipates, slow)
             status, time, unknown, least = run(edges, settings, models, start, states, log)
             reason = None if status == DONE else self._explain(lowered, status, time, unknown, least, spare.new.x)
             runs.append(batch.result(reason, states, dout, log))

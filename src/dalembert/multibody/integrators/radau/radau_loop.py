@@ -7,7 +7,7 @@ from dalembert.kernels.words import Reals
 from dalembert.multibody.integrators.radau.radau_coefficients import Coefficients
 from dalembert.multibody.integrators.radau.radau_derivatives import differentiate, settle_end_along
 from dalembert.multibody.integrators.radau.radau_step import attempt, speed_of
-from dalembert.multibody.integrators.radau.radau_workspace import Along, Settings, Step
+from dalembert.multibody.integrators.radau.radau_workspace import Along, RadauSettings, RadauStep
 from dalembert.multibody.integrators.shared.consistent import Consistency, accelerate
 from dalembert.multibody.integrators.shared.convergence import HALVINGS
 from dalembert.multibody.integrators.shared.ends import append, support
@@ -20,9 +20,9 @@ from dalembert.multibody.integrators.shared.problem import (
     SINGULAR,
     TOO_MANY_STEPS,
     VELOCITY,
+    IntegrationProblem,
     Log,
-    Models,
-    Problem,
+    SampleModels,
     note_step,
 )
 from dalembert.multibody.integrators.shared.settling import settle
@@ -71,9 +71,9 @@ _settle_end_along_at, _differentiate_at = settle_end_along.at, differentiate.at
 
 @kernel
 def integrate(
-    problem: Problem, method: Coefficients, dstates: MotionStates, dout: Histories, new: MotionState,
-    matrices: Matrices, apart: Matrices, step: Step, outputs: Outputs, along: Along, consistency: Consistency,
-    edges: Reals, settings: Settings, models: Models, start: MotionState, out: MotionStates, log: Log,
+    problem: IntegrationProblem, method: Coefficients, dstates: MotionStates, dout: Histories, new: MotionState,
+    matrices: Matrices, apart: Matrices, step: RadauStep, outputs: Outputs, along: Along, consistency: Consistency,
+    edges: Reals, settings: RadauSettings, models: SampleModels, start: MotionState, out: MotionStates, log: Log,
 ) -> tuple[int, float, int, float]:  # fmt: skip
     """Run one sample between ``edges`` (s): status, time reached, unknown that moved most, smallest error of a step.
 

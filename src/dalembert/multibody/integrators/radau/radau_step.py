@@ -4,9 +4,15 @@ from dalembert.kernels.kernel import inner, kernel
 from dalembert.multibody.integrators.radau import radau_stages as stages
 from dalembert.multibody.integrators.radau.radau_coefficients import Coefficients
 from dalembert.multibody.integrators.radau.radau_newton import converge, factorise
-from dalembert.multibody.integrators.radau.radau_workspace import Settings, Step
+from dalembert.multibody.integrators.radau.radau_workspace import RadauSettings, RadauStep
 from dalembert.multibody.integrators.shared.matrices import Matrices, renew
-from dalembert.multibody.integrators.shared.problem import DONE, NEWTON_FAILED, SINGULAR, Models, Problem
+from dalembert.multibody.integrators.shared.problem import (
+    DONE,
+    NEWTON_FAILED,
+    SINGULAR,
+    IntegrationProblem,
+    SampleModels,
+)
 from dalembert.multibody.integrators.shared.settling import accelerate_roughly
 from dalembert.multibody.kernels.states import MotionState
 
@@ -25,9 +31,10 @@ def speed_of(n, scale, v):
 
 @kernel
 def attempt(
-    problem: Problem, method: Coefficients, models: Models, settings: Settings, t: float, target: float, within: float,
+    problem: IntegrationProblem, method: Coefficients, models: SampleModels, settings: RadauSettings, t: float,
+    target: float, within: float,
     before: float, earlier: float, stale: bool, made: float, speed: float, new: MotionState, matrices: Matrices,
-    room: Step,
+    room: RadauStep,
 ) -> tuple[int, float, float, float, int, float, int]:  # fmt: skip
     """A step from ``new``, which moves if the step is good.
 

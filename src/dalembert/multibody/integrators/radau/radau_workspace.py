@@ -11,14 +11,14 @@ from dalembert.multibody.integrators.radau.radau_stages import Buffers, Stages, 
 from dalembert.multibody.integrators.shared.consistent import Consistency, consistency
 from dalembert.multibody.integrators.shared.matrices import Matrices, Pattern, room
 from dalembert.multibody.integrators.shared.outputs import Outputs, outputs
-from dalembert.multibody.integrators.shared.problem import Problem
+from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.kernels.block_table import Call
 from dalembert.multibody.kernels.states import MotionState, resting
 
 _ENDS = 4  # of steps, through which outputs are interpolated
 
 
-class Settings(NamedTuple):
+class RadauSettings(NamedTuple):
     """What the compiled loop needs of `RadauIIA`.
 
     ``step`` 0: chosen by the error; ``damped``: whether forces may be; ``slow``: velocity in parts of the scales, 1/s,
@@ -33,7 +33,7 @@ class Settings(NamedTuple):
     slow: float
 
 
-class Step(NamedTuple):
+class RadauStep(NamedTuple):
     """Stages of a step and of the one before, buffers, and the calls of the stages.
 
     ``weights`` (stages + 1, 2 stages) of the prediction and ``moved`` (4, N + 1) are room.
@@ -58,7 +58,7 @@ class Along(NamedTuple):
     settle_end: Address
 
 
-class Workspace(NamedTuple):
+class RadauWorkspace(NamedTuple):
     """Work of a run: the state, its step, outputs, derivatives, consistent accelerations.
 
     ``apart``: matrices apart from the kept ones, for outputs.
@@ -67,16 +67,16 @@ class Workspace(NamedTuple):
     new: MotionState
     matrices: Matrices
     apart: Matrices
-    step: Step
+    step: RadauStep
     outputs: Outputs
     along: Along
     consistency: Consistency
 
 
 def workspace(
-    problem: Problem, method: Coefficients, pattern: Pattern, dstates: MotionState, calls: list[Call],
+    problem: IntegrationProblem, method: Coefficients, pattern: Pattern, dstates: MotionState, calls: list[Call],
     complex_calls: list[Call],
-) -> Workspace:  # fmt: skip
+) -> RadauWorkspace:  # fmt: skip
     """Room for a run; ``calls`` in real and in complex numbers: one a stage, and one more before them."""
     directions, width = dstates.x.shape
     count = len(method.c)
@@ -86,7 +86,7 @@ def workspace(
     if not pattern.varies:
         apart = apart._replace(heavy=matrices.heavy, mass=matrices.mass)  # which do not change in a motion
     out = outputs(_ENDS, dstates, work, complex_work)
-    step = Step(
+    step = RadauStep(
         stages(count, width), stages(count, width), buffers(count, width), np.zeros((count + 1, 2 * count)),
         out.moved[2:], works[1:], complex_work,
     )  # fmt: skip
@@ -95,4 +95,4 @@ def workspace(
         *(kernel.address if directions else 0 for kernel in (differentiate, settle_end_along)),
     )  # fmt: skip
     consistent = consistency(problem, work, complex_work, directions)
-    return Workspace(resting(width), matrices, apart, step, out, along, consistent)
+    return RadauWorkspace(resting(width), matrices, apart, step, out, along, consistent)

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dalembert.errors import SolveError
-from dalembert.multibody.integrators.shared.problem import Log, Models, Problem
+from dalembert.multibody.integrators.shared.problem import IntegrationProblem, Log, SampleModels
 from dalembert.multibody.integrators.shared.run import Run
 from dalembert.multibody.kernels.block_table import addresses
 from dalembert.multibody.kernels.elementary import STEP
@@ -28,7 +28,7 @@ class Sample(NamedTuple):
     lowered: Lowered
     edges: np.ndarray
     start: MotionState
-    models: Models
+    models: SampleModels
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +44,7 @@ class Batch:
 
     samples: Sequence[Lowered]
     perturbed: Sequence[Lowered]
-    problem: Problem
+    problem: IntegrationProblem
     end: float
     logged: bool
     states: MotionState
@@ -60,7 +60,7 @@ class Batch:
         directions = addresses(entry.complex_model.need("rates") for entry in self.perturbed)
         for number, (lowered, turns) in enumerate(zip(self.samples, self.begin_counting().tolist(), strict=True)):
             edges = self.problem.edges[number, : self.problem.stretches[number] + 1]
-            models = Models(lowered.real.need("rates").address, lowered.tangents.address, directions, turns)
+            models = SampleModels(lowered.real.need("rates").address, lowered.tangents.address, directions, turns)
             yield Sample(lowered, edges, row(self.states, number), models)
 
     @property
@@ -95,7 +95,7 @@ class Batch:
 def make_batch(
     samples: Sequence[Lowered],
     perturbed: Sequence[Lowered],
-    problem: Problem,
+    problem: IntegrationProblem,
     end: float,
     logged: bool,
     counted: Sequence[CountedAngle] = (),
@@ -112,7 +112,7 @@ def smooth_stretches(jumps: Sequence[float], end: float) -> np.ndarray:
     return np.concatenate([[0.0], times[np.diff(times, prepend=0.0) > close], [end]])
 
 
-def restarts(samples: Sequence[Lowered], problem: Problem) -> np.ndarray:
+def restarts(samples: Sequence[Lowered], problem: IntegrationProblem) -> np.ndarray:
     """Whether each stretch of each sample opens at the start or at a jump that is no change of a held table."""
     opens = np.ones((len(samples), problem.edges.shape[1]), dtype=np.int64)
     for own, edges, count, entry in zip(opens, problem.edges, problem.stretches, samples, strict=True):
@@ -123,7 +123,7 @@ def restarts(samples: Sequence[Lowered], problem: Problem) -> np.ndarray:
     return opens
 
 
-def cut(samples: Sequence[Lowered], problem: Problem, end: float) -> Problem:
+def cut(samples: Sequence[Lowered], problem: IntegrationProblem, end: float) -> IntegrationProblem:
     """The problem with the smooth stretches of each sample's motion, between the jumps of its loads."""
     stretches: list[np.ndarray] = [smooth_stretches(entry.jumps, end) for entry in samples]
     edges = np.zeros((len(samples), max(map(len, stretches))))

@@ -10,7 +10,7 @@ import numpy as np
 
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Complexes2, Integers, Reals, Reals2
-from dalembert.multibody.integrators.shared.problem import Models, Problem
+from dalembert.multibody.integrators.shared.problem import IntegrationProblem, SampleModels
 from dalembert.multibody.integrators.shared.settling import weigh_along
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals, tangent
 from dalembert.multibody.kernels.elementary import STEP
@@ -33,7 +33,7 @@ class Consistency(NamedTuple):
     along: Address
 
 
-def consistency(problem: Problem, work: int, complex_work: int, directions: int) -> Consistency:
+def consistency(problem: IntegrationProblem, work: int, complex_work: int, directions: int) -> Consistency:
     """Room for consistent accelerations."""
     exact, width = storage(problem.exact_layout), problem.exact_layout.size + 1
     along = accelerate_along.address if directions else 0
@@ -65,7 +65,13 @@ def add_masses(problem, complex_model, state, work, constraints, matrix):
 
 @kernel
 def accelerate(
-    problem: Problem, models: Models, t: float, within: float, state: MotionState, dstates: MotionStates, c: Consistency
+    problem: IntegrationProblem,
+    models: SampleModels,
+    t: float,
+    within: float,
+    state: MotionState,
+    dstates: MotionStates,
+    c: Consistency,
 ) -> bool:
     """Accelerations and multipliers that satisfy the equations of motion, and their derivatives.
 
@@ -103,7 +109,8 @@ def accelerate(
 
 @kernel
 def accelerate_along(
-    problem: Problem, directions: Integers, t: float, within: float, state: MotionState, dstates: MotionStates,
+    problem: IntegrationProblem, directions: Integers, t: float, within: float, state: MotionState,
+    dstates: MotionStates,
     c: Consistency, projects: bool,
 ) -> None:  # fmt: skip
     """Derivatives of consistent accelerations, or (``projects``) of the projected velocities, along all directions."""

@@ -13,7 +13,7 @@ from dalembert.arguments import Checked
 from dalembert.errors import ModelError, SolveError
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.shared.batch import Batch, make_batch, smooth_stretches
-from dalembert.multibody.integrators.shared.problem import Problem
+from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.integrators.shared.rotors import with_rotors, without_rotors
 from dalembert.multibody.integrators.shared.run import Run, make_problem
 from dalembert.multibody.model.lowered import Lowered
@@ -40,7 +40,7 @@ class Integrator(Checked, ABC):
         self,
         samples: Sequence[Lowered],
         perturbed: Sequence[Lowered],
-        problem: Problem,
+        problem: IntegrationProblem,
         end: float,
         *,
         logged: bool = True,

@@ -6,7 +6,7 @@ import numpy as np
 
 from dalembert.kernels.kernel import inlined, inner, kernel
 from dalembert.kernels.words import Address, Integers, Integers2, Reals, Reals2
-from dalembert.multibody.integrators.shared.problem import Problem
+from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.kernels.assembly import set_signals, tangent
 from dalembert.multibody.kernels.linear import (
     DENSE,
@@ -118,7 +118,7 @@ def weigh_masses(matrices: Matrices, complex_model: Address, n: int, state: Moti
 
 @kernel
 def renew(
-    problem: Problem, matrices: Matrices, complex_model: Address, damped: bool, t: float, within: float,
+    problem: IntegrationProblem, matrices: Matrices, complex_model: Address, damped: bool, t: float, within: float,
     state: MotionState, complex_work: Address,
 ) -> bool:  # fmt: skip
     """Evaluate stiffness (and damping, if ``damped``), and factorise [M, J^T; J, 0]; whether it is regular.

@@ -8,7 +8,7 @@ from dalembert.kernels.kernel import kernel
 from dalembert.kernels.words import Address, Complexes2, Integers, Reals2, Reals3
 from dalembert.multibody.integrators.shared.ends import Ends, ends, interpolate_ends, support, weigh_ends, write
 from dalembert.multibody.integrators.shared.matrices import Matrices, renew
-from dalembert.multibody.integrators.shared.problem import POSITION, Models, Problem
+from dalembert.multibody.integrators.shared.problem import POSITION, IntegrationProblem, SampleModels
 from dalembert.multibody.integrators.shared.settling import settle, settle_along
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.states import Histories, MotionState, MotionStates, copy, resting, row, rows
@@ -44,7 +44,8 @@ def outputs(count: int, dstates: MotionState, work: int, complex_work: int) -> O
 
 @kernel
 def record(
-    problem: Problem, matrices: Matrices, far: bool, models: Models, room: Outputs, within: float, out: MotionStates,
+    problem: IntegrationProblem, matrices: Matrices, far: bool, models: SampleModels, room: Outputs, within: float,
+    out: MotionStates,
     dout: Histories, due: int,
 ) -> bool:  # fmt: skip
     """Write the state at an output time in the last step or at its end: on the constraints, with its accelerations.
@@ -79,7 +80,8 @@ def record(
 
 @kernel
 def record_along(
-    problem: Problem, matrices: Matrices, directions: Integers, room: Outputs, whole: bool, oldest: int, within: float,
+    problem: IntegrationProblem, matrices: Matrices, directions: Integers, room: Outputs, whole: bool, oldest: int,
+    within: float,
     dout: Histories, due: int,
 ) -> None:  # fmt: skip
     """Write the derivatives of the state at an output time along all directions.

@@ -10,7 +10,7 @@ import numpy as np
 
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Complexes2, Integers, Reals, Reals2
-from dalembert.multibody.integrators.shared.problem import POSITION, VELOCITY, Models, Problem
+from dalembert.multibody.integrators.shared.problem import POSITION, VELOCITY, IntegrationProblem, SampleModels
 from dalembert.multibody.kernels.assembly import constraint_forces, constraint_rates, set_signals, tangent
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import DENSE, Factors, factorise, resized, solve, storage
@@ -42,7 +42,7 @@ class Partition(NamedTuple):
     along: Address
 
 
-def room(problem: Problem, directions: int) -> Partition:
+def room(problem: IntegrationProblem, directions: int) -> Partition:
     """Room for a partition, for a dense matrix of the problem (`Structure.dense`); else for its Jacobian only."""
     layout, n = problem.exact_layout, problem.n
     m = layout.size - n if layout.kind == DENSE else 0
@@ -63,7 +63,7 @@ def linearise(problem, complex_model, state, complex_work, partition):
 
 
 @kernel
-def choose(problem: Problem, partition: Partition, dependent: float) -> None:
+def choose(problem: IntegrationProblem, partition: Partition, dependent: float) -> None:
     """Order coordinates and constraints by complete pivoting of the constraint Jacobian, in units of their scales.
 
     A constraint whose pivot, against the first one, is at most ``dependent`` follows from the others.
@@ -192,7 +192,8 @@ def _close(problem, model, complex_model, state, work, complex_work, partition):
 
 @kernel
 def settle(
-    problem: Problem, models: Models, t: float, within: float, levels: int, state: MotionState, dstates: MotionStates,
+    problem: IntegrationProblem, models: SampleModels, t: float, within: float, levels: int, state: MotionState,
+    dstates: MotionStates,
     work: Address, complex_work: Address, complex_state: Complexes2, partition: Partition,
 ) -> bool:  # fmt: skip
     """Make the dependent entries of a state satisfy the constraints, and those of its derivatives along directions.
@@ -219,7 +220,7 @@ def settle(
 
 @kernel
 def settle_along(
-    problem: Problem, directions: Integers, t: float, within: float, levels: int, state: MotionState,
+    problem: IntegrationProblem, directions: Integers, t: float, within: float, levels: int, state: MotionState,
     dstates: MotionStates, complex_work: Address, complex_state: Complexes2, partition: Partition,
 ) -> None:  # fmt: skip
     """Derivatives of the dependent entries of a settled state, one direction for each of ``dstates``."""

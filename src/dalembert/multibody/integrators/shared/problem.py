@@ -23,7 +23,7 @@ class Reduced(NamedTuple):
     exact_layout: Layout
 
 
-class Problem(NamedTuple):
+class IntegrationProblem(NamedTuple):
     """What does not change from sample to sample: sizes, scales, where matrix entries go, times.
 
     ``n`` coordinates; ``scale`` (N + 1,); ``exact_slots`` and ``exact_layout`` of a full matrix that is renewed often;
@@ -43,7 +43,7 @@ class Problem(NamedTuple):
     projected: bool = False
 
 
-class Models(NamedTuple):
+class SampleModels(NamedTuple):
     """Addresses of a sample's models: in real and in complex numbers, and complex ones moved along each direction.
 
     ``turns``: address of the record that counts the turns of angles, 0 for none.

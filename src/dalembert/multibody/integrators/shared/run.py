@@ -6,7 +6,13 @@ from functools import partial
 import numpy as np
 
 from dalembert.errors import SolveError
-from dalembert.multibody.integrators.shared.problem import DIVERGED, SINGULAR, TOO_MANY_STEPS, Problem, Reduced
+from dalembert.multibody.integrators.shared.problem import (
+    DIVERGED,
+    SINGULAR,
+    TOO_MANY_STEPS,
+    IntegrationProblem,
+    Reduced,
+)
 from dalembert.multibody.kernels.states import MotionState
 from dalembert.multibody.model.lowered import Lowered, scales
 
@@ -31,11 +37,11 @@ class Run:
     turns: np.ndarray = field(default_factory=partial(np.zeros, (0, 0)))
 
 
-def make_problem(lowered: Lowered, times: np.ndarray) -> Problem:
+def make_problem(lowered: Lowered, times: np.ndarray) -> IntegrationProblem:
     """What all samples of a structure share."""
     structure = lowered.structure
     reduced = Reduced(structure.reduction.increments, *structure.reduced.kept, *structure.reduced.fresh)
-    return Problem(
+    return IntegrationProblem(
         structure.n, scales(lowered), *structure.full.fresh, reduced, np.asarray(times, dtype=float), np.zeros((0, 0)),
         np.zeros(0, dtype=np.int64),
     )  # fmt: skip

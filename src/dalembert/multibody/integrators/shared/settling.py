@@ -8,7 +8,7 @@ for derivatives, too: they are iterated after the state, with the same factorisa
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Complexes2, Reals2
 from dalembert.multibody.integrators.shared.matrices import Matrices, add_inertia
-from dalembert.multibody.integrators.shared.problem import ACCELERATION, POSITION, VELOCITY, Problem
+from dalembert.multibody.integrators.shared.problem import ACCELERATION, POSITION, VELOCITY, IntegrationProblem
 from dalembert.multibody.kernels.assembly import constraint_forces, constraint_rates, residual
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import solve
@@ -117,7 +117,13 @@ def balanced(model, n, state, work, f, unheld, at, still):
 
 @kernel
 def settle(
-    problem: Problem, matrices: Matrices, model: Address, state: MotionState, moved: Reals2, work: Address, first: int
+    problem: IntegrationProblem,
+    matrices: Matrices,
+    model: Address,
+    state: MotionState,
+    moved: Reals2,
+    work: Address,
+    first: int,
 ) -> bool:
     """Accelerations and multipliers of a state; if ``first`` says so, coordinates and velocities are moved before.
 
@@ -169,7 +175,8 @@ def accelerate_roughly(problem, matrices, model, state, work, room):
 
 @kernel
 def settle_along(
-    problem: Problem, matrices: Matrices, perturbed: Address, state: MotionState, dstate: MotionState, moved: Reals2,
+    problem: IntegrationProblem, matrices: Matrices, perturbed: Address, state: MotionState, dstate: MotionState,
+    moved: Reals2,
     work: Address, complex_state: Complexes2, first: int,
 ) -> None:  # fmt: skip
     """Derivative of a settled state along a direction, from that of the state before; signals in ``work``.

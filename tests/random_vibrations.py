@@ -156,7 +156,7 @@ def _add_contact(
     if pressed and rng.random() < 0.3:
         preload, gap = 0.0, float(rng.uniform(-0.5, 0.5)) * force
     if rigid:
-        law, normal_stiffness = Rigid(penalty=stiffness, kind="displacement", gap=gap), stiffness
+        law, normal_stiffness = Rigid(penalty=stiffness, prediction="displacement", gap=gap), stiffness
     else:
         law = ElasticSlider(stiffness, normal_stiffness if pressed else None, gap)
     own.system.add(

@@ -112,13 +112,13 @@ class Result(Displayed):
                 "or read the file by the version that wrote it"
             ) from error
 
-    def figures(self, *beside: object, **options: Any) -> dict[str, Any]:
+    def figures(self, *supplements: object, **options: Any) -> dict[str, Any]:
         """Plotly figures by name; arguments as those of :func:`dalembert.report.figures`."""
-        return resolve_name("dalembert.report:figures")(self, *beside, **options)
+        return resolve_name("dalembert.report:figures")(self, *supplements, **options)
 
-    def report(self, path: str | Path, *beside: object, **options: Any) -> Any:
+    def report(self, path: str | Path, *supplements: object, **options: Any) -> Any:
         """Write an HTML report that opens offline; arguments as those of :func:`dalembert.report.report`."""
-        return resolve_name("dalembert.report:report")(self, path, *beside, **options)
+        return resolve_name("dalembert.report:report")(self, path, *supplements, **options)
 
 
 class EndedResult(Result):

@@ -88,8 +88,8 @@ def test_a_second_run_in_the_same_folder_is_refused(start, folder, tmp_path):
 
 def test_a_full_disk_gives_a_sentence(start, folder):
     """A limit on the size of files stands for a disk without room: the report does not fit."""
-    room = 300_000
-    process = start(5, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (room, room)))
+    scratch = 300_000
+    process = start(5, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (scratch, scratch)))
     _, errors = process.communicate(timeout=120)
     assert process.returncode == 1
     assert "Traceback" not in errors

@@ -105,7 +105,7 @@ def test_the_amplitude_is_right_to_half_a_percent_or_refused(record_evidence, ki
 def test_the_velocity_kind_is_accepted_with_more_harmonics(record_evidence) -> None:
     errors = []
     for friction, ratio in [(0.1, 0.4), (0.3, 0.6), (0.3, 1.3), (0.3, 2.0)]:
-        curve = response(friction, ratio, Rigid(kind="velocity"), harmonics=45)
+        curve = response(friction, ratio, Rigid(prediction="velocity"), harmonics=45)
         assert curve.success
         errors.append(abs(curve.amplitude("m")[0] / exact(friction, ratio)[0] - 1))
     record_evidence(
@@ -124,7 +124,7 @@ def test_the_velocity_kind_is_accepted_with_more_harmonics(record_evidence) -> N
 def test_chosen_harmonics_reach_the_exact_amplitude(record_evidence, reference: str, cases: list) -> None:
     errors, chosen = [], []
     for friction, ratio in cases:
-        curve = response(friction, ratio, Rigid(kind="velocity"), "auto")
+        curve = response(friction, ratio, Rigid(prediction="velocity"), "auto")
         assert curve.success
         amplitude, stops = exact(friction, ratio)
         assert (stops > 0) == ("with stops" in reference)

@@ -85,7 +85,7 @@ class Format(ABC):
         DataError
         """
 
-    def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
+    def all_columns(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
         """Return all columns of numbers of a file, with the unit that it names, before one is chosen as the times.
 
         By default those that lie along a column `t`, and that one.

@@ -113,7 +113,7 @@ def preview(path: Path, separator: str = AUTO, decimal: str = AUTO, absent: Sequ
     form = known_formats()[name]()
     if isinstance(form, LinesFormat):
         return _text(path, name, form.lines(path), separator, decimal, gaps_of(absent))
-    columns = [PreviewColumn(key, unit, *_real(array)) for key, (array, unit) in form.held(path).items()]
+    columns = [PreviewColumn(key, unit, *_real(array)) for key, (array, unit) in form.all_columns(path).items()]
     longest = Counter(len(column.values) for column in columns).most_common(1)
     columns = [column for column in columns if len(column.values) == longest[0][0]]
     if not columns:

@@ -99,14 +99,14 @@ def _contradicted(
 
 
 @np.errstate(all="ignore")
-def stepped(numbers: Callable[[complex], np.ndarray], scale: float, room: tuple[float, float]) -> Lost | None:
+def stepped(numbers: Callable[[complex], np.ndarray], scale: float, scratch: tuple[float, float]) -> Lost | None:
     """A number that follows a parameter in steps, as after rounding; None if there is none.
 
     Parameters
     ----------
     numbers, scale
         As of :func:`lost_step`.
-    room : (least, most)
+    workspace : (least, most)
         Shifts of the parameter up to its bounds.
 
     Examples
@@ -116,15 +116,15 @@ def stepped(numbers: Callable[[complex], np.ndarray], scale: float, room: tuple[
     >>> stepped(lambda shift: np.array([np.tanh(1e3 * shift)]), 1.0, (-0.5, 0.5)) is None
     True
     """
-    span = room[1] - room[0]
-    wide = _Intervals.around(numbers, scale, room, span, 1)
-    flat = _Intervals.around(numbers, scale, room, span, _INTERVALS) if np.any(wide.differ & wide.flat) else None
+    span = scratch[1] - scratch[0]
+    wide = _Intervals.around(numbers, scale, scratch, span, 1)
+    flat = _Intervals.around(numbers, scale, scratch, span, _INTERVALS) if np.any(wide.differ & wide.flat) else None
     if flat and (lost := flat.steps(numbers, _ALL_FLAT)):
         return lost
     width = min(_WIDTH * scale, span / _INTERVALS)
-    intervals = _Intervals.around(numbers, scale, room, 2 * width, 1)
+    intervals = _Intervals.around(numbers, scale, scratch, 2 * width, 1)
     while np.any(intervals.differ) and _INTERVALS * width <= span:
-        intervals = _Intervals.around(numbers, scale, room, _INTERVALS * width, _INTERVALS)
+        intervals = _Intervals.around(numbers, scale, scratch, _INTERVALS * width, _INTERVALS)
         if lost := intervals.steps(numbers, _MOST):
             return lost
         width *= 4
@@ -142,10 +142,15 @@ class _Intervals(NamedTuple):
 
     @classmethod
     def around(
-        cls, numbers: Callable[[complex], np.ndarray], scale: float, room: tuple[float, float], size: float, count: int
+        cls,
+        numbers: Callable[[complex], np.ndarray],
+        scale: float,
+        scratch: tuple[float, float],
+        size: float,
+        count: int,
     ) -> "_Intervals":
         """Intervals around the parameter, moved inside its bounds."""
-        begin = np.clip(-size / 2, room[0], max(room[1] - size, room[0]))
+        begin = np.clip(-size / 2, scratch[0], max(scratch[1] - size, scratch[0]))
         points = begin + size * np.linspace(0.0, 1.0, 2 * count + 1)
         values, slopes = map(np.array, zip(*(_complex_step(numbers, point, scale) for point in points), strict=True))
         first, middle, last = slopes[:-1:2], slopes[1::2], slopes[2::2]
@@ -261,8 +266,8 @@ def check_steps(
                 f"{lost.by_differences:.6g} by differences. A function of the model drops the imaginary part, as "
                 f"{DROPPING} do. {REMEDY}"
             )
-        room = parameters.lower[column] - inside[column], parameters.upper[column] - inside[column]
-        lost = attempted(partial(stepped, along, parameters.scale[column], room)) if thorough else None
+        scratch = parameters.lower[column] - inside[column], parameters.upper[column] - inside[column]
+        lost = attempted(partial(stepped, along, parameters.scale[column], scratch)) if thorough else None
         if lost:
             raise InputError(
                 f"{place(lost.entry)} follows {name!r} in steps, as after rounding: its derivative is "

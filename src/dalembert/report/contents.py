@@ -76,13 +76,13 @@ def contents(result: object, options: ReportOptions) -> tuple[Headline, *tuple[S
     return headline, *others, *options.sections, *provenance(getattr(result, "provenance", {}), options.study)
 
 
-def figures(result: object, *beside: object, **options: Any) -> dict[str, go.Figure]:
+def figures(result: object, *supplements: object, **options: Any) -> dict[str, go.Figure]:
     """Every figure that a report of the result would show, by name.
 
     Parameters
     ----------
     result : Fit, Trajectory, FrequencyCurve, Propagation, Comparison, BandFit, ParameterSet, Profiles …
-    *beside, **options
+    *supplements, **options
         As in :func:`dalembert.report.report`.
 
     Returns
@@ -103,6 +103,6 @@ def figures(result: object, *beside: object, **options: Any) -> dict[str, go.Fig
     """
     return {
         plot.name: plot.figure
-        for section in contents(result, report_options(beside, **options))
+        for section in contents(result, report_options(supplements, **options))
         for plot in section.plots
     }

@@ -17,7 +17,7 @@ class ReportOptions:
 
     Parameters
     ----------
-    beside : tuple
+    supplements : tuple
         Other results, mappings of str to results (one for each experiment), and sections.
     title : str, optional
     notes : sequence of str
@@ -31,7 +31,7 @@ class ReportOptions:
         About the run, before those of the result.
     """
 
-    beside: tuple[Any, ...] = ()
+    supplements: tuple[Any, ...] = ()
     title: str | None = None
     notes: Sequence[str] = ()
     study: str | None = None
@@ -53,7 +53,7 @@ class ReportOptions:
         """
         results = {
             name: value
-            for item in self.beside
+            for item in self.supplements
             for name, value in (item if isinstance(item, Mapping) else {"": item}).items()
             if isinstance(value, kind)
         }
@@ -67,7 +67,7 @@ class ReportOptions:
     @property
     def sections(self) -> list[Section]:
         """The user's sections."""
-        return [item for item in self.beside if isinstance(item, Section)]
+        return [item for item in self.supplements if isinstance(item, Section)]
 
     def refuse_others(self) -> None:
         """Refuse what no section has taken.
@@ -77,7 +77,7 @@ class ReportOptions:
         InputError
             For anything else than results that a section has taken, and sections.
         """
-        for item in self.beside:
+        for item in self.supplements:
             for value in item.values() if isinstance(item, Mapping) else [item]:
                 if not isinstance(value, Section) and not any(value is shown_result for shown_result in self.taken):
                     raise InputError(
@@ -87,7 +87,7 @@ class ReportOptions:
                     )
 
 
-def report_options(beside: tuple[Any, ...], **options: Any) -> ReportOptions:
+def report_options(supplements: tuple[Any, ...], **options: Any) -> ReportOptions:
     """Return the options from the arguments of :func:`dalembert.report.report`.
 
     Raises
@@ -95,10 +95,10 @@ def report_options(beside: tuple[Any, ...], **options: Any) -> ReportOptions:
     InputError
         For an unknown option.
     """
-    known = {item.name for item in fields(ReportOptions) if item.init} - {"beside"}
+    known = {item.name for item in fields(ReportOptions) if item.init} - {"supplements"}
     for name in options:
         if name not in known:
             raise InputError(unknown("option", name, sorted(known), "report"))
     lists = {name: tuple(options[name]) for name in ("points", "channels", "dofs") if name in options}
-    results = tuple(item for item in beside if item is not None)
+    results = tuple(item for item in supplements if item is not None)
     return ReportOptions(results, **{**options, **lists, "truth": options.get("truth") or {}})

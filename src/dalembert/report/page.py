@@ -24,7 +24,7 @@ from dalembert.report.section import SAFE
 def report(
     result: object,
     path: str | os.PathLike[str],
-    *beside: object,
+    *supplements: object,
     notes: str | Sequence[str] = (),
     **options: Any,
 ) -> Path:
@@ -36,7 +36,7 @@ def report(
         A result of this package, or of a kind that :func:`sections_of` registered.
     path : path
         The file is written whole or not at all; its folder is made.
-    *beside
+    *supplements
         Other results that are shown with it,
         and sections of yours (:class:`ReportSection`). A fit is shown with a trajectory
         at the identified values, a population, profiles and a prediction; of several experiments, give a mapping of
@@ -64,7 +64,7 @@ def report(
         For a result that no sections are registered for, and for what no section shows.
     """
     paragraphs = notes.strip().split("\n\n") if isinstance(notes, str) else notes
-    sections = contents(result, report_options(beside, notes=[text for text in paragraphs if text], **options))
+    sections = contents(result, report_options(supplements, notes=[text for text in paragraphs if text], **options))
     templates = environment()
     scripts = [Markup(get_plotlyjs()), Markup(_packaged("page.js"))]
     page = templates.get_template("page.html").render(

@@ -59,11 +59,11 @@ class Plot:
 
 @dataclass(frozen=True)
 class Row:
-    """Figures beside each other, where the page is wide enough; below each other if not ``beside``."""
+    """Figures side by side, where the page is wide enough; below each other if not ``side_by_side``."""
 
     macro: ClassVar[str] = "figures"
     plots: Sequence[Plot]
-    beside: bool = True
+    side_by_side: bool = True
 
 
 @dataclass(frozen=True)

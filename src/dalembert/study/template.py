@@ -22,7 +22,7 @@ class Template:
         What a study made from it is called, unless it is given another name.
     title, description : str
     text : str
-    beside : dict of str to str
+    files : dict of str to str
         Files beside it.
     """
 
@@ -30,7 +30,7 @@ class Template:
     title: str
     description: str
     text: str
-    beside: dict[str, str]
+    files: dict[str, str]
 
 
 def templates() -> dict[str, Template]:
@@ -63,6 +63,6 @@ def begin(template: str, folder: Path) -> Path:
     study = folder / f"{folder.resolve().name}.toml"
     write_text(study, known[template].text)
     schema_file.write(folder)
-    for name, text in known[template].beside.items():
+    for name, text in known[template].files.items():
         write_text(folder / name, text)
     return study

@@ -151,10 +151,10 @@ def _refine(
 ) -> tuple[np.ndarray, np.ndarray]:
     """As :func:`_pick`, refined."""
     from dalembert.kernels.preparation import prepare
-    from dalembert.surrogate.extremes import extremes, room  # compiled: not before it is needed
+    from dalembert.surrogate.extremes import extremes, scratch  # compiled: not before it is needed
 
     prepare([extremes])
     refined, at = np.empty((2, *values.shape[:2])), np.empty((2, *values.shape[:2], low.shape[1]))
     arrays = (np.ascontiguousarray(entry) for entry in (values, spread.grid, spread.sides, low, high))
-    extremes(*arrays, polynomial.rows, refined, at, room(polynomial.rows, starts))
+    extremes(*arrays, polynomial.rows, refined, at, scratch(polynomial.rows, starts))
     return refined, at

@@ -13,7 +13,7 @@ CONVERGED = 1e-15  # a step that promises less than this part of the sum of |coe
 
 
 class ExtremesWorkspace(NamedTuple):
-    """Room for a box, in d directions, and for starts in it.
+    """Workspace for a box, in d directions, and for starts in it.
 
     Parameters
     ----------
@@ -44,8 +44,8 @@ class ExtremesWorkspace(NamedTuple):
     places: Integers
 
 
-def room(rows: Rows, starts: int) -> ExtremesWorkspace:
-    """Room for so many starts."""
+def scratch(rows: Rows, starts: int) -> ExtremesWorkspace:
+    """Workspace for so many starts."""
     size = len(rows.degrees)
     return ExtremesWorkspace(
         *np.empty((5, size)),  # from ``eta`` to ``trial_gradient``
@@ -169,10 +169,16 @@ def _step(hessian, gradient, free, damping, factor, step):
 
 
 @inner
-def _minimum(rows, low, high, small, room):
+def _minimum(rows, low, high, small, scratch):
     """Local minimum in a box by Newton's method projected onto it; η in place, the value returned."""
-    eta, gradient, step, trial, trial_gradient = room.eta, room.gradient, room.step, room.trial, room.trial_gradient
-    size, coefficients, hessian, free, tables = len(eta), room.signed, room.hessian, room.free, room.tables
+    eta, gradient, step, trial, trial_gradient = (
+        scratch.eta,
+        scratch.gradient,
+        scratch.step,
+        scratch.trial,
+        scratch.trial_gradient,
+    )
+    size, coefficients, hessian, free, tables = len(eta), scratch.signed, scratch.hessian, scratch.free, scratch.tables
     _ladders(eta, rows.degrees, tables)
     value = _value_and_gradient(rows, tables, coefficients, gradient)
     for _ in range(ITERATIONS):
@@ -193,7 +199,7 @@ def _minimum(rows, low, high, small, room):
         for _ in range(DAMPINGS):
             promised = 0.0
             clipped = False
-            if _step(hessian, gradient, free, damping, room.factor, step):
+            if _step(hessian, gradient, free, damping, scratch.factor, step):
                 for k in range(size):
                     trial[k] = min(max(eta[k] + step[k], low[k]), high[k])
                     promised -= gradient[k] * (trial[k] - eta[k])
@@ -255,7 +261,7 @@ def _signed(coefficients, sign, signed):
 @kernel
 def extremes(
     values: Reals3, grid: Reals2, sides: Integers, low: Reals2, high: Reals2, rows: Rows, bounds: Reals3,
-    at: Reals4, room: ExtremesWorkspace,
+    at: Reals4, scratch: ExtremesWorkspace,
 ) -> None:  # fmt: skip
     """Refine the extremes of a scan; all in coordinates η of the polynomial.
 
@@ -274,22 +280,22 @@ def extremes(
         Filled with the smallest and the largest values.
     at : array, shape (2, boxes, outputs, d)
         Filled with where they are.
-    room : Room
+    workspace : Room
         Work space. Its number of starts limits how many points of the scan are refined for each extreme.
     """
-    eta, size = room.eta, low.shape[1]
+    eta, size = scratch.eta, low.shape[1]
     for b in range(len(low)):
         for o in range(len(rows.coefficients)):
             for side in range(2):
                 sign = 1.0 - 2.0 * side
-                small = CONVERGED * _signed(rows.coefficients[o], sign, room.signed)
+                small = CONVERGED * _signed(rows.coefficients[o], sign, scratch.signed)
                 lowest = np.inf
                 # Several valleys: that of the extreme need not have the lowest point of the scan.
-                for start in range(_lowest_valleys(values[b, o], sides, sign, room.best, room.places)):
+                for start in range(_lowest_valleys(values[b, o], sides, sign, scratch.best, scratch.places)):
                     for k in range(size):
-                        part = grid[room.places[start], k]
+                        part = grid[scratch.places[start], k]
                         eta[k] = high[b, k] if part == 1 else low[b, k] + part * (high[b, k] - low[b, k])
-                    value = _minimum(rows, low[b], high[b], small, room)
+                    value = _minimum(rows, low[b], high[b], small, scratch)
                     if value < lowest:
                         lowest = value
                         for k in range(size):

@@ -19,7 +19,7 @@ def leja(number: int) -> np.ndarray:
     >>> leja(4).round(6).tolist()
     [0.0, 1.0, -1.0, 0.57735]
     """
-    return _sequence(_room(number))[:number]
+    return _sequence(_workspace(number))[:number]
 
 
 def hierarchical(number: int) -> tuple[np.ndarray, np.ndarray]:
@@ -37,7 +37,7 @@ def hierarchical(number: int) -> tuple[np.ndarray, np.ndarray]:
     >>> hierarchical(3)[1][2].round(12).tolist()  # x (x − 1)/2 = (1 − 2x + (2x² − 1))/4
     [0.25, -0.5, 0.25]
     """
-    values, coefficients = _tables(_room(number))
+    values, coefficients = _tables(_workspace(number))
     return values[:number, :number], coefficients[:number, :number]
 
 
@@ -54,7 +54,7 @@ def hierarchical_at(x: np.ndarray, number: int) -> np.ndarray:
     return values
 
 
-def _room(number: int) -> int:
+def _workspace(number: int) -> int:
     """Return the least of 16, 32, 64 … that is at least ``number``: few sequences and tables are computed."""
     return max(SMALLEST, 1 << (number - 1).bit_length())
 

@@ -49,7 +49,7 @@ def test_a_save_without_room_keeps_text_and_file(workspace, full):
     assert sorted(entry.name for entry in path.parent.iterdir()) == ["study.schema.json", "study.toml"]
 
 
-def test_a_text_is_checked_without_room(workspace, full):
+def test_a_text_is_checked_without_workspace(workspace, full):
     path = workspace.study(workspace.create("mine", TEXT))
     full()
     assert read(path, TEXT).study is not None
@@ -64,7 +64,7 @@ def test_a_new_study_is_there_whole_or_not_at_all(workspace, full, tmp_path):
     assert not list((tmp_path / "studies").iterdir())
 
 
-def test_a_file_that_was_there_outlives_an_upload_without_room(workspace, full):
+def test_a_file_that_was_there_outlives_an_upload_without_workspace(workspace, full):
     study = workspace.create("mine", TEXT)
     placed = workspace.put(study, "data.csv", b"t,x\n")
     full()

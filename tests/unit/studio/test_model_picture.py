@@ -53,7 +53,7 @@ def draw(tmp_path):
 
     def draw(text: str, template: str = "", box=None, **values: float) -> Picture:
         path = tmp_path / "study.toml"
-        for name, content in (templates()[template].beside if template else {}).items():
+        for name, content in (templates()[template].files if template else {}).items():
             (tmp_path / name).write_text(content)
         study = read(path, text).study
         start = {} if study is None else study.parameters.mapping(study.parameters.start)

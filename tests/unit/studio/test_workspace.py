@@ -194,6 +194,6 @@ def test_what_is_too_large_or_no_text_is_refused(workspace, monkeypatch):
 def test_a_template_is_a_study_in_order(workspace, one):
     study = workspace.create(one.name, one.text)
     assert workspace.free(one.name) == f"{one.name}-2"
-    for name, content in one.beside.items():
+    for name, content in one.files.items():
         workspace.put(study, name, content.encode())
     assert load(workspace.study(study)).title == one.title

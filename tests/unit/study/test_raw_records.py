@@ -16,7 +16,7 @@ NUMBER = re.compile(r"-?\d+[.,]?\d*")
 def test_the_template_holds_what_the_script_writes(tmp_path):
     """To a unit of the last digit, since integrators differ between machines."""
     raw_records.main(tmp_path)
-    for name, text in templates()["records"].beside.items():
+    for name, text in templates()["records"].files.items():
         written = (tmp_path / name).read_text(encoding="utf-8")
         assert NUMBER.sub("", written) == NUMBER.sub("", text)
         numbers = [[float(one.replace(",", ".")) for one in NUMBER.findall(each)] for each in (text, written)]

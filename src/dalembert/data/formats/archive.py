@@ -30,10 +30,10 @@ class Archive(Format):
             content = form.columns(inner, request)
         return replace(content, path=path, layout=f"{inner.name}: {content.layout}".rstrip(": "))
 
-    def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
+    def all_columns(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
         with TemporaryDirectory() as folder:
             form, inner = _unpacked(path, Path(folder))
-            return form.held(inner)
+            return form.all_columns(inner)
 
     def trial_labels(self, path: Path, column: str | int, separator: str, decimal: str) -> list[str]:
         with TemporaryDirectory() as folder:

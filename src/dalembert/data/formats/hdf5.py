@@ -25,7 +25,7 @@ class Hdf5(Format):
         named = {label: units[_array(label)] for label in (*columns, request.along or "") if _array(label) in units}
         return Columns(path, request.along or "sample", along, columns, named | dated)
 
-    def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
+    def all_columns(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
         arrays, units = _held(path)
         return {name: (array, units.get(_array(name), "")) for name, array in of_numbers(parts(arrays)).items()}
 

@@ -25,7 +25,7 @@ class Json(Format):
     def columns(self, path: Path, request: Request) -> Columns:
         return json_columns(path, request.time, request.names, request.missing, request.trial)
 
-    def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
+    def all_columns(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
         arrays = {name: _array(path, name, entries) for name, entries in _by_name(path, _content(path)).items()}
         return {name: (array, "") for name, array in of_numbers(arrays).items()}
 

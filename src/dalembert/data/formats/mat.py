@@ -26,7 +26,7 @@ class Mat(Format):
     def columns(self, path: Path, request: Request) -> Columns:
         return mat_columns(path, request.along, request.labels, request.missing)
 
-    def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
+    def all_columns(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
         content = _content(path)
         columns = of_numbers(parts(content.arrays, 1, "()"))
         if not columns and content.unread:

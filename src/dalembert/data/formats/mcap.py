@@ -47,7 +47,7 @@ class Mcap(Format):
         )
         return Columns(path, request.along or "sample", *chosen(path, arrays, request.along, labels, request.missing))
 
-    def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
+    def all_columns(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
         topics = _topics(path)
         several = len(topics) > 1
         return {

@@ -41,7 +41,7 @@ class Mdf(Format):
         units = {name: unit for name, (_, _, unit) in picked.items() if unit}
         return Columns(path, request.along or "sample", along, columns, units | dated)
 
-    def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
+    def all_columns(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
         signals = _signals(path)
         times = next((along for along, _, _ in signals.values()), np.zeros(0))
         arrays = {TIME: (times, "")} | {name: (values, unit) for name, (_, values, unit) in signals.items()}

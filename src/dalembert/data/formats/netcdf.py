@@ -25,7 +25,7 @@ class Netcdf(Format):
     def columns(self, path: Path, request: Request) -> Columns:
         return netcdf_columns(path, request.along, request.labels, request.missing)
 
-    def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
+    def all_columns(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
         dataset = _dataset(path)
         along = next((str(name) for name, one in dataset.variables.items() if one.dims == (name,)), "")
         parts = [part for name in dataset.variables for part in _parts(dataset, name, along)]

@@ -20,7 +20,7 @@ class Npz(Format):
         table, time = spread(_held(path), request.along), request.along
         return Columns(path, time or "sample", *chosen(path, table, time, request.labels, request.missing))
 
-    def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
+    def all_columns(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
         return {name: (array, "") for name, array in of_numbers(parts(_held(path))).items()}
 
 

@@ -19,7 +19,7 @@ class Parquet(Format):
     def columns(self, path: Path, request: Request) -> Columns:
         return parquet_columns(path, request.along, request.labels, request.missing)
 
-    def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
+    def all_columns(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
         return {name: (array, "") for name, array in of_numbers(_held(path)).items()}
 
 

@@ -24,7 +24,7 @@ class Tdms(Format):
         named = {name: unit for name, unit in units.items() if name in columns or name == request.along}
         return Columns(path, request.along or "sample", along, columns, named | dated)
 
-    def held(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
+    def all_columns(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
         arrays, units = _held(path)
         return {name: (array, units.get(name, "")) for name, array in of_numbers(arrays).items()}
 

@@ -10,7 +10,7 @@ import numpy as np
 from dalembert.kernels.preparation import prepare
 from dalembert.multibody.integrators.generalized_alpha.adjoint_sweep import StateHistory, Steps
 from dalembert.multibody.integrators.generalized_alpha.generalized_alpha import GeneralizedAlpha
-from dalembert.multibody.integrators.generalized_alpha.replay import ReplayRoom, replay, replay_room
+from dalembert.multibody.integrators.generalized_alpha.replay import ReplayWorkspace, replay, replay_workspace
 from dalembert.multibody.integrators.shared.consistent import accelerate, consistency
 from dalembert.multibody.integrators.shared.problem import DONE, IntegrationProblem, SampleModels
 from dalembert.multibody.integrators.shared.run import cut_down, explain
@@ -51,18 +51,18 @@ class ReplayedMotion:
         return self.lowered.real.call(), self.lowered.tangents.call()
 
     @cached_property
-    def _room(self) -> ReplayRoom:
+    def _workspace(self) -> ReplayWorkspace:
         prepare([replay])
         real, complex_ = self._calls
-        return replay_room(self.problem, real.address, complex_.address)
+        return replay_workspace(self.problem, real.address, complex_.address)
 
     def begun(self, stretch: Stretch, before: MotionState) -> MotionState:
         """Return the state at the start of a stretch from that at the end of the stretch before, which changes."""
         if stretch.consistent:
             still = resting(0, len(before.x))
             real, complex_ = self._calls
-            room = consistency(self.problem, real.address, complex_.address, 0)
-            accelerate(self.problem, self._models, stretch.begin, stretch.within, before, still, room)
+            scratch = consistency(self.problem, real.address, complex_.address, 0)
+            accelerate(self.problem, self._models, stretch.begin, stretch.within, before, still, scratch)
         return before
 
     def play(self, state: MotionState, own: slice, kept: bool) -> StateHistory:
@@ -71,7 +71,14 @@ class ReplayedMotion:
         path = StateHistory(*np.zeros((3, count, len(state.x))))
         solver, steps = self.solver, Steps(*(part[own] for part in self.steps))
         status = replay(
-            self.problem, self._models, solver.spectral_radius, solver.newton_tolerance, steps, state, path, self._room
+            self.problem,
+            self._models,
+            solver.spectral_radius,
+            solver.newton_tolerance,
+            steps,
+            state,
+            path,
+            self._workspace,
         )
         if status != DONE:
             raise explain(self.lowered, status, float(steps.ends[0]), 0, cut_down(solver.step))

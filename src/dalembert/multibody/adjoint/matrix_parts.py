@@ -10,9 +10,9 @@ import numpy as np
 
 from dalembert.multibody.integrators.generalized_alpha.adjoint_sweep import (
     ResidualDerivatives,
-    SweepRoom,
+    SweepWorkspace,
     fixed_masses,
-    sweep_room,
+    sweep_workspace,
 )
 from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.kind import Kind
@@ -26,12 +26,12 @@ from dalembert.multibody.model.lowered import Lowered
 class Matrices:
     """Parts of the matrix of a step, with what keeps their slots alive."""
 
-    room: SweepRoom
+    scratch: SweepWorkspace
     couplings: tuple[Couplings, ...]
 
 
 def matrices_of(lowered: Lowered, model: BlockModel, work: int, state: MotionState) -> Matrices:
-    """Return the room for a sweep, with the masses that do not change, filled at a state."""
+    """Return the workspace for a sweep, with the masses that do not change, filled at a state."""
     structure, kept = lowered.structure, []
 
     def part(chosen: Callable[[Kind], bool]) -> ResidualDerivatives:
@@ -50,9 +50,9 @@ def matrices_of(lowered: Lowered, model: BlockModel, work: int, state: MotionSta
     varying = {kind for kind, data in lowered.data.items() if kind.varies(data)}
     fixed = part(lambda kind: kind not in varying and kind.constraint is None)
     parts = part(lambda kind: True), part(lambda kind: kind in rates), part(lambda kind: kind in varying)
-    room = sweep_room(structure.full.fresh[1], structure.size + 1, work, parts)
-    fixed_masses(model.address, structure.n, state.x, state.v, state.a, fixed, room)
-    return Matrices(room, tuple(kept))
+    scratch = sweep_workspace(structure.full.fresh[1], structure.size + 1, work, parts)
+    fixed_masses(model.address, structure.n, state.x, state.v, state.a, fixed, scratch)
+    return Matrices(scratch, tuple(kept))
 
 
 def _of_velocities(lowered: Lowered) -> Iterable[Kind]:

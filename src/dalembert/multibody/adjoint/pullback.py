@@ -17,7 +17,7 @@ from dalembert.multibody.integrators.generalized_alpha.adjoint_sweep import (
     Cotangents,
     StateHistory,
     Steps,
-    SweepRoom,
+    SweepWorkspace,
     fixed_masses,
     pull_once,
     sweep,
@@ -107,7 +107,7 @@ class MotionPullback:
         given = pull_readings(gradient, model, motion.samples, self.times, cotangent, bars)
         call, bar = model.call(), resting(lowered.structure.size + 1)
         matrices = matrices_of(lowered, model, call.address, motion.starts[0])
-        room = matrices.room
+        scratch = matrices.scratch
         alone, still = pulls.pulls._replace(blocks=np.zeros((0, 3), np.int64)), np.zeros_like(bar.x)
         for sample in np.flatnonzero(bars.any(axis=(1, 2))):  # signals that channels read
             pulls.bars[:] = bars[sample]
@@ -115,13 +115,13 @@ class MotionPullback:
             pull_once(model.address, t, within, still, still, still, still, alone, call.address)
         for stretch, start in zip(motion.stretches[::-1], motion.starts[::-1], strict=True):
             for own, path in motion.keeper.backwards(stretch):
-                self._sweep(own, path, model, given, pulls, bar, room)
+                self._sweep(own, path, model, given, pulls, bar, scratch)
             if stretch.first == 0:
                 for sample in np.flatnonzero(motion.owners < 0):
                     for part, own in zip(bar[:3], given[:3], strict=True):
                         part += own[sample]
             if stretch.consistent:
-                self._accelerations_back(stretch, start, model, gradient, pulls, bar, room)
+                self._accelerations_back(stretch, start, model, gradient, pulls, bar, scratch)
         pulls.collect()
         gradient.x[:-1] += bar.x[:-1]
         gradient.v[:-1] += bar.v[:-1]
@@ -130,7 +130,7 @@ class MotionPullback:
     def _sweep(
         self, own: slice, path: StateHistory, model: BlockModel, given: MotionState, pulls: NumberPulls,
         bar: MotionState,
-        room: SweepRoom,
+        scratch: SweepWorkspace,
     ) -> None:  # fmt: skip
         """Take the adjoint over a block of steps."""
         motion = self.motion
@@ -138,13 +138,15 @@ class MotionPullback:
         samples = Cotangents(given.x[held], given.v[held], given.a[held], motion.owners[held], motion.shares[held])
         steps = Steps(*(part[own] for part in motion.steps))
         radius = self.solver.spectral_radius
-        status = sweep(motion.problem, model.address, radius, steps, own.start, path, samples, pulls.pulls, bar, room)
+        status = sweep(
+            motion.problem, model.address, radius, steps, own.start, path, samples, pulls.pulls, bar, scratch
+        )
         if status >= 0:
             raise explain(self.lowered, SINGULAR, float(steps.ends[status]), 0, cut_down(self.solver.step))
 
     def _accelerations_back(
         self, stretch: Stretch, state: MotionState, model: BlockModel, gradient: NumberGradient, pulls: NumberPulls,
-        bar: MotionState, room: SweepRoom,
+        bar: MotionState, scratch: SweepWorkspace,
     ) -> None:  # fmt: skip
         """Take the adjoint through the accelerations at the start of a stretch."""
         mu = accelerations_back(self.lowered, state, stretch.begin, stretch.within, bar)
@@ -152,4 +154,4 @@ class MotionPullback:
         forces = mu.copy()
         forces[self.lowered.structure.n :] = 0.0
         place = model.address, stretch.begin, stretch.within
-        pull_once(*place, state.x, state.v, state.a, forces, pulls.pulls, room.work)
+        pull_once(*place, state.x, state.v, state.a, forces, pulls.pulls, scratch.work)

@@ -104,7 +104,7 @@ class Table(Signal):
     times : sequence of float, shape (points,)
         s, increasing.
     values : sequence of float, shape (points,)
-    kind : {"cubic", "linear", "held"}
+    interpolation : {"cubic", "linear", "held"}
         Between the times: a natural cubic spline, lines, or the value of the time before (zero-order hold, as
         amplifiers and digital outputs have it). A prescribed motion needs a cubic one: its velocity must not jump.
         Steps end at each change of a held value. Generalized-alpha takes the mean of both values there, so that the
@@ -132,14 +132,14 @@ class Table(Signal):
 
     times: Sequence[float] = field(metadata={"unit": "s"})
     values: Sequence[Number]
-    kind: str = "cubic"
+    interpolation: str = "cubic"
     scale: Number = 1.0
     offset: Number = 0.0
     delay: Number = field(default=0.0, metadata={"unit": "s"})
     integrals: int = 0
 
     def __post_init__(self) -> None:
-        require_known("kind", self.kind, TABLE_KINDS, "Table")
+        require_known("interpolation", self.interpolation, TABLE_KINDS, "Table")
         if len(self.times) != len(self.values) or len(self.times) < 2:
             raise InputError(
                 f"Table: {len(self.times)} times and {len(self.values)} values were given; "
@@ -152,11 +152,11 @@ class Table(Signal):
         if self.steps and np.iscomplexobj(self.delay):
             raise InputError(
                 "Table: the response to a held value has no derivative by its delay, since each change of the value "
-                "moves in time as a jump; take kind = 'linear', or a delay that depends on no parameter"
+                "moves in time as a jump; take interpolation = 'linear', or a delay that depends on no parameter"
             )
 
     @classmethod
-    def of(cls, data: "Measured", channel: str, kind: str = "linear", **more: Any) -> "Table":
+    def of(cls, data: "Measured", channel: str, interpolation: str = "linear", **more: Any) -> "Table":
         """A table of a measured channel.
 
         Parameters
@@ -165,7 +165,7 @@ class Table(Signal):
             Missing samples are left out: the table goes from the sample before a gap to that behind it. Angles that
             wrap are taken without their jumps.
         channel : str
-        kind : {"linear", "cubic", "held"}
+        interpolation : {"linear", "cubic", "held"}
         **more
             ``scale``, ``offset``, ``delay`` and ``integrals`` of the table.
 
@@ -185,16 +185,16 @@ class Table(Signal):
         values = data.continuous[:, data.channels.index(channel)]
         there = np.isfinite(values)
         own: Any = cls
-        return own(data.coordinate.values[there], values[there], kind, **more)
+        return own(data.coordinate.values[there], values[there], interpolation, **more)
 
     @property
     def steps(self) -> bool:
-        return self.kind == "held" and self.integrals == 0
+        return self.interpolation == "held" and self.integrals == 0
 
     @property
     def is_smooth(self) -> bool:
         """Whether the rate does not jump, so that a motion can follow it."""
-        return self.kind == "cubic" or self.integrals > (self.kind == "held")
+        return self.interpolation == "cubic" or self.integrals > (self.interpolation == "held")
 
     @property
     def jumps(self) -> tuple[float, ...]:
@@ -221,7 +221,7 @@ class Table(Signal):
         head = [self.scale, self.offset, self.delay, float(self.integrals)]
         if self.steps:
             return kinds.HELD, np.concatenate([[*head, 1.0], values]), times
-        pieces = _pieces(times.tobytes(), values.tobytes(), values.dtype.char, self.kind, self.integrals)
+        pieces = _pieces(times.tobytes(), values.tobytes(), values.dtype.char, self.interpolation, self.integrals)
         return kinds.PIECEWISE, np.concatenate([[*head, float(pieces.shape[1])], pieces.ravel()]), times
 
 

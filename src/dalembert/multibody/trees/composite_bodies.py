@@ -15,47 +15,56 @@ that hangs on a frame."""
 
 
 @inlined
-def _add_to_parent(room, o, up):
+def _add_to_parent(scratch, o, up):
     """Add mass, mass x centre and inertia of a frame to those of its parent: s = p + R s' in the integrals."""
     b, to = o + WHOLE, up + WHOLE
-    m, h, p = room[b], out_of(room, o, at(room, b + 1)), at(room, o + SHIFT)
-    c1, c2, c3 = at(room, o), at(room, o + 3), at(room, o + 6)
-    xx, yy, zz, xy, xz, yz = room[b + 4], room[b + 5], room[b + 6], room[b + 7], room[b + 8], room[b + 9]
+    m, h, p = scratch[b], out_of(scratch, o, at(scratch, b + 1)), at(scratch, o + SHIFT)
+    c1, c2, c3 = at(scratch, o), at(scratch, o + 3), at(scratch, o + 6)
+    xx, yy, zz, xy, xz, yz = (
+        scratch[b + 4],
+        scratch[b + 5],
+        scratch[b + 6],
+        scratch[b + 7],
+        scratch[b + 8],
+        scratch[b + 9],
+    )
     b1 = combined((xx, xy, xz), c1, c2, c3)
     b2 = combined((xy, yy, yz), c1, c2, c3)
     b3 = combined((xz, yz, zz), c1, c2, c3)
     diagonal = 2.0 * dot(p, h) + m * dot(p, p)
-    room[to] += m
+    scratch[to] += m
     for i in range(3):
-        room[to + 1 + i] += h[i] + m * p[i]
-        room[to + 4 + i] += b1[i] * c1[i] + b2[i] * c2[i] + b3[i] * c3[i] + diagonal - (2.0 * h[i] + m * p[i]) * p[i]
+        scratch[to + 1 + i] += h[i] + m * p[i]
+        scratch[to + 4 + i] += b1[i] * c1[i] + b2[i] * c2[i] + b3[i] * c3[i] + diagonal - (2.0 * h[i] + m * p[i]) * p[i]
     for i in range(3):  # xy, xz, yz
         j, k = i // 2, 1 + (i > 0)
-        room[to + 7 + i] += b1[j] * c1[k] + b2[j] * c2[k] + b3[j] * c3[k] - p[j] * h[k] - p[k] * h[j] - m * p[j] * p[k]
+        scratch[to + 7 + i] += (
+            b1[j] * c1[k] + b2[j] * c2[k] + b3[j] * c3[k] - p[j] * h[k] - p[k] * h[j] - m * p[j] * p[k]
+        )
 
 
 @inner
-def _fill(frames, q, room, masses):
+def _fill(frames, q, scratch, masses):
     count, x = len(frames.parents), frames.numbers
     for s in range(len(q)):
         for k in range(count):
             o = (k + 1) * ROOM
-            place_frame(frames, k, q[s, k], room, o)
+            place_frame(frames, k, q[s, k], scratch, o)
             for i in range(10):
-                room[o + WHOLE + i] = x[k * WIDTH + INERTIA + i]
+                scratch[o + WHOLE + i] = x[k * WIDTH + INERTIA + i]
         for k in range(count - 1, -1, -1):
             o, up = (k + 1) * ROOM, frames.parents[k]
-            u, h = at(x, k * WIDTH + AXIS), at(room, o + WHOLE + 1)
+            u, h = at(x, k * WIDTH + AXIS), at(scratch, o + WHOLE + 1)
             if frames.turns[k]:
-                force, torque = cross(u, h), inertia_times(room, o + WHOLE + 4, u)
+                force, torque = cross(u, h), inertia_times(scratch, o + WHOLE + 4, u)
             else:
-                force, torque = times(room[o + WHOLE], u), cross(h, u)
+                force, torque = times(scratch[o + WHOLE], u), cross(h, u)
             masses[s, k, k] = dot(u, torque if frames.turns[k] else force)
             if up > 0:
-                _add_to_parent(room, o, up * ROOM)
+                _add_to_parent(scratch, o, up * ROOM)
             while up > 0:  # force and torque of a unit acceleration of joint k, in the frames above it
-                force = out_of(room, o, force)
-                torque = plus(out_of(room, o, torque), cross(at(room, o + SHIFT), force))
+                force = out_of(scratch, o, force)
+                torque = plus(out_of(scratch, o, torque), cross(at(scratch, o + SHIFT), force))
                 j, o = up - 1, up * ROOM
                 masses[s, j, k] = dot(at(x, j * WIDTH + AXIS), torque if frames.turns[j] else force)
                 masses[s, k, j] = masses[s, j, k]
@@ -63,12 +72,12 @@ def _fill(frames, q, room, masses):
 
 
 @kernel
-def fill_masses(frames: Frames, q: Reals2, room: Reals, masses: Reals3) -> None:
+def fill_masses(frames: Frames, q: Reals2, scratch: Reals, masses: Reals3) -> None:
     """Fill the mass matrices (samples, frames, frames), zero before; the workspace has (frames + 1) x ROOM entries."""
-    _fill(frames, q, room, masses)
+    _fill(frames, q, scratch, masses)
 
 
 @kernel
-def fill_complex_masses(frames: ComplexFrames, q: Complexes2, room: Complexes, masses: Complexes3) -> None:
+def fill_complex_masses(frames: ComplexFrames, q: Complexes2, scratch: Complexes, masses: Complexes3) -> None:
     """The same in complex numbers."""
-    _fill(frames, q, room, masses)
+    _fill(frames, q, scratch, masses)

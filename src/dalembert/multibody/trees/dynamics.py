@@ -195,7 +195,7 @@ def regressor(
 
 
 def _by_links(own: FlatTree, slots: np.ndarray, columns: np.ndarray) -> np.ndarray:
-    """Columns of links from those of the frames that they hang on, and room for those of the joints."""
+    """Columns of links from those of the frames that they hang on, and workspace for those of the joints."""
     units = [pseudo_of(unit) for unit in np.eye(10)]
     samples, count = columns.shape[:2]
     every = np.zeros((samples, count, 10 * len(slots) + 3 * count), np.result_type(columns, own.places, own.axes))
@@ -297,13 +297,13 @@ def _signs(v: np.ndarray, slip: float | None) -> np.ndarray:
 
 
 def _filled(
-    kernels: tuple[Any, Any], own: FlatTree, dtype: Any, given: tuple, room: int, shape: tuple[int, ...]
+    kernels: tuple[Any, Any], own: FlatTree, dtype: Any, given: tuple, scratch: int, shape: tuple[int, ...]
 ) -> np.ndarray:
     """The array that the real or the complex kernel fills."""
     is_complex = np.issubdtype(dtype, np.complexfloating)
     dtype, frames = (complex if is_complex else float), own.frames
     if is_complex:
         frames = ComplexFrames(frames.parents, frames.turns, frames.numbers.astype(complex))
-    answer, workspace = np.zeros(shape, dtype), np.zeros((len(own.joints) + 1) * room, dtype)
+    answer, workspace = np.zeros(shape, dtype), np.zeros((len(own.joints) + 1) * scratch, dtype)
     kernels[is_complex](frames, *(np.ascontiguousarray(array, dtype) for array in given), workspace, answer)
     return answer

@@ -42,40 +42,40 @@ def inertia_times(x, k, a):
 
 
 @inlined
-def place_frame(frames, k, position, room, o):
+def place_frame(frames, k, position, scratch, o):
     """Write rotation and position of a frame in its parent's, from entry o of the workspace."""
     x, b = frames.numbers, k * WIDTH
     if frames.turns[k]:
         s, c = sin_cos(position)
         for i in range(9):
-            room[o + i] = x[b + CONSTANT + i] + c * x[b + COSINE + i] + s * x[b + SINE + i]
-        put(room, o + SHIFT, at(x, b + PLACE))
+            scratch[o + i] = x[b + CONSTANT + i] + c * x[b + COSINE + i] + s * x[b + SINE + i]
+        put(scratch, o + SHIFT, at(x, b + PLACE))
     else:
         for i in range(9):
-            room[o + i] = x[b + CONSTANT + i]
-        put(room, o + SHIFT, plus(at(x, b + PLACE), times(position, at(x, b + SLIDE))))
+            scratch[o + i] = x[b + CONSTANT + i]
+        put(scratch, o + SHIFT, plus(at(x, b + PLACE), times(position, at(x, b + SLIDE))))
 
 
 @inlined
-def start_base(gravity, room):
+def start_base(gravity, scratch):
     """The base does not move; its acceleration less gravity is -g."""
     for i in range(3):
-        room[SPIN + i] = room[ANGULAR + i] = 0.0
-        room[LINEAR + i] = -gravity[i]
+        scratch[SPIN + i] = scratch[ANGULAR + i] = 0.0
+        scratch[LINEAR + i] = -gravity[i]
 
 
 @inlined
-def move_frame(frames, k, v, a, room, o, up):
+def move_frame(frames, k, v, a, scratch, o, up):
     """Write the motion of a frame, from that of its parent at entry ``up``."""
-    shift, w, alpha = at(room, o + SHIFT), at(room, up + SPIN), at(room, up + ANGULAR)
-    linear = plus(at(room, up + LINEAR), plus(cross(alpha, shift), cross(w, cross(w, shift))))
-    w, alpha, linear = within(room, o, w), within(room, o, alpha), within(room, o, linear)
+    shift, w, alpha = at(scratch, o + SHIFT), at(scratch, up + SPIN), at(scratch, up + ANGULAR)
+    linear = plus(at(scratch, up + LINEAR), plus(cross(alpha, shift), cross(w, cross(w, shift))))
+    w, alpha, linear = within(scratch, o, w), within(scratch, o, alpha), within(scratch, o, linear)
     u = at(frames.numbers, k * WIDTH + AXIS)
     if frames.turns[k]:
         alpha = plus(alpha, plus(times(a, u), times(v, cross(w, u))))
         w = plus(w, times(v, u))
     else:
         linear = plus(linear, plus(times(a, u), times(2.0 * v, cross(w, u))))
-    put(room, o + SPIN, w)
-    put(room, o + ANGULAR, alpha)
-    put(room, o + LINEAR, linear)
+    put(scratch, o + SPIN, w)
+    put(scratch, o + ANGULAR, alpha)
+    put(scratch, o + LINEAR, linear)

@@ -28,13 +28,13 @@ position and axis of the joint there."""
 
 
 @inlined
-def _place_in_base(frames, k, room, o, up):
+def _place_in_base(frames, k, scratch, o, up):
     """Write rotation, position and axis of a frame in the base."""
     for i in range(0, 9, 3):
-        put(room, o + TURNED + i, out_of(room, up + TURNED, at(room, o + i)))
-    shift = out_of(room, up + TURNED, at(room, o + SHIFT))
-    put(room, o + ORIGIN, plus(at(room, up + ORIGIN), shift))
-    put(room, o + DIRECTION, out_of(room, o + TURNED, at(frames.numbers, k * WIDTH + AXIS)))
+        put(scratch, o + TURNED + i, out_of(scratch, up + TURNED, at(scratch, o + i)))
+    shift = out_of(scratch, up + TURNED, at(scratch, o + SHIFT))
+    put(scratch, o + ORIGIN, plus(at(scratch, up + ORIGIN), shift))
+    put(scratch, o + DIRECTION, out_of(scratch, o + TURNED, at(frames.numbers, k * WIDTH + AXIS)))
 
 
 @inlined
@@ -51,35 +51,37 @@ def _put_columns(y, w, b, a, t, d):
 
 
 @inner
-def _fill(frames, gravity, q, v, a, room, columns):
+def _fill(frames, gravity, q, v, a, scratch, columns):
     count = len(frames.parents)
-    start_base(gravity, room)
+    start_base(gravity, scratch)
     for i in range(TURNED, ROOM):
-        room[i] = 0.0
-    room[TURNED] = room[TURNED + 4] = room[TURNED + 8] = 1.0
+        scratch[i] = 0.0
+    scratch[TURNED] = scratch[TURNED + 4] = scratch[TURNED + 8] = 1.0
     for s in range(len(q)):
         for k in range(count):
             o, up = (k + 1) * ROOM, frames.parents[k] * ROOM
-            place_frame(frames, k, q[s, k], room, o)
-            move_frame(frames, k, v[s, k], a[s, k], room, o, up)
-            _place_in_base(frames, k, room, o, up)
-            w, b, linear = at(room, o + SPIN), at(room, o + ANGULAR), at(room, o + LINEAR)
+            place_frame(frames, k, q[s, k], scratch, o)
+            move_frame(frames, k, v[s, k], a[s, k], scratch, o, up)
+            _place_in_base(frames, k, scratch, o, up)
+            w, b, linear = at(scratch, o + SPIN), at(scratch, o + ANGULAR), at(scratch, o + LINEAR)
             j = k + 1
             while j > 0:
-                y, axis = columns[s, j - 1, 10 * k : 10 * k + 10], at(room, j * ROOM + DIRECTION)
-                turn = within(room, o + TURNED, axis)
+                y, axis = columns[s, j - 1, 10 * k : 10 * k + 10], at(scratch, j * ROOM + DIRECTION)
+                turn = within(scratch, o + TURNED, axis)
                 if frames.turns[j - 1]:
-                    lever = minus(at(room, o + ORIGIN), at(room, j * ROOM + ORIGIN))
-                    _put_columns(y, w, b, linear, turn, within(room, o + TURNED, cross(axis, lever)))
+                    lever = minus(at(scratch, o + ORIGIN), at(scratch, j * ROOM + ORIGIN))
+                    _put_columns(y, w, b, linear, turn, within(scratch, o + TURNED, cross(axis, lever)))
                 else:
                     _put_columns(y, w, b, linear, (0.0 * turn[0], 0.0 * turn[0], 0.0 * turn[0]), turn)
                 j = frames.parents[j - 1]
 
 
 @kernel
-def fill_columns(frames: Frames, gravity: Reals, q: Reals2, v: Reals2, a: Reals2, room: Reals, columns: Reals3) -> None:
+def fill_columns(
+    frames: Frames, gravity: Reals, q: Reals2, v: Reals2, a: Reals2, scratch: Reals, columns: Reals3
+) -> None:
     """Fill the first ten columns a frame (samples, frames, columns), zero before; (frames + 1) x ROOM of workspace."""
-    _fill(frames, gravity, q, v, a, room, columns)
+    _fill(frames, gravity, q, v, a, scratch, columns)
 
 
 @kernel
@@ -89,8 +91,8 @@ def fill_complex_columns(
     q: Complexes2,
     v: Complexes2,
     a: Complexes2,
-    room: Complexes,
+    scratch: Complexes,
     columns: Complexes3,
 ) -> None:
     """The same in complex numbers."""
-    _fill(frames, gravity, q, v, a, room, columns)
+    _fill(frames, gravity, q, v, a, scratch, columns)

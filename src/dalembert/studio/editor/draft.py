@@ -69,7 +69,7 @@ class Draft:
         self.starts: dict[str, float] = {}
         self.selection: Place | None = None
         self.disk: Disk = "same"
-        self.beside = WatchedFiles()
+        self.watched_files = WatchedFiles()
         self._found: tuple[Mistake, ...] = ()
 
     @property
@@ -169,7 +169,7 @@ class Draft:
         if reading.text != self.text:
             return
         self.reading, self._found = reading, ()
-        self.beside.take(reading.files)
+        self.watched_files.take(reading.files)
         if reading.study is not None:
             self._start_values(reading.study)
             self.good = reading.study
@@ -247,7 +247,7 @@ class Draft:
 
     def check_files(self) -> None:
         """Look whether a file that the text names has changed."""
-        if self.beside.have_changed():
+        if self.watched_files.have_changed():
             self._tell("files")
 
     def reload(self) -> None:

@@ -102,7 +102,7 @@ class DataPanel:
     async def _look(self) -> None:
         """Read the file and show it; then compare it with the model."""
         if self.guide.file:
-            self.draft.beside.show(self.draft.path.parent / self.guide.file)
+            self.draft.watched_files.show(self.draft.path.parent / self.guide.file)
         await self.guide.look()
         self._show()
         await self.guide.doubt()

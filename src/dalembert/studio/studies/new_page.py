@@ -49,7 +49,7 @@ def _write(contents: dict[str, str], folder: Path) -> None:
 
 
 def _begin(workspace: Workspace, template: Template, name: Callable[[], str]) -> None:
-    begin(workspace, name() or workspace.free(template.name), template.text, template.beside)
+    begin(workspace, name() or workspace.free(template.name), template.text, template.files)
 
 
 def new_page(workspace: Workspace) -> None:

@@ -47,7 +47,9 @@ class InputTable(FileTable):
     file: DataFile | None = Field(None, description="that of the data, or of the experiment, if not given")
     column: Column | None = Field(None, description="name of the column, or its number from 1 in a text file")
     unit: str = Field("", description="of the column, where it is not in SI units: 'N*mm'")
-    kind: Literal["linear", "cubic", "held"] = Field("linear", description="what the input does between its samples")
+    interpolation: Literal["linear", "cubic", "held"] = Field(
+        "linear", description="what the input does between its samples"
+    )
     start: Annotated[Any, Read(Start)] = Field(
         None,
         description="time of its file at which the motion begins: a number, or 'first' for that of the first sample",
@@ -94,8 +96,8 @@ class InputTable(FileTable):
             return self
         return shared.model_copy(update=self.picked(*self.model_fields_set))
 
-    def read(self, name: str, beside: DataTable | None) -> "MeasuredInput":
-        """The samples of the input, from its file or that of the data ``beside``.
+    def read(self, name: str, data_table: DataTable | None) -> "MeasuredInput":
+        """The samples of the input, from its file or that of the data ``data_table``.
 
         Raises
         ------
@@ -103,7 +105,7 @@ class InputTable(FileTable):
             For what is wrong with the file, and for an input without one.
         """
         assert self.column is not None  # or the study was refused
-        table = beside
+        table = data_table
         if self.file is not None:
             table = DataTable.model_construct(**self.picked(*FileTable.model_fields, "start"))
         if table is None:
@@ -168,9 +170,9 @@ class MeasuredInput:
             given = getattr(self.table, key)
             numbers[key] = given(values) if isinstance(given, Expression) else given
         own: Any = Table
-        return own(self.times, self.values, self.table.kind, integrals=self.table.integrals, **numbers)
+        return own(self.times, self.values, self.table.interpolation, integrals=self.table.integrals, **numbers)
 
-    def check_kind(self, model: Any) -> None:
+    def check_interpolation(self, model: Any) -> None:
         """Refuse an input in a unit of another kind than that of what it drives, unless a scale turns it into that.
 
         A scale that has a unit must turn the unit of the column into that of what is driven; a plain number may stand
@@ -253,7 +255,7 @@ def wrong_inputs(file: Any) -> list[str]:
             wrong.append(f"[inputs.{name}]: the key 'column' is missing; expected the name of a column")
         if any(one.file is None for one in tables or [table]) and file.data is None and not file.experiments:
             wrong.append(f"[inputs.{name}]: the key 'file' is missing, and there are no [data] with a file")
-        if any(one.kind == "held" and _varies(one.delay, file) for one in tables or [table]):
+        if any(one.interpolation == "held" and _varies(one.delay, file) for one in tables or [table]):
             wrong.append(
                 f"[inputs.{name}], delay: the response to a held input has no derivative by its delay, since each "
                 "change of the value moves in time as a jump; take kind = 'linear', or a delay that depends on no "

@@ -85,7 +85,7 @@ class Study(Displayed):
         Where the answers of its models are kept.
     executor : str or distributed.Client, optional
         Where batches of its models are computed.
-    beside : DataTable, optional
+    data_table : DataTable, optional
         Of the experiment that the study is: inputs without a file are in its file.
     """
 
@@ -98,7 +98,7 @@ class Study(Displayed):
     name: str
     checkpoint: Checkpoint | None = field(default=None, repr=False, compare=False)
     executor: Executor = field(default=None, repr=False, compare=False)
-    beside: DataTable | None = field(default=None, repr=False, compare=False)
+    data_table: DataTable | None = field(default=None, repr=False, compare=False)
 
     @property
     def title(self) -> str:
@@ -147,12 +147,12 @@ class Study(Displayed):
     @cached_property
     def inputs(self) -> "dict[str, MeasuredInput]":
         """The measured inputs, by name."""
-        if self.beside is None and self.file.experiments and self.file.inputs:
+        if self.data_table is None and self.file.experiments and self.file.inputs:
             return self.variant(self.file.experiments[0]).inputs
-        beside = self.beside or self.file.data
-        found = {name: table.read(name, beside) for name, table in self.file.inputs.items()}
+        data_table = self.data_table or self.file.data
+        found = {name: table.read(name, data_table) for name, table in self.file.inputs.items()}
         for one in found.values():
-            one.check_kind(self.file.model)
+            one.check_interpolation(self.file.model)
         return found
 
     def variant(self, table: ExperimentTable) -> "Study":
@@ -160,7 +160,7 @@ class Study(Displayed):
         shared = self.file.inputs
         inputs = {**shared, **{name: own.over(shared[name]) for name, own in table.inputs.items()}}
         varied = self.varied(table.constants, table.arguments, table.parameters(self.file.parameters))
-        return replace(varied._with(inputs=inputs), beside=table)
+        return replace(varied._with(inputs=inputs), data_table=table)
 
     @property
     def solver(self) -> Any:

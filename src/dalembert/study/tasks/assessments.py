@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from dalembert.errors import DalembertError
-from dalembert.study.tasks.task import loaded_beside
+from dalembert.study.tasks.task import load_further_results
 
 if TYPE_CHECKING:
     from dalembert.inverse import Fit
@@ -21,28 +21,28 @@ def beyond(table: Any, model: Any, data: Any, fit: "Fit", on_event: "OnEvent") -
     """Profiles and predictions of a fit, as far as the table asks for them, by the names of their files."""
     from dalembert.inverse import population, predict, profile
 
-    told: dict[str, Any] = {}
+    further_results: dict[str, Any] = {}
     if table.population:
         names = None if table.population is True else table.population
-        told[POPULATION] = population(fit, names, level=table.level)
+        further_results[POPULATION] = population(fit, names, level=table.level)
     if table.profile:
-        told[PROFILES] = profile(model, data, fit, level=table.level, on_event=on_event)
+        further_results[PROFILES] = profile(model, data, fit, level=table.level, on_event=on_event)
     if table.prediction:
         each = {_of(item.name): item for item in model} if isinstance(model, list) else {PREDICTION: model}
-        told |= {name: predict(one, fit, table.level) for name, one in each.items()}
-    return told
+        further_results |= {name: predict(one, fit, table.level) for name, one in each.items()}
+    return further_results
 
 
-def summaries(told: Mapping[str, Any]) -> list[str]:
+def summaries(further_results: Mapping[str, Any]) -> list[str]:
     """Each as text, with the name of its experiment."""
-    each = {name: name.partition("-")[2] for name in told}
-    return [f"experiment {each[name]}\n" * bool(each[name]) + part.summary() for name, part in told.items()]
+    each = {name: name.partition("-")[2] for name in further_results}
+    return [f"experiment {each[name]}\n" * bool(each[name]) + part.summary() for name, part in further_results.items()]
 
 
-def reported(told: Mapping[str, Any]) -> list[Any]:
+def reported(further_results: Mapping[str, Any]) -> list[Any]:
     """What a report takes: predictions of several experiments together."""
-    several = {name.partition("-")[2]: one for name, one in told.items() if "-" in name}
-    return [*(one for name, one in told.items() if "-" not in name), *([several] if several else [])]
+    several = {name.partition("-")[2]: one for name, one in further_results.items() if "-" in name}
+    return [*(one for name, one in further_results.items() if "-" not in name), *([several] if several else [])]
 
 
 def _of(experiment: str) -> str:
@@ -53,7 +53,7 @@ def load(result: Path, experiments: Iterable[str]) -> dict[str, Any]:
     """What was written beside a result, of experiments by these names."""
     from dalembert.inverse import Population, Prediction, Profiles
 
-    return loaded_beside(
+    return load_further_results(
         result,
         {POPULATION: Population, PROFILES: Profiles, **dict.fromkeys([PREDICTION, *map(_of, experiments)], Prediction)},
     )
@@ -73,10 +73,10 @@ def foreseen(model: Any, data: Any) -> tuple[str, ...]:
     if data is None:
         model, data = joint(model)
     try:
-        told = identifiability(model, data=data)
+        report = identifiability(model, data=data)
     except DalembertError as error:
         return (f"Identifiability could not be computed in advance: {error}",)
-    sentences = map(str, told.findings or (told,))
+    sentences = map(str, report.findings or (report,))
     of_model = (item for item in findings_at(model, model.parameters.start) if item.code in FORESEEN)
     units = first_unit_findings(model, data)
     return tuple(f"At the first guesses: {sentence}" for sentence in (*sentences, *of_model, *units))

@@ -1,4 +1,4 @@
-"""What stands beside a response over frequency: its motion at the peak, points of it in time, a nonlinear mode."""
+"""Supplements of a response over frequency: its motion at the peak, points of it in time, a nonlinear mode."""
 
 from pathlib import Path
 from typing import Any, Literal
@@ -8,7 +8,7 @@ from pydantic import Field
 
 from dalembert.study.tables.dataclass_tables import buildable_table
 from dalembert.study.tables.study import Study
-from dalembert.study.tasks.task import loaded_beside
+from dalembert.study.tasks.task import load_further_results
 from dalembert.study.text.numbers import Frequencies
 from dalembert.study.text.table import StudyTable, completed
 
@@ -34,15 +34,15 @@ def compare_in_time_table() -> type[CompareInTimeTable]:
     return completed(CompareInTimeTable, method=method)
 
 
-def beside(study: Study, curve: Any, system: Any) -> dict[str, Any]:
+def single_curve_supplements(study: Study, curve: Any, system: Any) -> dict[str, Any]:
     """What the task's table asks for beside a curve."""
     from dalembert.vibration import compare_in_time
 
-    table, told = study.table, _deformed(study, curve, system)
+    table, further_results = study.table, _deformed(study, curve, system)
     if table.compare_in_time is not None and curve.converged.any():
         asked = table.compare_in_time
         method = None if asked.method is None else asked.method.settings()
-        told[COMPARISON] = compare_in_time(
+        further_results[COMPARISON] = compare_in_time(
             system,
             curve,
             frequencies=asked.frequencies,
@@ -52,11 +52,11 @@ def beside(study: Study, curve: Any, system: Any) -> dict[str, Any]:
             checkpoint=study.checkpoint,
         )
     if table.backbone is not None:
-        told[BACKBONE] = table.backbone.follow(study, system)
-    return told
+        further_results[BACKBONE] = table.backbone.follow(study, system)
+    return further_results
 
 
-def beside_family(study: Study, family: Any) -> dict[str, Any]:
+def family_supplements(study: Study, family: Any) -> dict[str, Any]:
     """The same beside curves over a parameter: the motion at the smallest of their peaks."""
     table, found = study.table, [curve is not None and curve.converged.any() for curve in family.curves]
     if not any(found):
@@ -80,4 +80,4 @@ def load(result: Path) -> dict[str, Any]:
     """What was written beside a result."""
     from dalembert.vibration import Backbone, Deformation, TimeComparison
 
-    return loaded_beside(result, {DEFORMATION: Deformation, COMPARISON: TimeComparison, BACKBONE: Backbone})
+    return load_further_results(result, {DEFORMATION: Deformation, COMPARISON: TimeComparison, BACKBONE: Backbone})

@@ -14,7 +14,7 @@ from dalembert.study.run.events import Emit
 from dalembert.study.tables.study import Study
 from dalembert.study.tasks import curve_supplements
 from dalembert.study.tasks.backbone import BackboneTable
-from dalembert.study.tasks.curve_supplements import beside, beside_family, compare_in_time_table
+from dalembert.study.tasks.curve_supplements import compare_in_time_table, family_supplements, single_curve_supplements
 from dalembert.study.tasks.requirements import needs_structure, unnamed
 from dalembert.study.tasks.sweep import Along, values_along
 from dalembert.study.tasks.task import Outcome, Task, silent
@@ -90,9 +90,9 @@ class Response(Outcome):
 
     @property
     def summary(self) -> str:
-        told = "".join(f"\n{name}: {value:.6g}" for name, value in self.best.get("values", {}).items())
-        more = "".join(f"\n\n{one.summary()}" for one in self.told.values())
-        return self.result.summary() + told * (self.study.table.amplitude != "peak") + more
+        peaks = "".join(f"\n{name}: {value:.6g}" for name, value in self.best.get("values", {}).items())
+        more = "".join(f"\n\n{one.summary()}" for one in self.further_results.values())
+        return self.result.summary() + peaks * (self.study.table.amplitude != "peak") + more
 
 
 def _best(table: FrequencyResponseTable, result: Any) -> dict[str, Any]:
@@ -114,18 +114,18 @@ def _best(table: FrequencyResponseTable, result: Any) -> dict[str, Any]:
 
 
 def drawn_dofs(table: FrequencyResponseTable, result: Any) -> tuple[str, ...]:
-    """The degrees of freedom that figures show: the one whose peak is told first, then those that were asked for."""
-    told = tuple(name for name in result.dofs if table.dof in (name, name.rpartition(".")[0]))
+    """The degrees of freedom that figures show: that of the stated peak first, then those that were asked for."""
+    chosen = tuple(name for name in result.dofs if table.dof in (name, name.rpartition(".")[0]))
     asked = () if table.observe is None or len(result.dofs) > MOST_DRAWN else result.dofs
-    return tuple(dict.fromkeys((*told, *asked)))
+    return tuple(dict.fromkeys((*chosen, *asked)))
 
 
-def _response(study: Study, result: Any, told: Mapping[str, Any]) -> Response:
+def _response(study: Study, result: Any, further_results: Mapping[str, Any]) -> Response:
     dofs = drawn_dofs(study.table, result)
     if study.table.dof is not None and study.table.sweep is None:  # else its peak might be that of another one
         dofs = tuple(name for name in dofs if study.table.dof in (name, name.rpartition(".")[0]))
     options = {"dofs": dofs, "amplitude": study.table.amplitude}
-    return Response(study, result, _best(study.table, result), options, told)
+    return Response(study, result, _best(study.table, result), options, further_results)
 
 
 class FrequencyResponseTask(Task):
@@ -214,7 +214,7 @@ class FrequencyResponseTask(Task):
             system = study.system()
             tell = _points_told(study, emit)
             curve = frequency_response(system, table.along, balance_of(study), on_point=tell, **options)
-            return _response(study, curve, beside(study, curve, system))
+            return _response(study, curve, single_curve_supplements(study, curve, system))
         name, values = table.sweep.parameter, _values(study)
         unit = next(item.unit for item in study.parameters if item.name == name)
 
@@ -238,7 +238,7 @@ class FrequencyResponseTask(Task):
             on_curve=on_curve,
             **options,
         )
-        return _response(study, family, beside_family(study, family))
+        return _response(study, family, family_supplements(study, family))
 
     def load(self, study: Study, path: Path) -> Outcome:
         from dalembert.vibration import CurveFamily, FrequencyCurve

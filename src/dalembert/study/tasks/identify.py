@@ -144,11 +144,11 @@ class Identification(Outcome):
 
     @property
     def summary(self) -> str:
-        return "\n\n".join([self.result.summary(), *assessments.summaries(self.told)])
+        return "\n\n".join([self.result.summary(), *assessments.summaries(self.further_results)])
 
     @property
-    def beside(self) -> list[Any]:
-        return [self._motion(), *assessments.reported(self.told)]
+    def supplements(self) -> list[Any]:
+        return [self._motion(), *assessments.reported(self.further_results)]
 
     def _motion(self) -> Any:
         study, fit = self.study, self.result
@@ -256,11 +256,13 @@ class Identify(Task):
         return _identified(study, Fit.load(path), assessments.load(path, names))
 
 
-def _identified(study: Study, fit: "Fit", told: Mapping[str, Any]) -> Identification:
+def _identified(study: Study, fit: "Fit", further_results: Mapping[str, Any]) -> Identification:
     known = [one if np.isfinite(one) else None for one in fit.deviations.tolist()]
     deviations = dict(zip(fit.parameters.names, known, strict=True))
     values = fit.parameters.mapping(fit.values)
-    return Identification(study, fit, {"misfit": fit.misfit, "values": values, "deviations": deviations}, told=told)
+    return Identification(
+        study, fit, {"misfit": fit.misfit, "values": values, "deviations": deviations}, further_results=further_results
+    )
 
 
 def _wrong_population(file: Any) -> list[str]:

@@ -19,7 +19,7 @@ from dalembert.study.tables.study import Study
 from dalembert.study.tasks import assessments
 from dalembert.study.tasks.noise import Noise, likelihood_of, noise_of, wrong_noise
 from dalembert.study.tasks.requirements import needs_parameters, needs_solver, unmatched, unnamed
-from dalembert.study.tasks.task import Outcome, Task, loaded_beside
+from dalembert.study.tasks.task import Outcome, Task, load_further_results
 from dalembert.study.text.numbers import Number, read_number
 from dalembert.study.text.table import StudyTable
 
@@ -55,7 +55,7 @@ class Sampled(Outcome):
 
     @property
     def summary(self) -> str:
-        return "\n\n".join([self.result.summary(), *assessments.summaries(self.told)])
+        return "\n\n".join([self.result.summary(), *assessments.summaries(self.further_results)])
 
 
 class Sample(Task):
@@ -121,10 +121,10 @@ class Sample(Task):
         weights = assessments.weights(table.weights, model, data)
         noise = noise_of(table, model, self.name)
         start: Any = {**_starts(model), **table.start} if table.start else None
-        told = {}
+        further_results = {}
         if table.profile:
             start = identify(model, data, weights=weights, noise=noise, seed=table.seed, start=start, on_event=tell)
-            told[assessments.PROFILES] = profile(model, data, start, on_event=tell)
+            further_results[assessments.PROFILES] = profile(model, data, start, on_event=tell)
         posterior = sample(
             model,
             data,
@@ -137,12 +137,12 @@ class Sample(Task):
             on_event=tell,
             **table.picked("chains", "draws", "warmup", "seed", "blocks"),
         )
-        return _outcome(study, posterior, told)
+        return _outcome(study, posterior, further_results)
 
     def load(self, study: Study, path: Path) -> Outcome:
         from dalembert.inverse import Posterior, Profiles
 
-        return _outcome(study, Posterior.load(path), loaded_beside(path, {assessments.PROFILES: Profiles}))
+        return _outcome(study, Posterior.load(path), load_further_results(path, {assessments.PROFILES: Profiles}))
 
 
 def samplers() -> dict[str, type]:
@@ -195,7 +195,7 @@ def _quantity(value: Any, unit: str | None) -> float:
     return read_number(value, unit)  # pyright: ignore[reportReturnType] - no names are offered to it
 
 
-def _outcome(study: Study, posterior: Any, told: dict[str, Any]) -> Sampled:
+def _outcome(study: Study, posterior: Any, further_results: dict[str, Any]) -> Sampled:
     deviations = dict(zip(posterior.parameters.names, posterior.deviations.tolist(), strict=True))
     best = {"values": posterior.estimates, "deviations": deviations}
-    return Sampled(study, posterior, best, told=told)
+    return Sampled(study, posterior, best, further_results=further_results)

@@ -31,7 +31,7 @@ class Outcome:
         Few numbers for the list of runs.
     options : mapping
         Of :func:`dalembert.report.report`, beside title, notes and study.
-    told : mapping
+    further_results : mapping
         Further results, by the names of their files beside that of the result, without ending.
     of_run : tuple of Finding
         Findings about the run, which do not depend on the result.
@@ -41,7 +41,7 @@ class Outcome:
     result: Any
     best: Mapping[str, Any] = field(default_factory=dict)
     options: Mapping[str, Any] = field(default_factory=dict)
-    told: Mapping[str, Any] = field(default_factory=dict)
+    further_results: Mapping[str, Any] = field(default_factory=dict)
     of_run: tuple[Finding, ...] = ()
 
     @property
@@ -69,14 +69,14 @@ class Outcome:
         )
 
     @property
-    def beside(self) -> Iterable[Any]:
+    def supplements(self) -> Iterable[Any]:
         """What the report shows beside the result."""
-        return self.told.values()
+        return self.further_results.values()
 
     def save(self, path: Path) -> None:
         """Write the result and what is beside it as NetCDF, each whole or not at all."""
         self.result.save(path)
-        for name, one in self.told.items():
+        for name, one in self.further_results.items():
             one.save(path.with_name(f"{name}.nc"))
 
     def report(self, path: Path) -> None:
@@ -87,7 +87,7 @@ class Outcome:
         report(
             self.result,
             path,
-            *self.beside,
+            *self.supplements,
             title=self.study.title,
             notes=notes,
             study=text,
@@ -96,7 +96,7 @@ class Outcome:
         )
 
 
-def loaded_beside(result: Path, kinds: Mapping[str, Any]) -> dict[str, Any]:
+def load_further_results(result: Path, kinds: Mapping[str, Any]) -> dict[str, Any]:
     """What was written beside a result, by the names of files and of their kinds' classes."""
     paths = {name: result.with_name(f"{name}.nc") for name in kinds}
     return {name: kind.load(paths[name]) for name, kind in kinds.items() if paths[name].is_file()}

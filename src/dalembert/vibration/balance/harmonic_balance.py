@@ -33,8 +33,8 @@ class HarmonicBalance(Checked):
         the balance of forces by less than ``sampling``.
     events : bool
         Whether contact and slip events between samples are found and the sums over samples corrected there, for stops
-        and contacts; not for ``Rigid(kind="velocity")`` in two directions. Without, a curve has a kink for each sample
-        that changes its state.
+        and contacts; not for ``Rigid(prediction="velocity")`` in two directions. Without, a curve has a kink for each
+        sample that changes its state.
     sampling : float
         Largest change, as part of the forces, for which samples are enough.
     tolerance : float

@@ -12,9 +12,9 @@ from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Solution
 from dalembert.vibration.fourier import Fourier, in_orders
 from dalembert.vibration.interface.lowering import ELASTIC, Lowered
-from dalembert.vibration.laws.contacts import RIGID_KINDS
+from dalembert.vibration.laws.contacts import PREDICTIONS
 
-_, VELOCITY = RIGID_KINDS
+_, VELOCITY = PREDICTIONS
 SLOW = 2.5
 """Error over the change by twice the harmonics: about 2 where forces jump, so that it falls with 1/harmonics."""
 PHASES = 1024

@@ -142,7 +142,7 @@ def lower(system: VibrationSystem) -> Lowered:
         if isinstance(element, FrictionContact):
             normal = [element.normal] if element.normal is not None else []
             element_rows = [rows.contact(element, direction) for direction in (*element.tangential, *normal)]
-            kind = element.law.kind if isinstance(element.law, Rigid) else ELASTIC
+            kind = element.law.prediction if isinstance(element.law, Rigid) else ELASTIC
             key = kind, len(element.tangential), bool(normal)
             for numbers in _numbers(element, element_rows, rows):
                 cells.setdefault(key, []).append((element_rows, len(names), numbers))

@@ -106,8 +106,8 @@ class PlainSums(_Sums):
         unknowns = columns * count
         result, states = np.empty_like(displacements), np.empty((contacts, samples), dtype=np.uint8)
         jacobians = np.zeros((contacts, columns, count, unknowns))
-        room = np.empty(samples * (columns * unknowns + tangents**2) + tangents * (count + unknowns))
-        self._call(displacements, result, states, jacobians, room)
+        scratch = np.empty(samples * (columns * unknowns + tangents**2) + tangents * (count + unknowns))
+        self._call(displacements, result, states, jacobians, scratch)
         return result, states, jacobians.reshape(contacts, unknowns, unknowns)
 
     @cached_property
@@ -128,7 +128,7 @@ class EventSums(_Sums):
         """Coefficients of forces, and states; see :class:`ContactSums`."""
         kernel, place, numbers = self._forces_in(displacements)
         results = self._results(place)
-        kernel(place, numbers, *self._given, *self._room(place.dtype.type), *results)
+        kernel(place, numbers, *self._given, *self._workspace(place.dtype.type), *results)
         return self._coefficients(results), results[1]
 
     def with_slopes(self, displacements: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -145,12 +145,12 @@ class EventSums(_Sums):
         """Arguments that all displacements share: the shape of the contacts, and the series."""
         return *self.shape, *self._waves
 
-    def _room(self, dtype: type) -> tuple[np.ndarray, ...]:
-        """Room for the signals' values at samples, the signals with a table of waves, small arrays; no derivatives."""
+    def _workspace(self, dtype: type) -> tuple[np.ndarray, ...]:
+        """Workspace: values at samples, the signals with a table of waves, small arrays; no derivatives."""
         return *self._signals(dtype), np.zeros((2, 1, 0), dtype)
 
     def _room_for_slopes(self, columns: int, unknowns: int) -> tuple[np.ndarray, ...]:
-        """The same, and room for the derivatives at samples, of corrections, and of three numbers."""
+        """The same, and workspace for the derivatives at samples, of corrections, and of three numbers."""
         shapes = (columns, self.series.samples, unknowns), (columns, self.series.count, unknowns), (3, unknowns)
         return *self._signals(float), *map(np.empty, shapes)
 
@@ -160,7 +160,7 @@ class EventSums(_Sums):
         )
 
     def _results(self, displacements: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Room for the forces at samples, the states and the corrections."""
+        """Workspace for the forces at samples, the states and the corrections."""
         contacts, columns, _ = displacements.shape
         sampled = np.empty((contacts, columns, self.series.samples), displacements.dtype)
         return sampled, np.empty((contacts, self.series.samples), np.uint8), np.empty_like(displacements)
@@ -198,14 +198,14 @@ class PlaneEventSums(EventSums):
     def _given(self) -> tuple[Any, ...]:
         return self.shape.normal, *self._waves
 
-    def _room(self, dtype: type) -> tuple[np.ndarray, ...]:
-        """Room for the signals, tables of waves, values and stages, gradients of the slider alone, and vectors."""
+    def _workspace(self, dtype: type) -> tuple[np.ndarray, ...]:
+        """Workspace for the signals, tables of waves, values and stages, gradients of the slider alone, and vectors."""
         return *self._signals(dtype), np.empty((ROWS, 3), dtype), np.empty((4, 11), dtype), np.empty(11, complex)
 
     def _room_for_slopes(self, columns: int, unknowns: int) -> tuple[np.ndarray, ...]:
         samples, count, width = self.series.samples, self.series.count, unknowns + 2
         shapes = (columns, samples, width), (columns, count, width), (count, width)
-        *signals, few, vectors, seeds = self._room(float)
+        *signals, few, vectors, seeds = self._workspace(float)
         return *signals, np.empty((ROWS, width + 1)), few, vectors, seeds, *map(np.empty, shapes)
 
     def _signals(self, dtype: type) -> tuple[np.ndarray, ...]:

@@ -12,7 +12,7 @@ from dalembert.ranges import NOT_NEGATIVE, POSITIVE
 Number = float | complex
 """A float, or a complex number whose imaginary part is a direction of differentiation."""
 
-RIGID_KINDS = ("displacement", "velocity")
+PREDICTIONS = ("displacement", "velocity")
 AXES = ("x", "y", "z")
 
 
@@ -76,7 +76,7 @@ class Rigid(Checked):
     penalty : float, optional
         N/m; it scales the prediction, and is no stiffness of the contact. The default is the stiffness of the structure
         behind the contact, with everything else held. Much larger values need more harmonics.
-    kind : {"displacement", "velocity"}
+    prediction : {"displacement", "velocity"}
         Predict stuck motion by displacements, with a slider that remembers, or by velocities, without history. The
         latter is the more robust for contacts that carry mass.
     gap : float
@@ -90,11 +90,11 @@ class Rigid(Checked):
     """
 
     penalty: Number | None = field(default=None, metadata={"unit": "N/m", "range": POSITIVE})
-    kind: str = "displacement"
+    prediction: str = "displacement"
     gap: Number = field(default=0.0, metadata={"unit": "m"})
 
     def __post_init__(self) -> None:
-        require_known("kind", self.kind, RIGID_KINDS, "Rigid")
+        require_known("prediction", self.prediction, PREDICTIONS, "Rigid")
 
 
 Law = ElasticSlider | Iwan | Rigid

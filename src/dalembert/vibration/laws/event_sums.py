@@ -145,7 +145,7 @@ class Sums(NamedTuple):
 
     ``sampled`` (columns, samples, unknowns) and ``slopes`` (columns, coefficients, unknowns): derivatives of forces and
     of corrections. ``place`` and ``move`` (unknowns,): those of the slider and of an event's angle, without entries if
-    no derivatives are asked for; ``gradient`` (unknowns,) is room.
+    no derivatives are asked for; ``gradient`` (unknowns,) is workspace.
     """
 
     forces: np.ndarray
@@ -159,7 +159,7 @@ class Sums(NamedTuple):
 
 
 class EventWorkspace(NamedTuple):
-    """Room: a table of waves (5, coefficients), signals' values (5, 3) at an event and where a piece begins."""
+    """Workspace: a table of waves (5, coefficients), signals' values (5, 3) at an event and where a piece begins."""
 
     table: np.ndarray
     values: np.ndarray
@@ -167,11 +167,11 @@ class EventWorkspace(NamedTuple):
 
 
 @inner
-def march(contact, signals, synthesis, grid, sums, room):
+def march(contact, signals, synthesis, grid, sums, scratch):
     """One contact over its periodic motion, from event to event; ``grid`` (samples, 3, 3): signals at samples."""
     numbers, tangents, normal, memory = contact
     forces, states, result, sampled, slopes, place, move, gradient = sums
-    table, values, here = room
+    table, values, here = scratch
     steps, stiffness, wanted = forces.shape[1], numbers[TANGENTIAL], len(place) > 0
     h, count, remembers = 2.0 * np.pi / steps, synthesis.shape[1], memory and tangents == 1
     nothing = 0.0 * numbers[LOAD]
@@ -328,14 +328,14 @@ def sample(signals, contact, waving, grid):
 
 def _sums(
     displacements: Numbers3, numbers: Numbers2, tangents: int, normal: bool, memory: bool, orders: Integers, mean: int,
-    waving: Reals3, grid: Numbers3, room: Numbers2, small: Numbers3, slopes: Numbers3, forces: Numbers3,
+    waving: Reals3, grid: Numbers3, scratch: Numbers2, small: Numbers3, slopes: Numbers3, forces: Numbers3,
     states: Bytes2, result: Numbers3,
 ) -> None:  # fmt: skip
     constants, none = small[0, 0], slopes[0, 0]
-    places = EventWorkspace(room[3:8], small[1], small[2])
+    places = EventWorkspace(scratch[3:8], small[1], small[2])
     for c in range(len(displacements)):
         contact = Contact(numbers[c], tangents, normal, memory)
-        signals = signals_of(displacements[c], numbers[c], tangents, normal, orders, mean, room[:3], constants)
+        signals = signals_of(displacements[c], numbers[c], tangents, normal, orders, mean, scratch[:3], constants)
         sample(signals, contact, waving, grid)
         sums = Sums(forces[c], states[c], result[c], slopes, slopes, none, none, none)
         march(contact, signals, waving[0], grid, sums, places)
@@ -347,14 +347,15 @@ sums_real, sums_complex = kernels(_sums)
 @kernel
 def sums_and_slopes(
     numbers: Reals2, tangents: int, normal: bool, memory: bool, orders: Integers, mean: int, waving: Reals3,
-    analysis: Reals2, gemm: Address, displacements: Reals3, grid: Reals3, room: Reals2, small: Reals3, sampled: Reals3,
+    analysis: Reals2, gemm: Address, displacements: Reals3, grid: Reals3, scratch: Reals2, small: Reals3,
+    sampled: Reals3,
     slopes: Reals3, given: Reals2, forces: Reals3, states: Bytes2, result: Reals3, jacobians: Reals4,
 ) -> None:  # fmt: skip
     constants, count = small[0, 0], analysis.shape[0]
-    places = EventWorkspace(room[3:8], small[1], small[2])
+    places = EventWorkspace(scratch[3:8], small[1], small[2])
     for c in range(len(displacements)):
         contact = Contact(numbers[c], tangents, normal, memory)
-        signals = signals_of(displacements[c], numbers[c], tangents, normal, orders, mean, room[:3], constants)
+        signals = signals_of(displacements[c], numbers[c], tangents, normal, orders, mean, scratch[:3], constants)
         sample(signals, contact, waving, grid)
         sums = Sums(forces[c], states[c], result[c], sampled, slopes, given[0], given[1], given[2])
         march(contact, signals, waving[0], grid, sums, places)

@@ -62,20 +62,20 @@ def solved(grads, unknowns, first, second):
 
 
 @inner
-def settle(direct, numbers, normal, wanted, waving, signals, y, before, sums, room, grads):
+def settle(direct, numbers, normal, wanted, waving, signals, y, before, sums, scratch, grads):
     """Periods until the slider returns to where it was: its state there, and whether that does not depend on its past.
 
     By Newton's method on its two numbers if ``direct``, else from one period to the next, with gradients from rest on.
     ``before`` keeps the numbers at the start of the last period.
     """
     unknowns, scale, last, forgets = grads.shape[1] - 3, signals.least / LEAST, np.inf, False
-    state = rest(numbers, normal, wanted, signals, room.tables[3], room.small[1], y, grads)
+    state = rest(numbers, normal, wanted, signals, scratch.tables[3], scratch.small[1], y, grads)
     first = state
     for sweep in range(SWEEPS):
         first, before[0], before[1] = state, y[0], y[1]
         if direct:
             begin_with(unknowns, state, grads)
-        state = march(numbers, normal, wanted, waving, signals, state, y, sums, room, grads)
+        state = march(numbers, normal, wanted, waving, signals, state, y, sums, scratch, grads)
         if state != first:
             continue
         one, two = y[0] - before[0], y[1] - before[1]
@@ -98,13 +98,17 @@ def _sums(
     rows: Numbers2, tables: Numbers3, small: Numbers3, radau: Numbers2, grads: Numbers2, vectors: Numbers2,
     seeds: Complexes, forces: Numbers3, states: Bytes2, result: Numbers3,
 ) -> None:  # fmt: skip
-    room, y, before = PlanarMarchWorkspace(tables, small, radau, vectors[0], vectors[1], seeds), vectors[2], vectors[3]
+    scratch, y, before = (
+        PlanarMarchWorkspace(tables, small, radau, vectors[0], vectors[1], seeds),
+        vectors[2],
+        vectors[3],
+    )
     for c in range(len(displacements)):
         signals = signals_of(displacements[c], numbers[c], 2, normal, orders, mean, rows, small[0, 0])
         sums = Sums(forces[c], states[c], result[c], tables, tables)
         y[0], y[1] = 0.0, 0.0
         for direct in (True, False):
-            _, forgets = settle(direct, numbers[c], normal, False, waving, signals, y, before, sums, room, grads)
+            _, forgets = settle(direct, numbers[c], normal, False, waving, signals, y, before, sums, scratch, grads)
             if forgets:
                 break
 
@@ -119,19 +123,23 @@ def sums_and_slopes(
     vectors: Reals2, seeds: Complexes, sampled: Reals3, slopes: Reals3, local: Reals2, forces: Reals3, states: Bytes2,
     result: Reals3, jacobians: Reals4,
 ) -> None:  # fmt: skip
-    room, y, before = PlanarMarchWorkspace(tables, small, radau, vectors[0], vectors[1], seeds), vectors[2], vectors[3]
+    scratch, y, before = (
+        PlanarMarchWorkspace(tables, small, radau, vectors[0], vectors[1], seeds),
+        vectors[2],
+        vectors[3],
+    )
     count, unknowns = analysis.shape[0], jacobians.shape[3]
     for c in range(len(displacements)):
         signals = signals_of(displacements[c], numbers[c], 2, normal, orders, mean, rows, small[0, 0])
         sums = Sums(forces[c], states[c], result[c], sampled, slopes)
         y[0], y[1] = 0.0, 0.0
-        state, forgets = settle(True, numbers[c], normal, False, waving, signals, y, before, sums, room, few)
+        state, forgets = settle(True, numbers[c], normal, False, waving, signals, y, before, sums, scratch, few)
         if forgets:
             y[0], y[1] = before[0], before[1]
             begin_with(unknowns, state, grads)
-            march(numbers[c], normal, True, waving, signals, state, y, sums, room, grads)
+            march(numbers[c], normal, True, waving, signals, state, y, sums, scratch, grads)
         else:
-            settle(False, numbers[c], normal, True, waving, signals, y, before, sums, room, grads)
+            settle(False, numbers[c], normal, True, waving, signals, y, before, sums, scratch, grads)
         if forgets:
             for m in range(unknowns):
                 one, two, _ = solved(grads, unknowns, grads[PLACE, m], grads[PLACE + 1, m])

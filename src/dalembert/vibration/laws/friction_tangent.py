@@ -132,16 +132,16 @@ def _begin_again(kept, moved, tangents):
 @kernel
 def forces_and_slopes(
     numbers: Reals2, tangents: int, normal: bool, memory: bool, synthesis: Reals2, analysis: Reals2, gemm: Address,
-    displacements: Reals3, result: Reals3, states: Bytes2, jacobians: Reals4, room: Reals,
+    displacements: Reals3, result: Reals3, states: Bytes2, jacobians: Reals4, scratch: Reals,
 ) -> None:  # fmt: skip
-    """Forces and Jacobians (contacts, columns, coefficients, unknowns); the room has a contact's derivatives.
+    """Forces and Jacobians (contacts, columns, coefficients, unknowns); the workspace has a contact's derivatives.
 
     These are, by samples, those of forces by displacements (columns, samples, unknowns) and by the slider's place at
     the start of the period (tangents, samples, tangents); the latter's harmonics (coefficients, tangents); those of
     that place by displacements (tangents, unknowns).
     """
     columns, samples, count = displacements.shape[1], displacements.shape[2], synthesis.shape[1]
-    unknowns, at = columns * count, address_of(room)
+    unknowns, at = columns * count, address_of(scratch)
     slopes = reals3(at, columns, samples, unknowns)
     at += 8 * columns * samples * unknowns
     past = reals3(at, tangents, samples, tangents)

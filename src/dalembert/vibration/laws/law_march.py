@@ -83,44 +83,44 @@ class MarchWorkspace(NamedTuple):
 
 
 @inner
-def _perturb(motion, table, row, room):
+def _perturb(motion, table, row, scratch):
     """Add the complex step of displacements and velocities, from waves (2, -, coefficients) in a row."""
     column, coefficient = motion.along[0], motion.along[1]
-    if column == len(room.v):
-        for c in range(len(room.v)):
-            room.v[c] += 1j * STEP * room.v[c] / motion.omega[0]
+    if column == len(scratch.v):
+        for c in range(len(scratch.v)):
+            scratch.v[c] += 1j * STEP * scratch.v[c] / motion.omega[0]
     elif column >= 0:
-        room.u[column] += 1j * STEP * table[0, row, coefficient]
-        room.v[column] += 1j * STEP * motion.omega[0] * table[1, row, coefficient]
+        scratch.u[column] += 1j * STEP * table[0, row, coefficient]
+        scratch.v[column] += 1j * STEP * motion.omega[0] * table[1, row, coefficient]
 
 
 @inner
-def _move(tau, motion, rule, room):
+def _move(tau, motion, rule, scratch):
     """Set displacements and velocities to those at an angle."""
-    waves(tau, rule.orders, rule.mean, room.table[:, 0], 2)
-    for c in range(len(room.u)):
-        room.u[c] = dot(motion.coefficients[c], room.table[0, 0])
-        room.v[c] = motion.omega[0] * dot(motion.coefficients[c], room.table[1, 0])
-    _perturb(motion, room.table, 0, room)
+    waves(tau, rule.orders, rule.mean, scratch.table[:, 0], 2)
+    for c in range(len(scratch.u)):
+        scratch.u[c] = dot(motion.coefficients[c], scratch.table[0, 0])
+        scratch.v[c] = motion.omega[0] * dot(motion.coefficients[c], scratch.table[1, 0])
+    _perturb(motion, scratch.table, 0, scratch)
 
 
 @inner
-def _move_to_node(node, motion, rule, room):
+def _move_to_node(node, motion, rule, scratch):
     """The same at a node, where they are known."""
-    for c in range(len(room.u)):
-        room.u[c], room.v[c] = motion.place[c, node], motion.velocity[c, node]
-    _perturb(motion, rule.nodes, node, room)
+    for c in range(len(scratch.u)):
+        scratch.u[c], scratch.v[c] = motion.place[c, node], motion.velocity[c, node]
+    _perturb(motion, rule.nodes, node, scratch)
 
 
 @inner
-def _events(law, tau, motion, z, rule, room, values):
+def _events(law, tau, motion, z, rule, scratch, values):
     """Values of the events' functions at an angle."""
-    _move(tau, motion, rule, room)
-    call_law(law.events, room.u, room.v, z, law.numbers, values)
+    _move(tau, motion, rule, scratch)
+    call_law(law.events, scratch.u, scratch.v, z, law.numbers, values)
 
 
 @inner
-def _zero(law, k, low, high, first, last, motion, z, rule, room):
+def _zero(law, k, low, high, first, last, motion, z, rule, scratch):
     """The angle between two angles at which an event's function is zero, by regula falsi (Illinois)."""
     side = 0
     for _ in range(REFINEMENTS):
@@ -129,8 +129,8 @@ def _zero(law, k, low, high, first, last, motion, z, rule, room):
         place = low + (high - low) * first / (first - last)
         if not low < place < high:
             break
-        _events(law, place + 0j, motion, z, rule, room, room.values)
-        value = room.values[k].real
+        _events(law, place + 0j, motion, z, rule, scratch, scratch.values)
+        value = scratch.values[k].real
         if value == 0.0 or high - low < 1e-15:
             return place
         if (value > 0.0) == (first > 0.0):
@@ -145,41 +145,41 @@ def _zero(law, k, low, high, first, last, motion, z, rule, room):
 
 
 @inner
-def _next_event(law, begin, end, motion, z, rule, room):
+def _next_event(law, begin, end, motion, z, rule, scratch):
     """The next event between two angles and whether there is one, else the end."""
     # At an event its own function is zero with either sign: the signs are taken a little behind it.
     low = (begin + NEAR * (end - begin)).real
-    _events(law, low + 0j, motion, z, rule, room, room.first)
-    _events(law, end + 0j, motion, z, rule, room, room.last)
+    _events(law, low + 0j, motion, z, rule, scratch, scratch.first)
+    _events(law, end + 0j, motion, z, rule, scratch, scratch.last)
     event, angle = -1, end
     for k in range(law.event_count):
-        first, last = room.first[k].real, room.last[k].real
+        first, last = scratch.first[k].real, scratch.last[k].real
         # Only a change of sign between both ends counts: an event function that touches zero between two samples
         # divides nothing, since the law is smooth there.
         if (first > 0.0) != (last > 0.0):
-            zero = _zero(law, k, low, end, first, last, motion, z, rule, room)
+            zero = _zero(law, k, low, end, first, last, motion, z, rule, scratch)
             if zero < angle or event < 0:
                 event, angle = k, zero
     if event < 0:
         return end + 0j, False
     # Newton's step in complex numbers: the event moves with the direction of differentiation.
-    _events(law, angle + 0j, motion, z, rule, room, room.values)
-    value = room.values[event]
-    _events(law, angle + 1j * STEP, motion, z, rule, room, room.values)
-    slope = (room.values[event] - value).imag / STEP
+    _events(law, angle + 0j, motion, z, rule, scratch, scratch.values)
+    value = scratch.values[event]
+    _events(law, angle + 1j * STEP, motion, z, rule, scratch, scratch.values)
+    slope = (scratch.values[event] - value).imag / STEP
     return angle - 1j * (value.imag / slope if slope != 0.0 else 0.0), True
 
 
 @inner
-def _act(law, z, largest, room):
+def _act(law, z, largest, scratch):
     """The law at the present displacements and velocities."""
-    call_law(law.law, room.u, room.v, z, law.numbers, room.force)
+    call_law(law.law, scratch.u, scratch.v, z, law.numbers, scratch.force)
     for s in range(len(z)):
         largest[s] = max(largest[s], abs(z[s].real))
 
 
 @inner
-def _march(law, motion, z, largest, rule, room, sampled, pieces):
+def _march(law, motion, z, largest, rule, scratch, sampled, pieces):
     """A period from a state (states,), which it replaces by the end.
 
     It writes the forces at nodes ``sampled`` (columns, nodes) of intervals without events, and adds the integrals over
@@ -191,34 +191,34 @@ def _march(law, motion, z, largest, rule, room, sampled, pieces):
     for t in range(intervals):
         begin, end, event = t * width + 0j, (t + 1) * width + 0j, False
         if law.event_count > 0:
-            end, event = _next_event(law, begin, (t + 1) * width, motion, z, rule, room)
+            end, event = _next_event(law, begin, (t + 1) * width, motion, z, rule, scratch)
         if not event:
             for k in range(t * nodes, (t + 1) * nodes):
-                _move_to_node(k, motion, rule, room)
-                _act(law, z, largest, room)
-                for c in range(len(room.force)):
-                    sampled[c, k] = room.force[c]
+                _move_to_node(k, motion, rule, scratch)
+                _act(law, z, largest, scratch)
+                for c in range(len(scratch.force)):
+                    sampled[c, k] = scratch.force[c]
             continue
         # Pieces between events: Gauss's rule on each, so that kinks cost no order.
         for _ in range(MOST):
             for k in range(nodes):
-                _move(begin + (end - begin) * rule.offsets[k], motion, rule, room)
-                _act(law, z, largest, room)
-                for c in range(len(room.force)):
+                _move(begin + (end - begin) * rule.offsets[k], motion, rule, scratch)
+                _act(law, z, largest, scratch)
+                for c in range(len(scratch.force)):
                     for j in range(pieces.shape[1]):
-                        pieces[c, j] += rule.weights[k] * (end - begin) * room.force[c] * room.table[0, 0, j]
+                        pieces[c, j] += rule.weights[k] * (end - begin) * scratch.force[c] * scratch.table[0, 0, j]
             if not event:
                 break
-            _move(end, motion, rule, room)
-            _act(law, z, largest, room)
+            _move(end, motion, rule, scratch)
+            _act(law, z, largest, scratch)
             begin = end
-            end, event = _next_event(law, begin, (t + 1) * width, motion, z, rule, room)
+            end, event = _next_event(law, begin, (t + 1) * width, motion, z, rule, scratch)
 
 
 @kernel
 def marches(
     law: Called, motion: Motion, start: Complexes2, directions: Integers, periods: int, rule: Rule,
-    room: MarchWorkspace,
+    scratch: MarchWorkspace,
     largest: Reals, sampled: Complexes3, pieces: Complexes3,
 ) -> None:  # fmt: skip
     """A march of some periods in each direction from each start (directions, states), which it replaces by the end.
@@ -232,4 +232,4 @@ def marches(
         for _ in range(periods):
             sampled[d], pieces[d] = 0.0, 0.0
             largest[:] = 0.0
-            _march(law, motion, start[d], largest, rule, room, sampled[d], pieces[d])
+            _march(law, motion, start[d], largest, rule, scratch, sampled[d], pieces[d])

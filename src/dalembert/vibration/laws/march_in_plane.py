@@ -61,7 +61,7 @@ class Sums(NamedTuple):
 
 
 class PlanarMarchWorkspace(NamedTuple):
-    """Room: tables of waves (4, 5, coefficients), signals' values (7, 5, 3), stages of a step (7, 3), jumps (9,).
+    """Workspace: tables of waves (4, 5, coefficients), signals' values (7, 5, 3), stages of a step (7, 3), jumps (9,).
 
     ``x`` and ``seeds`` (11,): arguments of the derivatives of a slipping force.
     """
@@ -75,13 +75,13 @@ class PlanarMarchWorkspace(NamedTuple):
 
 
 @inner
-def march(numbers, normal, wanted, waving, signals, state, y, sums, room, grads):
+def march(numbers, normal, wanted, waving, signals, state, y, sums, scratch, grads):
     """One period of a contact from a slider's state and its two numbers y; the state at the end, whose numbers y gets.
 
     ``grads`` holds the gradients of y. Derivatives are written if wanted.
     """
     forces, states, result, sampled, slopes = sums
-    tables, small, radau, jumps, x, seeds = room
+    tables, small, radau, jumps, x, seeds = scratch
     steps, count, friction = forces.shape[1], waving.shape[2], numbers[FRICTION]
     unknowns, h, table, values = grads.shape[1] - 3, 2.0 * np.pi / forces.shape[1], tables[3], small[1]
     here, there, stages, tau = small[2], small[3], small[4:], grads[MOVE]

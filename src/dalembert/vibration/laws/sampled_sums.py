@@ -23,7 +23,7 @@ STEP = 1e-30
 
 
 class SampledSumsWorkspace(NamedTuple):
-    """Room for one element: displacements, velocities, forces (columns,), and internal numbers (states,)."""
+    """Workspace for one element: displacements, velocities, forces (columns,), and internal numbers (states,)."""
 
     u: Complexes
     v: Complexes
@@ -32,16 +32,16 @@ class SampledSumsWorkspace(NamedTuple):
 
     @classmethod
     def of(cls, columns: int, states: int) -> "SampledSumsWorkspace":
-        """Room for an element with these numbers of columns and of internal numbers."""
+        """Workspace for an element with these numbers of columns and of internal numbers."""
         u, v, force = np.zeros((3, columns), complex)
         return cls(u, v, force, np.zeros(states, complex))
 
 
 @inner
-def _place(place, velocity, t, room):
+def _place(place, velocity, t, scratch):
     """Set displacements and velocities to those (columns, samples) of a sample."""
-    for i in range(len(room.u)):
-        room.u[i], room.v[i] = place[i, t], velocity[i, t]
+    for i in range(len(scratch.u)):
+        scratch.u[i], scratch.v[i] = place[i, t], velocity[i, t]
 
 
 @kernel
@@ -50,55 +50,55 @@ def sampled_forces(
     numbers: Complexes2,
     place: Complexes3,
     velocity: Complexes3,
-    room: SampledSumsWorkspace,
+    scratch: SampledSumsWorkspace,
     result: Complexes3,
 ) -> None:
     """Forces (elements, columns, samples) from rest over a motion (elements, columns, samples)."""
     for e in range(len(place)):
-        room.state[:] = 0.0
+        scratch.state[:] = 0.0
         for t in range(place.shape[2]):
-            _place(place[e], velocity[e], t, room)
-            call_law(law, room.u, room.v, room.state, numbers[e], room.force)
-            for i in range(len(room.u)):
-                result[e, i, t] = room.force[i]
+            _place(place[e], velocity[e], t, scratch)
+            call_law(law, scratch.u, scratch.v, scratch.state, numbers[e], scratch.force)
+            for i in range(len(scratch.u)):
+                result[e, i, t] = scratch.force[i]
 
 
 @kernel
 def law_derivatives(
     law: Address, numbers: Complexes2, place: Complexes3, velocity: Complexes3, start: Complexes2, directions: int,
-    room: SampledSumsWorkspace, moved: Complexes, force: Reals3, slopes: Reals4,
+    scratch: SampledSumsWorkspace, moved: Complexes, force: Reals3, slopes: Reals4,
 ) -> None:  # fmt: skip
     """Forces (elements, columns, samples), and derivatives of forces and next state, at each sample.
 
-    ``start`` (elements, states) are the states before the first sample; ``moved`` (states,) is room. ``slopes``
+    ``start`` (elements, states) are the states before the first sample; ``moved`` (states,) is workspace. ``slopes``
     (elements, columns + states, directions, samples), by displacements, velocities and states before.
     """
-    columns, states = len(room.u), len(room.state)
+    columns, states = len(scratch.u), len(scratch.state)
     for e in range(len(place)):
         for s in range(states):
-            room.state[s] = start[e, s].real
+            scratch.state[s] = start[e, s].real
         for t in range(place.shape[2]):
             # One call of the law for each derivative and sample: the law is short, and the complex step has no error of
             # differences.
             for direction in range(directions):
-                _place(place[e], velocity[e], t, room)
+                _place(place[e], velocity[e], t, scratch)
                 for s in range(states):
-                    moved[s] = room.state[s]
+                    moved[s] = scratch.state[s]
                 if direction < columns:
-                    room.u[direction] += 1j * STEP
+                    scratch.u[direction] += 1j * STEP
                 elif direction < 2 * columns:
-                    room.v[direction - columns] += 1j * STEP
+                    scratch.v[direction - columns] += 1j * STEP
                 else:
                     moved[direction - 2 * columns] += 1j * STEP
-                call_law(law, room.u, room.v, moved, numbers[e], room.force)
+                call_law(law, scratch.u, scratch.v, moved, numbers[e], scratch.force)
                 for i in range(columns):
-                    force[e, i, t] = room.force[i].real
-                    slopes[e, i, direction, t] = room.force[i].imag / STEP
+                    force[e, i, t] = scratch.force[i].real
+                    slopes[e, i, direction, t] = scratch.force[i].imag / STEP
                 for s in range(states):
                     slopes[e, columns + s, direction, t] = moved[s].imag / STEP
             if states:
-                _place(place[e], velocity[e], t, room)
-                call_law(law, room.u, room.v, room.state, numbers[e], room.force)
+                _place(place[e], velocity[e], t, scratch)
+                call_law(law, scratch.u, scratch.v, scratch.state, numbers[e], scratch.force)
 
 
 @dataclass(frozen=True)
@@ -143,8 +143,8 @@ def sampled_motion(displacements: np.ndarray, omega: float, series: Fourier) -> 
 def forces_from_rest(block: LawBlock, place: np.ndarray, velocity: np.ndarray) -> np.ndarray:
     """Forces at samples of a motion, all (elements, columns, samples), complex."""
     result = np.empty_like(place)
-    room = SampledSumsWorkspace.of(place.shape[1], block.states)
-    sampled_forces(block.law.address, block.complex_numbers, place, velocity, room, result)
+    scratch = SampledSumsWorkspace.of(place.shape[1], block.states)
+    sampled_forces(block.law.address, block.complex_numbers, place, velocity, scratch, result)
     return result
 
 

@@ -23,7 +23,7 @@ class Ruled(NamedTuple):
     """Elements that follow a law.
 
     ``laws`` (elements,): addresses. ``layout`` (elements, 5): see above. ``rows`` (elements, columns), ``numbers``: of
-    all elements, one after the other. ``u``, ``v``, ``z`` and ``force`` are room for one of them.
+    all elements, one after the other. ``u``, ``v``, ``z`` and ``force`` are workspace for one of them.
     """
 
     laws: Integers
@@ -79,7 +79,7 @@ class Reaction(NamedTuple):
 
 
 def reaction(rows: int, elements: Elements, contacts: int) -> Reaction:
-    """Room for a reaction."""
+    """Workspace for a reaction."""
     return Reaction(
         np.zeros(rows), np.zeros((rows, rows)), np.zeros((len(elements.tangents), 2)),
         np.zeros(int(elements.ruled.layout[:, STATES].sum())), np.zeros(contacts, dtype=np.uint8),

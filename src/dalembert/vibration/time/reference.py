@@ -25,7 +25,7 @@ from dalembert.vibration.time.elements import Elements, Instant, Reaction, react
 from dalembert.vibration.time.modal_system import ModalSystem, address
 from dalembert.vibration.time.newmark import Newmark
 from dalembert.vibration.time.periodic_motion import PeriodicMotion
-from dalembert.vibration.time.steps import LOST, ModalState, ModalStructure, Record, Scheme, go_through, room
+from dalembert.vibration.time.steps import LOST, ModalState, ModalStructure, Record, Scheme, go_through, scratch
 
 LONG_RUN, SHOOTING = "long run", "shooting"
 WARMING = 5
@@ -245,7 +245,7 @@ class _Run:
         state = ModalState(*(array.copy() for array in state))
         status, count, change = go_through(
             modes, elements, address(self._users), self._scheme, state, self.problem.omega, most, tolerance, record,
-            self._reaction(), room(modes, state),
+            self._reaction(), scratch(modes, state),
         )  # fmt: skip
         if self.failures:
             raise self.failures[0]

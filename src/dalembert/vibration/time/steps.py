@@ -91,7 +91,7 @@ class Record(NamedTuple):
 
 
 class StepWorkspace(NamedTuple):
-    """Room for a step: vectors of rows, matrices (rows, rows), vectors of modes; sliders (cells, 2), states.
+    """Workspace for a step: vectors of rows, matrices (rows, rows), vectors of modes; sliders (cells, 2), states.
 
     ``gemv``: the BLAS's address. ``largest``: of the states over a period.
     """
@@ -113,8 +113,8 @@ class StepWorkspace(NamedTuple):
     largest: Reals
 
 
-def room(modes: ModalStructure, state: ModalState) -> StepWorkspace:
-    """Room for steps from a state."""
+def scratch(modes: ModalStructure, state: ModalState) -> StepWorkspace:
+    """Workspace for steps from a state."""
     rows, n = modes.seen.shape
     vectors = *np.zeros((5, rows)), *np.zeros((2, rows, rows)), *np.zeros((4, n))
     return StepWorkspace._make([gemv(), *vectors, np.zeros_like(state.sliders), *np.zeros((2, len(state.states)))])
@@ -131,9 +131,9 @@ def _product(gemv, diagonal, whole, x, y):
 
 
 @inner
-def _balance(modes, elements, users, instant, reaction, room):
+def _balance(modes, elements, users, instant, reaction, scratch):
     """Solve u + compliance · force(u) = start, u shifted, from a guess; the inverse is one of before. If found."""
-    u, start, residual, change = room.u, room.start, room.residual, room.change
+    u, start, residual, change = scratch.u, scratch.start, scratch.residual, scratch.change
     scale = max(size_of(start), size_of(u))
     for c in range(len(elements.normal)):
         if elements.normal[c]:
@@ -152,18 +152,18 @@ def _balance(modes, elements, users, instant, reaction, room):
         # The reaction belongs to the last displacements, whose change was below the accuracy.
         if last:
             return True
-        apply(room.gemv, modes.compliance, reaction.force, residual)
+        apply(scratch.gemv, modes.compliance, reaction.force, residual)
         for i in range(len(u)):
             residual[i] += u[i] - start[i]
         size = size_of(residual)
         if not np.isfinite(size):
             return False
         # 0 marks an inverse that was never made.
-        if size > 0.1 * before or room.inverse[0, 0] == 0.0:
-            _linearise(modes.compliance, reaction.slopes, room.matrix)
-            invert(room.matrix, room.inverse)
+        if size > 0.1 * before or scratch.inverse[0, 0] == 0.0:
+            _linearise(modes.compliance, reaction.slopes, scratch.matrix)
+            invert(scratch.matrix, scratch.inverse)
         before = size
-        apply(room.gemv, room.inverse, residual, change)
+        apply(scratch.gemv, scratch.inverse, residual, change)
         # Half steps where whole ones alternate between the sides of kinks.
         part = 0.5 if iteration >= BOLD else 1.0
         for i in range(len(u)):
@@ -186,39 +186,39 @@ def _linearise(compliance, slopes, matrix):
 
 
 @inner
-def _step(modes, elements, users, scheme, state, t, reaction, room):
+def _step(modes, elements, users, scheme, state, t, reaction, scratch):
     """A step; whether the contacts are solved."""
     h, ratio = scheme.step, (1.0 - scheme.alpha_f) / (1.0 - scheme.alpha_m)
     # With w_1 = (1 - α_f)/(1 - α_m) a_1 + history, x_1 and v_1 change by b and g with a_1.
     b, g = scheme.beta * h * h * ratio, scheme.gamma * h * ratio
     q, v, a, w = state.modes[0], state.modes[1], state.modes[2], state.modes[3]
-    history, pull = room.history, room.pull
+    history, pull = scratch.history, scratch.pull
     # What w_0 and a_0 add to x_1 and v_1, then the acceleration without elements S⁻¹ (f_1 - C v_1 - K x_1).
     for i in range(len(q)):
         history[i] = (scheme.alpha_f * a[i] - scheme.alpha_m * w[i]) / (1.0 - scheme.alpha_m)
         q[i] += h * v[i] + h * h * ((0.5 - scheme.beta) * w[i] + scheme.beta * history[i])
         v[i] += h * ((1.0 - scheme.gamma) * w[i] + scheme.gamma * history[i])
-    _product(room.gemv, modes.damping, modes.coupled, v, a)
+    _product(scratch.gemv, modes.damping, modes.coupled, v, a)
     for i in range(len(q)):
         pull[i] = modes.force[t, i] - a[i] - modes.stiffness[i] * q[i]
-    _product(room.gemv, modes.inverse, modes.solver, pull, a)
+    _product(scratch.gemv, modes.inverse, modes.solver, pull, a)
     if len(modes.seen):
         # u_0 = L (x_1 + b a_1), and Newton's method for d + (b L S⁻¹ Lᵀ - 1/rho + 1/k) lambda(d) = u_0
         for i in range(len(q)):
             pull[i] = q[i] + b * a[i]
         # u_0 = L (x_1 + b a_1) with the acceleration that the elements do not see yet.
-        apply(room.gemv, modes.seen, pull, room.start)
-        apply(room.gemv, modes.compliance, reaction.force, room.u)
-        for i in range(len(room.u)):
+        apply(scratch.gemv, modes.seen, pull, scratch.start)
+        apply(scratch.gemv, modes.compliance, reaction.force, scratch.u)
+        for i in range(len(scratch.u)):
             # The guess: the forces of the step before, since d + compliance · λ(d) = u_0.
-            room.u[i] = room.start[i] - room.u[i]
+            scratch.u[i] = scratch.start[i] - scratch.u[i]
         if len(elements.ruled.laws):  # velocities follow displacements: v + g (u - x)/b
-            apply(room.gemv, modes.seen, v, room.rate)
-            apply(room.gemv, modes.seen, q, room.residual)
-            for i in range(len(room.rate)):
-                room.rate[i] -= g / b * room.residual[i]
-        instant = Instant(room.u, room.rate, g / b, state.sliders, state.states)
-        if not _balance(modes, elements, users, instant, reaction, room):
+            apply(scratch.gemv, modes.seen, v, scratch.rate)
+            apply(scratch.gemv, modes.seen, q, scratch.residual)
+            for i in range(len(scratch.rate)):
+                scratch.rate[i] -= g / b * scratch.residual[i]
+        instant = Instant(scratch.u, scratch.rate, g / b, state.sliders, state.states)
+        if not _balance(modes, elements, users, instant, reaction, scratch):
             return False
         for c in range(len(state.sliders)):
             assign(state.sliders[c], reaction.moved[c])
@@ -244,17 +244,17 @@ def _distance(x, y):
 
 
 @inner
-def _change(state, record, omega, room):
+def _change(state, record, omega, scratch):
     """What a period changed, as part of the motion."""
     q, v = state.modes[0], state.modes[1]
     # Velocities by ω have the size of displacements: the distance does not depend on the phase of the motion.
     size = np.sqrt(dot(q, q) + dot(v, v) / omega**2)
-    off = np.sqrt(_distance(q, room.first_q) + _distance(v, room.first_v) / omega**2)
+    off = np.sqrt(_distance(q, scratch.first_q) + _distance(v, scratch.first_v) / omega**2)
     change = off / size if size > 0.0 else 0.0
     for i in range(len(state.states)):
         # States of laws have no common unit: each by its own largest value of the period.
-        if room.largest[i] > 0.0:
-            change = max(change, abs(state.states[i] - room.first_states[i]) / room.largest[i])
+        if scratch.largest[i] > 0.0:
+            change = max(change, abs(state.states[i] - scratch.first_states[i]) / scratch.largest[i])
     if len(state.sliders) == 0 or np.isnan(change):
         return change
     widest, slid = 0.0, 0.0
@@ -262,7 +262,7 @@ def _change(state, record, omega, room):
         widest = max(widest, size_of(record.displacements[t]))
     for c in range(len(state.sliders)):
         for i in range(2):
-            slid = max(slid, abs(state.sliders[c, i] - room.first_z[c, i]))
+            slid = max(slid, abs(state.sliders[c, i] - scratch.first_z[c, i]))
     return max(change, slid / widest if widest > 0.0 else 0.0)
 
 
@@ -270,28 +270,28 @@ def _change(state, record, omega, room):
 def go_through(
     modes: ModalStructure, elements: Elements, users: Address, scheme: Scheme, state: ModalState, omega: float,
     most: int,
-    tolerance: float, record: Record, reaction: Reaction, room: StepWorkspace,
+    tolerance: float, record: Record, reaction: Reaction, scratch: StepWorkspace,
 ) -> tuple[int, int, float]:  # fmt: skip
     """Go through periods until one changes nothing, in place; how it ended, periods or step, change of the last one."""
     steps, change = len(modes.force), np.inf
-    apply(room.gemv, modes.seen, state.modes[0], room.u)
+    apply(scratch.gemv, modes.seen, state.modes[0], scratch.u)
     for period in range(most):
-        assign(room.first_q, state.modes[0])
-        assign(room.first_v, state.modes[1])
-        assign(room.first_states, state.states)
-        room.largest[:] = 0.0
+        assign(scratch.first_q, state.modes[0])
+        assign(scratch.first_v, state.modes[1])
+        assign(scratch.first_states, state.states)
+        scratch.largest[:] = 0.0
         for c in range(len(state.sliders)):
-            assign(room.first_z[c], state.sliders[c])
+            assign(scratch.first_z[c], state.sliders[c])
         for t in range(steps):
-            if not _step(modes, elements, users, scheme, state, t, reaction, room):
+            if not _step(modes, elements, users, scheme, state, t, reaction, scratch):
                 return LOST, period * steps + t, change
             for i in range(len(state.states)):
-                room.largest[i] = max(room.largest[i], abs(state.states[i]))
+                scratch.largest[i] = max(scratch.largest[i], abs(state.states[i]))
             assign(record.modes[t], state.modes[0])
-            assign(record.displacements[t], room.u)
+            assign(record.displacements[t], scratch.u)
             assign(record.forces[t], reaction.force)
             assign(record.states[t], reaction.states)
-        change = _change(state, record, omega, room)
+        change = _change(state, record, omega, scratch)
         if not np.isfinite(change):
             return LOST, period * steps, change
         # Periodic to the tolerance: the record has the last period as it was gone through.

@@ -227,7 +227,7 @@ def test_a_measured_channel_becomes_a_table() -> None:
     angle = np.array([3.0, np.nan, -3.0, -2.8])
     data = Measurements.of([0.0, 0.1, 0.2, 0.3], {"goal": angle, "x": np.zeros(4)}, missing="leave-out", wraps=["goal"])
     table = mb.Table.of(data, "goal", "cubic", delay=0.02)
-    assert (table.kind, table.delay) == ("cubic", 0.02)
+    assert (table.interpolation, table.delay) == ("cubic", 0.02)
     np.testing.assert_allclose(table.times, [0.0, 0.2, 0.3])
     np.testing.assert_allclose(table.values, [3.0, 2 * np.pi - 3.0, 2 * np.pi - 2.8])
     with pytest.raises(InputError, match=says("Table.of: unknown channel 'gaol'; did you mean 'goal'?")):

@@ -141,7 +141,7 @@ def test_gauss_and_newton_leave_no_more_than_fireflies():
     real, complex_one = lowered.real.need("rates"), lowered.complex_model.need("rates")
     calls = real.call(), complex_one.call()
     walk = prepare(problem, rule, *calls, 0, linear=True)
-    room = descent(problem, walk)
+    scratch = descent(problem, walk)
     walk.old.x[:], walk.old.v[:] = lowered.x, lowered.v
     models = SampleModels(real.address, complex_one.address, addresses([]))
     moving = models._replace(directions=addresses([complex_one, complex_one]))
@@ -155,7 +155,7 @@ def test_gauss_and_newton_leave_no_more_than_fireflies():
         search(number)
         fireflies = walk.c.copy()
         walk.c[:] = middle
-        status, _, _ = descend(problem, rule, 3, moving, step, walk, room)
+        status, _, _ = descend(problem, rule, 3, moving, step, walk, scratch)
         assert status == DONE
         left = np.zeros(3)
         squares(problem, rule, models.real, step, walk, kept, np.array([middle, fireflies, walk.c]), left)

@@ -47,7 +47,7 @@ def calls_of(lowered: Lowered) -> tuple[Call, Call, np.ndarray]:
 def chosen(lowered: Lowered, problem, state: MotionState, directions: int = 0):
     """Independent coordinates at a state; the functions run in plain Python."""
     call = lowered.complex_model.call()
-    partition = partitioning.room(problem, directions)
+    partition = partitioning.scratch(problem, directions)
     lowered.complex_model.evaluate(call, 0.0, 0.0)
     partitioning.linearise(problem, lowered.complex_model.address, state, call.address, partition)
     partitioning.choose(problem, partition, partitioning.DEPENDENT)

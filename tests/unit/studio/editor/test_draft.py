@@ -17,7 +17,7 @@ IDENTIFY = templates()["identify"]
 def path(tmp_path):
     folder = tmp_path / "studies" / "drag"
     folder.mkdir(parents=True)
-    for name, text in IDENTIFY.beside.items():
+    for name, text in IDENTIFY.files.items():
         (folder / name).write_text(text)
     (folder / "study.toml").write_text(IDENTIFY.text)
     return folder / "study.toml"
@@ -312,10 +312,10 @@ def test_the_repair_of_a_model_file_is_noticed(path):
 def test_a_file_that_a_panel_shows_is_watched_too(draft, path):
     draft.check()
     other = path.with_name("other.csv")
-    draft.beside.show(other)
+    draft.watched_files.show(other)
     heard = followed(draft, "files")
     other.write_text("t,x\n")
     draft.check_files()
-    draft.beside.show(other)
+    draft.watched_files.show(other)
     draft.check_files()
     assert heard == ["files"]

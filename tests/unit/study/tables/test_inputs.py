@@ -119,7 +119,7 @@ column = "amps"
 time = "ms"
 units = { ms = "ms" }
 separator = ";"
-kind = "cubic"
+interpolation = "cubic"
 scale = "constant"
 offset = "constant*0.1"
 lowpass = "12 Hz"
@@ -127,7 +127,7 @@ lowpass = "12 Hz"
     case = study(folder, MODEL + table + DATA)
     (one,) = case.inputs.values()
     signal = one.signal(TRUE)
-    assert (signal.kind, signal.scale, signal.delay) == ("cubic", 0.35, 0.0)
+    assert (signal.interpolation, signal.scale, signal.delay) == ("cubic", 0.35, 0.0)
     assert signal.offset == pytest.approx(0.035)
     np.testing.assert_allclose(signal.times, TIMES, atol=1e-12)
     assert 1e-4 < np.abs(signal.values - CURRENT)[20:-20].max() < 0.01  # behind the filter
@@ -148,7 +148,7 @@ time = "ms"
 columns = { "bar.start.angle" = "angle" }
 units = { ms = "ms", angle = "deg" }
 inputs.current.column = "j"
-inputs.current.kind = "held"
+inputs.current.interpolation = "held"
 inputs.current.delay = 0.0
 [[experiments]]
 name = "third"
@@ -228,7 +228,7 @@ time = "ms"
 units = { ms = "ms" }
 column = "i"
 integrals = 2
-kind = "cubic"
+interpolation = "cubic"
 [[model.body]]
 kind = "PointMass"
 name = "base"
@@ -327,7 +327,7 @@ column = "i"
             "of the value moves in time as a jump; take kind = 'linear', or a delay that depends on no parameter",
         ),
         (
-            MODEL + INPUT + 'kind = "hold"' + DATA,
+            MODEL + INPUT + 'interpolation = "hold"' + DATA,
             "[inputs.current], kind: 'hold' was given; expected 'linear', 'cubic' or 'held'",
         ),
         (

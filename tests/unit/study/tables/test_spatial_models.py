@@ -412,7 +412,7 @@ def test_the_schema_fits_the_template_and_knows_what_is_wrong():
 def test_the_template_holds_what_the_script_writes(tmp_path):
     """To two units of the last digit, since integrators differ between machines."""
     wires.main(tmp_path)
-    text = templates()["spatial"].beside["wires.csv"]
+    text = templates()["spatial"].files["wires.csv"]
     written = (tmp_path / "wires.csv").read_text(encoding="utf-8")
     numbers = [np.array([row.split(",") for row in one.splitlines()[1:]], float) for one in (text, written)]
     np.testing.assert_allclose(*numbers, atol=2.1e-5, rtol=0)

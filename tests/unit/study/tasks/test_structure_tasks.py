@@ -198,7 +198,7 @@ law = { kind = "Iwan", stiffnesses = [1.0, "2*k"], shares = [0.25, 0.75] }
 name = "third"
 first = "m1"
 friction = 0.1
-law = { kind = "Rigid", form = "velocity" }
+law = { kind = "Rigid", prediction = "velocity" }
 [harmonic_balance]
 """
     system = load(write(WHOLE.replace("[harmonic_balance]\n", more))).system()

@@ -78,9 +78,9 @@ CASES = {
     "elastic-spatial": contact(ElasticSlider(3.0, 4.0, 0.02), "b", **SPATIAL),
     "iwan": contact(Iwan((1.0, 4.0), (0.4, 0.6), 2.0), tangential=("y",), normal="z"),
     "rigid": contact(Rigid()),
-    "rigid-velocity": contact(Rigid(kind="velocity")),
+    "rigid-velocity": contact(Rigid(prediction="velocity")),
     "rigid-spatial": contact(Rigid(gap=0.02), "b", **SPATIAL),
-    "rigid-spatial-velocity": contact(Rigid(kind="velocity"), "b", **SPATIAL),
+    "rigid-spatial-velocity": contact(Rigid(prediction="velocity"), "b", **SPATIAL),
     "rigid-beside-springs": both(contact(Rigid(penalty=7.0), "b", **SPATIAL), springs),
 }
 

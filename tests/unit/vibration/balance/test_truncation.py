@@ -37,7 +37,7 @@ def block(friction: float = 0.5) -> VibrationSystem:
     """A mass with rigid friction that needs many harmonics."""
     system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.0)]))
     system.add(HarmonicForce("m", 1.0))
-    system.add(FrictionContact("foot", "m", friction=friction, preload=1.0, law=Rigid(kind="velocity")))
+    system.add(FrictionContact("foot", "m", friction=friction, preload=1.0, law=Rigid(prediction="velocity")))
     return system
 
 

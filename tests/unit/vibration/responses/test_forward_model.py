@@ -57,7 +57,7 @@ LAWS = {
     "iwan": lambda k: Iwan((k, 2 * k), (0.4, 0.6)),
     "rigid": lambda k: Rigid(),
     "rigid-given-penalty": lambda k: Rigid(penalty=k),
-    "rigid-velocity": lambda k: Rigid(kind="velocity"),
+    "rigid-velocity": lambda k: Rigid(prediction="velocity"),
 }
 
 

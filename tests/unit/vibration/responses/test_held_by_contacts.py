@@ -29,7 +29,7 @@ LAWS = {
     "elastic": ElasticSlider(1.0, 1.0),
     "stiff": ElasticSlider(100.0, 100.0),
     "rigid": Rigid(penalty=1.0),
-    "rigid, velocity": Rigid(penalty=1.0, kind="velocity"),
+    "rigid, velocity": Rigid(penalty=1.0, prediction="velocity"),
 }
 
 

@@ -174,7 +174,7 @@ class Collocation(Integrator):
 
 
 def _search(
-    search: CollocationSearch, models: SampleModels, out: MotionStates, dout: Histories, log: Log, room: Descent
+    search: CollocationSearch, models: SampleModels, out: MotionStates, dout: Histories, log: Log, scratch: Descent
 ) -> tuple[int, float, int]:
     """All steps by a minimiser of the package: status, time reached, the coordinate to blame."""
     problem, rule, schedule, walk = search.problem, search.rule, search.schedule, search.walk
@@ -184,7 +184,7 @@ def _search(
         if status == DONE:
             status, taken, worst = search(number)
         if status == DONE and len(walk.dc):
-            regular = respond(problem, rule, search.models, step, walk, room)
+            regular = respond(problem, rule, search.models, step, walk, scratch)
             status = DONE if regular else SINGULAR
         if status == DONE:
             status = finish(problem, rule, models, step, walk, out, dout)

@@ -47,7 +47,7 @@ class Descent(NamedTuple):
 
 
 def descent(problem: IntegrationProblem, walk: CollocationRun) -> Descent:
-    """Room for the normal equations of a run."""
+    """Workspace for the normal equations of a run."""
     directions, unknowns = walk.dc.shape
     along = respond.address if directions else 0
     return Descent(
@@ -87,11 +87,16 @@ def descend(
     models: SampleModels,
     step: ScheduleStep,
     walk: CollocationRun,
-    room: Descent,
+    scratch: Descent,
 ) -> tuple[int, int, int]:
     """Gauss and Newton's iterations: status, how many they were, and the coordinate that moved most."""
     n, own, unknowns = problem.n, walk.partition, len(walk.c)
-    layout, normal, right, change = resized(problem.exact_layout, unknowns), room.normal, room.right, room.change
+    layout, normal, right, change = (
+        resized(problem.exact_layout, unknowns),
+        scratch.normal,
+        scratch.right,
+        scratch.change,
+    )
     h = step.end - step.begin
     rank = own.rank[0]
     largest, worst = 0.0, 0
@@ -123,7 +128,7 @@ def respond(
     models: SampleModels,
     step: ScheduleStep,
     walk: CollocationRun,
-    room: Descent,
+    scratch: Descent,
 ) -> bool:
     """Derivatives of the minimum along the directions, by the derivative of its gradient.
 
@@ -132,7 +137,12 @@ def respond(
     nothing remains, and none are needed. Whether the minimum is regular.
     """
     n, own, unknowns, count = problem.n, walk.partition, len(walk.c), walk.slopes.shape[1]
-    layout, normal, right, change = resized(problem.exact_layout, unknowns), room.normal, room.right, room.change
+    layout, normal, right, change = (
+        resized(problem.exact_layout, unknowns),
+        scratch.normal,
+        scratch.right,
+        scratch.change,
+    )
     for s in range(len(rule.nodes)):
         if not measure(problem, rule, models, step, walk, True, s):
             return False
@@ -140,7 +150,7 @@ def respond(
     # With more Gauss points than powers something remains at the minimum: its gradient, slopes^T W gaps = 0, changes by
     # the second derivatives too, sum_i gaps_i d(slopes_i).
     if len(rule.nodes) > len(rule.powers):
-        remaining = room.remaining
+        remaining = scratch.remaining
         for s in range(len(rule.nodes)):
             for i in range(n):
                 remaining[s, i] = walk.gaps[s, i]
@@ -182,7 +192,7 @@ _respond_at = respond.at
 def march(
     problem: IntegrationProblem, rule: Rule, most: int, moving: SampleModels, models: SampleModels,
     schedule: Schedule, walk: CollocationRun,
-    out: MotionStates, dout: Histories, log: Log, room: Descent,
+    out: MotionStates, dout: Histories, log: Log, scratch: Descent,
 ) -> tuple[int, float, int]:  # fmt: skip
     """All steps by at most so many iterations: status, time reached, the coordinate that moved most.
 
@@ -195,13 +205,13 @@ def march(
         for _ in range(2):  # from extrapolated accelerations; where that fails, from those at the step's beginning
             status = begin(problem, rule, models, step, walk)
             if status == DONE:
-                status, iterations, worst = descend(problem, rule, most, moving, step, walk, room)
+                status, iterations, worst = descend(problem, rule, most, moving, step, walk, scratch)
                 taken += iterations
             if status == DONE:
                 break
             walk.chosen[1] = 0.0
         if status == DONE and len(walk.dc) > 0:
-            if not _respond_at(room.respond, problem, rule, moving, step, walk, room):
+            if not _respond_at(scratch.respond, problem, rule, moving, step, walk, scratch):
                 status = SINGULAR
         if status == DONE:
             status = finish(problem, rule, models, step, walk, out, dout)

@@ -9,7 +9,7 @@ from dalembert.errors import DalembertError
 from dalembert.multibody.integrators.collocation.collocation_gap import measure
 from dalembert.multibody.integrators.collocation.collocation_rule import Rule
 from dalembert.multibody.integrators.collocation.collocation_step import CollocationRun, Schedule, ScheduleStep, step_of
-from dalembert.multibody.integrators.collocation.collocation_swarm import Kept, keep, kept_room, squares
+from dalembert.multibody.integrators.collocation.collocation_swarm import Kept, keep, kept_workspace, squares
 from dalembert.multibody.integrators.shared.problem import DONE, NEWTON_FAILED, IntegrationProblem, SampleModels
 from dalembert.optimize import Firefly, Minimiser, Squares, Swarm
 
@@ -72,7 +72,7 @@ class CollocationSearch:
     def kept(self, step: ScheduleStep) -> Kept | None:
         """States of the Gauss points at the prediction."""
         walk, measured = self.walk, self._measured(step)
-        kept = kept_room(walk)
+        kept = kept_workspace(walk)
         for s in range(len(self.rule.nodes)):
             if not measured(s):
                 return None

@@ -16,7 +16,7 @@ from dalembert.multibody.integrators.shared.partitioning import (
     dependence,
     invert,
     linearise,
-    room,
+    scratch,
     settle,
 )
 from dalembert.multibody.integrators.shared.problem import (
@@ -105,7 +105,7 @@ def prepare(
         resting(width), resting(width), resting(directions, width), resting(directions, width), np.zeros(unknowns),
         np.zeros((directions, unknowns)), resting(points, width), resting(unknowns, width), resting(both, width),
         np.zeros((points, width)), np.zeros((points, both, width)), np.zeros((3, count)), np.zeros(2), linear,
-        room(problem, both), consistency(problem, call.address, complex_call.address, directions),
+        scratch(problem, both), consistency(problem, call.address, complex_call.address, directions),
     )  # fmt: skip
 
 
@@ -128,7 +128,7 @@ def _choose(problem, own, chosen):
 def _predict(ahead, columns, a, chosen, last, c):
     """Accelerations ``c`` of the step: extrapolated, or those of the independent ``columns`` at its beginning, ``a``.
 
-    ``last``: room for those of the last step.
+    ``last``: workspace for those of the last step.
     """
     count, independent = len(ahead), len(columns)
     for i in range(independent):

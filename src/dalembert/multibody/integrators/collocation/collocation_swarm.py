@@ -39,8 +39,8 @@ class Kept(NamedTuple):
     vectors: Reals2
 
 
-def kept_room(walk: CollocationRun) -> Kept:
-    """Room for what is kept of the prediction that ``walk`` holds."""
+def kept_workspace(walk: CollocationRun) -> Kept:
+    """Workspace for what is kept of the prediction that ``walk`` holds."""
     (points, width), unknowns = walk.gaps.shape, len(walk.c)
     dependent = np.zeros((points, len(walk.partition.dependent.matrix)))
     exact = np.zeros((points, len(walk.consistency.exact.matrix)))

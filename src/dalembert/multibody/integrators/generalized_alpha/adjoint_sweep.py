@@ -73,7 +73,7 @@ class ResidualDerivatives(NamedTuple):
     values: Reals
 
 
-class SweepRoom(NamedTuple):
+class SweepWorkspace(NamedTuple):
     """Work of the sweep: a call in complex numbers, the matrix with its transposed solution, parts of it, vectors.
 
     ``masses`` are those that do not change, in the places of the matrix. ``by_x``, ``by_v`` and ``by_a`` are the parts
@@ -94,22 +94,22 @@ class SweepRoom(NamedTuple):
     past: MotionState
 
 
-def sweep_room(
+def sweep_workspace(
     layout: Layout, width: int, work: int, parts: tuple[ResidualDerivatives, ResidualDerivatives, ResidualDerivatives]
-) -> SweepRoom:
-    """Room for a sweep over vectors of ``width``, without the masses."""
+) -> SweepWorkspace:
+    """Workspace for a sweep over vectors of ``width``, without the masses."""
     right, mu, of_q, of_v, *past = np.zeros((8, width))
     factors = storage(layout)
-    return SweepRoom(
+    return SweepWorkspace(
         work, factors, transposed(layout).address, np.zeros(len(factors.matrix)), *parts, right, mu, of_q, of_v,
         MotionState(*past),
     )  # fmt: skip
 
 
 @inlined
-def _fill(model, n, x, v, a, by, room, part):
+def _fill(model, n, x, v, a, by, scratch, part):
     """Fill the values of a part with the derivative along ``by[0] dq + by[1] dv + by[2] da``, and the multipliers."""
-    own, values = call_at(room.work), part.values
+    own, values = call_at(scratch.work), part.values
     for k in range(len(values)):
         values[k] = 0.0
     own.x, own.v, own.a = address_of(x), address_of(v), address_of(a)
@@ -120,7 +120,7 @@ def _fill(model, n, x, v, a, by, room, part):
     for k in range(len(part.blocks)):
         block = model_at(model).blocks + part.blocks[k] * BLOCK_SIZE
         own.slots = part.slots[k]
-        call(block_at(block).tangent, room.work, block)
+        call(block_at(block).tangent, scratch.work, block)
 
 
 @inlined
@@ -132,34 +132,34 @@ def _add(n, part, factor, matrix):
 
 
 @inlined
-def _fill_matrix(model, n, c, x, v, a, room):
+def _fill_matrix(model, n, c, x, v, a, scratch):
     """Fill the matrix of a step, M + dv C + dq K beside the constraints, and its parts."""
-    matrix, by_x = room.factors.matrix, room.by_x
+    matrix, by_x = scratch.factors.matrix, scratch.by_x
     for k in range(len(matrix)):
-        matrix[k] = room.masses[k]
-    _fill(model, n, x, v, a, (1.0, 0.0, 0.0), room, by_x)
+        matrix[k] = scratch.masses[k]
+    _fill(model, n, x, v, a, (1.0, 0.0, 0.0), scratch, by_x)
     for k in range(len(by_x.values)):
         # K is weighed by dq; J^T and J stay: the rows of the constraints are divided by dq after the solution, as the
         # forward step divides them before.
         scale = c.dq if by_x.rows[k] < n and by_x.columns[k] < n else 1.0
         matrix[by_x.places[k]] += scale * by_x.values[k]
-    if len(room.by_v.blocks) > 0:
-        _fill(model, n, x, v, a, (0.0, 1.0, 0.0), room, room.by_v)
-        _add(n, room.by_v, c.dv, matrix)
-    if len(room.by_a.blocks) > 0:
-        _fill(model, n, x, v, a, (0.0, 0.0, 1.0), room, room.by_a)
-        _add(n, room.by_a, 1.0, matrix)
+    if len(scratch.by_v.blocks) > 0:
+        _fill(model, n, x, v, a, (0.0, 1.0, 0.0), scratch, scratch.by_v)
+        _add(n, scratch.by_v, c.dv, matrix)
+    if len(scratch.by_a.blocks) > 0:
+        _fill(model, n, x, v, a, (0.0, 0.0, 1.0), scratch, scratch.by_a)
+        _add(n, scratch.by_a, 1.0, matrix)
 
 
 @kernel
 def fixed_masses(
-    model: Address, n: int, x: Reals, v: Reals, a: Reals, part: ResidualDerivatives, room: SweepRoom
+    model: Address, n: int, x: Reals, v: Reals, a: Reals, part: ResidualDerivatives, scratch: SweepWorkspace
 ) -> None:
     """Fill the masses of the blocks of a part, which do not change, in the places of the matrix."""
-    clear(room.masses)
+    clear(scratch.masses)
     if len(part.blocks) > 0:
-        _fill(model, n, x, v, a, (0.0, 0.0, 1.0), room, part)
-        _add(n, part, 1.0, room.masses)
+        _fill(model, n, x, v, a, (0.0, 0.0, 1.0), scratch, part)
+        _add(n, part, 1.0, scratch.masses)
 
 
 @inlined
@@ -224,7 +224,7 @@ def _step_back(n, c, bar, past):
 def sweep(
     problem: IntegrationProblem, model: Address, radius: float, steps: Steps, first: int, path: StateHistory,
     given: Cotangents,
-    pulls: Pulls, bar: MotionState, room: SweepRoom,
+    pulls: Pulls, bar: MotionState, scratch: SweepWorkspace,
 ) -> int:  # fmt: skip
     """Run the adjoint over steps in reverse order; return -1, or the number of a step whose matrix is singular.
 
@@ -233,7 +233,7 @@ def sweep(
     states at the ends of the steps, (steps, N + 1); ``given``: in the order of time; those of these steps; ``bar``:
     adjoint of the last state; overwritten with that of the state before the first step.
     """
-    n, size, layout, past, mu = problem.n, len(bar.x) - 1, problem.exact_layout, room.past, room.mu
+    n, size, layout, past, mu = problem.n, len(bar.x) - 1, problem.exact_layout, scratch.past, scratch.mu
     left = len(given.steps)
     # From the last step to the first one. The residual of the step, r(q, v, a, l; numbers) = 0, defines a and l; the
     # formulas of the step define q, v and w from a.
@@ -245,29 +245,29 @@ def sweep(
         clear(past.v)
         clear(past.a)
         left = _take_samples(n, c.step, first + k, given, left, bar, past)
-        set_signals(model, steps.ends[k], steps.sides[k], room.work)
-        _fill_matrix(model, n, c, x, v, a, room)
-        if not factorise(layout, room.factors):
+        set_signals(model, steps.ends[k], steps.sides[k], scratch.work)
+        _fill_matrix(model, n, c, x, v, a, scratch)
+        if not factorise(layout, scratch.factors):
             return k
         # All adjoints of the new state by the accelerations, through the formulas of the step: the right side of (M +
         # dv C + dq K, J)^T mu = ...
         for i in range(n):
-            room.right[i] = bar.a[i] + share * bar.w[i] + c.dv * bar.v[i] + c.dq * bar.x[i]
+            scratch.right[i] = bar.a[i] + share * bar.w[i] + c.dv * bar.v[i] + c.dq * bar.x[i]
         for i in range(n, size):
-            room.right[i] = bar.x[i]
-        solve_transposed(room.solve, layout, room.factors, room.right, mu)
+            scratch.right[i] = bar.x[i]
+        solve_transposed(scratch.solve, layout, scratch.factors, scratch.right, mu)
         for i in range(n, size):
             mu[i] /= c.dq
         # What is left for q and v of the state at the end of the step: their own adjoint less r_q^T mu and r_v^T mu.
-        _multiply_transposed(room.by_x, mu, room.of_q)
+        _multiply_transposed(scratch.by_x, mu, scratch.of_q)
         for i in range(n):
-            bar.x[i] -= room.of_q[i]
-        if len(room.by_v.blocks) > 0:
-            _multiply_transposed(room.by_v, mu, room.of_v)
+            bar.x[i] -= scratch.of_q[i]
+        if len(scratch.by_v.blocks) > 0:
+            _multiply_transposed(scratch.by_v, mu, scratch.of_v)
             for i in range(n):
-                bar.v[i] -= room.of_v[i]
+                bar.v[i] -= scratch.of_v[i]
         # Gradients by numbers before the state is left, while the call has its x, v and a.
-        pull(model, pulls, room.mu, room.work)
+        pull(model, pulls, scratch.mu, scratch.work)
         _step_back(n, c, bar, past)
     return -1
 

@@ -48,7 +48,7 @@ class Differentiation(NamedTuple):
 
 
 def differentiation(problem: IntegrationProblem, complex_work: int) -> Differentiation:
-    """Room for the derivatives."""
+    """Workspace for the derivatives."""
     layout, width = problem.reduced.exact_layout, len(problem.scale)
     right, delta = np.zeros((2, layout.size + 1))
     change = delta if problem.reduced.increments == problem.n else np.zeros(width)
@@ -61,7 +61,7 @@ def differentiation(problem: IntegrationProblem, complex_work: int) -> Different
 @kernel
 def differentiate(
     problem: IntegrationProblem, complex_model: Address, directions: Integers, c: Coefficients, t: float, within: float,
-    new: MotionState, dolds: MotionStates, dnews: MotionStates, room: Differentiation,
+    new: MotionState, dolds: MotionStates, dnews: MotionStates, scratch: Differentiation,
 ) -> bool:  # fmt: skip
     """Compute the derivatives of the converged step along all directions; return whether the tangent is regular.
 
@@ -70,12 +70,12 @@ def differentiate(
     tangent of the step gives the correction of the predicted derivatives: its right-hand side is Im r / STEP in the
     state that is perturbed along them (`docs/theory/sensitivities.md`).
     """
-    n, own, complex_state, factors = problem.n, problem.reduced, room.complex_state, room.factors
-    r, right, delta, change = room.r, room.right, room.delta, room.change
-    set_signals(complex_model, t, within, room.complex_work)
+    n, own, complex_state, factors = problem.n, problem.reduced, scratch.complex_state, scratch.factors
+    r, right, delta, change = scratch.r, scratch.right, scratch.delta, scratch.change
+    set_signals(complex_model, t, within, scratch.complex_work)
     reduced_tangent(
         complex_model, own.exact_slots, own.increments, own.exact_layout.size, new.x, new.v, new.a, (c.dq, c.dv, 1.0),
-        (1.0, 1.0 / c.dq), room.complex_work, factors.matrix,
+        (1.0, 1.0 / c.dq), scratch.complex_work, factors.matrix,
     )  # fmt: skip
     if not factorise(own.exact_layout, factors):
         return False
@@ -86,32 +86,32 @@ def differentiate(
         copy(dnew, dold)
         advance(n, c, dold, dnew)
         if has_nodes(directions[d]):
-            _restore(n, c, directions[d], new, dnew, room)
+            _restore(n, c, directions[d], new, dnew, scratch)
         # One evaluation gives r_q dq + r_v dv + r_a da + r_p dp, the derivative by the parameters included: they are in
         # the numbers of the perturbed model.
         perturb(n, new, dnew, complex_state)
-        set_signals(directions[d], t, within, room.complex_work)
+        set_signals(directions[d], t, within, scratch.complex_work)
         reduced_residual(
-            directions[d], own.increments, complex_state[0], complex_state[1], complex_state[2], room.complex_work,
+            directions[d], own.increments, complex_state[0], complex_state[1], complex_state[2], scratch.complex_work,
             1.0 / c.dq, r,
         )  # fmt: skip
         for i in range(len(r) - 1):
             right[i] = r[i].imag / STEP
         # The tangent is exact and of the converged state, so that one solution is the result, not an iteration.
         solve(own.exact_layout, factors, right, delta)
-        spread(complex_model, new.x, delta, room.complex_work, change)
+        spread(complex_model, new.x, delta, scratch.complex_work, change)
         subtract(n, change, dnew)
         advance(n, c, dold, dnew)
     return True
 
 
 @inlined
-def _restore(n, c, model, new, dnew, room):
+def _restore(n, c, model, new, dnew, scratch):
     """Move the derivatives of the coordinates into the tangent space of the internal constraints."""
-    x, moved, change = room.complex_state[0], room.moved, room.change
+    x, moved, change = scratch.complex_state[0], scratch.moved, scratch.change
     for i in range(len(x)):
         x[i] = complex(new.x[i], STEP * dnew.x[i])
-    restore(model, c.dq, x, room.complex_work, moved)
+    restore(model, c.dq, x, scratch.complex_work, moved)
     for i in range(n):
         change[i] = moved[i].imag / STEP
     shift(n, c, change, dnew)

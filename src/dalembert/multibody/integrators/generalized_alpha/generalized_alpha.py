@@ -180,7 +180,7 @@ def _workspace(problem: IntegrationProblem, work: int, complex_work: int, direct
 def integrate(
     problem: IntegrationProblem, opens: Integers2, settings: AlphaSettings, models: Integers, complex_models: Integers,
     directions: Integers, turns: Integers, states: MotionStates, dstates: MotionStates, out: Histories,
-    dout: Histories, log: Log, ends: Reals2, room: AlphaWorkspace,
+    dout: Histories, log: Log, ends: Reals2, scratch: AlphaWorkspace,
 ) -> None:  # fmt: skip
     """Run a stack of samples from ``problem.edges[sample, 0]`` to the last edge; fill the states at the output times.
 
@@ -199,15 +199,15 @@ def integrate(
             problem, edges, opens[sample], settings,
             SampleModels(models[sample], complex_models[sample], directions, turns[sample]), row(states, sample),
             dstates,
-            rows(out, sample), dout, log, room,
+            rows(out, sample), dout, log, scratch,
         )  # fmt: skip
 
 
 @inner
-def _integrate(problem, edges, opens, settings, models, state, dstates, out, dout, log, room):
+def _integrate(problem, edges, opens, settings, models, state, dstates, out, dout, log, scratch):
     """Run one sample: status, time reached, and the unknown that moved most."""
     n, width = problem.n, len(state.x)
-    old, new, dolds, own = room.old, room.new, room.dolds, room.newton
+    old, new, dolds, own = scratch.old, scratch.new, scratch.dolds, scratch.newton
     copy(state, new)
     own.memory[0], own.memory[1] = 0.0, 0.0
     differentiated = len(models.directions) > 0
@@ -223,7 +223,7 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
         # the constraints. Within a held table they do not: the step passes its changes with the mean of both sides, and
         # w keeps its memory.
         if fresh and (stretch > 0 or settings.consistent):
-            if not accelerate(problem, models, begin, within, new, dstates, room.consistency):
+            if not accelerate(problem, models, begin, within, new, dstates, scratch.consistency):
                 return SINGULAR, begin, 0
         if stretch == 0:
             count_turns(models.turns, begin, new, STEP_END)
@@ -279,14 +279,14 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
             note_step(log, detail, target)
             keep_slope(n, c, old, new, own.slope)
             if differentiated and not _differentiate_at(
-                room.differentiate, problem, models.complex, models.directions, c, target, side, new, dolds, dstates,
-                room.differentiation,
+                scratch.differentiate, problem, models.complex, models.directions, c, target, side, new, dolds, dstates,
+                scratch.differentiation,
             ):  # fmt: skip
                 return SINGULAR, target, 0
             # At spectral radius 1 errors of the multipliers alternate without decay: accelerations and multipliers are
             # solved for again, and velocities move onto the constraints.
             if problem.projected and width - 1 > n:
-                if not accelerate(problem, models, target, side, new, dstates, room.consistency):
+                if not accelerate(problem, models, target, side, new, dstates, scratch.consistency):
                     return SINGULAR, target, 0
             while due < len(problem.times) and problem.times[due] <= target + 1e-9 * length:
                 share = min(1.0, (problem.times[due] - t) / length)

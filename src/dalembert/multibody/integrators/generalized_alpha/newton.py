@@ -46,7 +46,7 @@ class Newton(NamedTuple):
 
 
 def newton(problem: IntegrationProblem, work: int, complex_work: int) -> Newton:
-    """Room for the iteration."""
+    """Workspace for the iteration."""
     layout, width = problem.reduced.layout, len(problem.scale)
     r, delta = np.zeros((2, layout.size + 1))
     change = delta if problem.reduced.increments == problem.n else np.zeros(width)

@@ -12,7 +12,7 @@ from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.states import MotionState, clear, coefficients, copy, resting
 
 
-class ReplayRoom(NamedTuple):
+class ReplayWorkspace(NamedTuple):
     """States of a step, and Newton's iteration."""
 
     old: MotionState
@@ -21,25 +21,25 @@ class ReplayRoom(NamedTuple):
     log: Log
 
 
-def replay_room(problem: IntegrationProblem, work: int, complex_work: int) -> ReplayRoom:
-    """Room for a replay, with calls in real and in complex numbers."""
+def replay_workspace(problem: IntegrationProblem, work: int, complex_work: int) -> ReplayWorkspace:
+    """Workspace for a replay, with calls in real and in complex numbers."""
     width, none = len(problem.scale), np.zeros(0)
     log = Log(np.zeros(4, np.int64), none.astype(np.int64), none)
-    return ReplayRoom(resting(width), resting(width), newton(problem, work, complex_work), log)
+    return ReplayWorkspace(resting(width), resting(width), newton(problem, work, complex_work), log)
 
 
 @kernel
 def replay(
     problem: IntegrationProblem, models: SampleModels, radius: float, tolerance: float, steps: Steps,
     state: MotionState, path: StateHistory,
-    room: ReplayRoom,
+    scratch: ReplayWorkspace,
 ) -> int:  # fmt: skip
     """Take the steps from a state, which is overwritten with the last one; return the status, or the reason.
 
     ``radius``, ``tolerance``: spectral radius, and tolerance of Newton's iteration; ``state``: (N + 1,); ``path``:
     filled with the states at the ends of the steps, (steps, N + 1); with none of them, (0, N + 1).
     """
-    n, old, new, own = problem.n, room.old, room.new, room.newton
+    n, old, new, own = problem.n, scratch.old, scratch.new, scratch.newton
     copy(state, new)
     clear(own.slope)
     own.memory[0], own.memory[1] = 0.0, 0.0
@@ -48,7 +48,17 @@ def replay(
         c = coefficients(steps.lengths[k], radius)
         set_signals(models.real, steps.ends[k], steps.sides[k], own.work)
         status, _ = converge(
-            problem, models.real, models.complex, c, steps.ends[k], steps.sides[k], tolerance, old, new, own, room.log
+            problem,
+            models.real,
+            models.complex,
+            c,
+            steps.ends[k],
+            steps.sides[k],
+            tolerance,
+            old,
+            new,
+            own,
+            scratch.log,
         )
         if status != DONE:
             return status

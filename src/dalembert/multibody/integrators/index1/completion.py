@@ -12,7 +12,7 @@ from dalembert.multibody.integrators.index1.index1 import (
     demand,
     demand_along,
 )
-from dalembert.multibody.integrators.index1.least_squares import surplus_room
+from dalembert.multibody.integrators.index1.least_squares import surplus_workspace
 from dalembert.multibody.integrators.index1.projection import project, project_along
 from dalembert.multibody.integrators.shared.partitioning import (
     DEPENDENT,
@@ -21,7 +21,7 @@ from dalembert.multibody.integrators.shared.partitioning import (
     dependence,
     invert,
     linearise,
-    room,
+    scratch,
     settle,
     settle_along,
 )
@@ -45,8 +45,8 @@ def make_tools(problem: IntegrationProblem, terms: Terms, work: int, complex_wor
     vector = np.zeros((4, width))
     return Tools(
         work, complex_work, storage(problem.exact_layout), np.zeros((7, width), np.complex128), vector[0], vector[1],
-        vector[2], vector[3], room(problem, directions if parted else 0),
-        surplus_room(problem, terms.redundant, directions), resting(width), resting(width),
+        vector[2], vector[3], scratch(problem, directions if parted else 0),
+        surplus_workspace(problem, terms.redundant, directions), resting(width), resting(width),
         demand_along.address if directions else 0, partition.address if parted else 0, settle.address if parted else 0,
         project.address if projected else 0, project_along.address if projected and directions else 0,
     )  # fmt: skip

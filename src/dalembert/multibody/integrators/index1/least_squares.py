@@ -11,7 +11,7 @@ import numpy as np
 
 from dalembert.kernels.kernel import inlined, inner, kernel
 from dalembert.kernels.words import Address, Complexes2, Reals, Reals2
-from dalembert.multibody.integrators.shared.partitioning import Partition, choose, invert, room
+from dalembert.multibody.integrators.shared.partitioning import Partition, choose, invert, scratch
 from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.kernels.assembly import constraint_rates
 from dalembert.multibody.kernels.elementary import STEP
@@ -42,15 +42,15 @@ class Surplus(NamedTuple):
     turn: Address
 
 
-def surplus_room(problem: IntegrationProblem, redundant: bool, directions: int) -> Surplus:
-    """Room for redundant constraints; without them for the Jacobian only."""
+def surplus_workspace(problem: IntegrationProblem, redundant: bool, directions: int) -> Surplus:
+    """Workspace for redundant constraints; without them for the Jacobian only."""
     layout = problem.exact_layout
     m = layout.size - problem.n if redundant else 0
     size = layout.size if redundant else 0
     scale = problem.scale[problem.n : problem.n + m].copy()
     kernels = invert_on_range.address if redundant else 0, turn_range.address if redundant and directions else 0
     arrays = np.zeros((m, m)), np.zeros((size, size)), storage(resized(layout, size)), np.zeros((3, m))
-    return Surplus(room(problem, 0), scale, *arrays, *kernels)
+    return Surplus(scratch(problem, 0), scale, *arrays, *kernels)
 
 
 @inlined

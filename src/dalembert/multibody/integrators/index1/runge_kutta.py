@@ -82,18 +82,18 @@ class RungeKutta4(Integrator):
         problem, terms = posed(self.stabilisation, samples, batch.problem, self.step)
         works = samples[0].real.call(), samples[0].tangents.call()
         tools = make_tools(problem, terms, works[0].address, works[1].address, directions)
-        room = _workspace(batch.shape[1], directions, tools)
-        _fill(room.stage.dstates, batch.dstates)
+        scratch = _workspace(batch.shape[1], directions, tools)
+        _fill(scratch.stage.dstates, batch.dstates)
         steps = self.step_ends(batch.end, samples[0].jumps)
         ends = np.zeros(0) if steps is None or not batch.logged else steps[1:]
         runs = []
         for lowered, edges, start, models in batch:
-            _fill(room.stage.state, start)
+            _fill(scratch.stage.state, start)
             tools.partition.rank[0] = 0  # independent coordinates are chosen anew
             out = resting(1 + directions, *batch.shape)
             counts = np.zeros(4, dtype=np.int64)
-            status, time = integrate(problem, edges, float(self.step), terms, models, out, counts, room)
-            if status == SINGULAR and not np.max(np.abs(room.stage.state.x)) < _UNBOUNDED:
+            status, time = integrate(problem, edges, float(self.step), terms, models, out, counts, scratch)
+            if status == SINGULAR and not np.max(np.abs(scratch.stage.state.x)) < _UNBOUNDED:
                 status = DIVERGED
             reason = None if status == DONE else explain(lowered, status, time, 0, f"the step is {self.step:g} s")
             parts = MotionState(*(values[0] for values in out)), MotionState(*(values[1:] for values in out))
@@ -191,15 +191,16 @@ def _choose(problem, terms, models, t, within, state, tools):
 def integrate(
     problem: IntegrationProblem, edges: Reals, step: float, terms: Terms, models: SampleModels, out: Histories,
     counts: Integers,
-    room: RungeKuttaWorkspace,
+    scratch: RungeKuttaWorkspace,
 ) -> tuple[int, float]:  # fmt: skip
     """Run one sample: status and time reached.
 
     ``edges``: of the smooth stretches, s; ``out``: at the output times, (1 + directions, times, N + 1): states, then
-    their derivatives; ``counts`` (4,): steps, and zeros; ``room``: with the state at the start, and its derivatives, in
+    their derivatives; ``counts`` (4,): steps, and zeros; ``scratch``: with the state at the start,
+    and its derivatives, in
     ``stage``; overwritten.
     """
-    n, tools, stage, between = problem.n, room.tools, room.stage, room.between
+    n, tools, stage, between = problem.n, scratch.tools, scratch.stage, scratch.between
     projects = terms.way == PROJECTED and len(stage.state.x) - 1 > n
     due = 0
     for stretch in range(len(edges) - 1):
@@ -219,14 +220,14 @@ def integrate(
             t = begin + number * h
             target = end if number + 1 == steps else begin + (number + 1) * h
             for d in range(len(stage.stack.x)):
-                copy(row(stage.stack, d), row(room.old, d))
-            _take(n, stage.stack, room.total)
+                copy(row(stage.stack, d), row(scratch.old, d))
+            _take(n, stage.stack, scratch.total)
             # y_{n+1} = y_n + h (k_1 + 2 k_2 + 2 k_3 + k_4) / 6 with y = (q, v) and the rates k of the four stages
             for share, weight in ((0.5, 1 / 6), (0.5, 1 / 3), (1.0, 1 / 3), (0.0, 1 / 6)):
                 last = share == 0.0  # the stage after it is the end of the step
-                _push(n, share * h, weight * h, room.old, stage.stack, room.total)
+                _push(n, share * h, weight * h, scratch.old, stage.stack, scratch.total)
                 if last:
-                    _take(n, room.total, stage.stack)
+                    _take(n, scratch.total, stage.stack)
                     _choose(problem, terms, models, target, within, stage.state, tools)
                 # Times of the stages: t, t + h/2, t + h/2, t + h; the loop completes the state at the time of the next
                 # one.
@@ -240,7 +241,7 @@ def integrate(
             while due < len(problem.times) and problem.times[due] <= target + 1e-9 * h:
                 share = min(1.0, (problem.times[due] - t) / h)
                 # Cubic between both ends, by coordinates and rates there: of the order of the method.
-                _interpolate(n, h, share, room.old, stage.stack, between.stack)
+                _interpolate(n, h, share, scratch.old, stage.stack, between.stack)
                 if share < 1.0 - 1e-9:
                     status = complete(
                         problem, terms, models, between.state, between.dstates, tools, problem.times[due], within,

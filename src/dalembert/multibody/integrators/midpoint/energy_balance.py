@@ -44,9 +44,9 @@ class FreeRigidMotions(NamedTuple):
 
 
 class Balance(NamedTuple):
-    """Rigid motions; room for them, their momenta, the direction of the force and sums of energies; kernels.
+    """Rigid motions; workspace for them, their momenta, the direction of the force and sums of energies; kernels.
 
-    The room is in real and in complex numbers. ``converge`` and ``converge_along`` are the addresses of these kernels:
+    It has real and complex numbers. ``converge`` and ``converge_along`` are the addresses of these kernels:
     both are 0 if the energy is not balanced, the second one is 0 if there are no directions, too.
     """
 
@@ -63,8 +63,8 @@ class Balance(NamedTuple):
     converge_along: Address
 
 
-def balance_room(width: int, rigid: FreeRigidMotions | None = None) -> Balance:
-    """Room for the balance of steps of N + 1 = ``width`` unknowns; without rigid motions the energy is not balanced."""
+def balance_workspace(width: int, rigid: FreeRigidMotions | None = None) -> Balance:
+    """Workspace for the balance of N + 1 = ``width`` unknowns; without rigid motions the energy is not balanced."""
     addresses = (converge.address, converge_along.address if len(rigid.shifts) else 0) if rigid else (0, 0)
     none = np.zeros(0)
     own = rigid or FreeRigidMotions(np.zeros(0, np.int64), none, none, np.zeros((0, 0)), np.zeros((0, 0, 0), complex))

@@ -10,7 +10,7 @@ import numpy as np
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.midpoint.energy_balance import (
     Balance,
-    balance_room,
+    balance_workspace,
     converge,
     converge_along,
     first_energies,
@@ -68,4 +68,4 @@ class EnergyMomentum(Variational):
         for model in (lowered.real, *(entry.complex_model for entry in perturbed)):
             model.need("energy")
         energies = first_energies(lowered, perturbed, start, dstarts, within)
-        return *energies, balance_room(len(start.x), rigid_motions(lowered, perturbed))
+        return *energies, balance_workspace(len(start.x), rigid_motions(lowered, perturbed))

@@ -14,7 +14,14 @@ from dalembert.multibody.integrators.midpoint.midpoint_step import Along, Midpoi
 from dalembert.multibody.integrators.shared.consistent import Consistency, accelerate, consistency
 from dalembert.multibody.integrators.shared.convergence import HALVINGS
 from dalembert.multibody.integrators.shared.ends import append
-from dalembert.multibody.integrators.shared.matrices import Matrices, Pattern, factorise_real, renew, room, weigh_masses
+from dalembert.multibody.integrators.shared.matrices import (
+    Matrices,
+    Pattern,
+    factorise_real,
+    renew,
+    scratch,
+    weigh_masses,
+)
 from dalembert.multibody.integrators.shared.outputs import Outputs, outputs, record
 from dalembert.multibody.integrators.shared.problem import (
     DONE,
@@ -80,17 +87,17 @@ def workspace(
     balance: Balance,
     denergies: np.ndarray, dstates: MotionState,
 ) -> MidpointWorkspace:  # fmt: skip
-    """Room for one sample; two calls in real numbers, and two in complex ones, for the middle and the end of a step."""
+    """Workspace for one sample; two real and two complex calls, for the middle and the end of a step."""
     directions, width = dstates.x.shape
     works, complex_works = [call.address for call in calls], [call.address for call in complex_calls]
     out = outputs(_ENDS, dstates, works[0], complex_works[0])
     derivatives = Derivatives(
-        midpoint.along_room(width, *complex_works), np.zeros((directions, 2, width)), denergies, resting(width),
+        midpoint.along_workspace(width, *complex_works), np.zeros((directions, 2, width)), denergies, resting(width),
         out.complex_state, differentiate.address if directions else 0,
     )  # fmt: skip
     return MidpointWorkspace(
-        room(pattern, 0), consistency(problem, works[0], complex_works[0], directions),
-        midpoint.step_room(width, *works), balance, np.zeros((2, width)), out, derivatives,
+        scratch(pattern, 0), consistency(problem, works[0], complex_works[0], directions),
+        midpoint.step_workspace(width, *works), balance, np.zeros((2, width)), out, derivatives,
     )  # fmt: skip
 
 
@@ -107,10 +114,10 @@ def _read(n, s, new):
 def differentiate(
     problem: IntegrationProblem, matrices: Matrices, directions: Integers, step: MidpointStep, balance: Balance,
     strength: float, h: float,
-    t: float, target: float, within: float, new: MotionState, dnews: MotionStates, moved: Reals2, room: Derivatives,
+    t: float, target: float, within: float, new: MotionState, dnews: MotionStates, moved: Reals2, scratch: Derivatives,
 ) -> None:  # fmt: skip
     """Derivatives of a step along all directions."""
-    n, along, dold, slopes, energies = problem.n, room.along, room.old, room.slopes, room.energies
+    n, along, dold, slopes, energies = problem.n, scratch.along, scratch.old, scratch.slopes, scratch.energies
     middle, end, ds = along.middle, along.end, along.rows
     for d in range(len(directions)):
         perturbed, dnew = directions[d], row(dnews, d)
@@ -126,7 +133,7 @@ def differentiate(
             )
         midpoint.keep_missed(n, dold, ds, slopes[d])
         _read(n, ds, dnew)
-        settle_along(problem, matrices, perturbed, new, dnew, moved, end, room.complex_state, VELOCITY)
+        settle_along(problem, matrices, perturbed, new, dnew, moved, end, scratch.complex_state, VELOCITY)
 
 
 _balance_at, _balance_along_at = balancing.converge.at, balancing.converge_along.at

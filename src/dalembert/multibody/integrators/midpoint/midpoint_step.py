@@ -59,13 +59,13 @@ class Along(NamedTuple):
     vectors: Complexes2
 
 
-def step_room(width: int, middle: int, end: int) -> MidpointStep:
-    """Room for a step of N + 1 = ``width`` unknowns; the calls are those of real numbers."""
+def step_workspace(width: int, middle: int, end: int) -> MidpointStep:
+    """Workspace for a step of N + 1 = ``width`` unknowns; the calls are those of real numbers."""
     return MidpointStep(middle, end, np.zeros((ROWS, width)), np.zeros(width), np.zeros((7, width)))
 
 
-def along_room(width: int, middle: int, end: int) -> Along:
-    """Room for the derivative of a step; the calls are those of complex numbers."""
+def along_workspace(width: int, middle: int, end: int) -> Along:
+    """Workspace for the derivative of a step; the calls are those of complex numbers."""
     complex_state, vectors = np.zeros((ROWS, width), complex), np.zeros((7, width), complex)
     return Along(middle, end, np.zeros((ROWS, width)), np.zeros(width), complex_state, vectors)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from dalembert.arguments import limited
 from dalembert.kernels.kernel import Compiled
-from dalembert.multibody.integrators.midpoint.energy_balance import Balance, balance_room
+from dalembert.multibody.integrators.midpoint.energy_balance import Balance, balance_workspace
 from dalembert.multibody.integrators.midpoint.midpoint_loop import MidpointSettings, differentiate, integrate, workspace
 from dalembert.multibody.integrators.shared.batch import Batch
 from dalembert.multibody.integrators.shared.consistent import accelerate_along
@@ -76,9 +76,9 @@ class Variational(Integrator):
             energy, denergies, balance = self._balance(lowered, batch.perturbed, start, batch.dstates, middle)
             settings = MidpointSettings(float(self.step), float(self.newton_tolerance), lowered.dissipates, energy)
             calls, complex_calls = ([own.call(), own.call()] for own in (lowered.real, lowered.tangents))
-            room = workspace(batch.problem, pattern, calls, complex_calls, balance, denergies, batch.dstates)
+            scratch = workspace(batch.problem, pattern, calls, complex_calls, balance, denergies, batch.dstates)
             status, time, unknown = integrate(
-                batch.problem, edges, settings, models, start, batch.dstates, states, dout, log, *room
+                batch.problem, edges, settings, models, start, batch.dstates, states, dout, log, *scratch
             )
             given = lowered, status, time, unknown, cut_down(self.step)
             reason = None if status == DONE else explain(*given)
@@ -89,4 +89,4 @@ class Variational(Integrator):
         self, lowered: Lowered, perturbed: Sequence[Lowered], start: MotionState, dstarts: MotionState, within: float
     ) -> tuple[float, np.ndarray, Balance]:
         """Energy at the start with its derivatives, and what keeps it: here nothing does."""
-        return 0.0, np.zeros(len(perturbed)), balance_room(len(start.x))
+        return 0.0, np.zeros(len(perturbed)), balance_workspace(len(start.x))

@@ -88,11 +88,13 @@ def _converge_along(problem, method, matrices, perturbed, works, h, s, dstart, d
 
 @kernel
 def settle_end_along(
-    problem: IntegrationProblem, matrices: Matrices, directions: Integers, within: float, room: Outputs, j: int
+    problem: IntegrationProblem, matrices: Matrices, directions: Integers, within: float, scratch: Outputs, j: int
 ) -> None:
     """Settle the derivatives of end ``j`` along all directions."""
-    last, work = room.last, room.complex_work
+    last, work = scratch.last, scratch.complex_work
     for d in range(len(directions)):
         set_signals(directions[d], last.times[j], within, work)
         state, dstate = row(last.states, j), row(rows(last.derivatives, d), j)
-        settle_along(problem, matrices, directions[d], state, dstate, room.moved, work, room.complex_state, VELOCITY)
+        settle_along(
+            problem, matrices, directions[d], state, dstate, scratch.moved, work, scratch.complex_state, VELOCITY
+        )

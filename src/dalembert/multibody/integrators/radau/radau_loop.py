@@ -43,25 +43,25 @@ def _first_step(n, scale, span, tolerance, order, state):
 
 
 @inner
-def _settle_ends(problem, matrices, apart, far, models, damped, within, room, along):
+def _settle_ends(problem, matrices, apart, far, models, damped, within, scratch, along):
     """Settle the ends that outputs of the last step need; whether that went well.
 
     Former ones with matrices apart of their own places, the newest one, too, where the kept ones are from ``far``.
     """
-    last, newest = room.last, len(room.last.times) - 1
+    last, newest = scratch.last, len(scratch.last.times) - 1
     for j in range(support(last), newest + 1):
         if last.settled[j]:
             continue
         t, state, own = last.times[j], row(last.states, j), matrices
         if far or j < newest:
             own = apart
-            if not renew(problem, own, models.complex, damped, t, within, state, room.complex_work):
+            if not renew(problem, own, models.complex, damped, t, within, state, scratch.complex_work):
                 return False
-        set_signals(models.real, t, within, room.work)
-        if not settle(problem, own, models.real, state, room.moved, room.work, VELOCITY):
+        set_signals(models.real, t, within, scratch.work)
+        if not settle(problem, own, models.real, state, scratch.moved, scratch.work, VELOCITY):
             return False
         if len(models.directions) > 0:
-            _settle_end_along_at(along, problem, own, models.directions, within, room, j)
+            _settle_end_along_at(along, problem, own, models.directions, within, scratch, j)
         last.settled[j] = True
     return True
 

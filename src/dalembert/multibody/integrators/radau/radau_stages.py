@@ -52,7 +52,7 @@ def stages(count: int, width: int) -> Stages:
 
 
 def buffers(count: int, width: int) -> Buffers:
-    """Room for a step; the vectors are as long as a complex system."""
+    """Workspace for a step; the vectors are as long as a complex system."""
     motion, weighed, rate, change_x, change_u, change_a, moved = np.zeros((7, count, width))
     given, answer = np.zeros((2, 2 * width))
     complex_state = np.zeros((10, width), complex)
@@ -126,7 +126,8 @@ def _extrapolation(c, h, before, earlier, more, nodes, weights):
 def extrapolate(n, h, method, before, earlier, past, s, b, weights):
     """Stages by the polynomial through those of the step before, and of the one earlier (0: without) in ``past``.
 
-    They took ``before`` and ``earlier`` seconds; ``weights`` (stages + 1, 2 stages) is room. The stages before are then
+    They took ``before`` and ``earlier`` seconds; ``weights`` (stages + 1,
+    2 stages) is workspace. The stages before are then
     in ``past``.
     """
     count = len(method.c)

@@ -34,7 +34,7 @@ def attempt(
     problem: IntegrationProblem, method: Coefficients, models: SampleModels, settings: RadauSettings, t: float,
     target: float, within: float,
     before: float, earlier: float, stale: bool, made: float, speed: float, new: MotionState, matrices: Matrices,
-    room: RadauStep,
+    scratch: RadauStep,
 ) -> tuple[int, float, float, float, int, float, int]:  # fmt: skip
     """A step from ``new``, which moves if the step is good.
 
@@ -42,7 +42,7 @@ def attempt(
     unknown that moved most.
     """
     n, scale, h = problem.n, problem.scale, target - t
-    s, past, b, weights, works = room.s, room.past, room.b, room.weights, room.works
+    s, past, b, weights, works = scratch.s, scratch.past, scratch.b, scratch.weights, scratch.works
     if before > 0.0:
         stages.extrapolate(n, h, method, before, earlier if h <= _FAR * before else 0.0, past, s, b, weights)
     else:
@@ -52,7 +52,7 @@ def attempt(
         # The matrices are those of the middle stage, which is nearest to all of them.
         m = len(method.c) // 2
         middle, place = t + method.c[m] * h, MotionState(s.x[m], s.v[m], s.a[m], s.a[m])
-        if not renew(problem, matrices, models.complex, settings.damped, middle, within, place, room.complex_work):
+        if not renew(problem, matrices, models.complex, settings.damped, middle, within, place, scratch.complex_work):
             return SINGULAR, made, 0.0, speed, 0, 1.0, 0
     if stale or not (made <= _NEAR * h and h <= _NEAR * made):
         made = h
@@ -72,7 +72,7 @@ def attempt(
         stages.read(n, s, new)
         # Accelerations at the end by one solution: they serve as a prediction and for outputs, which settle them
         # exactly.
-        accelerate_roughly(problem, matrices, models.real, new, works[end], room.moved)
+        accelerate_roughly(problem, matrices, models.real, new, works[end], scratch.moved)
     else:
         stages.recall(past.x, past.u, past.a, s)
     return DONE if converged else NEWTON_FAILED, made, error, speed, iterations, rate, worst

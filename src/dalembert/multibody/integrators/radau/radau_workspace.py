@@ -9,7 +9,7 @@ from dalembert.multibody.integrators.radau.radau_coefficients import Coefficient
 from dalembert.multibody.integrators.radau.radau_derivatives import differentiate, settle_end_along
 from dalembert.multibody.integrators.radau.radau_stages import Buffers, Stages, buffers, stages
 from dalembert.multibody.integrators.shared.consistent import Consistency, consistency
-from dalembert.multibody.integrators.shared.matrices import Matrices, Pattern, room
+from dalembert.multibody.integrators.shared.matrices import Matrices, Pattern, scratch
 from dalembert.multibody.integrators.shared.outputs import Outputs, outputs
 from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.kernels.block_table import Call
@@ -36,7 +36,7 @@ class RadauSettings(NamedTuple):
 class RadauStep(NamedTuple):
     """Stages of a step and of the one before, buffers, and the calls of the stages.
 
-    ``weights`` (stages + 1, 2 stages) of the prediction and ``moved`` (4, N + 1) are room.
+    ``weights`` (stages + 1, 2 stages) of the prediction and ``moved`` (4, N + 1) are workspace.
     """
 
     s: Stages
@@ -77,12 +77,12 @@ def workspace(
     problem: IntegrationProblem, method: Coefficients, pattern: Pattern, dstates: MotionState, calls: list[Call],
     complex_calls: list[Call],
 ) -> RadauWorkspace:  # fmt: skip
-    """Room for a run; ``calls`` in real and in complex numbers: one a stage, and one more before them."""
+    """Workspace for a run; ``calls`` in real and in complex numbers: one a stage, and one more before them."""
     directions, width = dstates.x.shape
     count = len(method.c)
     works, complex_works = (np.array([call.address for call in own]) for own in (calls, complex_calls))
     work, complex_work = int(works[0]), int(complex_works[0])
-    matrices, apart = room(pattern, len(method.pairs)), room(pattern, 0)
+    matrices, apart = scratch(pattern, len(method.pairs)), scratch(pattern, 0)
     if not pattern.varies:
         apart = apart._replace(heavy=matrices.heavy, mass=matrices.mass)  # which do not change in a motion
     out = outputs(_ENDS, dstates, work, complex_work)

@@ -75,10 +75,10 @@ class Batch:
     def log(self, steps: np.ndarray | None) -> Log:
         """Return an empty log of one run, of these fixed ``steps`` if there are any; it keeps no step if not logged.
 
-        Steps that are cut down need more room.
+        Steps that are cut down need more workspace.
         """
-        room = max(_ROOM, 0 if steps is None else 2 * len(steps)) if self.logged else 0
-        return Log(np.zeros(4, dtype=np.int64), np.zeros(room, dtype=np.int64), np.zeros(room))
+        scratch = max(_ROOM, 0 if steps is None else 2 * len(steps)) if self.logged else 0
+        return Log(np.zeros(4, dtype=np.int64), np.zeros(scratch, dtype=np.int64), np.zeros(scratch))
 
     def result(self, reason: SolveError | None, states: MotionState, derivatives: MotionState, log: Log) -> Run:
         """Return what a run left, with the part of the log that it filled."""

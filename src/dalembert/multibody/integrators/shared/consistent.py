@@ -34,7 +34,7 @@ class Consistency(NamedTuple):
 
 
 def consistency(problem: IntegrationProblem, work: int, complex_work: int, directions: int) -> Consistency:
-    """Room for consistent accelerations."""
+    """Workspace for consistent accelerations."""
     exact, width = storage(problem.exact_layout), problem.exact_layout.size + 1
     along = accelerate_along.address if directions else 0
     constraints, vectors = np.zeros(len(exact.matrix)), np.zeros((4, width))

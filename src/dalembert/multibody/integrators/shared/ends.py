@@ -25,7 +25,7 @@ class Ends(NamedTuple):
 
 
 def ends(count: int, like: MotionState) -> Ends:
-    """Room for ``count`` ends, with derivatives as ``like`` (directions, N + 1)."""
+    """Workspace for ``count`` ends, with derivatives as ``like`` (directions, N + 1)."""
     directions, width = like.x.shape
     states, derivatives = resting(count, width), resting(directions, count, width)
     return Ends(np.zeros(count), states, derivatives, np.zeros(count, np.int64), np.zeros(1, np.int64))

@@ -88,8 +88,8 @@ def pattern_of(structure: Structure) -> Pattern:
     return Pattern(slots, rows, columns, single, layout, double, wide, varies)
 
 
-def room(pattern: Pattern, pairs: int) -> Matrices:
-    """Room for the matrices of a motion, with as many complex systems as ``pairs``."""
+def scratch(pattern: Pattern, pairs: int) -> Matrices:
+    """Workspace for the matrices of a motion, with as many complex systems as ``pairs``."""
     entries, layout = len(pattern.rows), pattern.double_layout
     doubles = Doubles(
         np.zeros((pairs, layout.lead * layout.size)), np.zeros((pairs, layout.size), np.int64),

@@ -18,7 +18,8 @@ from dalembert.multibody.model.turns import count_turns
 class Outputs(NamedTuple):
     """Work of outputs: ends of the last steps, a state between them and its derivative, weights (4, ends, 3), calls.
 
-    ``moved`` and ``complex_state`` are room, see `settle_along`. ``along``: address of `record_along`, 0 if there are
+    ``moved`` and ``complex_state`` are workspace, see `settle_along`. ``along``: address of `record_along`,
+    0 if there are
     no directions.
     """
 
@@ -34,7 +35,7 @@ class Outputs(NamedTuple):
 
 
 def outputs(count: int, dstates: MotionState, work: int, complex_work: int) -> Outputs:
-    """Room for outputs between ``count`` ends, with derivatives as ``dstates`` (directions, N + 1)."""
+    """Workspace for outputs between ``count`` ends, with derivatives as ``dstates`` (directions, N + 1)."""
     directions, width = dstates.x.shape
     return Outputs(
         ends(count, dstates), resting(width), resting(width), np.zeros((4, count, 3)), np.zeros((6, width)), work,
@@ -44,7 +45,7 @@ def outputs(count: int, dstates: MotionState, work: int, complex_work: int) -> O
 
 @kernel
 def record(
-    problem: IntegrationProblem, matrices: Matrices, far: bool, models: SampleModels, room: Outputs, within: float,
+    problem: IntegrationProblem, matrices: Matrices, far: bool, models: SampleModels, scratch: Outputs, within: float,
     out: MotionStates,
     dout: Histories, due: int,
 ) -> bool:  # fmt: skip
@@ -52,7 +53,7 @@ def record(
 
     Matrices that are from ``far`` are renewed between the ends.
     """
-    ends, state = room.last, room.between
+    ends, state = scratch.last, scratch.between
     newest = oldest = len(ends.times) - 1
     share, t = 1.0, problem.times[due]
     if ends.known[0] > 1:
@@ -62,25 +63,25 @@ def record(
         copy(row(ends.states, newest), state)
     else:
         oldest = support(ends)
-        weigh_ends(ends, oldest, t, room.weights)
-        interpolate_ends(problem.n, oldest, room.weights, ends.states, state)
+        weigh_ends(ends, oldest, t, scratch.weights)
+        interpolate_ends(problem.n, oldest, scratch.weights, ends.states, state)
         # The interpolated state is near the constraints, so that kept matrices correct it unless they are from far
         # away.
-        if far and not renew(problem, matrices, models.complex, False, t, within, state, room.complex_work):
+        if far and not renew(problem, matrices, models.complex, False, t, within, state, scratch.complex_work):
             return False
-        set_signals(models.real, t, within, room.work)
-        if not settle(problem, matrices, models.real, state, room.moved, room.work, POSITION):
+        set_signals(models.real, t, within, scratch.work)
+        if not settle(problem, matrices, models.real, state, scratch.moved, scratch.work, POSITION):
             return False
     write(state, row(out, due))
     count_turns(models.turns, t, state, due)
     if len(models.directions) > 0:
-        _record_along_at(room.along, problem, matrices, models.directions, room, whole, oldest, within, dout, due)
+        _record_along_at(scratch.along, problem, matrices, models.directions, scratch, whole, oldest, within, dout, due)
     return True
 
 
 @kernel
 def record_along(
-    problem: IntegrationProblem, matrices: Matrices, directions: Integers, room: Outputs, whole: bool, oldest: int,
+    problem: IntegrationProblem, matrices: Matrices, directions: Integers, scratch: Outputs, whole: bool, oldest: int,
     within: float,
     dout: Histories, due: int,
 ) -> None:  # fmt: skip
@@ -88,17 +89,17 @@ def record_along(
 
     ``whole``: at the end of the step; else between ends from ``oldest`` on, with the weights and moves of the state.
     """
-    t, ends, dstate = problem.times[due], room.last, room.dbetween
+    t, ends, dstate = problem.times[due], scratch.last, scratch.dbetween
     for d in range(len(directions)):
         derivatives = rows(ends.derivatives, d)
         if whole:
             copy(row(derivatives, len(ends.times) - 1), dstate)
         else:
-            interpolate_ends(problem.n, oldest, room.weights, derivatives, dstate)
-            set_signals(directions[d], t, within, room.complex_work)
+            interpolate_ends(problem.n, oldest, scratch.weights, derivatives, dstate)
+            set_signals(directions[d], t, within, scratch.complex_work)
             settle_along(
-                problem, matrices, directions[d], room.between, dstate, room.moved, room.complex_work,
-                room.complex_state, POSITION,
+                problem, matrices, directions[d], scratch.between, dstate, scratch.moved, scratch.complex_work,
+                scratch.complex_state, POSITION,
             )  # fmt: skip
         write(dstate, row(rows(dout, d), due))
 

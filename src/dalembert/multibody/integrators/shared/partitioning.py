@@ -42,8 +42,8 @@ class Partition(NamedTuple):
     along: Address
 
 
-def room(problem: IntegrationProblem, directions: int) -> Partition:
-    """Room for a partition, for a dense matrix of the problem (`Structure.dense`); else for its Jacobian only."""
+def scratch(problem: IntegrationProblem, directions: int) -> Partition:
+    """Workspace for a partition, for a dense matrix of the problem (`Structure.dense`); else for its Jacobian only."""
     layout, n = problem.exact_layout, problem.n
     m = layout.size - n if layout.kind == DENSE else 0
     along, vector = settle_along.address if directions else 0, np.zeros((3, layout.size + 1))

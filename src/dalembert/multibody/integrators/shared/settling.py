@@ -24,7 +24,7 @@ _ROUGH = 1e-5  # the same of a correction, after which the error is smaller by t
 def weigh(model, n, matrices, x, w, work, f, at):
     """Fill ``f`` (N + 1,): M w + J^T m in its first n entries, for w = (w, m), and the constraints behind them.
 
-    ``at`` (N + 1,) is room.
+    ``at`` (N + 1,) is workspace.
     """
     for i in range(len(f)):
         f[i] = 0.0
@@ -104,7 +104,7 @@ def balanced(model, n, state, work, f, unheld, at, still):
 
     Its accelerations are nothing but rounding, so that no correction is small against them. Forces without those of the
     joints show it at rest, those at zero velocity where a drive turns steadily against its dampers. ``f`` is what is
-    left, the other vectors (N + 1,) are room.
+    left, the other vectors (N + 1,) are workspace.
     """
     for i in range(len(at)):
         at[i], still[i] = state.x[i] if i < n else 0.0, 0.0
@@ -128,7 +128,7 @@ def settle(
     """Accelerations and multipliers of a state; if ``first`` says so, coordinates and velocities are moved before.
 
     The signals in ``work`` hold the time. ``moved`` (6, N + 1) are the moves of coordinates and velocities with their
-    multipliers, and room. Answers whether the iteration converged.
+    multipliers, and workspace. Answers whether the iteration converged.
     """
     n, last = problem.n, len(state.x) - 1
     f, rate, second, answer = moved[2], moved[3], moved[4], moved[5]
@@ -160,15 +160,15 @@ def settle(
 
 
 @inner
-def accelerate_roughly(problem, matrices, model, state, work, room):
-    """Accelerations and multipliers of a state, as exactly as an estimate of errors needs; ``room`` (4, N + 1)."""
-    n, f, answer = problem.n, room[0], room[3]
+def accelerate_roughly(problem, matrices, model, state, work, scratch):
+    """Accelerations and multipliers of a state, as exactly as an estimate of errors needs; ``scratch`` (4, N + 1)."""
+    n, f, answer = problem.n, scratch[0], scratch[3]
     for _ in range(_MOST_ITERATIONS):
         residual(model, n, state.x, state.v, state.a, work, 1.0, f)
-        constraint_rates(model, n, state.x, state.v, state.a, work, room[1], f)
+        constraint_rates(model, n, state.x, state.v, state.a, work, scratch[1], f)
         solve(matrices.pattern.layout, matrices.rigid, f, answer)
-        _move(n, ACCELERATION, answer, state, room)
-        norm, size = _sizes(n, ACCELERATION, answer, state, room)
+        _move(n, ACCELERATION, answer, state, scratch)
+        norm, size = _sizes(n, ACCELERATION, answer, state, scratch)
         if norm <= _ROUGH * size or not norm < 1e100:
             break
 
@@ -181,7 +181,7 @@ def settle_along(
 ) -> None:  # fmt: skip
     """Derivative of a settled state along a direction, from that of the state before; signals in ``work``.
 
-    ``moved`` (6, N + 1) are the moves as `settle` left them, and room; so is ``complex_state`` (10, N + 1).
+    ``moved`` (6, N + 1) are the moves as `settle` left them, and workspace; so is ``complex_state`` (10, N + 1).
     """
     n, last = problem.n, len(state.x) - 1
     dmoved, answer, imaginary = moved[2:4], moved[4], moved[5]

@@ -52,6 +52,6 @@ def screening(result: Screening, options: ReportOptions) -> list[Section]:
     fold = Fold(effects, most=40, rows="effects")
     return [
         headline_of(result),
-        Section("Elementary effects", (fold, Row(plots, beside=len(plots) > 1), download)),
+        Section("Elementary effects", (fold, Row(plots, side_by_side=len(plots) > 1), download)),
         Section("Parameters", (box,)),
     ]

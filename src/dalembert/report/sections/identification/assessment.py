@@ -36,7 +36,7 @@ def profiled(told: Profiles) -> Section:
     plots = [
         Plot(f"profile-{number}", charts.profile(told, curve.name), how) for number, curve in enumerate(told.curves, 1)
     ]
-    return Section("Profile likelihood", (Listed(sentences), _table(told), Row(plots, beside=len(plots) > 1)))
+    return Section("Profile likelihood", (Listed(sentences), _table(told), Row(plots, side_by_side=len(plots) > 1)))
 
 
 def _table(told: Profiles) -> Table:

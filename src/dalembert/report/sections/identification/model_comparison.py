@@ -69,7 +69,7 @@ def compared_models(found: ModelComparison, *, findings: bool = False) -> Sectio
         Plot("difference-by-group", charts.difference_by_group(found), WHERE),
     ]
     how = f"Log predictive densities (elpd): {found.how}. Left out together: {WAYS[found.left_out]}."
-    return Section("Model comparison", (Listed(sentences), how, _table(found), Row(plots, beside=False)))
+    return Section("Model comparison", (Listed(sentences), how, _table(found), Row(plots, side_by_side=False)))
 
 
 def _table(found: ModelComparison) -> Table:

@@ -33,7 +33,7 @@ def varied(told: Population, *more: Listed) -> Section:
     blocks = (
         _means(told, named, level),
         *more,
-        Row(plots, beside=len(plots) > 1),
+        Row(plots, side_by_side=len(plots) > 1),
         Fold(_values(told, named), rows="specimens"),
     )
     return Section("Mean and spread", blocks)

@@ -53,7 +53,7 @@ def _parameters(told: Posterior, profiles: Profiles | None) -> Section:
     how = MARGINAL + (PROFILE if profiles is not None else "")
     names = told.parameters.names
     plots = [Plot(f"marginal-{k}", charts.marginal(told, name, profiles), how) for k, name in enumerate(names, 1)]
-    return Section("Parameters", (_table(told, profiles), Row(plots, beside=len(plots) > 1)))
+    return Section("Parameters", (_table(told, profiles), Row(plots, side_by_side=len(plots) > 1)))
 
 
 def _table(told: Posterior, profiles: Profiles | None) -> Table:
@@ -89,7 +89,7 @@ def _pairs(told: Posterior) -> list[Section]:
 def _traces(told: Posterior) -> Section:
     names = told.parameters.names
     plots = [Plot(f"trace-{k}", charts.traces(told, name), TRACE) for k, name in enumerate(names, 1)]
-    return Section("Traces", (Row(plots, beside=len(plots) > 1),))
+    return Section("Traces", (Row(plots, side_by_side=len(plots) > 1),))
 
 
 def _predictive(told: Posterior) -> Section:

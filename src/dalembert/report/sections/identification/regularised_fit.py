@@ -37,5 +37,5 @@ def regularised_fit(fit: RegularisedFit, options: ReportOptions) -> list[Section
         "parameter": [fit.names[place] for place in others], "value": cells(fit.values[others], 6),
         "standard deviation": cells(fit.deviations[others], 2), "unit": [fit.units[place] for place in others],
     })  # fmt: skip
-    blocks = (Row(plots, beside=True), *([table] if others else []), values)
+    blocks = (Row(plots, side_by_side=True), *([table] if others else []), values)
     return [headline, Section("Values and penalty", blocks), compared_simply(fit)]

@@ -51,7 +51,7 @@ def identifiability(fit: Fit | BandFit) -> Section:
         small = "A small value belongs to a combination that is hardly identifiable."
         spectrum = charts.singular_values(known.singular_values, known.directions, names)
         plots = [Plot("correlation", charts.correlation(fit), pairs), Plot("singular-values", spectrum, small)]
-    row = Row(plots, beside=len(names) <= MOST_BESIDE)
+    row = Row(plots, side_by_side=len(names) <= MOST_BESIDE)
     return Section("Identifiability", (Listed(str(known).splitlines()), row))
 
 

@@ -322,7 +322,7 @@ column = "i"
             "[inputs.current]: start: bounds were given; expected a number of seconds of the file, or 'first'",
         ),
         (
-            MODEL + INPUT + 'kind = "held"' + DATA,
+            MODEL + INPUT + 'interpolation = "held"' + DATA,
             "[inputs.current], delay: the response to a held input has no derivative by its delay, since each change "
             "of the value moves in time as a jump; take kind = 'linear', or a delay that depends on no parameter",
         ),

@@ -328,7 +328,7 @@ column = "i"
         ),
         (
             MODEL + INPUT + 'interpolation = "hold"' + DATA,
-            "[inputs.current], kind: 'hold' was given; expected 'linear', 'cubic' or 'held'",
+            "[inputs.current], interpolation: 'hold' was given; expected 'linear', 'cubic' or 'held'",
         ),
         (
             MODEL + INPUT + EXPERIMENTS.replace("inputs.current.kind", "inputs.curent.kind"),

@@ -203,7 +203,7 @@ CASES: dict[str, tuple[Callable[[], object], str]] = {
     ),
     "data without names": (
         lambda: Measurements.of([0.0], [1.0]),  # type: ignore[arg-type]
-        "the channels are [1.0]; expected a mapping from names to columns, such as {'AB.end.x': values}",
+        "the channels are [1.0]; expected columns by their names, such as {'AB.end.x': values}",
     ),
     "a text as deviation": (
         lambda: measured(deviations={"x": "a"}),

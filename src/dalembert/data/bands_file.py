@@ -69,7 +69,10 @@ def read_bands(
         bands = Bands.of(along, {name: (table[lower], table[upper]) for name, (lower, upper) in pairs.items()})
     named = found.named_units(units)
     return replace(
-        bands, source_units={name: named[one] for name, pair in pairs.items() for one in pair if one in named}
+        bands,
+        source_units={
+            name: named[name_of_end] for name, pair in pairs.items() for name_of_end in pair if name_of_end in named
+        },
     )
 
 

@@ -45,10 +45,10 @@ def clock_seconds(cells: Sequence[str]) -> np.ndarray | None:
     if not cells or not all(match is not None and (match["hour"] or match["date"]) for match in matches):
         return None
     dates = [match["date"] for match in matches if match is not None]
-    if len({one is None for one in dates}) > 1:
+    if len({date is None for date in dates}) > 1:
         return None
     seconds = np.array([_of_day(match) for match in matches])
-    days = np.zeros(len(cells)) if dates[0] is None else _days([one for one in dates if one is not None])
+    days = np.zeros(len(cells)) if dates[0] is None else _days([date for date in dates if date is not None])
     if days is None:
         return None
     if dates[0] is None:
@@ -76,8 +76,8 @@ def _days(texts: Sequence[str]) -> np.ndarray | None:
 
 
 def _day(parts: tuple[int, ...], *, first_is_month: bool) -> int:
-    one, two, three = parts
-    if one > 31:
-        return date(one, two, three).toordinal()
+    first, two, three = parts
+    if first > 31:
+        return date(first, two, three).toordinal()
     year = three if three > 99 else 2000 + three
-    return (date(year, one, two) if first_is_month else date(year, two, one)).toordinal()
+    return (date(year, first, two) if first_is_month else date(year, two, first)).toordinal()

@@ -129,9 +129,9 @@ def derivative(
         deviation = float(data.deviations[column])
     shortest = min(run.stop - run.start for run in runs)
     windows = [window] if window else _windows(least, min(shortest, WIDEST))
-    found = [_derivative(along, values, runs, order, size, degree, deviation, step) for size in windows]
-    loose = [one for one in found if one.left <= STIFF * max(deviation, found[0].left)]
-    best = min(loose, key=lambda one: one.error)
+    candidates = [_derivative(along, values, runs, order, size, degree, deviation, step) for size in windows]
+    loose = [candidate for candidate in candidates if candidate.left <= STIFF * max(deviation, candidates[0].left)]
+    best = min(loose, key=lambda candidate: candidate.error)
     best = best if step == 1 else _derivative(along, values, runs, order, best.window, degree, deviation)
     return replace(best, values=_spread(best.values, rows), noise=_spread(best.noise, rows))
 
@@ -174,7 +174,7 @@ def _derivative(
     step: int = 1,
 ) -> Derivative:
     """The derivative by windows of one size, on runs that are at least as long, at every ``step``-th sample."""
-    found, gain, finer, finer_gain, left = (np.full(len(along), np.nan) for _ in range(5))
+    rates, gain, finer, finer_gain, left = (np.full(len(along), np.nan) for _ in range(5))
     for run in runs:
         samples = np.arange(run.start, run.stop, step)
         for at in np.array_split(samples, 1 + len(samples) // BLOCK):
@@ -183,15 +183,15 @@ def _derivative(
             x, around = along[near], values[near]
             rows, rest = _polynomials(x, around, along[at], order, degree)
             more = _polynomials(x, around, along[at], order, degree + 2)[0] - rows
-            found[at], gain[at] = np.sum(rows * around, axis=1), np.linalg.norm(rows, axis=1)
+            rates[at], gain[at] = np.sum(rows * around, axis=1), np.linalg.norm(rows, axis=1)
             finer[at], finer_gain[at] = np.sum(more * around, axis=1), np.linalg.norm(more, axis=1)
             left[at] = np.sum(rest**2, axis=1) / (window - degree - 1)
-    there = np.isfinite(found)
-    expected = (deviation * finer_gain[there]) ** 2
+    computed = np.isfinite(rates)
+    expected = (deviation * finer_gain[computed]) ** 2
     apart = max(1.0, window / step)  # values that share noise: what is left of their number in the mean's error
     uncertain = np.sqrt(2 * apart * np.sum(expected**2)) / len(expected)
-    bias = np.sqrt(max(0.0, np.mean(finer[there] ** 2 - expected) + 2 * uncertain))
-    return Derivative(found, deviation * gain, float(bias), deviation, float(np.sqrt(np.nanmean(left))), window)
+    bias = np.sqrt(max(0.0, np.mean(finer[computed] ** 2 - expected) + 2 * uncertain))
+    return Derivative(rates, deviation * gain, float(bias), deviation, float(np.sqrt(np.nanmean(left))), window)
 
 
 def _polynomials(

@@ -21,8 +21,8 @@ def filtered(data: Recorded, cutoff: float) -> Recorded:
     if not is_real(cutoff) or not 0 < cutoff < np.inf:
         raise DataError(f"the cutoff frequency is {cutoff} Hz; expected a positive number")
     values, gains = np.full(data.values.shape, np.nan), np.ones(len(data.channels))
-    for column, (there, known) in enumerate(zip(data.present.T, data.continuous.T, strict=True)):
-        rate = 1.0 / _spacing(along[there])
+    for column, (present, known) in enumerate(zip(data.present.T, data.continuous.T, strict=True)):
+        rate = 1.0 / _spacing(along[present])
         if cutoff >= rate / 2:
             raise DataError(
                 f"the cutoff frequency is {cutoff:g} Hz and the sampling rate {rate:.6g} Hz; expected less than half "
@@ -30,7 +30,7 @@ def filtered(data: Recorded, cutoff: float) -> Recorded:
             )
         period = int(np.ceil(rate / cutoff))
         sections = np.asarray(butter(ORDER, cutoff, fs=rate, output="sos"))
-        values[there, column] = _between_gaps(along[there], known[there], sections, period)
+        values[present, column] = _between_gaps(along[present], known[present], sections, period)
         gains[column] = _noise_gain(sections, period)
     if not np.any(np.isfinite(values), axis=0).all():
         raise DataError(
@@ -50,7 +50,7 @@ def decimated(data: Recorded, factor: int, cutoff: float | None) -> Recorded:
         raise DataError(f"every {factor}-th sample; expected a whole number of at least 1")
     if factor == 1 and cutoff is None:
         return data
-    steps = [_spacing(along[there]) for there in data.present.T]
+    steps = [_spacing(along[present]) for present in data.present.T]
     rate = min(1.0 / step for step in steps) / factor
     if cutoff is not None and cutoff > rate / 2:
         raise DataError(
@@ -59,7 +59,7 @@ def decimated(data: Recorded, factor: int, cutoff: float | None) -> Recorded:
         )
     slow = filtered(data, 0.4 * rate if cutoff is None else cutoff)
     kept = np.column_stack(
-        [_numbers(along, there, step) % factor == 0 for there, step in zip(data.present.T, steps, strict=True)]
+        [_numbers(along, present, step) % factor == 0 for present, step in zip(data.present.T, steps, strict=True)]
     )
     rows = np.any(kept, axis=1)
     values = np.where(kept, slow.values, np.nan)[rows]
@@ -70,8 +70,8 @@ def decimated(data: Recorded, factor: int, cutoff: float | None) -> Recorded:
 def is_even(data: Record) -> bool:
     """Return whether the samples of each channel are evenly spaced between gaps, as filters need them."""
     try:
-        for there in data.present.T:
-            _spacing(data.coordinate.values[there])
+        for present in data.present.T:
+            _spacing(data.coordinate.values[present])
     except DataError:
         return False
     return True
@@ -84,11 +84,11 @@ def _times(data: Record) -> np.ndarray:
     return along.values
 
 
-def _numbers(along: np.ndarray, there: np.ndarray, step: float) -> np.ndarray:
+def _numbers(along: np.ndarray, present: np.ndarray, step: float) -> np.ndarray:
     """Number of each sample of a channel on its even grid, gaps counted, (samples,); -1 where it has none."""
-    own = along[there]
+    places = along[present]
     numbers = np.full(len(along), -1)
-    numbers[there] = np.rint((own[0] - along[0]) / step) + np.rint((own - own[0]) / step)
+    numbers[present] = np.rint((places[0] - along[0]) / step) + np.rint((places - places[0]) / step)
     return numbers
 
 

@@ -35,7 +35,7 @@ class Unit:
     source: Source
 
 
-def time_column(found: Preview) -> str | int | None:
+def time_column(preview: Preview) -> str | int | None:
     """Return the column that probably has the times: by its name, else by its unit, else the first that grows evenly.
 
     >>> from pathlib import Path
@@ -43,7 +43,7 @@ def time_column(found: Preview) -> str | int | None:
     >>> time_column(Preview(Path("a.csv"), "csv", columns, ()))
     'Time (s)'
     """
-    columns = found.columns
+    columns = preview.columns
     named = [column for column in columns if _bare(str(column.key)) in TIMES or _named_unit(str(column.key)) == "s"]
     named += [column for column in columns if column.unit and _measures(column.unit) == "s"]
     growing = [column for column in columns if _grows(column.values)]

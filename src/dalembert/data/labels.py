@@ -44,7 +44,7 @@ def check_labels(coordinate: Coordinate, channels: tuple[str, ...], **arrays: np
         )
 
 
-def coordinate_of(given: Coordinate | ArrayLike) -> Coordinate:
+def coordinate_of(coordinate: Coordinate | ArrayLike) -> Coordinate:
     """A coordinate as it is; an array, shape (samples,), as times in seconds.
 
     Raises
@@ -52,18 +52,18 @@ def coordinate_of(given: Coordinate | ArrayLike) -> Coordinate:
     DataError
         For values that are not real numbers, or not one row of them.
     """
-    if isinstance(given, Coordinate):
-        there = given.values
+    if isinstance(coordinate, Coordinate):
+        there = coordinate.values
         if isinstance(there, np.ndarray) and there.dtype == float and there.ndim == 1:
-            return given
-    along = given if isinstance(given, Coordinate) else Coordinate("time", "s", np.asarray(None))
-    values = real_numbers(along.values if along is given else given, f"the {along.name}")
+            return coordinate
+    along = coordinate if isinstance(coordinate, Coordinate) else Coordinate("time", "s", np.asarray(None))
+    values = real_numbers(along.values if along is coordinate else coordinate, f"the {along.name}")
     if values.ndim != 1:
         raise DataError(f"the {along.name} has shape {values.shape}; expected (samples,), one value a sample")
     return replace(along, values=values)
 
 
-def real_numbers(given: Any, what: str) -> np.ndarray:
+def real_numbers(values: Any, what: str) -> np.ndarray:
     """Array of floats from anything like an array.
 
     Raises
@@ -78,9 +78,9 @@ def real_numbers(given: Any, what: str) -> np.ndarray:
     dalembert.errors.DataError: channel 'x', sample 1: '2,5'; expected a number
     """
     try:
-        array = np.asarray(given)
+        array = np.asarray(values)
     except ValueError:  # rows of unequal length
-        raise DataError(f"{what} is {shown(given)}; expected numbers, in rows of equal length") from None
+        raise DataError(f"{what} is {shown(values)}; expected numbers, in rows of equal length") from None
     if np.iscomplexobj(array) and array.size:
         raise DataError(
             f"{what} has complex values, such as {array.flat[0]}; expected real numbers; give the real and the "
@@ -99,23 +99,23 @@ def real_numbers(given: Any, what: str) -> np.ndarray:
             float("" if "_" in str(entry) else entry)
         except (TypeError, ValueError):
             at = f", sample {place[0]}" if place else ""
-            given_here = entry.item() if isinstance(entry, np.generic) else entry
-            raise DataError(f"{what}{at}: {shown(given_here)}; expected a number") from None
-    raise DataError(f"{what} is {shown(given)}; expected numbers")
+            value = entry.item() if isinstance(entry, np.generic) else entry
+            raise DataError(f"{what}{at}: {shown(value)}; expected a number") from None
+    raise DataError(f"{what} is {shown(values)}; expected numbers")
 
 
-def by_name(given: Any) -> Mapping[str, Any]:
+def by_name(columns: Any) -> Mapping[str, Any]:
     """Columns by name, refused if they are anything else.
 
     Raises
     ------
     DataError
     """
-    if not isinstance(given, Mapping):
+    if not isinstance(columns, Mapping):
         raise DataError(
-            f"the channels are {shown(given)}; expected a mapping from names to columns, such as {{'AB.end.x': values}}"
+            f"the channels are {shown(columns)}; expected columns by their names, such as {{'AB.end.x': values}}"
         )
-    return given
+    return columns
 
 
 def table_of(coordinate: Coordinate, columns: Mapping[str, ArrayLike]) -> np.ndarray:

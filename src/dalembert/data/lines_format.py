@@ -32,9 +32,18 @@ class LinesFormat(Format):
         """
 
     def columns(self, path: Path, request: Request) -> Columns:
-        one = request
-        marks = one.separator, one.decimal
-        return columns_of(path, self.lines(path), one.time, one.names, one.missing, *marks, one.trial, one.absent)
+        request_here = request
+        marks = request_here.separator, request_here.decimal
+        return columns_of(
+            path,
+            self.lines(path),
+            request_here.time,
+            request_here.names,
+            request_here.missing,
+            *marks,
+            request_here.trial,
+            request_here.absent,
+        )
 
     def trial_labels(self, path: Path, column: str | int, separator: str, decimal: str) -> list[str]:
         return labels_of(path, self.lines(path), column, separator, decimal)
@@ -94,9 +103,9 @@ def columns_of(
         time = 1
     first = None if time is None else place(time)
     numbering = None if trial is None else place(trial.column)
-    others = [k for k in range(len(text.header)) if k not in (first, numbering)]
-    wanted = [place(text.header[k]) for k in others] if names is None else [place(one) for one in names]
-    labels = [text.header[k] for k in wanted] if names is None else [str(one) for one in names]
+    remaining = [k for k in range(len(text.header)) if k not in (first, numbering)]
+    wanted = [place(text.header[k]) for k in remaining] if names is None else [place(name) for name in names]
+    labels = [text.header[k] for k in wanted] if names is None else [str(name) for name in names]
     _refuse_twice(path, labels, wanted, first)
     places: list[int] = list(dict.fromkeys([*([] if first is None else [first]), *wanted]))
     if numbers is None:
@@ -200,7 +209,11 @@ def _places(path: Path, text: Layout) -> Callable[[str | int], int]:
 
 def _refuse_twice(path: Path, labels: Sequence[str], wanted: Sequence[int], time: int | None) -> None:
     for label, place in zip(labels, wanted, strict=True):
-        same = [other for other, there in zip(labels, wanted, strict=True) if there == place and other != label]
+        same = [
+            other
+            for other, place_of_other in zip(labels, wanted, strict=True)
+            if place_of_other == place and other != label
+        ]
         if same:
             raise DataError(f"{path}: {label!r} and {same[0]!r} are one column; expected one channel for a column")
         if place == time:
@@ -209,7 +222,7 @@ def _refuse_twice(path: Path, labels: Sequence[str], wanted: Sequence[int], time
 
 def _of_trial(path: Path, text: Layout, place: int, trial: Trial) -> Layout:
     mask = of_trial(path, _labels(path, text, place), trial)
-    return replace(text, rows=[row for row, there in zip(text.rows, mask, strict=True) if there])
+    return replace(text, rows=[row for row, belongs in zip(text.rows, mask, strict=True) if belongs])
 
 
 def _labels(path: Path, text: Layout, place: int) -> list[str]:

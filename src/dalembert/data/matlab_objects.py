@@ -97,7 +97,7 @@ def _properties(properties: dict[str, Any], key: str) -> dict[str, Any]:
 def _numbers(properties: dict[str, Any], key: str) -> np.ndarray:
     """Numbers of a property, which is saved with or without an underscore; empty if it has none."""
     arrays = (properties.get(name) for name in (key, f"{key}_"))
-    return next((one for one in arrays if isinstance(one, np.ndarray) and one.size), np.zeros(0))
+    return next((array for array in arrays if isinstance(array, np.ndarray) and array.size), np.zeros(0))
 
 
 def _text(value: Any) -> str:

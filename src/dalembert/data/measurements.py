@@ -201,11 +201,11 @@ class Measurements(Record):
         >>> data.channels, bool(np.max(np.abs(data.values[:, 1] - 2 * times)) < 5 * data.deviations[1])
         (('x', 'vx'), True)
         """
-        found = derivative(self, channel, order=order, window=window, degree=degree, gap=gap)
+        rate = derivative(self, channel, order=order, window=window, degree=degree, gap=gap)
         deviations = self.deviations
         if deviations is not None:
-            deviations = np.append(deviations, found.error if deviation is None else deviation)
-        values = np.column_stack([self.values, found.values])
+            deviations = np.append(deviations, rate.error if deviation is None else deviation)
+        values = np.column_stack([self.values, rate.values])
         taken = self.taken[:, [*range(len(self.channels)), self.channels.index(channel)]]
         sampled = None if self.sampled is None else taken
         return replace(self, channels=(*self.channels, name), values=values, deviations=deviations, sampled=sampled)
@@ -243,9 +243,9 @@ def merged(parts: Sequence[Measurements]) -> Measurements:
     tables, sampled = [], []
     for part in parts:
         rows = np.searchsorted(middles, part.coordinate.values)
-        for collected, own, empty in ((tables, part.values, np.nan), (sampled, part.taken, False)):
+        for collected, array, empty in ((tables, part.values, np.nan), (sampled, part.taken, False)):
             table = np.full((len(stamps), len(part.channels)), empty)
-            table[rows] = own
+            table[rows] = array
             collected.append(table)
     deviations = [part.deviations for part in parts if part.deviations is not None]
     return Measurements(
@@ -261,26 +261,26 @@ def merged(parts: Sequence[Measurements]) -> Measurements:
     )
 
 
-def _deviations(given: Mapping[str, float] | ArrayLike | None, channels: tuple[str, ...]) -> np.ndarray | None:
+def _deviations(deviations: Mapping[str, float] | ArrayLike | None, channels: tuple[str, ...]) -> np.ndarray | None:
     """Deviations of shape (channels,) from a number, a mapping by name or an array."""
-    if given is None:
+    if deviations is None:
         return None
-    if isinstance(given, Mapping):
-        for name in given:
+    if isinstance(deviations, Mapping):
+        for name in deviations:
             if name not in channels:
                 raise DataError(unknown("channel", name, channels, "deviations"))
-        missing = [name for name in channels if name not in given]
+        missing = [name for name in channels if name not in deviations]
         if missing:
             raise DataError(
                 f"no deviation given for channel {missing[0]!r}; give one for each of {', '.join(channels)}"
             )
-        return np.array([_deviation(given[name], name) for name in channels])
-    array = real_numbers(given, "deviations")
+        return np.array([_deviation(deviations[name], name) for name in channels])
+    array = real_numbers(deviations, "deviations")
     return np.full(len(channels), float(array)) if array.ndim == 0 else array
 
 
-def _deviation(given: float, channel: str) -> float:
-    number = real_numbers(given, f"the deviation of channel {channel!r}")
+def _deviation(deviation: float, channel: str) -> float:
+    number = real_numbers(deviation, f"the deviation of channel {channel!r}")
     if number.ndim:
-        raise DataError(f"the deviation of channel {channel!r} is {shown(given)}; expected one number")
+        raise DataError(f"the deviation of channel {channel!r} is {shown(deviation)}; expected one number")
     return float(number)

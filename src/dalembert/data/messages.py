@@ -73,9 +73,9 @@ def fields(front: str, value: Any) -> Iterator[tuple[str, float | int]]:
     """
     entries = _entries(value)
     if entries is not None:
-        whole, rest = next((pair for pair in STAMPS if set(pair) == set(entries)), ("", ""))
-        if front and isinstance(entries.get(whole), int) and isinstance(entries.get(rest), int):
-            yield front, entries[whole] * 10**9 + entries[rest]
+        seconds, rest = next((pair for pair in STAMPS if set(pair) == set(entries)), ("", ""))
+        if front and isinstance(entries.get(seconds), int) and isinstance(entries.get(rest), int):
+            yield front, entries[seconds] * 10**9 + entries[rest]
         for name, entry in entries.items():
             yield from fields(f"{front}.{name}" if front else name, entry)
     elif isinstance(value, int | float):

@@ -142,29 +142,29 @@ def _without(column: PreviewColumn, numbers: Sequence[float]) -> PreviewColumn:
 
 
 def _text(path: Path, name: str, lines: Sequence[Line], separator: str, decimal: str, gaps: frozenset[str]) -> Preview:
-    found = layout(lines[:HEAD], 1, separator, decimal)
-    if not found.rows:
+    text_layout = layout(lines[:HEAD], 1, separator, decimal)
+    if not text_layout.rows:
         raise DataError(f"{path}: the file has no line of numbers; expected column names and then lines of numbers")
-    rest, width = lines_of_numbers(lines, found), len(found.header)
-    blocks = [_block(rest[place : place + BLOCK], found, width, gaps) for place in range(0, len(rest), BLOCK)]
+    rest, width = lines_of_numbers(lines, text_layout), len(text_layout.header)
+    blocks = [_block(rest[place : place + BLOCK], text_layout, width, gaps) for place in range(0, len(rest), BLOCK)]
     keys = [
-        name if found.named is not None and name and found.header.count(name) == 1 else place
-        for place, name in enumerate(found.header, 1)
+        name if text_layout.named is not None and name and text_layout.header.count(name) == 1 else place
+        for place, name in enumerate(text_layout.header, 1)
     ]
     columns = tuple(
-        _clock(PreviewColumn(key, unit, *_joined([block.columns[place] for block in blocks])), rest, found, place)
-        for place, (key, unit) in enumerate(zip(keys, found.units, strict=True))
+        _clock(PreviewColumn(key, unit, *_joined([block.columns[place] for block in blocks])), rest, text_layout, place)
+        for place, (key, unit) in enumerate(zip(keys, text_layout.units, strict=True))
     )
     uneven = next((block.uneven for block in blocks if block.uneven), None)
-    first = tuple(tuple(cells[:width]) for _, cells in found.rows[:SHOWN])
-    return Preview(path, name, columns, first, str(found), found.separator, found.decimal, uneven)
+    first = tuple(tuple(cells[:width]) for _, cells in text_layout.rows[:SHOWN])
+    return Preview(path, name, columns, first, str(text_layout), text_layout.separator, text_layout.decimal, uneven)
 
 
-def _clock(column: PreviewColumn, lines: Sequence[Line], found: Layout, place: int) -> PreviewColumn:
+def _clock(column: PreviewColumn, lines: Sequence[Line], text_layout: Layout, place: int) -> PreviewColumn:
     """A column of times of day or dates as seconds since the first; any other as it is."""
     if column.wrong is None or not is_clock(column.wrong[1]):
         return column
-    rows = [cells for _, cells in split(lines, found.separator)]
+    rows = [cells for _, cells in split(lines, text_layout.separator)]
     seconds = clock_seconds([cells[place] for cells in rows]) if all(len(cells) > place for cells in rows) else None
     return column if seconds is None else PreviewColumn(column.key, "s", seconds)
 
@@ -180,15 +180,15 @@ class _Block:
     uneven: tuple[int, int] | None = None
 
 
-def _block(lines: Sequence[Line], found: Layout, width: int, gaps: frozenset[str]) -> _Block:
-    table = quick_numbers(lines, found)
+def _block(lines: Sequence[Line], text_layout: Layout, width: int, gaps: frozenset[str]) -> _Block:
+    table = quick_numbers(lines, text_layout)
     if table is not None:
         return _Block([(column, 0, None) for column in np.ascontiguousarray(table.T)])
-    rows = split(lines, found.separator)
-    whole = [(line, cells + [""] * (width - len(cells))) for line, cells in rows]
+    rows = split(lines, text_layout.separator)
+    padded = [(line, cells + [""] * (width - len(cells))) for line, cells in rows]
     uneven = next(((line, len(cells)) for line, cells in rows if len(cells) != width and any(cells[width:])), None)
     uneven = uneven or next(((line, len(cells)) for line, cells in rows if len(cells) < width), None)
-    return _Block([_numbers(whole, place, found.decimal, gaps) for place in range(width)], uneven)
+    return _Block([_numbers(padded, place, text_layout.decimal, gaps) for place in range(width)], uneven)
 
 
 def _numbers(rows: Sequence[Row], place: int, decimal: str, gaps: frozenset[str]) -> _Numbers:

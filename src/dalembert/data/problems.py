@@ -73,7 +73,7 @@ class Use:
             return 1.0
 
 
-def problems(found: Preview, use: Use) -> list[Finding]:
+def problems(preview: Preview, use: Use) -> list[Finding]:
     """Return what is wrong or doubtful in the times and in the columns of channels, errors first.
 
     Parameters
@@ -89,79 +89,79 @@ def problems(found: Preview, use: Use) -> list[Finding]:
     >>> [finding.code for finding in problems(found, Use("t", channels={"AB.end.x": ("x", "m")}))]
     ['late-times', 'constant-column']
     """
-    times = None if use.time is None else found.column(use.time)
-    listed = [*_of_lines(found)]
+    times = None if use.time is None else preview.column(use.time)
+    listed = [*_of_lines(preview)]
     if times is not None:
-        listed += _of_times(found, times, use)
+        listed += _of_times(preview, times, use)
     along = None if times is None else times.values * use.factor(use.time)
     for channel, (key, unit) in use.channels.items():
-        column = found.column(key)
+        column = preview.column(key)
         if column is not None:
             listed += _of_channel(column, channel, unit, use, along)
     order = ("error", "warning", "note")
     return sorted(listed, key=lambda finding: order.index(finding.severity))
 
 
-def _of_lines(found: Preview) -> Iterator[Finding]:
-    if found.uneven is not None:
-        line, cells = found.uneven
+def _of_lines(preview: Preview) -> Iterator[Finding]:
+    if preview.uneven is not None:
+        line, cells = preview.uneven
         yield Finding(
             "uneven-line",
             "error",
-            {"line": line, "cells": cells, "columns": len(found.columns)},
-            f"Line {line} has {cells} cells; expected {len(found.columns)}, as the others have.",
+            {"line": line, "cells": cells, "columns": len(preview.columns)},
+            f"Line {line} has {cells} cells; expected {len(preview.columns)}, as the others have.",
             "Correct or remove the line in the file, or choose another separator.",
         )
 
 
-def _of_times(found: Preview, times: PreviewColumn, use: Use) -> Iterator[Finding]:
+def _of_times(preview: Preview, times: PreviewColumn, use: Use) -> Iterator[Finding]:
     yield from _unreadable(times, times=True)
     values, unit = times.values * use.factor(times.key), use.units.get(times.key)
-    there = values[np.isfinite(values)]
-    if len(there) < 2:
+    finite = values[np.isfinite(values)]
+    if len(finite) < 2:
         return
-    back = np.flatnonzero(np.diff(there) <= 0)
+    back = np.flatnonzero(np.diff(finite) <= 0)
     if len(back):
         row = int(back[0]) + 1
         yield Finding(
             "times-not-growing",
             "error",
             {"column": times.key, "sample": row, "samples": len(back)},
-            f"The times do not grow: in row {row + 1} of the numbers {there[row]:.6g} s comes after "
-            f"{there[row - 1]:.6g} s ({len(back)} rows in all).",
+            f"The times do not grow: in row {row + 1} of the numbers {finite[row]:.6g} s comes after "
+            f"{finite[row - 1]:.6g} s ({len(back)} rows in all).",
             "Choose another column of times, or sort the lines of the file and remove repeated ones.",
         )
         return
     yield from _of_unit(times, "s", use)
-    steps, long = np.diff(there), gaps(there)
+    steps, long = np.diff(finite), gaps(finite)
     usual = float(np.median(steps))
     if unit is not None and unit.source == "steps" and unit.name != "s":
         yield Finding(
             "guessed-time-unit",
             "warning",
-            {"column": times.key, "unit": unit.name, "step": usual, "duration": float(there[-1] - there[0])},
+            {"column": times.key, "unit": unit.name, "step": usual, "duration": float(finite[-1] - finite[0])},
             f"The file names no unit of the times. They are taken to be in {unit.name}: {1 / usual:.4g} samples a "
-            f"second, {there[-1] - there[0]:.4g} s in all.",
+            f"second, {finite[-1] - finite[0]:.4g} s in all.",
             "Choose the unit of the times if this is wrong.",
         )
-    yield from _beginning(there, use)
+    yield from _beginning(finite, use)
     if len(long):
         widest = int(long[np.argmax(steps[long])])
         yield Finding(
             "time-gaps",
             "note",
-            {"gaps": len(long), "time": float(there[widest]), "longest": float(steps[widest])},
+            {"gaps": len(long), "time": float(finite[widest]), "longest": float(steps[widest])},
             f"Samples are missing in {_count(len(long), 'gap')} of the times. The longest is {steps[widest]:.3g} s "
-            f"long, behind {there[widest]:.4g} s; the usual step is {usual:.3g} s.",
+            f"long, behind {finite[widest]:.4g} s; the usual step is {usual:.3g} s.",
             "A fit needs no samples there. Check that the record is of one motion.",
         )
-    if len(there) > MANY and use.decimate is None and use.between is None:
-        factor = int(np.ceil(len(there) / KEPT))
+    if len(finite) > MANY and use.decimate is None and use.between is None:
+        factor = int(np.ceil(len(finite) / KEPT))
         yield Finding(
             "many-samples",
             "warning",
-            {"samples": len(there), "factor": factor, "even": not len(long) and bool(np.ptp(steps) < 0.01 * usual)},
-            f"The record has {len(there)} samples. A fit takes long, and fewer samples give nearly the same values.",
+            {"samples": len(finite), "factor": factor, "even": not len(long) and bool(np.ptp(steps) < 0.01 * usual)},
+            f"The record has {len(finite)} samples. A fit takes long, and fewer samples give nearly the same values.",
             f"Keep every {factor}th sample behind a low-pass filter (decimate), or a shorter part of the record.",
         )
 
@@ -240,8 +240,8 @@ def _of_channel(
 ) -> Iterator[Finding]:
     yield from _unreadable(column, left_out=use.missing == "leave-out")
     yield from _of_unit(column, unit, use)
-    there = np.isfinite(column.values)
-    values = column.values[there] * use.factor(column.key)
+    finite = np.isfinite(column.values)
+    values = column.values[finite] * use.factor(column.key)
     if len(values) < 2:
         return
     named = {"channel": channel, "column": column.key}
@@ -273,7 +273,7 @@ def _of_channel(
         )
     far = outliers(values)
     if len(far):
-        first = float(along[there][far[0]]) if along is not None and len(along) == len(there) else float(far[0])
+        first = float(along[finite][far[0]]) if along is not None and len(along) == len(finite) else float(far[0])
         yield Finding(
             "outliers",
             "warning",

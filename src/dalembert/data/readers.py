@@ -117,13 +117,13 @@ def read(
     names = None if columns is None else tuple(columns.values())
     for column, count in repeated(map(str, names or ())).items():
         raise DataError(f"{path}, column {column!r} is given for {count} channels; expected one channel for a column")
-    one = None if trial is None else Trial(trial[0], trial_label(trial[1]))
+    trial_choice = None if trial is None else Trial(trial[0], trial_label(trial[1]))
     absent = () if isinstance(missing, str) else tuple(map(str, missing))
     missing = missing if isinstance(missing, str) else "leave-out"
     along_column = (frequency or time) if sampling is None else None
     if along_column is not None and str(along_column) in map(str, names or ()):
         raise times_as_channel(path, str(along_column))
-    request = Request(along_column, names, missing, tuple(units or ()), separator, decimal, one, absent)
+    request = Request(along_column, names, missing, tuple(units or ()), separator, decimal, trial_choice, absent)
     content = _without(columns_in(path, request, format), absent)
     if sampling is not None:
         content = replace(content, along=content.along / rate_of(path, sampling))

@@ -84,8 +84,8 @@ class Record:
         """The values, shape (samples, channels), wrapping channels without their jumps by whole turns."""
         values = self.values.copy()
         for column in np.flatnonzero(self.wrapping):
-            there = self.present[:, column]
-            values[there, column] = np.unwrap(values[there, column])
+            present = self.present[:, column]
+            values[present, column] = np.unwrap(values[present, column])
         return values
 
     def difference(self, response: np.ndarray) -> np.ndarray:

@@ -17,24 +17,24 @@ CLOSE = 1e-9
 def resampled(data: Recorded, samples: np.ndarray, gap: float | None = None) -> Recorded:
     """Measurements at other samples (new samples,), by splines between the gaps of each channel."""
     along = data.coordinate
-    given = Coordinate(along.name, along.unit, np.atleast_1d(samples))
-    check_labels(given, data.channels)
+    target = Coordinate(along.name, along.unit, np.atleast_1d(samples))
+    check_labels(target, data.channels)
     first, last = along.values[[0, -1]]
     close = CLOSE * max(float(last - first), np.finfo(float).tiny)
-    outside = (given.values < first - close) | (given.values > last + close)
+    outside = (target.values < first - close) | (target.values > last + close)
     if np.any(outside):
         raise DataError(
-            f"{along.name} {given.values[np.argmax(outside)]:.10g} {along.unit} lies outside the data, which run from "
+            f"{along.name} {target.values[np.argmax(outside)]:.10g} {along.unit} lies outside the data, which run from "
             f"{first:.10g} to {last:.10g} {along.unit}; expected samples within; nothing is known beyond"
         )
     values = np.column_stack(
         [
-            _channel(along.values[rows], column[rows], there[rows], given.values, close, gap)
-            for column, there, rows in zip(data.continuous.T, data.present.T, data.taken.T, strict=True)
+            _channel(along.values[rows], column[rows], present[rows], target.values, close, gap)
+            for column, present, rows in zip(data.continuous.T, data.present.T, data.taken.T, strict=True)
         ]
     )
     turned = (values + TURN / 2) % TURN - TURN / 2
-    return replace(data, coordinate=given, values=np.where(data.wrapping, turned, values), sampled=None)
+    return replace(data, coordinate=target, values=np.where(data.wrapping, turned, values), sampled=None)
 
 
 def _channel(

@@ -190,9 +190,9 @@ def _first_numbers(rows: Sequence[Row], width: int, decimal: str) -> int:
 
 def _has_numbers(cells: Sequence[str], numeric: Sequence[int], width: int, decimal: str) -> bool:
     """Whether at least half of the cells in columns of numbers are some; of a line of another length all of them."""
-    asked = [cells[column] for column in numeric if column < len(cells) and _filled(cells[column])]
-    numbers = sum(is_number(cell, decimal) for cell in asked)
-    return bool(asked) and (2 * numbers >= len(asked) if len(cells) == width else numbers == len(asked))
+    filled = [cells[column] for column in numeric if column < len(cells) and _filled(cells[column])]
+    numbers = sum(is_number(cell, decimal) for cell in filled)
+    return bool(filled) and (2 * numbers >= len(filled) if len(cells) == width else numbers == len(filled))
 
 
 def _filled(cell: str) -> bool:

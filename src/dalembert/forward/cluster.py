@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 RETRIES = 5  # times that work is begun again where its worker is lost
 # Topic of the scheduler's log by which workers say that they have other versions of packages than their sender.
-OTHERS = "dalembert-versions"
+VERSIONS = "dalembert-versions"
 WAIT = 10.0  # seconds until a cluster that does not answer is given up
 Executor: TypeAlias = "str | Client | None"
 """Where ensembles are computed: at the address of a scheduler, by a client of Dask's, or in this process."""
@@ -91,7 +91,7 @@ def packed(thing: Any) -> bytes:
     import cloudpickle
 
     try:
-        with _own_modules():
+        with _user_modules():
             return cloudpickle.dumps(thing)
     except Exception as error:  # what cannot be sent, and why, is the user's to know
         raise InputError(
@@ -121,7 +121,7 @@ class Sender:
         if local != self.versions:
             from distributed import get_worker
 
-            get_worker().log_event(OTHERS, local)
+            get_worker().log_event(VERSIONS, local)
         with with_threads(self.threads):
             yield
 
@@ -173,12 +173,12 @@ def noted(client: "Client | None", note: Callable[[Mapping[str, str]], None]) ->
 
 
 def _logged(client: "Client") -> list[Mapping[str, str]]:
-    events: Any = client.get_events(OTHERS)  # with the address of the worker beside the versions
+    events: Any = client.get_events(VERSIONS)  # with the address of the worker beside the versions
     return [{name: entry[name] for name in versions()} for _, entry in events]
 
 
 @contextmanager
-def asked_of(client: "Client", what: str) -> Iterator["list[Future]"]:
+def futures_of(client: "Client", what: str) -> Iterator["list[Future]"]:
     """A list for what is asked: it is taken from the cluster where it is no longer wanted, and losses are told."""
     futures: list[Future] = []
     try:
@@ -194,7 +194,7 @@ def asked_of(client: "Client", what: str) -> Iterator["list[Future]"]:
 
 
 @contextmanager
-def _own_modules() -> Iterator[None]:
+def _user_modules() -> Iterator[None]:
     """Send modules of the user's whole: those that no package brought, and that a worker cannot import."""
     import cloudpickle
 

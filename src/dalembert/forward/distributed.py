@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from dalembert.errors import DalembertError, InputError
-from dalembert.forward.cluster import RETRIES, Executor, Sender, asked_of, sent
+from dalembert.forward.cluster import RETRIES, Executor, Sender, futures_of, sent
 from dalembert.forward.model import ForwardModel
 from dalembert.forward.refinement import Refinement, refined
 from dalembert.forward.responses import Responses
@@ -66,7 +66,7 @@ class Distributed(Wrapped):
             return Responses(np.array(values), failures)
         if len(vectors) < 2:
             return self.model.evaluate(vectors)
-        with asked_of(self.client, f"a part of a batch of {len(vectors)}") as futures:
+        with futures_of(self.client, f"a part of a batch of {len(vectors)}") as futures:
             workers: Any = self.client.nthreads()
             parts = np.array_split(vectors, min(len(vectors), PARTS * max(1, sum(workers.values()))))
             model = sent(self.client, bare(self.model))

@@ -5,7 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any, TypeVar
 
 from dalembert.forward.builders import cores
-from dalembert.forward.cluster import RETRIES, Executor, Sender, asked_of, connected, sent
+from dalembert.forward.cluster import RETRIES, Executor, Sender, connected, futures_of, sent
 
 Item = TypeVar("Item")
 Answer = TypeVar("Answer")
@@ -58,7 +58,7 @@ def ensemble(
 
 
 def _on_cluster(work: Callable[[Item], Answer], items: Sequence[Item], client: Any) -> Generator[Answer, None, None]:
-    with asked_of(client, f"a part of an ensemble of {len(items)}") as futures:
+    with futures_of(client, f"a part of an ensemble of {len(items)}") as futures:
         futures += client.map(
             _done, [sent(client, work)] * len(items), items, sender=Sender(), pure=False, retries=RETRIES
         )

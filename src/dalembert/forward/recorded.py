@@ -126,10 +126,10 @@ class Recorded(Wrapped):
 
     def key(self, what: str, vector: np.ndarray) -> bytes:
         """Hash of all that an answer depends on."""
-        return hashlib.sha256(self._asked + what.encode() + np.ascontiguousarray(vector).tobytes()).digest()
+        return hashlib.sha256(self._question + what.encode() + np.ascontiguousarray(vector).tobytes()).digest()
 
     @cached_property
-    def _asked(self) -> bytes:
+    def _question(self) -> bytes:
         text = "\n".join((self.label, self.fingerprint, *(channel.name for channel in self.channels)))
         return hashlib.sha256(text.encode() + self.coordinate.values.tobytes()).digest()
 

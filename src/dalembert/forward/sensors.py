@@ -278,9 +278,9 @@ class Sensors:
         for name in (channel.name for channel in self.channels):
             least, most = self._bounds(name)
             begins, ends = stamps[0] - most, stamps[-1] - least
-            own_sensors = owners(self.sensors, name)
+            sensors_here = owners(self.sensors, name)
             at_rest = (
-                all(self.sensors[sensor].at_rest for sensor in own_sensors) if own_sensors else self.start is not None
+                all(self.sensors[sensor].at_rest for sensor in sensors_here) if sensors_here else self.start is not None
             )
             if begins < samples[0] - slack and not at_rest:
                 raise InputError(

@@ -38,5 +38,7 @@ def grouped(names: Iterable[str]) -> Iterator[str]:
         owner, _, quantity = name.rpartition(".")
         quantities.setdefault(owner, []).append(quantity)
     yield f"{len(names)} channels, NAME.QUANTITY:"
-    for (_, own), owners in groupby(quantities, key=lambda owner: (owner.partition(".")[0], quantities[owner])):
-        yield f"  {', '.join(owners)}: {', '.join(own)}"
+    for (_, quantities_here), owners in groupby(
+        quantities, key=lambda owner: (owner.partition(".")[0], quantities[owner])
+    ):
+        yield f"  {', '.join(owners)}: {', '.join(quantities_here)}"

@@ -83,9 +83,9 @@ def load(
     try:
         file = _validated(document, context)
     except ValidationError as error:
-        found = _of_other_space(document, context) or mistakes(error, document, context)
-        lines = [f"{shared if shared and place[:1] == ('model',) else path.name}: {text}" for place, text in found]
-        raise StudyError("\n".join(dict.fromkeys(lines)), found) from None
+        errors = _of_other_space(document, context) or mistakes(error, document, context)
+        lines = [f"{shared if shared and place[:1] == ('model',) else path.name}: {text}" for place, text in errors]
+        raise StudyError("\n".join(dict.fromkeys(lines)), errors) from None
     _refuse_other_kinds(document, context, path)
     return Study(path, content, file, dict(context.used), name or file.study.name or path.stem)
 
@@ -95,18 +95,18 @@ def _refuse_other_kinds(document: dict[str, Any], context: Context, path: Path) 
     for entry in document.get("experiments", []):
         constants = _table(entry, "constants")
         plain = [name for name in constants if name in shared and context.names.get(name) is None]
-        given = {name: constants[name] for name in plain if is_quantity(str(constants[name]))}
-        if not given:
+        quantities = {name: constants[name] for name in plain if is_quantity(str(constants[name]))}
+        if not quantities:
             continue
-        varied = {**document, "constants": {**shared, **given}}
+        varied = {**document, "constants": {**shared, **quantities}}
         names = kinds_of(varied, context.names, context.series)
         inner = replace(context, names=names, used={}, _keys={})
         try:
             _validated(varied, inner)
         except ValidationError as error:
-            found = mistakes(error, varied, inner)
-            lines = [f"{path.name}: [[experiments]] {entry.get('name')!r}, constants: {text}" for _, text in found]
-            raise StudyError("\n".join(dict.fromkeys(lines)), found) from None
+            errors = mistakes(error, varied, inner)
+            lines = [f"{path.name}: [[experiments]] {entry.get('name')!r}, constants: {text}" for _, text in errors]
+            raise StudyError("\n".join(dict.fromkeys(lines)), errors) from None
 
 
 def _validated(document: dict[str, Any], context: Context) -> StudyFile:
@@ -122,8 +122,10 @@ def _of_other_space(document: dict[str, Any], context: Context) -> list[tuple[tu
         _validated(elsewhere(document), replace(context, used={}, _keys={}))
     except ValidationError:
         return []
-    told = "in the plane; leave out space = true" if is_in_space(document["model"]) else "in space; write space = true"
-    return [(("model",), f"[model]: its components are those of a mechanism {told}")]
+    advice = (
+        "in the plane; leave out space = true" if is_in_space(document["model"]) else "in space; write space = true"
+    )
+    return [(("model",), f"[model]: its components are those of a mechanism {advice}")]
 
 
 def _read(path: Path) -> tuple[bytes, dict[str, Any]]:
@@ -153,29 +155,29 @@ def _document(path: Path, content: bytes) -> tuple[bytes, dict[str, Any]]:
 
 def _refuse_parts(document: Mapping[str, Any], path: Path) -> None:
     if document.keys() <= set(MODEL_FILE):
-        given, more = "the file holds no tables", ""
+        problem_text, more = "the file holds no tables", ""
         if document:
-            given, more = (
+            problem_text, more = (
                 "no task is given",
                 f"; a study in another file names a model by file = '{path.name}' in [model]",
             )
         tasks = ", ".join(f"[{name}]" for name in TASKS)
-        sentence = f"{given}; a study needs a [model] and one task, one of {tasks}{more}"
+        sentence = f"{problem_text}; a study needs a [model] and one task, one of {tasks}{more}"
         raise StudyError(f"{path.name}: {sentence}", [((), sentence)])
 
 
 def _with_model_file(document: dict[str, Any], context: Context, path: Path, content: bytes | None) -> str:
     """Put the tables of ``[model] file = "..."`` in their place; the other file's name, or none."""
-    given = _table(document, "model").get("file")
-    if given is None:
+    model_file = _table(document, "model").get("file")
+    if model_file is None:
         return ""
-    if not isinstance(given, str) or len(document["model"]) > 1:
+    if not isinstance(model_file, str) or len(document["model"]) > 1:
         raise _wrong_file(
             path,
-            f"{given!r} was given; expected the name of a TOML file, and no other key beside it in [model]",
+            f"{model_file!r} was given; expected the name of a TOML file, and no other key beside it in [model]",
         )
     try:
-        file = context.file(given)
+        file = context.file(model_file)
         _, shared = _read(file) if content is None else _document(file, content)
     except InputError as error:
         raise _wrong_file(path, str(error)) from None
@@ -183,18 +185,18 @@ def _with_model_file(document: dict[str, Any], context: Context, path: Path, con
         if table not in MODEL_FILE:
             raise _wrong_file(
                 path,
-                f"{given}: [{table}] is in a model file; expected [model] and [constants] there, "
+                f"{model_file}: [{table}] is in a model file; expected [model] and [constants] there, "
                 "and the rest in the study file",
             )
     if "file" in _table(shared, "model") or "model" not in shared:
-        raise _wrong_file(path, f"{given}: expected a [model] table with the model itself")
+        raise _wrong_file(path, f"{model_file}: expected a [model] table with the model itself")
     document["model"] = shared["model"]
     own = _table(document, "constants")  # first, so that the model's constants may use the study's
     taken = {*own, *_table(document, "parameters")}
     constants = own | {name: value for name, value in _table(shared, "constants").items() if name not in taken}
     if constants:
         document["constants"] = constants
-    return given
+    return model_file
 
 
 def _wrong_file(path: Path, sentence: str) -> StudyError:

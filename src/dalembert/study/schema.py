@@ -79,12 +79,16 @@ class _Schema(GenerateJsonSchema):
         return self.generate_inner(schema["schema"])
 
     def default_schema(self, schema: Any) -> dict[str, Any]:
-        made = super().default_schema(schema)
-        return {key: value for key, value in made.items() if key != "default" or value not in (None, [], {})}
+        result = super().default_schema(schema)
+        return {key: value for key, value in result.items() if key != "default" or value not in (None, [], {})}
 
     def tagged_union_schema(self, schema: Any) -> dict[str, Any]:
-        made = super().tagged_union_schema(schema)
-        return made if "discriminator" in made else {("anyOf" if key == "oneOf" else key): made[key] for key in made}
+        result = super().tagged_union_schema(schema)
+        return (
+            result
+            if "discriminator" in result
+            else {("anyOf" if key == "oneOf" else key): result[key] for key in result}
+        )
 
 
 def schema_text() -> str:

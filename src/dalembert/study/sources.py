@@ -16,8 +16,8 @@ def source_lines(study: Study) -> Iterator[str]:
     origins = (origin for data in read for origin in data.origin.split("; "))
     yield from (f"Data: {origin}" for origin in dict.fromkeys(origins))
     yield from dict.fromkeys(_units(data) for data in read)
-    for name, one in study.inputs.items():
-        yield f"Input {name}: {one.unit or 'no unit is given, read in SI units'}"
+    for name, measured in study.inputs.items():
+        yield f"Input {name}: {measured.unit or 'no unit is given, read in SI units'}"
 
 
 def _units(data: "Measurements") -> str:

@@ -35,13 +35,13 @@ class Template:
 
 def templates() -> dict[str, Template]:
     """Studies to begin with, by their names."""
-    found = {}
+    result = {}
     for folder in sorted(TEMPLATES.iterdir(), key=lambda entry: entry.name):
         texts = {entry.name: entry.read_text(encoding="utf-8") for entry in folder.iterdir()}
         text, name = texts.pop("study.toml"), folder.name.partition("-")[2]
         about = tomllib.loads(text)["study"]
-        found[name] = Template(name, about["title"], about["description"], text, texts)
-    return found
+        result[name] = Template(name, about["title"], about["description"], text, texts)
+    return result
 
 
 def begin(template: str, folder: Path) -> Path:

@@ -40,7 +40,7 @@ def unseen(surrogate: Surrogate, names: Sequence[str]) -> Finding:
     if not len(free):
         return Finding("unseen-features", "note", {"gap": 0.0}, "The box has no width.")
     empty = gaps(polynomial.eta(surrogate.points)[:, free], variation_lengths(surrogate)[free])
-    message, values = _told(empty, [names[int(k)] for k in free], surrogate.runs)
+    message, values = _described(empty, [names[int(k)] for k in free], surrogate.runs)
     if not surrogate.tested:
         message += " No held-out run tested the surrogate."
         return Finding("unseen-features", "warning", values, message, "Set held_out to at least 10.")
@@ -52,7 +52,7 @@ def unseen(surrogate: Surrogate, names: Sequence[str]) -> Finding:
 
 def unseen_between(eta: np.ndarray, names: Sequence[str]) -> tuple[str, dict[str, float | int]]:
     """Return the sentence and the values for runs at coordinates η (runs, f) of named directions."""
-    return _told(gaps(eta), names, len(eta))
+    return _described(gaps(eta), names, len(eta))
 
 
 def variation_lengths(surrogate: Surrogate) -> np.ndarray:
@@ -74,7 +74,7 @@ def variation_lengths(surrogate: Surrogate) -> np.ndarray:
     return 1 / np.maximum(degrees.max(axis=1), 1.0)
 
 
-def _told(empty: Gaps, names: Sequence[str], runs: int) -> tuple[str, dict[str, float | int]]:
+def _described(empty: Gaps, names: Sequence[str], runs: int) -> tuple[str, dict[str, float | int]]:
     """Return a sentence on gaps and values of a finding, as parts of the intervals."""
     each = dict(zip(names, empty.each, strict=True))
     values = {f"gap of {name}": part for name, part in each.items()}

@@ -82,7 +82,7 @@ TABLES = {
     "BackboneTable": ["backbone"],
     "ModesTable": ["modes"],
     "HarmonicBalance": ["harmonic_balance"],
-    "OwnParameterTable": [r"parameters\.NAME", "experiments"],
+    "LocalParameterTable": [r"parameters\.NAME", "experiments"],
     "StructureTable": [r"model\.structure"],
     "ReductionTable": [r"model\.structure"],
     "WorkPrecisionTable": ["work_precision"],

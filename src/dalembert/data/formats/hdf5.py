@@ -19,14 +19,14 @@ class Hdf5(Format):
     suffixes = (".h5", ".hdf5", ".hdf", ".he5")
 
     def columns(self, path: Path, request: Request) -> Columns:
-        arrays, units = _held(path)
+        arrays, units = _columns(path)
         table = spread(arrays, request.along)
         along, columns, dated = chosen(path, table, request.along, request.labels, request.missing)
         named = {label: units[_array(label)] for label in (*columns, request.along or "") if _array(label) in units}
         return Columns(path, request.along or "sample", along, columns, named | dated)
 
     def all_columns(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
-        arrays, units = _held(path)
+        arrays, units = _columns(path)
         return {name: (array, units.get(_array(name), "")) for name, array in of_numbers(parts(arrays)).items()}
 
 
@@ -34,7 +34,7 @@ def _array(label: str) -> str:
     return label.partition("[")[0]
 
 
-def _held(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
+def _columns(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
     import h5py
 
     arrays: dict[str, np.ndarray] = {}

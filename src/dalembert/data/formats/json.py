@@ -117,7 +117,7 @@ def _flat(front: str, entry: dict[str, Any]) -> Iterator[tuple[str, Any]]:
 def _array(path: Path, name: str, entries: list[Any]) -> np.ndarray:
     if any(isinstance(entry, bool | str | list | dict) for entry in entries):
         for row, entry in enumerate(entries):
-            if isinstance(entry, str | list | dict) and any(isinstance(one, int | float) for one in entries):
+            if isinstance(entry, str | list | dict) and any(isinstance(value, int | float) for value in entries):
                 raise DataError(f"{path}, column {name!r}, sample {row}: {entry!r} is not a number")
         return np.array(list(map(str, entries)))
     return np.array([np.nan if entry is None else entry for entry in entries], dtype=float)

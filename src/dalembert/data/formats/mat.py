@@ -109,8 +109,8 @@ def version_5(path: Path) -> dict[str, Any]:
     return guarded(path, "MAT", "scipy.io", "loadmat", simplify_cells=True)
 
 
-def _fields(front: str, held: Mapping[str, Any]) -> Iterator[tuple[str, np.ndarray]]:
-    for name, value in held.items():
+def _fields(front: str, contents: Mapping[str, Any]) -> Iterator[tuple[str, np.ndarray]]:
+    for name, value in contents.items():
         if not name.startswith("__"):
             yield from _entries(f"{front}{name}", value)
 

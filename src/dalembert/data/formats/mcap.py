@@ -59,7 +59,7 @@ class Mcap(Format):
 
 def _topics(path: Path) -> dict[str, dict[str, np.ndarray]]:
     messages: dict[str, list[Mapping[str, Any]]] = {}
-    others: Counter[str] = Counter()
+    skipped: Counter[str] = Counter()
     with reading(path, "MCAP"):
         reader = library("mcap.reader", path, "MCAP files", "mcap")
         decoders = Decoders(path)
@@ -67,13 +67,13 @@ def _topics(path: Path) -> dict[str, dict[str, np.ndarray]]:
             for schema, channel, message in reader.make_reader(stream).iter_messages():
                 decoded = decoders.decoded(schema, channel, message)
                 if decoded is None:
-                    others[encoding_of(schema, channel)] += 1
+                    skipped[encoding_of(schema, channel)] += 1
                     continue
                 row = {LOGGED: message.log_time, **dict(fields("", decoded))}
                 messages.setdefault(channel.topic, []).append(row)
     if not messages:
         raise DataError(
-            f"{path}: no message can be decoded; the file has: {', '.join(others) or 'no messages'}; expected JSON, "
+            f"{path}: no message can be decoded; the file has: {', '.join(skipped) or 'no messages'}; expected JSON, "
             "messages of ROS 1 or ROS 2 with their definitions, or Protobuf; convert them to JSON"
         )
     return {topic: _columns(rows) for topic, rows in messages.items()}

@@ -25,13 +25,13 @@ class Mdf(Format):
         for name in wanted or ():
             if name not in signals and name != TIME:
                 raise DataError(unknown("column", name, [TIME, *signals], str(path)))
-        picked = {name: one for name, one in signals.items() if wanted is None or name in wanted}
+        picked = {name: signal for name, signal in signals.items() if wanted is None or name in wanted}
         first = next(iter(picked.values()), None)
         if first is None:
             raise DataError(f"{path}: the file has no channel of numbers")
-        picked = {name: one for name, one in picked.items() if wanted is not None or _same_times(one, first)}
-        for name, one in picked.items():
-            if not _same_times(one, first):
+        picked = {name: signal for name, signal in picked.items() if wanted is not None or _same_times(signal, first)}
+        for name, signal in picked.items():
+            if not _same_times(signal, first):
                 raise DataError(
                     f"{path}: the channels {next(iter(picked))!r} and {name!r} have different times; read each by "
                     "itself (more in a study), and merge them"
@@ -52,8 +52,8 @@ class Mdf(Format):
 Signal = tuple[np.ndarray, np.ndarray, str]
 
 
-def _same_times(one: Signal, other: Signal) -> bool:
-    return np.array_equal(one[0], other[0])
+def _same_times(first: Signal, second: Signal) -> bool:
+    return np.array_equal(first[0], second[0])
 
 
 def _signals(path: Path) -> dict[str, Signal]:

@@ -27,7 +27,7 @@ class Netcdf(Format):
 
     def all_columns(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
         dataset = _dataset(path)
-        along = next((str(name) for name, one in dataset.variables.items() if one.dims == (name,)), "")
+        along = next((str(name) for name, variable in dataset.variables.items() if variable.dims == (name,)), "")
         parts = [part for name in dataset.variables for part in _parts(dataset, name, along)]
         kept = of_numbers({label: array for label, array, _ in parts})
         return {label: (array, unit) for label, array, unit in parts if label in kept}
@@ -40,11 +40,11 @@ def netcdf_columns(path: Path, time: str | None, names: Iterable[str] | None, mi
     labels, else ``q[0]``.
     """
     dataset = _dataset(path)
-    held = [(label, array, unit) for name in dataset.variables for label, array, unit in _parts(dataset, name, time)]
+    arrays = [(label, array, unit) for name in dataset.variables for label, array, unit in _parts(dataset, name, time)]
     if time is not None and time not in dataset.variables:
         raise DataError(unknown("column", time, map(str, dataset.variables), str(path)))
-    along, table, dated = chosen(path, {label: array for label, array, _ in held}, time, names, missing)
-    units = {label: unit for label, _, unit in held if unit and (label in table or label == time)}
+    along, table, dated = chosen(path, {label: array for label, array, _ in arrays}, time, names, missing)
+    units = {label: unit for label, _, unit in arrays if unit and (label in table or label == time)}
     return Columns(path, time or "sample", along, table, units | dated)
 
 

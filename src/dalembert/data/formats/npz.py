@@ -17,14 +17,14 @@ class Npz(Format):
     suffixes = (".npz", ".npy")
 
     def columns(self, path: Path, request: Request) -> Columns:
-        table, time = spread(_held(path), request.along), request.along
+        table, time = spread(_columns(path), request.along), request.along
         return Columns(path, time or "sample", *chosen(path, table, time, request.labels, request.missing))
 
     def all_columns(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
-        return {name: (array, "") for name, array in of_numbers(parts(_held(path))).items()}
+        return {name: (array, "") for name, array in of_numbers(parts(_columns(path))).items()}
 
 
-def _held(path: Path) -> dict[str, np.ndarray]:
+def _columns(path: Path) -> dict[str, np.ndarray]:
     with reading(path, "NPZ"), path.open("rb") as stream:
         loaded = np.load(stream, allow_pickle=False)
         arrays = {"array": loaded} if isinstance(loaded, np.ndarray) else {name: loaded[name] for name in loaded.files}

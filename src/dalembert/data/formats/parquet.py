@@ -20,15 +20,15 @@ class Parquet(Format):
         return parquet_columns(path, request.along, request.labels, request.missing)
 
     def all_columns(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
-        return {name: (array, "") for name, array in of_numbers(_held(path)).items()}
+        return {name: (array, "") for name, array in of_numbers(_columns(path)).items()}
 
 
 def parquet_columns(path: Path, time: str | None, names: Iterable[str] | None, missing: str) -> Columns:
     """Times and columns; a null is a NaN."""
-    return Columns(path, time or "sample", *chosen(path, _held(path), time, names, missing))
+    return Columns(path, time or "sample", *chosen(path, _columns(path), time, names, missing))
 
 
-def _held(path: Path) -> dict[str, np.ndarray]:
+def _columns(path: Path) -> dict[str, np.ndarray]:
     with reading(path, "Parquet"):
         parquet = library("pyarrow.parquet", path, "Parquet files")
         table = parquet.read_table(path)

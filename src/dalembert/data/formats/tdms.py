@@ -19,17 +19,17 @@ class Tdms(Format):
     suffixes = (".tdms",)
 
     def columns(self, path: Path, request: Request) -> Columns:
-        arrays, units = _held(path)
+        arrays, units = _columns(path)
         along, columns, dated = chosen(path, arrays, request.along, request.labels, request.missing)
         named = {name: unit for name, unit in units.items() if name in columns or name == request.along}
         return Columns(path, request.along or "sample", along, columns, named | dated)
 
     def all_columns(self, path: Path) -> dict[str, tuple[np.ndarray, str]]:
-        arrays, units = _held(path)
+        arrays, units = _columns(path)
         return {name: (array, units.get(name, "")) for name, array in of_numbers(arrays).items()}
 
 
-def _held(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
+def _columns(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
     with reading(path, "TDMS"):
         nptdms = library("nptdms", path, "TDMS files", "tdms", "npTDMS")
         file = nptdms.TdmsFile.read(path)

@@ -52,12 +52,12 @@ def uff_columns(path: Path, names: Iterable[str] | None, missing: str, units: It
     labels = _labels(functions)
     lines = Counter(function["id1"] for function in functions)
     also = {f["id1"]: label for label, f in zip(labels, functions, strict=True) if f["id1"] and lines[f["id1"]] == 1}
-    held = dict(zip(labels, functions, strict=True))
+    by_label = dict(zip(labels, functions, strict=True))
     wanted = labels if names is None else list(dict.fromkeys(names))
     for name in wanted:
-        if name not in held and name not in also:
-            raise DataError(unknown("column", name, [*held, *also], str(path)))
-    picked = {name: held[also.get(name, name) if name not in held else name] for name in wanted}
+        if name not in by_label and name not in also:
+            raise DataError(unknown("column", name, [*by_label, *also], str(path)))
+    picked = {name: by_label[also.get(name, name) if name not in by_label else name] for name in wanted}
     for name, function in picked.items():
         _check(path, name, function)
         if name not in units:

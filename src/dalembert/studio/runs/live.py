@@ -9,7 +9,7 @@ from pathlib import Path
 
 from dalembert.study.run.events import OF_THE_RUN, Event, event_of
 from dalembert.study.run.folder import RunFolder
-from dalembert.study.run.progress import Told, duration_text
+from dalembert.study.run.progress import ProgressText, duration_text
 
 WINDOW = 200
 """Events that the speed is taken from."""
@@ -122,7 +122,7 @@ class Live:
     visited: list[tuple[float, int, list[float]]] = field(default_factory=list)
     remaining: Remaining = field(default_factory=Remaining)
     recent: deque[Event] = field(default_factory=lambda: deque(maxlen=SHOWN))
-    _told: Told = field(default_factory=Told)
+    _told: ProgressText = field(default_factory=ProgressText)
     _place: int = 0
     _samples: int | None = None
     _every: int = 1

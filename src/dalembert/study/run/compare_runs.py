@@ -28,12 +28,12 @@ def compare_runs(folders: Sequence[RunFolder], leave_out: str | None = None) -> 
     """
     from dalembert.inverse import compare_models
 
-    found: dict[str, Fit | Posterior] = {}
+    results: dict[str, Fit | Posterior] = {}
     for folder in folders:
-        name = folder.path.name if folder.path.name not in found else str(folder.path)
-        found[name] = fit_or_posterior(folder)
+        name = folder.path.name if folder.path.name not in results else str(folder.path)
+        results[name] = fit_or_posterior(folder)
     with one_thread():
-        return compare_models(found, leave_out=leave_out)
+        return compare_models(results, leave_out=leave_out)
 
 
 def fit_or_posterior(folder: RunFolder) -> "Fit | Posterior":

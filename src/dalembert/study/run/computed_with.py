@@ -23,9 +23,9 @@ def refuse_other_sources(folder: RunFolder) -> None:
     InputError
     """
     for process in folder.computed_with():
-        if found := difference(versions(), process):
+        if changes := difference(versions(), process):
             raise InputError(
-                f"{folder.path}: this is {found} as at the start of the run: what both compute may differ; run the "
+                f"{folder.path}: this is {changes} as at the start of the run: what both compute may differ; run the "
                 "study again, or resume it with the version that began it"
             )
 
@@ -33,9 +33,9 @@ def refuse_other_sources(folder: RunFolder) -> None:
 def mixed_versions(processes: Sequence[Mapping[str, Any]]) -> Iterator[Finding]:
     """Yield the findings about packages of which a run had several versions."""
     for package in PACKAGES:
-        found = list(dict.fromkeys(str(process[package]) for process in processes))
-        if len(found) > 1:
-            several = ", ".join(found)
+        versions_seen = list(dict.fromkeys(str(process[package]) for process in processes))
+        if len(versions_seen) > 1:
+            several = ", ".join(versions_seen)
             yield Finding(
                 "mixed-versions",
                 "warning",

@@ -77,7 +77,7 @@ class Timing:
     share: float
 
 
-def whole(once: Callable[[], object]) -> Callable[[float], float]:
+def repeatedly(once: Callable[[], object]) -> Callable[[float], float]:
     """Return a computation that cannot be cut, as the part of an effort; it runs once beforehand, to compile."""
     once()
 
@@ -100,12 +100,14 @@ def evaluated(
     runs = list(_simulated(model, np.asarray(vector, dtype=float)))
 
     def part(share: float) -> float:
-        done = [_evaluate(one, own, share, batch) for one, own in runs]
+        done = [_evaluate(model_part, vector_here, share, batch) for model_part, vector_here in runs]
         return float(np.mean(done))
 
     source = "one at the first guesses" if batch == 1 else f"{batch} at once at the first guesses"
     response = 8 * len(model.coordinate.values) * len(model.channels)
-    return Effort(part, batch, least, most, source, max(_shortest(one) for one, _ in runs), response, kept)
+    return Effort(
+        part, batch, least, most, source, max(_shortest(model_part) for model_part, _ in runs), response, kept
+    )
 
 
 def shortest_of(solver: Any, end: float) -> float:
@@ -211,8 +213,8 @@ def _clocked(effort: Effort, share: float) -> tuple[float, float]:
 def _simulated(model: Any, vector: np.ndarray) -> Iterator[tuple[Any, np.ndarray]]:
     """Models that simulate in the place of a model, and their parameter vectors."""
     if hasattr(model, "wiring"):
-        for own, wiring in zip(model.models, model.wiring, strict=True):
-            yield from _simulated(own, vector[wiring])
+        for part, wiring in zip(model.models, model.wiring, strict=True):
+            yield from _simulated(part, vector[wiring])
     elif isinstance(model, Wrapped | Sensors):
         yield from _simulated(model.model, vector[: len(model.model.parameters)])
     else:

@@ -128,8 +128,8 @@ def last_progress(path: Path, tail: int = 65536) -> Event | None:
     with path.open("rb") as file:
         file.seek(max(0, path.stat().st_size - tail))
         lines = file.read().splitlines(keepends=True)
-    found = (event_of(line) for line in reversed(lines) if b'"best"' in line)
-    return next((event for event in found if event is not None and event.get("best") is not None), None)
+    events = (event_of(line) for line in reversed(lines) if b'"best"' in line)
+    return next((event for event in events if event is not None and event.get("best") is not None), None)
 
 
 def _repair(path: Path) -> Path | None:
@@ -139,17 +139,17 @@ def _repair(path: Path) -> Path | None:
     """
     if not path.exists():
         return None
-    content, whole = path.read_bytes(), 0
+    content, intact = path.read_bytes(), 0
     for line in content.split(b"\n"):
         if event_of(line + b"\n") is None:
             break
-        whole += len(line) + 1
-    if b"\n" not in content[whole:]:
-        if whole < len(content):
-            os.truncate(path, whole)
+        intact += len(line) + 1
+    if b"\n" not in content[intact:]:
+        if intact < len(content):
+            os.truncate(path, intact)
         return None
     aside = set_aside(path)
-    path.write_bytes(content[:whole])
+    path.write_bytes(content[:intact])
     return aside
 
 

@@ -73,9 +73,9 @@ class RunFolder:
     @property
     def is_remnant(self) -> bool:
         """Whether a run was killed here before it began: it left nothing but copies of what was given."""
-        given = {"lock", "study.toml", "settings.json", "inputs", "inputs.json", "events.jsonl"}
+        copies = {"lock", "study.toml", "settings.json", "inputs", "inputs.json", "events.jsonl"}
         names = {entry.name for entry in self.path.iterdir() if not entry.name.startswith(".")}
-        return "lock" in names <= given
+        return "lock" in names <= copies
 
     @property
     def is_refused(self) -> bool:
@@ -112,9 +112,9 @@ class RunFolder:
                 last = event
         if last.get("state") not in WRITTEN:
             return {"state": DAMAGED}
-        found = {key: begun[key] for key in ("study", "title", "task", "version") if key in begun}
-        found |= {key: last[key] for key in ("state", "message", "digests") if key in last}
-        return found | {"since": str(last.get("at", ""))[:19]}
+        entries = {key: begun[key] for key in ("study", "title", "task", "version") if key in begun}
+        entries |= {key: last[key] for key in ("state", "message", "digests") if key in last}
+        return entries | {"since": str(last.get("at", ""))[:19]}
 
     def damaged(self, file: Path) -> InputError:
         """Error about a file of the run that is not there, or that was changed."""

@@ -18,7 +18,7 @@ def rows(root: Path) -> list[dict[str, str]]:
     return [_row(folder) for folder in find_runs(root)]
 
 
-def table(found: list[dict[str, str]]) -> "Table":
+def table(rows: list[dict[str, str]]) -> "Table":
     """The rows as a table."""
     from rich.table import Table
     from rich.text import Text
@@ -26,7 +26,7 @@ def table(found: list[dict[str, str]]) -> "Table":
     shown = Table(box=None, pad_edge=False)
     for heading in COLUMNS:
         shown.add_column(heading, overflow="fold")
-    for row in found:
+    for row in rows:
         shown.add_row(*(Text(row[key], _STYLES.get(row[key], "") if key == "state" else "") for key in COLUMNS))
     return shown
 
@@ -54,8 +54,8 @@ def counted(state: dict) -> str:
     >>> counted({"findings": [{"severity": "note"}]})
     ''
     """
-    given = [finding.get("severity") for finding in state.get("findings") or []]
-    counts = {severity: given.count(severity) for severity in ("error", "warning")}
+    severities = [finding.get("severity") for finding in state.get("findings") or []]
+    counts = {severity: severities.count(severity) for severity in ("error", "warning")}
     return ", ".join(f"{count} {name}{'s' * (count > 1)}" for name, count in counts.items() if count)
 
 
@@ -75,10 +75,10 @@ def since(state: dict) -> str:
 
 def best(folder: RunFolder, state: dict) -> str:
     """Smallest misfit and values: of the result, or of the events while there is none."""
-    found = state.get("best") or {}
-    misfit = found.get("misfit")
+    numbers = state.get("best") or {}
+    misfit = numbers.get("misfit")
     if misfit is None:
         event = last_progress(folder.events)
         misfit = event["best"] if event else None
-    values = ", ".join(f"{name} = {value:.6g}" for name, value in (found.get("values") or {}).items())
+    values = ", ".join(f"{name} = {value:.6g}" for name, value in (numbers.get("values") or {}).items())
     return ", ".join(part for part in ("" if misfit is None else f"misfit {misfit:.4g}", values) if part)

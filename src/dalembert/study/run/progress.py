@@ -19,7 +19,7 @@ MOST_LISTED = 8
 
 
 @dataclass
-class Told:
+class ProgressText:
     """How far a run is, in words, from its events.
 
     Parameters
@@ -41,12 +41,12 @@ class Told:
 
     def take(self, event: Event) -> bool:
         """Take in an event; whether it told anything."""
-        text, done, total = self._told(event)
+        text, done, total = self._text(event)
         if text:
             self.last = text, done, total
         return bool(text)
 
-    def _told(self, event: Event) -> tuple[str, int, int | None]:
+    def _text(self, event: Event) -> tuple[str, int, int | None]:
         match event:
             case {"event": "iteration", "best": best, "values": values, "start": start, "simulations": simulations}:
                 said = f"start {start + 1} · {simulations} simulations"
@@ -57,7 +57,7 @@ class Told:
                     self._samples, self._best = event.get("samples"), float("inf")
                 if best is not None and best < self._best:
                     self._best, self._values = best, values
-                return f"{said} · {_horizon(event)}{self._found}", 0, None
+                return f"{said} · {_horizon(event)}{self._best_values}", 0, None
             case {"event": "swept", "parameter": name, "value": value, "done": done, "total": total}:
                 return f"{name} = {value:.6g} · {done} of {total}", done, total
             case {"event": "ran", "method": method, "runs": runs, "failed": failed, "most": most}:
@@ -86,7 +86,7 @@ class Told:
         return "", 0, None
 
     @property
-    def _found(self) -> str:
+    def _best_values(self) -> str:
         return " · ".join(filter(None, (f"best {self._best:.4g}", self._listed(self._values))))
 
     def _listed(self, values: list[float]) -> str:
@@ -125,10 +125,10 @@ class Watch:
     names: tuple[str, ...] = ()
     _live: "Progress | None" = field(default=None, init=False)
     _next: float = field(default=0.0, init=False)
-    _told: Told = field(init=False)
+    _progress: ProgressText = field(init=False)
 
     def __post_init__(self) -> None:
-        self._told = Told(self.names)
+        self._progress = ProgressText(self.names)
 
     def __enter__(self) -> Self:
         if self.console.is_terminal:
@@ -147,9 +147,9 @@ class Watch:
     def __call__(self, event: Event) -> None:
         if event["event"] in (LOST, STORAGE):
             self.console.print(event["message"], markup=False, highlight=False)
-        if not self._told.take(event):
+        if not self._progress.take(event):
             return
-        text, done, total = self._told.last
+        text, done, total = self._progress.last
         if self._live is not None:
             self._live.update(self._live.task_ids[0], description=text, completed=done, total=total)
         elif monotonic() >= self._next:

@@ -50,19 +50,21 @@ class SystemBuilder:
             **({"start": self.model.start} if self.model.start else {}),
         }
         if gravity is not None:
-            options["gravity"] = tuple(resolved(one, values, "[model], gravity") for one in gravity)
+            options["gravity"] = tuple(resolved(entry, values, "[model], gravity") for entry in gravity)
         signals = signals_of(self.inputs, values)
         robot = self.model.robot_table
         system = self._system(options) if robot is None else robot_of(robot, values, signals, options)
-        bodies: dict[str, Any] = {one.name: one for one in (*system.bodies, *system.joints)}
+        bodies: dict[str, Any] = {entry.name: entry for entry in (*system.bodies, *system.joints)}
         for table, component in self.model.components:
             where = f"[[model.{table}]] {component.name!r}"
             bodies[component.name] = system.add(built(component, values, where, bodies, system, signals))
         if self.model.stated:
-            given = (("pose", self.model.pose), ("rates", self.model.rates))
-            own = [{joint: resolved(one, values, f"[model], {key}") for joint, one in at.items()} for key, at in given]
+            stated = (("pose", self.model.pose), ("rates", self.model.rates))
+            coordinates = [
+                {joint: resolved(entry, values, f"[model], {key}") for joint, entry in at.items()} for key, at in stated
+            ]
             try:
-                system.pose(*own)
+                system.pose(*coordinates)
             except InputError as error:
                 raise InputError(f"[model]: {error}") from None
         return system
@@ -81,22 +83,22 @@ def robot_of(robot: RobotTable, values: Values, signals: Values, options: Mappin
     """The mechanism of a robot once the parameters are known."""
 
     def numbers(key: str) -> dict[str, Any]:
-        known = {name: given for name, given in getattr(robot, key).items() if not isinstance(given, InputReference)}
-        return {name: resolved(given, values, f"[model.robot.{key}], {name}") for name, given in known.items()}
+        known = {name: entry for name, entry in getattr(robot, key).items() if not isinstance(entry, InputReference)}
+        return {name: resolved(entry, values, f"[model.robot.{key}], {name}") for name, entry in known.items()}
 
     with placed("[model.robot]"):
         return tree_of(robot, values).system(
             numbers("positions"),
             numbers("rates"),
             slip=resolved(robot.slip, values, "[model.robot], slip"),
-            torques=numbers("torques") | {name: signals[given] for name, given in robot.inputs.items()},
-            **{key: given for key, given in options.items() if key != "driving"},
+            torques=numbers("torques") | {name: signals[reference] for name, reference in robot.inputs.items()},
+            **{key: reference for key, reference in options.items() if key != "driving"},
         )
 
 
 def tree_of(robot: RobotTable, values: Values) -> "Tree":
     """The robot of a study once the parameters are known."""
-    changed = {name: resolved(given, values, "[model.robot.numbers]") for name, given in robot.numbers.items()}
+    changed = {name: resolved(entry, values, "[model.robot.numbers]") for name, entry in robot.numbers.items()}
     with placed("[model.robot.numbers]"):
         return robot.tree.with_numbers(changed)
 
@@ -160,18 +162,18 @@ def named_values(constants: Mapping[str, float | Expression], parameters: Values
     {'L': 3.0, 'half': 1.5}
     """
     values = dict(parameters)
-    for name, given in constants.items():
-        values[name] = resolved(given, values, f"[constants], {name}")
+    for name, entry in constants.items():
+        values[name] = resolved(entry, values, f"[constants], {name}")
     return values
 
 
 def signals_of(inputs: Mapping[str, MeasuredInput], values: Values) -> dict[str, Any]:
     """The signals of inputs, by name, once the parameters are known."""
-    found = {}
-    for name, one in inputs.items():
+    signals = {}
+    for name, measured in inputs.items():
         with placed(f"[inputs.{name}]"):
-            found[name] = one.signal(values)
-    return found
+            signals[name] = measured.signal(values)
+    return signals
 
 
 def built(
@@ -186,44 +188,44 @@ def built(
     Modal(ratio=0.01)
     """
     arguments = table.given()
-    for key, given in arguments.items():
-        if isinstance(given, Expression):
-            arguments[key] = resolved(given, values, f"{where}, {key}")
-        elif isinstance(given, InputReference):
-            arguments[key] = signals[given.input]
-        elif isinstance(given, _COMPOSED):
-            arguments[key] = _resolved(given, values, bodies, system, f"{where}, {key}")
+    for key, argument in arguments.items():
+        if isinstance(argument, Expression):
+            arguments[key] = resolved(argument, values, f"{where}, {key}")
+        elif isinstance(argument, InputReference):
+            arguments[key] = signals[argument.input]
+        elif isinstance(argument, _COMPOSED):
+            arguments[key] = _resolved(argument, values, bodies, system, f"{where}, {key}")
     result = table.target_type(**arguments)
     return result.value if isinstance(result, Written) else result
 
 
-def _resolved(given: Any, values: Values, bodies: Values, system: Any, where: str) -> Any:
-    match given:
+def _resolved(argument: Any, values: Values, bodies: Values, system: Any, where: str) -> Any:
+    match argument:
         case Expression():
-            return resolved(given, values, where)
+            return resolved(argument, values, where)
         case Place():
-            return _place(given, values, bodies, system, where)
+            return _place(argument, values, bodies, system, where)
         case JointName():
-            return bodies[given.name]
+            return bodies[argument.name]
         case KindTable():
             try:
-                return built(given, values, where, bodies, system)
+                return built(argument, values, where, bodies, system)
             except InputError as error:
                 raise InputError(str(error) if str(error).startswith("[") else f"{where}: {error}") from None
         case FunctionReference():
-            return given.load()
+            return argument.load()
         case list():
-            return tuple(_resolved(entry, values, bodies, system, where) for entry in given)
+            return tuple(_resolved(entry, values, bodies, system, where) for entry in argument)
         case dict():
-            return {key: _resolved(entry, values, bodies, system, where) for key, entry in given.items()}
-    return given
+            return {key: _resolved(entry, values, bodies, system, where) for key, entry in argument.items()}
+    return argument
 
 
-def _place(given: Place, values: Values, bodies: Values, system: Any, where: str) -> Any:
-    numbers = tuple(resolved(number, values, where) for number in given.position or ())
+def _place(place: Place, values: Values, bodies: Values, system: Any, where: str) -> Any:
+    numbers = tuple(resolved(number, values, where) for number in place.position or ())
     try:
         if numbers:
             return system.ground.point(numbers) if len(system.AXES) == 3 else system.ground.point(*numbers)
-        return bodies[given.body].point(given.point) if given.body else system.ground
+        return bodies[place.body].point(place.point) if place.body else system.ground
     except InputError as error:
         raise InputError(f"{where}: {error}") from None

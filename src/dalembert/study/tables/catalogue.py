@@ -10,7 +10,7 @@ from pydantic import AfterValidator
 
 from dalembert.component_index import HOMES, KINDS, SPATIAL_HOMES, SPATIAL_KINDS
 from dalembert.kinds import derived_dataclasses, distinct, load_modules, load_plugins, named
-from dalembert.study.tables.dataclass_tables import buildable, one_of, settings_of, table_of
+from dalembert.study.tables.dataclass_tables import any_of, buildable, settings_of, table_of
 from dalembert.study.tables.structure_parts import LinearSpring, LumpedMass
 
 ROLES = {"body": "Body", "joint": "Joint", "load": "Load", "signal": "Signal", "solver": "Integrator"}
@@ -33,9 +33,9 @@ def kinds_of(role: str, words: Words = None, *, space: bool = False) -> tuple[ty
     base = ROLES[role]
     package = import_module("dalembert.multibody.spatial" if space else "dalembert.multibody")
     names = (SPATIAL_KINDS if space else KINDS)[base]
-    own = [getattr(package, name) for name in names if words is None or name in words]
-    others = distinct(kind for kind in _of_others(base, space) if words is None or kind.__name__ in words)
-    return tuple(sorted([*own, *others.values()], key=lambda kind: kind.__name__))
+    built_in = [getattr(package, name) for name in names if words is None or name in words]
+    registered = distinct(kind for kind in _registered(base, space) if words is None or kind.__name__ in words)
+    return tuple(sorted([*built_in, *registered.values()], key=lambda kind: kind.__name__))
 
 
 def kind_names() -> set[str]:
@@ -50,7 +50,7 @@ def kind_names() -> set[str]:
     return names | {kind.__name__ for kind in derived_dataclasses(*bases)}
 
 
-def _of_others(base: str, space: bool) -> Iterator[type]:
+def _registered(base: str, space: bool) -> Iterator[type]:
     load_plugins()
     home = sys.modules.get(f"dalembert.multibody.{(SPATIAL_HOMES if space else HOMES)[base]}")
     kinds = derived_dataclasses(getattr(home, base)) if home is not None else ()  # without it nothing derives from it
@@ -62,7 +62,7 @@ def solver(words: Words = None) -> Any:
     """Type of a key that takes any integrator, or one that words name, checked by building it."""
     kinds = kinds_of("solver", None if words is None else words | {DEFAULT_SOLVER})
     tables = [table_of(kind, default=kind.__name__ == DEFAULT_SOLVER, varying=False, part=part) for kind in kinds]
-    return Annotated[one_of(tables, DEFAULT_SOLVER), AfterValidator(buildable)]
+    return Annotated[any_of(tables, DEFAULT_SOLVER), AfterValidator(buildable)]
 
 
 @cache

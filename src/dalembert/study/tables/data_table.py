@@ -26,7 +26,7 @@ from dalembert.forward.sensors import START
 from dalembert.parameters import Parameter
 from dalembert.study.tables.sensor_table import SensorTable, reads
 from dalembert.study.text.numbers import Number, Samples, Seconds, fixed, pair, read_number
-from dalembert.study.text.table import Context, Read, StudyTable, checked, problem, told_apart
+from dalembert.study.text.table import Context, Read, StudyTable, alternative, checked, problem
 
 if TYPE_CHECKING:
     from dalembert.data import Bands, Measurements
@@ -102,8 +102,10 @@ class FileTable(StudyTable):
     @property
     def how(self) -> dict[str, Any]:
         """Arguments that say how the file is read."""
-        own = self.picked("format", "units", "separator", "decimal")
-        return own | {key: value for key, value in self.picked("frequency", "sampling").items() if value is not None}
+        arguments = self.picked("format", "units", "separator", "decimal")
+        return arguments | {
+            key: value for key, value in self.picked("frequency", "sampling").items() if value is not None
+        }
 
     @property
     def universal(self) -> bool:
@@ -121,16 +123,16 @@ class DerivativeTable(StudyTable):
 
 
 _Name = Annotated[str, AfterValidator(lambda name: DerivativeTable.model_validate({"of": name}))]
-Differentiated = told_apart(lambda value: isinstance(value, str), _Name, DerivativeTable)
+Differentiated = alternative(lambda value: isinstance(value, str), _Name, DerivativeTable)
 
 
 def _along(value: Any, handler: ValidatorFunctionWrapHandler, info: ValidationInfo) -> Any:
     """Numbers along the samples: frequencies if the file has a column of them, else times; a universal file either."""
-    given = info.data
-    if not ("file" in given and "format" in given and is_universal(given["file"], given["format"])):
-        numbers = [one for key, one in value.items() if key != "count"] if isinstance(value, dict) else value
-        for one in numbers if isinstance(numbers, list) else ():
-            checked(read_number, one, "s" if given.get("frequency") is None else "Hz")
+    data = info.data
+    if not ("file" in data and "format" in data and is_universal(data["file"], data["format"])):
+        numbers = [entry for key, entry in value.items() if key != "count"] if isinstance(value, dict) else value
+        for entry in numbers if isinstance(numbers, list) else ():
+            checked(read_number, entry, "s" if data.get("frequency") is None else "Hz")
     return handler(value)
 
 
@@ -182,8 +184,8 @@ class ChannelFile(FileTable):
         from dalembert.data import read
         from dalembert.data.opening import errors_with_file
 
-        given = self.deviations
-        known = None if given is None else {name: given[name] for name in self.columns if name in given}
+        deviations = self.deviations
+        known = None if deviations is None else {name: deviations[name] for name in self.columns if name in deviations}
         options |= {"missing": self.missing, "wraps": self.wraps, **self.how}
         data = read(self.file, self.time, self.columns, known, **options)
         with errors_with_file(self.file):
@@ -252,7 +254,7 @@ class DataTable(ChannelFile):
         if self.more and self.every is not None:
             wrong.append("every is given with more; give decimate for each file, whose time stamps differ")
         thinned = [name for name in ("decimate", "every", "resample") if getattr(self, name) is not None]
-        wrong += [f"{one} and {other} are both given; expected one of them" for one, other in pairwise(thinned)]
+        wrong += [f"{key} and {other} are both given; expected one of them" for key, other in pairwise(thinned)]
         return wrong
 
     @property
@@ -269,15 +271,15 @@ class DataTable(ChannelFile):
         from dalembert.data import merged
         from dalembert.data.opening import errors_with_file
 
-        given, trial = self.deviations, None if self.split is None else (self.split, self.trial)
+        deviations, trial = self.deviations, None if self.split is None else (self.split, self.trial)
         data = self.of_file(trial=trial)
         begin = 0.0 if self.begins is None else beginning(data.coordinate.values, self.begins)
         parts = [data.since(begin), *(file.of_file(start=begin) for file in self.more)]
         with errors_with_file(self.file):
             data = merged(parts)
-            for name, one in self.derivatives.items():
-                how = {"order": one.order, "window": one.window, "degree": one.degree, "gap": self.gap}
-                data = data.with_derivative(one.of, name, **how, deviation=(given or {}).get(name))
+            for name, table in self.derivatives.items():
+                how = {"order": table.order, "window": table.window, "degree": table.degree, "gap": self.gap}
+                data = data.with_derivative(table.of, name, **how, deviation=(deviations or {}).get(name))
             if self.between is not None:
                 data = data.between(*self.between)
             if self.every is not None:

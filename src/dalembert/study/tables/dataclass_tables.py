@@ -32,7 +32,7 @@ from dalembert.study.text.functions import FunctionName
 from dalembert.study.text.numbers import fixed, number
 from dalembert.study.text.places import JOINT_KEY
 from dalembert.study.text.places import place as planar_place
-from dalembert.study.text.table import Context, Name, StudyTable, checked, problem, told_apart
+from dalembert.study.text.table import Context, Name, StudyTable, alternative, checked, problem
 
 FORM = "form"  # the key for an argument that is called kind, since the key kind names the dataclass
 _PLACES = {"Point", "GroundPoint", "Ground"}
@@ -46,8 +46,8 @@ class KindTable(StudyTable):
 
     def given(self) -> dict[str, Any]:
         """The arguments that the study file gives; the dataclass has defaults for the others."""
-        own = [name for name in type(self).model_fields if name in self.model_fields_set and name != "kind"]
-        return {"kind" if name == FORM else name: getattr(self, name) for name in own}
+        names = [name for name in type(self).model_fields if name in self.model_fields_set and name != "kind"]
+        return {"kind" if name == FORM else name: getattr(self, name) for name in names}
 
     def settings(self) -> Any:
         """The dataclass itself, where no number depends on parameters."""
@@ -101,16 +101,16 @@ def table_of(
     kind = kind or target.__name__
     hints = typing.get_type_hints(target.__init__)
     fields = target.__dataclass_fields__  # dataclasses.fields leaves out the arguments that are no fields
-    told = meanings(target)
+    meanings_here = meanings(target)
     keys: dict[str, Any] = {"kind": (Literal[kind], kind if default else ...)}  # pyright: ignore[reportInvalidTypeForm]
     for name, argument in inspect.signature(target).parameters.items():
         if not fields[name].metadata.get("key", True):  # for Python only
             continue
         unit = fields[name].metadata.get("unit")
         numeric = (number if varying else fixed)(units.get(unit, unit))
-        own = part(fields[name].metadata.get("table", ""))
-        key = own or _key(name, _bare(hints[name]), numeric, signal, part, place)
-        meaning = explained(told.get(name, ""))
+        part_table = part(fields[name].metadata.get("table", ""))
+        key = part_table or _key(name, _bare(hints[name]), numeric, signal, part, place)
+        meaning = explained(meanings_here.get(name, ""))
         keys[FORM if name == "kind" else name] = (key, Field(_default(argument), json_schema_extra=meaning))
     table = create_model(
         prefix + kind, __base__=KindTable, __doc__=(target.__doc__ or kind).strip().split("\n")[0], **keys
@@ -119,7 +119,7 @@ def table_of(
     return table
 
 
-def one_of(tables: Iterable[type[StudyTable]], default: str = "") -> Any:
+def any_of(tables: Iterable[type[StudyTable]], default: str = "") -> Any:
     """Type of a key that takes any one of several tables, told apart by their ``kind``, or by the default one."""
     tables = list(tables)
     if not default:
@@ -146,7 +146,7 @@ def settings_of(
     tables = {name: table_of(target, name, varying=varying, part=part) for name, target in kinds.items()}
     usual = AfterValidator(lambda name: tables[name].model_validate({"kind": name}))
     name = Annotated[Literal[tuple(kinds)], usual]  # pyright: ignore[reportInvalidTypeForm]
-    key = told_apart(lambda value: isinstance(value, str), name, one_of(tables.values()))
+    key = alternative(lambda value: isinstance(value, str), name, any_of(tables.values()))
     return key if varying else Annotated[key, AfterValidator(buildable)]
 
 
@@ -186,10 +186,10 @@ def _key(
     if "Joint" in names:
         return JOINT_KEY
     if not any(map(_is_mapping, leaves)):
-        for own in filter(None, map(part, sorted(names))):
-            return own
+        for part_table in filter(None, map(part, sorted(names))):
+            return part_table
     if signal is not None and "Signal" in names:
-        return told_apart(lambda value: isinstance(value, dict | KindTable), signal, numeric)
+        return alternative(lambda value: isinstance(value, dict | KindTable), signal, numeric)
     if Callable in leaves:
         return FunctionName
     return _plain(hint, numeric, part)
@@ -206,7 +206,7 @@ def _plain(hint: Any, numeric: Any, part: Callable[[str], Any]) -> Any:
             _either([_plain(kind, numeric, part) for kind in kinds], list(map(_is_list, kinds))) if kinds else numeric
         )
         if kinds and {float, complex} & set(arguments):
-            plain = told_apart(lambda value: isinstance(value, list | KindTable), plain, numeric)
+            plain = alternative(lambda value: isinstance(value, list | KindTable), plain, numeric)
         return plain | None if _NONE in arguments else plain
     if origin is tuple and Ellipsis not in arguments:
         entry = _plain(arguments[0], numeric, part)
@@ -240,7 +240,7 @@ class _OrSeries:
 def _either(kinds: list[Any], lists: list[bool]) -> Any:
     """Type of a key that takes one of several things; a list or a table are told apart by what is given."""
     if len(kinds) == 2 and lists == [True, False]:
-        return told_apart(lambda value: isinstance(value, list), *kinds)
+        return alternative(lambda value: isinstance(value, list), *kinds)
     return reduce(or_, kinds)
 
 

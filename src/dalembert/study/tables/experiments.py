@@ -11,7 +11,7 @@ from dalembert.forward import Sensor
 from dalembert.forward.sensors import QUANTITIES, START
 from dalembert.study.tables.data_table import DataTable
 from dalembert.study.tables.inputs import InputTable
-from dalembert.study.tables.parameters import OwnParameterTable, ParameterTable
+from dalembert.study.tables.parameters import LocalParameterTable, ParameterTable
 from dalembert.study.tables.sensor_table import SensorTable, reads
 from dalembert.study.text.numbers import Number, wrong_units
 from dalembert.study.text.table import Context, Name, problem
@@ -32,7 +32,7 @@ class ExperimentTable(DataTable):
     SEVERAL = True
 
     name: Name
-    local: list[str] | dict[str, OwnParameterTable] = Field(
+    local: list[str] | dict[str, LocalParameterTable] = Field(
         [],
         description="parameters that are not shared with the other experiments: names, also of sensors, such as "
         "'bar.angle offset', or a table with the bounds and first guesses that differ here",
@@ -54,17 +54,17 @@ class ExperimentTable(DataTable):
 
     def parameters(self, shared: Mapping[str, ParameterTable]) -> dict[str, ParameterTable]:
         """The parameters' tables as they are in this experiment."""
-        given = self.local if isinstance(self.local, dict) else {}
-        return {name: given[name].over(table) if name in given else table for name, table in shared.items()}
+        tables = self.local if isinstance(self.local, dict) else {}
+        return {name: tables[name].over(table) if name in tables else table for name, table in shared.items()}
 
     def sensors(self, shared: Mapping[str, SensorTable]) -> dict[str, Sensor]:
         """The sensors of its channels, with the bounds that are local to this experiment."""
         return {name: self._local(name, sensor) for name, sensor in super().sensors(shared).items()}
 
     def _local(self, name: str, sensor: Sensor) -> Sensor:
-        given = self.local if isinstance(self.local, dict) else {}
+        tables = self.local if isinstance(self.local, dict) else {}
         for what in QUANTITIES:
-            bounds, table = getattr(sensor, what), given.get(f"{name} {what}")
+            bounds, table = getattr(sensor, what), tables.get(f"{name} {what}")
             if bounds is not None and table is not None:
                 parameter = table.over(ParameterTable.model_validate({"lower": bounds[0], "upper": bounds[1]}))
                 sensor = replace(sensor, **{what: parameter.parameter(f"{name} {what}")})
@@ -73,21 +73,21 @@ class ExperimentTable(DataTable):
 
 def expanded(tables: list[ExperimentTable]) -> list[ExperimentTable]:
     """Experiments, those of files with several trials one by one, ``"NAME-3"``."""
-    found = []
+    result = []
     for table in tables:
         if table.split is None or table.trial is not None:
-            found.append(table)
+            result.append(table)
             continue
         try:
             labels = table.labels()
         except DataError as error:
             raise problem(str(error)) from None
         start = "first" if table.start is None else table.start
-        found += [
+        result += [
             table.model_copy(update={"name": f"{table.name}-{label}", "trial": label, "start": start})
             for label in labels
         ]
-    return found
+    return result
 
 
 def wrong_experiments(file: Any) -> list[str]:
@@ -100,8 +100,8 @@ def wrong_experiments(file: Any) -> list[str]:
     wrong += [
         f"{table} belongs to [identify] or [sample], and the task is [{task}]; leave it out"
         for task in file.tasks
-        for table, given in (("[[experiments]]", file.experiments), ("[sensors]", file.sensors))
-        if given and task not in ("identify", "sample")
+        for table, content in (("[[experiments]]", file.experiments), ("[sensors]", file.sensors))
+        if content and task not in ("identify", "sample")
     ]
     measured = measured_channels(file)
     wrong += [unknown("channel", name, measured, "[sensors]") for name in file.sensors if not reads(name, measured)]
@@ -113,7 +113,7 @@ def wrong_experiments(file: Any) -> list[str]:
         where = f"[[experiments]] {table.name!r}, local"
         known = [*file.parameters, *_sensor_parameters(file.sensors, table)]
         wrong += [unknown("parameter", name, known, where) for name in table.local if name not in known]
-        wrong += _wrong_own(table, file, where)
+        wrong += _wrong_local(table, file, where)
         if table.arguments and not (file.model.function or file.model.forward):
             wrong.append(f"[[experiments]] {table.name!r}: arguments are for a function, and there is none")
     return wrong
@@ -124,12 +124,12 @@ def _sensor_parameters(sensors: Mapping[str, SensorTable], table: DataTable) -> 
     return [f"{name} {what}" for name in seen for what in QUANTITIES if getattr(sensors[name], what) is not None]
 
 
-def _wrong_own(table: ExperimentTable, file: Any, where: str) -> list[str]:
+def _wrong_local(table: ExperimentTable, file: Any, where: str) -> list[str]:
     try:
         table.parameters(file.parameters)
         table.sensors(file.sensors)
     except ValidationError as error:
-        return [f"{where}: {one['msg']}" for one in error.errors()]
+        return [f"{where}: {error_entry['msg']}" for error_entry in error.errors()]
     return []
 
 

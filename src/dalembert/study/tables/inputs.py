@@ -21,7 +21,7 @@ from dalembert.study.tables.data_table import (
 )
 from dalembert.study.text.expressions import Expression, Kinds, kind_of_number
 from dalembert.study.text.numbers import Quantity, Times, fixed, number
-from dalembert.study.text.table import Context, Read, StudyTable, problem, told_apart
+from dalembert.study.text.table import Context, Read, StudyTable, alternative, problem
 from dalembert.unit_table import Unit, readings
 from dalembert.units import difference, expected, si_unit, wrong_kind
 
@@ -114,25 +114,25 @@ class InputTable(FileTable):
         units = {name: unit for name, unit in table.units.items() if name in (str(table.time), column, _ABSCISSA)}
         units |= {column: self.unit} if self.unit else {}
         # the times are read as those of the data; what else becomes of the data is left out
-        own = {
-            key: one.get_default(call_default_factory=True)
-            for key, one in DataTable.model_fields.items()
+        keys = {
+            key: key_field.get_default(call_default_factory=True)
+            for key, key_field in DataTable.model_fields.items()
             if key not in _OF_TIMES
         }
-        own |= {"columns": {_CHANNEL: self.column}, "units": units, "lowpass": self.lowpass}
-        own |= {"resample": self.resample}
-        own |= {"missing": self.missing, "wraps": [_CHANNEL] * self.wraps}
-        data = table.model_copy(update=own).read()
+        keys |= {"columns": {_CHANNEL: self.column}, "units": units, "lowpass": self.lowpass}
+        keys |= {"resample": self.resample}
+        keys |= {"missing": self.missing, "wraps": [_CHANNEL] * self.wraps}
+        data = table.model_copy(update=keys).read()
         values = data.continuous[:, data.channels.index(_CHANNEL)]
-        there = np.isfinite(values)
-        self._refuse_gaps(name, data.coordinate.values[there], str(table.file))
+        finite = np.isfinite(values)
+        self._refuse_gaps(name, data.coordinate.values[finite], str(table.file))
         unit = data.source_units.get(_CHANNEL, "")
-        return MeasuredInput(name, self, data.coordinate.values[there], values[there], str(table.file), unit)
+        return MeasuredInput(name, self, data.coordinate.values[finite], values[finite], str(table.file), unit)
 
     def _refuse_gaps(self, name: str, times: np.ndarray, source: str) -> None:
-        found = gaps(times)
-        if self.missing == "refuse" and len(found):
-            begin, end = times[found[0]], times[found[0] + 1]
+        gaps_here = gaps(times)
+        if self.missing == "refuse" and len(gaps_here):
+            begin, end = times[gaps_here[0]], times[gaps_here[0] + 1]
             raise DataError(
                 f"[inputs.{name}]: {source} has no values from {begin:.6g} to {end:.6g} s, and what drives the "
                 "model there is not known. Keep the samples before or behind it, or join them by missing = 'leave-out'"
@@ -167,10 +167,10 @@ class MeasuredInput:
 
         numbers: dict[str, Any] = {}
         for key in ("scale", "offset", "delay"):
-            given = getattr(self.table, key)
-            numbers[key] = given(values) if isinstance(given, Expression) else given
-        own: Any = Table
-        return own(self.times, self.values, self.table.interpolation, integrals=self.table.integrals, **numbers)
+            entry = getattr(self.table, key)
+            numbers[key] = entry(values) if isinstance(entry, Expression) else entry
+        table_class: Any = Table
+        return table_class(self.times, self.values, self.table.interpolation, integrals=self.table.integrals, **numbers)
 
     def check_interpolation(self, model: Any) -> None:
         """Refuse an input in a unit of another kind than that of what it drives, unless a scale turns it into that.
@@ -227,7 +227,7 @@ class MeasuredInput:
 
 def signal_or_input(signal: Any) -> Any:
     """Type of a key that takes a signal's table, or the name of an input."""
-    return told_apart(_refers, InputReference, signal)
+    return alternative(_refers, InputReference, signal)
 
 
 def _refers(value: Any) -> bool:
@@ -251,11 +251,11 @@ def wrong_inputs(file: Any) -> list[str]:
                 f"[inputs.{name}] is used nowhere in [model]; write {{ input = '{name}' }} where a signal may stand"
             )
         tables = [entry.inputs[name].over(table) if name in entry.inputs else table for entry in file.experiments]
-        if any(one.column is None for one in tables or [table]):
+        if any(item.column is None for item in tables or [table]):
             wrong.append(f"[inputs.{name}]: the key 'column' is missing; expected the name of a column")
-        if any(one.file is None for one in tables or [table]) and file.data is None and not file.experiments:
+        if any(item.file is None for item in tables or [table]) and file.data is None and not file.experiments:
             wrong.append(f"[inputs.{name}]: the key 'file' is missing, and there are no [data] with a file")
-        if any(one.interpolation == "held" and _varies(one.delay, file) for one in tables or [table]):
+        if any(item.interpolation == "held" and _varies(item.delay, file) for item in tables or [table]):
             wrong.append(
                 f"[inputs.{name}], delay: the response to a held input has no derivative by its delay, since each "
                 "change of the value moves in time as a jump; take kind = 'linear', or a delay that depends on no "
@@ -288,7 +288,7 @@ def _used(model: Any) -> Iterator[tuple[str, str, str]]:
             yield name, f"[model.arguments], {key}", ""
 
 
-def _varies(given: Any, file: Any) -> bool:
-    if not isinstance(given, Expression):
+def _varies(entry: Any, file: Any) -> bool:
+    if not isinstance(entry, Expression):
         return False
-    return any(name in file.parameters or _varies(file.constants.get(name), file) for name in given.names)
+    return any(name in file.parameters or _varies(file.constants.get(name), file) for name in entry.names)

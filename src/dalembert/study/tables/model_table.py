@@ -8,14 +8,14 @@ from pydantic import BeforeValidator, ConfigDict, Field
 
 from dalembert.errors import repeated, unknown
 from dalembert.study.tables.catalogue import Words, kinds_of
-from dalembert.study.tables.dataclass_tables import one_of, table_of
+from dalembert.study.tables.dataclass_tables import any_of, table_of
 from dalembert.study.tables.inputs import signal_or_input
 from dalembert.study.tables.robot_table import RobotTable
 from dalembert.study.tables.structure_table import PARTS, StructureTable, part_tables, structure_table, wrong_structure
 from dalembert.study.text.functions import FunctionName
 from dalembert.study.text.places import JointName, Place
 from dalembert.study.text.spaces import IN_SPACE, by_joint, gravity_key, is_in_space
-from dalembert.study.text.table import Read, StudyTable, completed, problem, told_apart
+from dalembert.study.text.table import Read, StudyTable, alternative, completed, problem
 from dalembert.units import is_quantity, si
 
 _TABLES = ("body", "joint", "load")
@@ -113,28 +113,28 @@ class ModelTable(StudyTable):
         ways += ["body"] * (bool(self.body) or robot is not None)
         ways += ["mass" if self.mass else "structure"] * self.is_structure
         if len(ways) != 1:
-            given = f"{' and '.join(ways)} are" if ways else "neither body, mass, structure, function nor forward is"
+            stated = f"{' and '.join(ways)} are" if ways else "neither body, mass, structure, function nor forward is"
             raise problem(
-                f"{given} given; expected either the [[model.body]] tables of a mechanism, or the [[model.mass]] "
+                f"{stated} given; expected either the [[model.body]] tables of a mechanism, or the [[model.mass]] "
                 "tables or the [model.structure] of a structure, or function = 'model.py:name', or "
                 "forward = 'model.py:name'"
             )
         if not self.is_structure and (self.structure is not None or any(getattr(self, name) for name in PARTS)):
-            given = (
+            stated = (
                 "here is a mechanism, whose springs and forces stand in [[model.load]]"
                 if "body" in ways
                 else "here a function gives it"
             )
             raise problem(
                 "structure, spring, force and contact belong to a structure of [[model.mass]] tables or of matrices in "
-                f"[model.structure]; {given}"
+                f"[model.structure]; {stated}"
             )
         states = self.driving or self.start or self.stated
         if "body" not in ways and (self.joint or self.load or self.gravity or states):
-            given = "this is a structure" if self.is_structure else "here a function gives it"
+            stated = "this is a structure" if self.is_structure else "here a function gives it"
             raise problem(
                 f"joint, load, gravity, driving, start, pose and rates belong to a model of [[model.body]] "
-                f"tables; {given}"
+                f"tables; {stated}"
             )
         if ("body" in ways or self.is_structure) and self.arguments:
             raise problem("arguments are for a function, and there is none")
@@ -193,7 +193,7 @@ def model_key(words: Words = None) -> Any:
     """Type of the model's key: the table of a mechanism in space, or of other models; one of them where words say."""
     if words is not None:
         return spatial_model_table(words) if IN_SPACE in words else model_table(words)
-    return told_apart(is_in_space, spatial_model_table(), model_table())
+    return alternative(is_in_space, spatial_model_table(), model_table())
 
 
 @lru_cache(maxsize=16)
@@ -208,13 +208,13 @@ def spatial_model_table(words: Words = None) -> type[ModelTable]:
 def _components(words: Words, *, space: bool = False, **options: Any) -> dict[str, Any]:
     lists: dict[str, Any] = {}
     if words is None or not words.isdisjoint(_TABLES):
-        signal = signal_or_input(one_of([table_of(target) for target in kinds_of("signal")]))
+        signal = signal_or_input(any_of([table_of(target) for target in kinds_of("signal")]))
         for table in _TABLES:
             kinds = kinds_of(table, words, space=space)
             kinds = kinds or (kinds_of(table, space=space) if table in (words or ()) else ())
             if kinds:
                 tables = [table_of(target, signal=signal, **options) for target in kinds]
-                lists[table] = (list[one_of(tables)], Field([], description=_MEANINGS[table]))
+                lists[table] = (list[any_of(tables)], Field([], description=_MEANINGS[table]))
     return lists
 
 

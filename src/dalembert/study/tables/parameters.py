@@ -81,11 +81,11 @@ class ParameterTable(StudyTable):
 
     def number(self, key: str) -> float | None:
         """Value of a key in SI units."""
-        given = getattr(self, key)
-        return None if given is None else self._quantity(given)
+        entry = getattr(self, key)
+        return None if entry is None else self._quantity(entry)
 
-    def _quantity(self, given: Any) -> float:
-        number = read_number(given, self.symbol)
+    def _quantity(self, entry: Any) -> float:
+        number = read_number(entry, self.symbol)
         assert not isinstance(number, Expression)  # no names are offered to it
         return number
 
@@ -116,27 +116,31 @@ def series_in(tables: Mapping[str, Any]) -> dict[str, tuple[str, ...]]:
 
 def with_series(tables: dict[str, ParameterTable]) -> dict[str, ParameterTable]:
     """The tables of single parameters, those of a series in place of its own."""
-    found: dict[str, ParameterTable] = {}
+    result: dict[str, ParameterTable] = {}
     for name, table in tables.items():
-        own = [name] if table.count is None else [f"{name}_{k + 1}" for k in range(table.count)]
-        both = [one for one in own if one in found or (one != name and one in tables)]
+        series_names = [name] if table.count is None else [f"{name}_{k + 1}" for k in range(table.count)]
+        both = [
+            name_here
+            for name_here in series_names
+            if name_here in result or (name_here != name and name_here in tables)
+        ]
         if both:
             raise problem(f"{both[0]!r} is a parameter and one of the series {name!r}; rename one of the two")
-        found |= dict.fromkeys(own, table.model_copy(update={"count": None}))
-    return found
+        result |= dict.fromkeys(series_names, table.model_copy(update={"count": None}))
+    return result
 
 
 def parameters_of(tables: Mapping[str, ParameterTable], correlations: Sequence[CorrelationTable]) -> Parameters:
     """The parameters of a study file, with the correlations of their priors."""
     items = {name: table.parameter(name) for name, table in tables.items()}
-    for one in correlations:
-        joint = one.joined([items[name] for name in one.parameters])
-        for name in one.parameters:
+    for correlation in correlations:
+        joint = correlation.joined([items[name] for name in correlation.parameters])
+        for name in correlation.parameters:
             items[name] = replace(items[name], deviation=None, prior=joint)
     return Parameters(tuple(items.values()))
 
 
-class OwnParameterTable(StudyTable):
+class LocalParameterTable(StudyTable):
     """What differs of a parameter that one experiment has for itself; the rest is as in [parameters]."""
 
     lower: float | str | None = Field(None, description="lower bound in this experiment")
@@ -147,8 +151,8 @@ class OwnParameterTable(StudyTable):
 
     def over(self, shared: ParameterTable) -> ParameterTable:
         """The parameter's table with these keys in place of its."""
-        given = {table: table.model_dump(exclude_none=True) for table in (shared, self)}
-        return ParameterTable.model_validate({**given[shared], **given[self]})
+        keys = {table: table.model_dump(exclude_none=True) for table in (shared, self)}
+        return ParameterTable.model_validate({**keys[shared], **keys[self]})
 
 
 def check_names(names: Any) -> Any:
@@ -164,14 +168,14 @@ def check_names(names: Any) -> Any:
     return names
 
 
-def read_constants(given: Any, info: ValidationInfo) -> dict[str, float | Expression]:
+def read_constants(document: Any, info: ValidationInfo) -> dict[str, float | Expression]:
     """Constants in their order: each may use parameters, and constants before it."""
-    if not isinstance(given, dict):
-        raise problem(f"{given!r} was given; expected a table")
+    if not isinstance(document, dict):
+        raise problem(f"{document!r} was given; expected a table")
     known = info.context.names if isinstance(info.context, Context) else {}
-    parameters = set(known) - set(given)
+    parameters = set(known) - set(document)
     wrong, constants = [], {}
-    for name, value in given.items():
+    for name, value in document.items():
         try:
             constants[name] = found = read_number(value, None, parameters | set(constants))
             if isinstance(found, Expression):

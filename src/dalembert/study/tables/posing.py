@@ -38,12 +38,12 @@ def fitted_parameters(study: Study) -> dict[str, tuple[Parameter, ...]]:
     file = study.file
     if not file.experiments:
         return {"": (*study.parameters, *([] if file.data is None else _of_readings(study, file.data)))}
-    found = {}
+    result = {}
     for table in file.experiments:
         items = (*study.variant(table).parameters, *_of_readings(study, table))
         named = (replace(item, name=table.named(item.name)) for item in items)
-        found[table.name] = tuple(named)
-    return found
+        result[table.name] = tuple(named)
+    return result
 
 
 def unknown_names(study: Study) -> tuple[str, ...]:
@@ -52,15 +52,15 @@ def unknown_names(study: Study) -> tuple[str, ...]:
 
 
 def _of_readings(study: Study, table: DataTable) -> list[Parameter]:
-    found = [
+    readings = [
         reading_parameter(f"{channel} {what}", bounds, "s" if what in TIMES and study.has_system else "", usual)
         for channel, sensor in table.sensors(study.file.sensors).items()
         for what, usual in QUANTITIES.items()
         if (bounds := getattr(sensor, what)) is not None
     ]
-    found = [item for item in found if not item.is_fixed]
+    readings = [item for item in readings if not item.is_fixed]
     start = table.unknown_start
-    return found if start is None or start.is_fixed else [*found, start]
+    return readings if start is None or start.is_fixed else [*readings, start]
 
 
 def posed(study: Study) -> "tuple[ForwardModel | list[Experiment], Measurements | None]":
@@ -88,11 +88,11 @@ def channel_units_of(model: "ForwardModel | Sequence[Experiment]") -> dict[str, 
     if isinstance(model, ForwardModel):
         scaled = getattr(model, "scaled", frozenset())  # which may have any unit
         return {item.name: None if item.name in scaled else item.unit or None for item in model.channels}
-    found: dict[str, str | None] = {}
+    units: dict[str, str | None] = {}
     for item in model:
-        own = channel_units_of(item.model)
-        found |= own | {f"{item.name}.{name}": unit for name, unit in own.items()}
-    return found
+        units_here = channel_units_of(item.model)
+        units |= units_here | {f"{item.name}.{name}": unit for name, unit in units_here.items()}
+    return units
 
 
 def _check_units(table: DataTable, model: ForwardModel, where: str, sensors: Mapping[str, SensorTable]) -> None:
@@ -110,12 +110,12 @@ def _check_units(table: DataTable, model: ForwardModel, where: str, sensors: Map
     for sentence in wrong_units(offsets, units, "[sensors], offset of"):
         raise InputError(sentence)
     for name, derivative in table.derivatives.items():
-        given, wanted = (units.get(channel) for channel in (derivative.of, name))
-        if not given or not wanted or not readings(given) or not readings(wanted):
+        unit, wanted = (units.get(channel) for channel in (derivative.of, name))
+        if not unit or not wanted or not readings(unit) or not readings(wanted):
             continue
-        if difference(readings(given)[0] * readings("s")[0] ** -derivative.order, readings(wanted)[0]) is not None:
+        if difference(readings(unit)[0] * readings("s")[0] ** -derivative.order, readings(wanted)[0]) is not None:
             raise InputError(
-                f"{where}, derivatives, {name}: a derivative of {derivative.of!r} in {given} of order "
+                f"{where}, derivatives, {name}: a derivative of {derivative.of!r} in {unit} of order "
                 f"{derivative.order} was given for a channel in {wanted}; expected one of the channel's kind"
             )
 
@@ -142,7 +142,7 @@ def _refuse_late(table: DataTable, data: "Measurements") -> None:
     if table.start is not None or table.between is not None or len(stamps) < 2:
         return
     steps = [np.diff(stamps[rows]) for rows in data.taken.T]
-    if stamps[0] > LATE * max(np.median(own) if len(own) else 0.0 for own in steps):
+    if stamps[0] > LATE * max(np.median(steps_here) if len(steps_here) else 0.0 for steps_here in steps):
         raise DataError(
             f"{table.file}, column {table.time!r}: the times begin at {stamps[0]:.6g} s, and a motion begins at 0. If "
             "it begins with the record, give start = 'first'; if it began at 0 s of the file, give start = 0"

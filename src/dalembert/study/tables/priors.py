@@ -88,8 +88,8 @@ class CorrelationTable(StudyTable):
         InputError
         """
         known = [item.distribution for item in items]
-        mean = [one.mean for one in known if isinstance(one, Normal)]
-        deviations = np.array([one.deviation for one in known if isinstance(one, Normal)])
+        mean = [prior.mean for prior in known if isinstance(prior, Normal)]
+        deviations = np.array([prior.deviation for prior in known if isinstance(prior, Normal)])
         correlation = np.array(self.correlation)
         if correlation.ndim == 0:
             correlation = np.where(np.eye(len(deviations)), 1.0, correlation)

@@ -51,13 +51,13 @@ class RobotTable(StudyTable):
     @property
     def tree(self) -> "Tree":
         """The robot of the file, with the joints that are fixed."""
-        found = _read(self.file, self.file.stat().st_mtime_ns, self.impossible)
-        return found.with_fixed_joints(self.fixed) if self.fixed else found
+        robot = _read(self.file, self.file.stat().st_mtime_ns, self.impossible)
+        return robot.with_fixed_joints(self.fixed) if self.fixed else robot
 
     @property
     def inputs(self) -> dict[str, str]:
         """Names of measured inputs that drive joints, by the joints."""
-        return {name: given.input for name, given in self.torques.items() if isinstance(given, InputReference)}
+        return {name: torque.input for name, torque in self.torques.items() if isinstance(torque, InputReference)}
 
     @property
     def drive_units(self) -> dict[str, str]:

@@ -24,22 +24,22 @@ class SensorTable(StudyTable):
     at_rest: bool = Field(False, description="whether the channel rests at its first value before the motion begins")
 
     def _wrong(self) -> list[str]:
-        given = {what: bounds for what, bounds in self.picked(*QUANTITIES).items() if bounds is not None}
+        stated = {what: bounds for what, bounds in self.picked(*QUANTITIES).items() if bounds is not None}
         wrong = [
             f"{what} is between {lower:g} and {upper:g}; expected the lower bound first"
-            for what, (lower, upper) in given.items()
+            for what, (lower, upper) in stated.items()
             if lower > upper
         ]
         if self.lag is not None and self.lag[0] < 0:
             wrong.append(f"lag may be {self.lag[0]:g} s; expected bounds of zero or more")
-        if not given:
+        if not stated:
             wrong.append("none of delay, lag, gain and offset is given; expected bounds of at least one")
         return wrong
 
     @property
     def sensor(self) -> Sensor:
         """The sensor."""
-        bounds = {what: given and tuple(given) for what, given in self.picked(*QUANTITIES).items()}
+        bounds = {what: ends and tuple(ends) for what, ends in self.picked(*QUANTITIES).items()}
         return Sensor(**bounds, at_rest=self.at_rest)
 
 

@@ -19,10 +19,10 @@ from dalembert.multibody.components.spatial.friction import ALONG, Friction
 from dalembert.multibody.components.spatial.ground_points import GroundPoint
 from dalembert.multibody.components.spatial.inertia import Inertia
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose, Vector
-from dalembert.study.tables.dataclass_tables import KindTable, Written, one_of, table_of
+from dalembert.study.tables.dataclass_tables import KindTable, Written, any_of, table_of
 from dalembert.study.text.numbers import read_number
 from dalembert.study.text.places import place
-from dalembert.study.text.table import Context, checked, told_apart
+from dalembert.study.text.table import Context, alternative, checked
 
 _USUAL = "moments"  # the kind of an inertia where none is given
 _BLOCKS = {
@@ -60,8 +60,12 @@ class Turned(Checked, Written):
     @property
     def value(self) -> Orientation:
         ways = ("angles", "quaternion", "rotation_vector", "z")
-        given = [way for way in ways if getattr(self, way) is not None]
-        if len(given) != 1 or (self.axes is None) == (given == ["angles"]) or (self.x is not None and given != ["z"]):
+        stated = [way for way in ways if getattr(self, way) is not None]
+        if (
+            len(stated) != 1
+            or (self.axes is None) == (stated == ["angles"])
+            or (self.x is not None and stated != ["z"])
+        ):
             keys = [name for name in ("axes", *ways, "x") if getattr(self, name) is not None]
             raise InputError(
                 f"{' and '.join(keys) or 'nothing'} given; expected axes with angles, such as axes = 'zyx' and "
@@ -98,14 +102,14 @@ class Shape(Checked, Written):
     @property
     def value(self) -> Inertia:
         if self.mass is not None and self.density is None:
-            own = self.of(self.mass)
+            inertia = self.of(self.mass)
         elif self.mass is None and self.density is not None:
-            own = self.of(self.density * self.volume)
+            inertia = self.of(self.density * self.volume)
         else:
-            given = "neither mass nor" if self.mass is None else "both mass and"
-            raise InputError(f"{given} density given; expected one of them")
+            stated = "neither mass nor" if self.mass is None else "both mass and"
+            raise InputError(f"{stated} density given; expected one of them")
         turn = self.orientation.matrix
-        return Inertia.of(own.mass, turn @ own.tensor @ turn.T, self.centre)
+        return Inertia.of(inertia.mass, turn @ inertia.tensor @ turn.T, self.centre)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -183,7 +187,7 @@ def spatial_part(name: str) -> Any:
             shapes = [
                 table_of(kind, kind.__name__.lower(), part=spatial_part) for kind in (Box, Cylinder, Tube, Sphere)
             ]
-            return one_of([table_of(Inertia, _USUAL, default=True), *shapes], _USUAL)
+            return any_of([table_of(Inertia, _USUAL, default=True), *shapes], _USUAL)
         case "BushingStiffness" | "BushingDamping" | "SensorGain":
             return _matrix(_BLOCKS[name])
     return None
@@ -193,7 +197,7 @@ def spatial_part(name: str) -> Any:
 def spatial_place(bare: bool) -> Any:
     """Type of a key that takes a point; ``bare`` allows ``"ground"`` without a position."""
     marker = table_of(GroundPoint, default=True, part=spatial_part)
-    return told_apart(lambda value: isinstance(value, dict | KindTable), marker, place(bare, space=True))
+    return alternative(lambda value: isinstance(value, dict | KindTable), marker, place(bare, space=True))
 
 
 def _matrix(units: tuple[str, ...]) -> Any:
@@ -203,19 +207,19 @@ def _matrix(units: tuple[str, ...]) -> Any:
     def read(value: Any, info: ValidationInfo) -> list:
         names = info.context.names if isinstance(info.context, Context) else None
 
-        def entry(given: Any, i: int, j: int) -> Any:
-            return read_number(given, units[(i > 2) + (j > 2)], names)
+        def entry(number: Any, i: int, j: int) -> Any:
+            return read_number(number, units[(i > 2) + (j > 2)], names)
 
-        def whole() -> list:
+        def full() -> list:
             if not isinstance(value, list) or len(value) != size:
                 raise InputError(f"{value!r} was given; expected {word} numbers, or {word} rows of {word} numbers")
             if not all(isinstance(row, list) for row in value):
-                return [entry(one, i, i) for i, one in enumerate(value)]
+                return [entry(number, i, i) for i, number in enumerate(value)]
             if any(len(row) != size for row in value):
                 raise InputError(f"{value!r} was given; expected {word} numbers in each of the {word} rows")
-            return [[entry(one, i, j) for j, one in enumerate(row)] for i, row in enumerate(value)]
+            return [[entry(number, i, j) for j, number in enumerate(row)] for i, row in enumerate(value)]
 
-        return checked(whole)
+        return checked(full)
 
     unit = f" in {units[0]} and {units[2]}, along and about x, y and z" if size == 6 else ""
     words = f"{word} numbers{unit}, or {word} rows of {word} numbers"

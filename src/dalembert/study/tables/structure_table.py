@@ -9,7 +9,7 @@ from dalembert.errors import repeated, unknown
 from dalembert.structure.read_structure import ROLES
 from dalembert.study.tables.catalogue import dampings, laws, structure_parts
 from dalembert.study.tables.data_table import DataFile
-from dalembert.study.tables.dataclass_tables import chosen, one_of, settings_of, table_of
+from dalembert.study.tables.dataclass_tables import any_of, chosen, settings_of, table_of
 from dalembert.study.text.functions import FunctionName
 from dalembert.study.text.numbers import number
 from dalembert.study.text.table import Read, StudyTable, completed, problem
@@ -47,19 +47,19 @@ class StructureTable(StudyTable):
     @property
     def source(self) -> bool:
         """Whether the matrices come from here."""
-        return any(one is not None for one in (self.file, self.files, self.function))
+        return any(source is not None for source in (self.file, self.files, self.function))
 
     def _wrong(self) -> list[str]:
-        given = [key for key in ("file", "files", "function") if getattr(self, key) is not None]
-        if len(given) > 1:
-            raise problem(f"{' and '.join(given)} are given; expected one of them")
+        stated = [key for key in ("file", "files", "function") if getattr(self, key) is not None]
+        if len(stated) > 1:
+            raise problem(f"{' and '.join(stated)} are given; expected one of them")
         wrong = [unknown("matrix", name, ROLES, key) for key in ("files", "names") for name in getattr(self, key) or {}
                  if name not in ROLES]  # fmt: skip
         if self.files is not None and not {"mass", "stiffness"} <= set(self.files):
             wrong.append("files: expected one for the mass and one for the stiffness")
         if self.arguments and self.function is None:
             wrong.append("arguments are for a function, and there is none")
-        if not given:
+        if not stated:
             if self.loss_factor is not None:
                 wrong.append("loss_factor: there are no matrices here for it; give springs a loss_factor each")
             wrong += [
@@ -80,12 +80,12 @@ def structure_table() -> Any:
 def part_tables() -> dict[str, Any]:
     """Types of the lists of masses, springs, forces and contacts, by the names of their tables."""
     law = settings_of(laws(), varying=True)
-    own = dict.fromkeys(laws(), law).get
-    found = {}
-    for name, (first, *others) in structure_parts().items():
-        tables = [table_of(first, default=True, part=own), *(table_of(kind, part=own) for kind in others)]
-        found[name] = list[one_of(tables, first.__name__)]  # pyright: ignore[reportInvalidTypeForm]
-    return found
+    law_table = dict.fromkeys(laws(), law).get
+    result = {}
+    for name, (first, *more) in structure_parts().items():
+        tables = [table_of(first, default=True, part=law_table), *(table_of(kind, part=law_table) for kind in more)]
+        result[name] = list[any_of(tables, first.__name__)]  # pyright: ignore[reportInvalidTypeForm]
+    return result
 
 
 def wrong_structure(model: Any) -> list[str]:

@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 def _plain(value: Any) -> Any:
     """A table and what is in it as JSON can hold it, without the keys that the file leaves out."""
     if isinstance(value, StudyTable):
-        given = {name: getattr(value, name) for name in type(value).model_fields if name in value.model_fields_set}
-        return _plain({name: entry for name, entry in given.items() if entry is not None})
+        stated = {name: getattr(value, name) for name in type(value).model_fields if name in value.model_fields_set}
+        return _plain({name: entry for name, entry in stated.items() if entry is not None})
     if isinstance(value, Mapping):
         return {str(name): _plain(entry) for name, entry in value.items()}
     if isinstance(value, (list, tuple)):
@@ -48,7 +48,7 @@ def _watched(file: StudyFile) -> Iterator[str]:
     yield from (channel.partition(" ")[0] for channel in measured_channels(file))
 
 
-def _require_given(channels: Sequence[str], model: ForwardModel) -> None:
+def _require_channels(channels: Sequence[str], model: ForwardModel) -> None:
     names = [channel.name for channel in model.channels]
     for name in channels:
         require_known("channel", name, names)
@@ -137,8 +137,8 @@ class Study(Displayed):
         model = self.file.model
         if model.function is not None:
             arguments = model.resolved_arguments
-            given = {**self.parameters.mapping(self.parameters.start), **arguments}
-            function = model.function.fitting(**given)
+            values = {**self.parameters.mapping(self.parameters.start), **arguments}
+            function = model.function.fitting(**values)
             return FunctionBuilder(function, arguments, self.file.vibrates, self.inputs, self.file.constants)
         if model.is_structure:
             return StructureBuilder(model, self.file.constants, tuple(_watched(self.file)))
@@ -150,15 +150,15 @@ class Study(Displayed):
         if self.data_table is None and self.file.experiments and self.file.inputs:
             return self.variant(self.file.experiments[0]).inputs
         data_table = self.data_table or self.file.data
-        found = {name: table.read(name, data_table) for name, table in self.file.inputs.items()}
-        for one in found.values():
-            one.check_interpolation(self.file.model)
-        return found
+        measured = {name: table.read(name, data_table) for name, table in self.file.inputs.items()}
+        for item in measured.values():
+            item.check_interpolation(self.file.model)
+        return measured
 
     def variant(self, table: ExperimentTable) -> "Study":
         """The study as it is in one of its experiments."""
         shared = self.file.inputs
-        inputs = {**shared, **{name: own.over(shared[name]) for name, own in table.inputs.items()}}
+        inputs = {**shared, **{name: override.over(shared[name]) for name, override in table.inputs.items()}}
         varied = self.varied(table.constants, table.arguments, table.parameters(self.file.parameters))
         return replace(varied._with(inputs=inputs), data_table=table)
 
@@ -172,8 +172,8 @@ class Study(Displayed):
         """How responses over frequency are balanced."""
         from dalembert.vibration import HarmonicBalance
 
-        given = self.file.harmonic_balance
-        return HarmonicBalance() if given is None else given.settings()
+        settings = self.file.harmonic_balance
+        return HarmonicBalance() if settings is None else settings.settings()
 
     def system(self, vector: np.ndarray | None = None) -> Any:
         """The mechanism or the structure at a parameter vector (parameters,), by default at the first guesses."""
@@ -184,16 +184,16 @@ class Study(Displayed):
         from dalembert.vibration.balance.equations import equations
 
         system = self.system()
-        found = equations(system, self.balance.keeping(system.highest_harmonic).first())
-        found.lowered.coordinates  # noqa: B018 (contacts that cannot be told apart are told as such)
+        result = equations(system, self.balance.keeping(system.highest_harmonic).first())
+        result.lowered.coordinates  # noqa: B018 (contacts that cannot be told apart are told as such)
         with placed(self.file.model.holding, ModelError):
-            found.condensation  # noqa: B018
-        return found
+            result.condensation  # noqa: B018
+        return result
 
     def along(self, name: str) -> Callable[..., Any]:
         """The model as a function of one parameter, the others at their first guesses."""
-        builder, others = self.builder, self.parameters.mapping(self.parameters.start)
-        return lambda **given: builder(**{**others, name: given[name]})
+        builder, fixed = self.builder, self.parameters.mapping(self.parameters.start)
+        return lambda **given: builder(**{**fixed, name: given[name]})
 
     def motion(self, end: float, vector: np.ndarray | None = None, times: np.ndarray | None = None) -> "Trajectory":
         """The mechanism's motion until ``end`` (s) at a parameter vector."""
@@ -207,7 +207,7 @@ class Study(Displayed):
         made = self._forward(channels, samples)
         if self.file.model.forward is not None:
             with placed(self._named_in):
-                _require_given(channels, made)
+                _require_channels(channels, made)
         else:
             self.system()  # what is wrong with the model itself is told as such
             with placed(self._named_in):
@@ -221,9 +221,9 @@ class Study(Displayed):
 
     @property
     def _named_in(self) -> str:
-        given = [f"[{self.task}], channels"] if getattr(self.table, "channels", None) else []
-        given += [f"[{name}], columns" for name in ("data", "bands") if getattr(self.file, name) is not None]
-        return " or ".join(given) or "[[experiments]], columns"
+        places = [f"[{self.task}], channels"] if getattr(self.table, "channels", None) else []
+        places += [f"[{name}], columns" for name in ("data", "bands") if getattr(self.file, name) is not None]
+        return " or ".join(places) or "[[experiments]], columns"
 
     @property
     def _measured_in(self) -> str:
@@ -257,8 +257,8 @@ class Study(Displayed):
 
     def require_inputs(self, end: float) -> None:
         """Refuse inputs that do not last as long as a motion until ``end`` (s)."""
-        for one in self.inputs.values():
-            one.require(end)
+        for measured in self.inputs.values():
+            measured.require(end)
 
     def varied(
         self,

@@ -58,9 +58,9 @@ class StudyFile(StudyTable):
             raise problem(f"{', '.join(both)} is both a parameter and a constant; give each name once")
         if len(self.tasks) != 1:
             names = " and ".join(f"[{name}]" for name in self.tasks)
-            given = f"{names} are given" if names else "no task is given"
+            stated = f"{names} are given" if names else "no task is given"
             raise problem(
-                f"{given}; a study has one task, one of {', '.join(f'[{name}]' for name in self.known_tasks)}"
+                f"{stated}; a study has one task, one of {', '.join(f'[{name}]' for name in self.known_tasks)}"
             )
         (name,) = self.tasks
         return [
@@ -74,8 +74,10 @@ class StudyFile(StudyTable):
     @property
     def vibrates(self) -> bool:
         """Whether the model is a structure over frequency, and not a mechanism in time."""
-        told = self.harmonic_balance is not None or any(self.known_tasks[name].of_structures for name in self.tasks)
-        return self.model.is_structure or (self.model.function is not None and told)
+        over_frequency = self.harmonic_balance is not None or any(
+            self.known_tasks[name].of_structures for name in self.tasks
+        )
+        return self.model.is_structure or (self.model.function is not None and over_frequency)
 
     @property
     def tasks(self) -> Mapping[str, StudyTable]:

@@ -29,7 +29,7 @@ def beyond(table: Any, model: Any, data: Any, fit: "Fit", on_event: "OnEvent") -
         further_results[PROFILES] = profile(model, data, fit, level=table.level, on_event=on_event)
     if table.prediction:
         each = {_of(item.name): item for item in model} if isinstance(model, list) else {PREDICTION: model}
-        further_results |= {name: predict(one, fit, table.level) for name, one in each.items()}
+        further_results |= {name: predict(model_here, fit, table.level) for name, model_here in each.items()}
     return further_results
 
 
@@ -41,8 +41,8 @@ def summaries(further_results: Mapping[str, Any]) -> list[str]:
 
 def reported(further_results: Mapping[str, Any]) -> list[Any]:
     """What a report takes: predictions of several experiments together."""
-    several = {name.partition("-")[2]: one for name, one in further_results.items() if "-" in name}
-    return [*(one for name, one in further_results.items() if "-" not in name), *([several] if several else [])]
+    several = {name.partition("-")[2]: result for name, result in further_results.items() if "-" in name}
+    return [*(result for name, result in further_results.items() if "-" not in name), *([several] if several else [])]
 
 
 def _of(experiment: str) -> str:
@@ -82,17 +82,17 @@ def foreseen(model: Any, data: Any) -> tuple[str, ...]:
     return tuple(f"At the first guesses: {sentence}" for sentence in (*sentences, *of_model, *units))
 
 
-def whole(model: Any) -> Any:
+def full(model: Any) -> Any:
     """The model, or the one that all experiments together are."""
     from dalembert.inverse.experiments.experiments import joint
 
     return joint(model)[0] if isinstance(model, list) else model
 
 
-def weights(given: dict[str, float] | None, model: Any, data: Any) -> Any:
+def weights(by_channel: dict[str, float] | None, model: Any, data: Any) -> Any:
     """Weights of channels by name, as identify takes them."""
-    if given is None:
+    if by_channel is None:
         return None
     if data is not None:
-        return [given[channel] for channel in data.channels]
-    return {item.name: [given[channel] for channel in item.data.channels] for item in model}
+        return [by_channel[channel] for channel in data.channels]
+    return {item.name: [by_channel[channel] for channel in item.data.channels] for item in model}

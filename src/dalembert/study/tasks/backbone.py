@@ -5,7 +5,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field
 
-from dalembert.study.run.duration import Effort, whole
+from dalembert.study.run.duration import Effort, repeatedly
 from dalembert.study.run.events import Emit
 from dalembert.study.tables.study import Study
 from dalembert.study.tasks.requirements import needs_structure
@@ -30,8 +30,8 @@ class BackboneTable(StudyTable):
 
     def _wrong(self) -> list[str]:
         if (self.amplitudes is None) == (self.between is None):
-            given = "neither amplitudes nor between is" if self.between is None else "amplitudes and between are both"
-            raise problem(f"{given} given; expected one of them")
+            stated = "neither amplitudes nor between is" if self.between is None else "amplitudes and between are both"
+            raise problem(f"{stated} given; expected one of them")
         if not min(self.given) > 0:
             raise problem(f"the amplitude {min(self.given):g} m was given; expected positive ones")
         return []
@@ -77,16 +77,16 @@ class BackboneTask(ResultTask):
         def once() -> None:
             backbone(study.system(), np.array(table.given[:1]), table.mode, study.balance, dof=table.dof)
 
-        return Effort(whole(once), 1, count, count, "the first amplitude")
+        return Effort(repeatedly(once), 1, count, count, "the first amplitude")
 
     def result(self, study: Study, emit: Emit) -> Any:
         study.equations()
         return study.table.follow(study, study.system())
 
-    def outcome(self, study: Study, found: Any) -> Outcome:
+    def outcome(self, study: Study, mode: Any) -> Outcome:
         """Outcome of a mode, with its frequencies at both ends and its largest damping."""
-        if not found.converged.any():
-            return Outcome(study, found, {})
-        frequencies = found.frequencies[found.converged]
+        if not mode.converged.any():
+            return Outcome(study, mode, {})
+        frequencies = mode.frequencies[mode.converged]
         ends = {"frequency at first": float(frequencies[0]), "frequency at last": float(frequencies[-1])}
-        return Outcome(study, found, {"values": ends | {"largest damping": float(np.nanmax(found.damping))}})
+        return Outcome(study, mode, {"values": ends | {"largest damping": float(np.nanmax(mode.damping))}})

@@ -5,7 +5,7 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import Field
 
-from dalembert.study.run.duration import Effort, whole
+from dalembert.study.run.duration import Effort, repeatedly
 from dalembert.study.run.events import Emit
 from dalembert.study.tables.study import Study
 from dalembert.study.tasks.requirements import needs_mechanism, unnamed
@@ -50,7 +50,7 @@ class CampbellTask(ResultTask):
 
     def effort(self, study: Study) -> Effort:
         name, values = _values(study)
-        return Effort(whole(lambda: _modes(study, name, float(values[-1]))), 1, len(values), len(values), "modes")
+        return Effort(repeatedly(lambda: _modes(study, name, float(values[-1]))), 1, len(values), len(values), "modes")
 
     def unknowns(self, study: Study) -> tuple[str, ...]:
         return ()
@@ -74,8 +74,10 @@ class CampbellTask(ResultTask):
 
     def outcome(self, study: Study, diagram: Any) -> Outcome:
         """Outcome of a diagram, with its critical speeds."""
-        found = enumerate(diagram.critical_speeds, start=1)
-        return Outcome(study, diagram, {"values": {f"critical speed {number}": own.speed for number, own in found}})
+        speeds = enumerate(diagram.critical_speeds, start=1)
+        return Outcome(
+            study, diagram, {"values": {f"critical speed {number}": critical.speed for number, critical in speeds}}
+        )
 
 
 def _values(study: Study) -> tuple[str, np.ndarray]:

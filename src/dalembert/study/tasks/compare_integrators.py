@@ -82,28 +82,28 @@ class CompareIntegrators(ResultTask):
 
         table, ends = study.table, np.array([0.0, study.table.end])
         study.require_inputs(table.end)
-        for one in table.reference:
-            response = TimeResponse(study.builder, study.parameters, table.channels, ends, solver=one.settings())
+        for method in table.reference:
+            response = TimeResponse(study.builder, study.parameters, table.channels, ends, solver=method.settings())
             with placed("[work_precision], channels"):
                 response.channels  # noqa: B018
             response.fingerprint  # noqa: B018 (what cannot be assembled is refused here)
         count = sum(len(series.integrators()) for series in table.series)
-        told = f"compares {len(table.series)} integrators in {count} settings over {table.end:g} s"
-        return f"{told}: {_simulations(table)} simulations"
+        plan = f"compares {len(table.series)} integrators in {count} settings over {table.end:g} s"
+        return f"{plan}: {_simulations(table)} simulations"
 
     def effort(self, study: Study) -> Effort:
         from dalembert.multibody import simulate
 
         table, end, system = study.table, study.table.end, study.system()
-        solvers = [one.settings() for one in table.reference]
-        solvers += [one for series in table.series for one in series.integrators()]
+        solvers = [method.settings() for method in table.reference]
+        solvers += [method for series in table.series for method in series.integrators()]
 
         def part(share: float) -> float:
-            for one in solvers:
-                simulate(system, share * end, one, np.array([share * end]))
+            for method in solvers:
+                simulate(system, share * end, method, np.array([share * end]))
             return share
 
-        count, shortest = _simulations(table), min(shortest_of(one, end) for one in solvers)
+        count, shortest = _simulations(table), min(shortest_of(method, end) for method in solvers)
         return Effort(part, len(solvers), count, count, "the motion with each integrator", shortest)
 
     def unknowns(self, study: Study) -> tuple[str, ...]:
@@ -127,17 +127,17 @@ class CompareIntegrators(ResultTask):
             table.end,
             table.channels,
             solvers,
-            reference=[one.settings() for one in table.reference],
+            reference=[method.settings() for method in table.reference],
             samples=table.samples,
             repeats=table.repeats,
             checkpoint=study.checkpoint,
             on_row=on_row,
         )
 
-    def outcome(self, study: Study, found: Any) -> Outcome:
+    def outcome(self, study: Study, comparison: Any) -> Outcome:
         """Outcome of a comparison, with the smallest error."""
-        errors = [row.error for row in found.rows if not row.failure]
-        return Outcome(study, found, {"values": {"smallest error": min(errors)}} if errors else {})
+        errors = [row.error for row in comparison.rows if not row.failure]
+        return Outcome(study, comparison, {"values": {"smallest error": min(errors)}} if errors else {})
 
 
 def _simulations(table: Any) -> int:

@@ -40,14 +40,14 @@ def single_curve_supplements(study: Study, curve: Any, system: Any) -> dict[str,
 
     table, further_results = study.table, _deformed(study, curve, system)
     if table.compare_in_time is not None and curve.converged.any():
-        asked = table.compare_in_time
-        method = None if asked.method is None else asked.method.settings()
+        settings = table.compare_in_time
+        method = None if settings.method is None else settings.method.settings()
         further_results[COMPARISON] = compare_in_time(
             system,
             curve,
-            frequencies=asked.frequencies,
+            frequencies=settings.frequencies,
             method=method,
-            way=asked.way,
+            way=settings.way,
             kind=table.amplitude,
             checkpoint=study.checkpoint,
         )
@@ -58,8 +58,8 @@ def single_curve_supplements(study: Study, curve: Any, system: Any) -> dict[str,
 
 def family_supplements(study: Study, family: Any) -> dict[str, Any]:
     """The same beside curves over a parameter: the motion at the smallest of their peaks."""
-    table, found = study.table, [curve is not None and curve.converged.any() for curve in family.curves]
-    if not any(found):
+    table, converged = study.table, [curve is not None and curve.converged.any() for curve in family.curves]
+    if not any(converged):
         return {}
     best = family.best(table.dof or family.dofs[0], table.amplitude)
     system = study.along(family.parameter)(**{family.parameter: best})

@@ -12,11 +12,11 @@ from dalembert.study.tasks.noise import Noise, noise_of
 from dalembert.study.tasks.requirements import needs_parameters, needs_samples, needs_solver, response, unnamed
 from dalembert.study.tasks.task import Outcome, ResultTask
 from dalembert.study.text.numbers import Frequencies, Number, NumberOfEach, Samples, Times
-from dalembert.study.text.table import Read, StudyTable, told_apart
+from dalembert.study.text.table import Read, StudyTable, alternative
 
 Sets = Annotated[
     str | list[list[str]],
-    Read(told_apart(lambda value: isinstance(value, str), Literal["singles", "pairs", "all"], list[list[str]])),
+    Read(alternative(lambda value: isinstance(value, str), Literal["singles", "pairs", "all"], list[list[str]])),
 ]
 
 

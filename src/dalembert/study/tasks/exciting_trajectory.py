@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field
 
 from dalembert.errors import unknown
-from dalembert.study.run.duration import Effort, whole
+from dalembert.study.run.duration import Effort, repeatedly
 from dalembert.study.run.events import Emit
 from dalembert.study.tables.study import Study
 from dalembert.study.tasks.identify_inertias import kept_names, prior_of, regressor_of
@@ -72,10 +72,10 @@ class ExcitingTrajectoryTask(ResultTask):
         table, moving = file.exciting_trajectory, file.model.robot_table.tree.moving
         joints = [joint.name for joint in moving]
         for key in ("acceleration", "velocity", "positions"):
-            given, where = getattr(table, key), f"[exciting_trajectory], {key}"
-            if isinstance(given, dict):
-                wrong += [unknown("joint", name, joints, where) for name in given if name not in joints]
-                missing = [name for name in joints if name not in given and key == "acceleration"]
+            value, where = getattr(table, key), f"[exciting_trajectory], {key}"
+            if isinstance(value, dict):
+                wrong += [unknown("joint", name, joints, where) for name in value if name not in joints]
+                missing = [name for name in joints if name not in value and key == "acceleration"]
                 wrong += [f"{where}: none is given for joint {name!r}" for name in missing]
         for joint in moving:
             if joint.name not in table.positions and not np.isfinite([joint.lower, joint.upper]).all():
@@ -102,11 +102,11 @@ class ExcitingTrajectoryTask(ResultTask):
     def effort(self, study: Study) -> Effort:
         few = min(20, study.table.evaluations)
         return Effort(
-            whole(lambda: _found(study, few)), 20 + few, 20, 20 + study.table.evaluations, "the first motions"
+            repeatedly(lambda: _trajectory(study, few)), 20 + few, 20, 20 + study.table.evaluations, "the first motions"
         )
 
     def result(self, study: Study, emit: Emit) -> Any:
-        return _found(study, study.table.evaluations)
+        return _trajectory(study, study.table.evaluations)
 
     def outcome(self, study: Study, result: Any) -> Outcome:
         """Outcome with the score and the condition number, and those of random motions."""
@@ -120,19 +120,19 @@ def limits_of(study: Study, tree: "Tree") -> "JointLimits":
 
     table = study.table
     pairs = [table.positions.get(joint.name, (joint.lower, joint.upper)) for joint in tree.moving]
-    own = [_each(table.velocity, joint.name, joint.velocity) for joint in tree.moving]
+    velocities = [_each(table.velocity, joint.name, joint.velocity) for joint in tree.moving]
     acceleration = [_each(table.acceleration, joint.name, np.inf) for joint in tree.moving]
     lower, upper = np.array(pairs).T
-    return JointLimits(lower, upper, np.array(own), np.array(acceleration))
+    return JointLimits(lower, upper, np.array(velocities), np.array(acceleration))
 
 
-def _each(given: Any, name: str, otherwise: float) -> float:
-    if isinstance(given, dict):
-        return given.get(name, otherwise)
-    return otherwise if given is None else given
+def _each(numbers: Any, name: str, otherwise: float) -> float:
+    if isinstance(numbers, dict):
+        return numbers.get(name, otherwise)
+    return otherwise if numbers is None else numbers
 
 
-def _found(study: Study, evaluations: int) -> Any:
+def _trajectory(study: Study, evaluations: int) -> Any:
     from dalembert.inverse.inertial import exciting_trajectory
 
     tree, table = prior_of(study), study.table

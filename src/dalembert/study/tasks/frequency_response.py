@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from dalembert.errors import DalembertError, InputError, unknown
-from dalembert.study.run.duration import Effort, whole
+from dalembert.study.run.duration import Effort, repeatedly
 from dalembert.study.run.events import Emit
 from dalembert.study.tables.study import Study
 from dalembert.study.tasks import curve_supplements
@@ -66,8 +66,10 @@ class FrequencyResponseTable(StudyTable):
     def _wrong(self) -> list[str]:
         wrong = []
         if (self.frequencies is None) == (self.between is None):
-            given = "neither frequencies nor between is" if self.between is None else "frequencies and between are both"
-            wrong.append(f"{given} given; expected one of them")
+            stated = (
+                "neither frequencies nor between is" if self.between is None else "frequencies and between are both"
+            )
+            wrong.append(f"{stated} given; expected one of them")
         if self.continuation == "arc-length" and self.between is None:
             wrong.append("continuation: a path by arc length finds its own frequencies; give between = [begin, end]")
         ends = self.between or [1.0, 2.0]
@@ -91,7 +93,7 @@ class Response(Outcome):
     @property
     def summary(self) -> str:
         peaks = "".join(f"\n{name}: {value:.6g}" for name, value in self.best.get("values", {}).items())
-        more = "".join(f"\n\n{one.summary()}" for one in self.further_results.values())
+        more = "".join(f"\n\n{result.summary()}" for result in self.further_results.values())
         return self.result.summary() + peaks * (self.study.table.amplitude != "peak") + more
 
 
@@ -105,19 +107,19 @@ def _best(table: FrequencyResponseTable, result: Any) -> dict[str, Any]:
     best = result.best(dof, table.amplitude)
     row = result.values.tolist().index(best)
     peak, part = result.peaks(dof, table.amplitude)[row], result.reduction(dof, table.amplitude)[row]
-    found = {
+    peaks = {
         f"{table.amplitude} of {dof}": peak.amplitude,
         "frequency (Hz)": peak.frequency,
         "reduction": float(part),
     }
-    return {"values": {table.sweep.parameter: best, **found}}
+    return {"values": {table.sweep.parameter: best, **peaks}}
 
 
 def drawn_dofs(table: FrequencyResponseTable, result: Any) -> tuple[str, ...]:
     """The degrees of freedom that figures show: that of the stated peak first, then those that were asked for."""
     chosen = tuple(name for name in result.dofs if table.dof in (name, name.rpartition(".")[0]))
-    asked = () if table.observe is None or len(result.dofs) > MOST_DRAWN else result.dofs
-    return tuple(dict.fromkeys((*chosen, *asked)))
+    observed = () if table.observe is None or len(result.dofs) > MOST_DRAWN else result.dofs
+    return tuple(dict.fromkeys((*chosen, *observed)))
 
 
 def _response(study: Study, result: Any, further_results: Mapping[str, Any]) -> Response:
@@ -191,7 +193,7 @@ class FrequencyResponseTask(Task):
 
         curves = 1 if table.sweep is None else len(_values(study))
         count = None if table.between is not None else curves * len(table.frequencies)
-        return Effort(whole(once), 2, count, count, "a point, going by both ends of the curve")
+        return Effort(repeatedly(once), 2, count, count, "a point, going by both ends of the curve")
 
     def parts(self, study: Study) -> Iterable[Callable[[], object]]:
         """The curve, or those of a family; and the nonlinear mode beside it."""
@@ -212,7 +214,7 @@ class FrequencyResponseTask(Task):
             emit("following", begin=float(table.along[0]), end=float(table.along[-1]))
             study.equations()
             system = study.system()
-            tell = _points_told(study, emit)
+            tell = _point_events(study, emit)
             curve = frequency_response(system, table.along, balance_of(study), on_point=tell, **options)
             return _response(study, curve, single_curve_supplements(study, curve, system))
         name, values = table.sweep.parameter, _values(study)
@@ -224,8 +226,8 @@ class FrequencyResponseTask(Task):
                 dof = table.dof or curve.dofs[0]
                 peak = curve.peak(dof, table.amplitude)
                 details |= {"dof": dof, "amplitude": peak.amplitude, "frequency": peak.frequency}
-            found = None if curve is None else int(curve.converged.sum())
-            emit("swept", **details, done=row + 1, total=len(values), points=found, failure=failure)
+            converged = None if curve is None else int(curve.converged.sum())
+            emit("swept", **details, done=row + 1, total=len(values), points=converged, failure=failure)
 
         family = frequency_responses(
             study.along(name),
@@ -256,8 +258,8 @@ def balance_of(study: Study) -> "HarmonicBalance":
 
 def curve_options(study: Study) -> dict[str, Any]:
     """Settings of a curve, or of each curve of a family."""
-    own = study.table.picked("continuation", "stability")
-    return {**own, "observe": _observed(study), "checkpoint": study.checkpoint}
+    settings = study.table.picked("continuation", "stability")
+    return {**settings, "observe": _observed(study), "checkpoint": study.checkpoint}
 
 
 def _any_curve(study: Study) -> None:
@@ -275,7 +277,7 @@ def _any_curve(study: Study) -> None:
     raise errors[0]
 
 
-def _points_told(study: Study, emit: Emit) -> Callable[["FollowedPoint"], None]:
+def _point_events(study: Study, emit: Emit) -> Callable[["FollowedPoint"], None]:
     from dalembert.vibration.paths.amplitudes import Amplitude
 
     kind, dof = study.table.amplitude, study.table.dof

@@ -54,8 +54,8 @@ class _OfInputs(ResultTask):
         """Interval or distribution of each parameter."""
         from dalembert.uncertainty.inputs import completed
 
-        given = {name: key.interval() for name, key in study.table.intervals.items()}
-        return completed(given, model, self.name)
+        intervals = {name: key.interval() for name, key in study.table.intervals.items()}
+        return completed(intervals, model, self.name)
 
     def planned(self, study: Study, what: str) -> str:
         """Sentence on what runs, with the distributions."""

@@ -13,7 +13,7 @@ from dalembert.optimize.minimiser import NAMES as MINIMISERS
 from dalembert.study.run.duration import TOGETHER, Effort, evaluated
 from dalembert.study.run.events import Emit, teller
 from dalembert.study.tables.catalogue import methods
-from dalembert.study.tables.dataclass_tables import one_of, table_of
+from dalembert.study.tables.dataclass_tables import any_of, table_of
 from dalembert.study.tables.experiments import measured_channels
 from dalembert.study.tables.posing import posed, unknown_names
 from dalembert.study.tables.study import Study
@@ -23,7 +23,7 @@ from dalembert.study.tasks.requirements import needs_parameters, needs_solver, u
 from dalembert.study.tasks.shooting import Shooting, ShootingTable
 from dalembert.study.tasks.task import Outcome, Task
 from dalembert.study.text.numbers import Number, Seconds
-from dalembert.study.text.table import StudyTable, checked, told_apart
+from dalembert.study.text.table import StudyTable, alternative, checked
 
 if TYPE_CHECKING:
     from dalembert.inverse import Fit
@@ -106,17 +106,19 @@ def _cost(table: Any, parameters: int) -> tuple[str, int | None, int | None]:
     method, starts, shooting = settings(table.method), table.starts, table.shooting
     name = type(method).__name__
     if shooting is not None:
-        one, most = STEPS_IN_SEGMENTS * (1 + parameters), starts or 3
+        least, most = STEPS_IN_SEGMENTS * (1 + parameters), starts or 3
         words = f"{name} in {_segments(shooting)} that must meet"
         return (
-            f"{words}: about {one} simulations a start, sensitivities counted, and at most {counted(most, 'start')}",
-            one,
-            most * one,
+            f"{words}: about {least} simulations a start, sensitivities counted, and at most {counted(most, 'start')}",
+            least,
+            most * least,
         )
     if isinstance(method, Squares):
-        one, most = 10 * (1 + parameters), starts or 8
-        words = f"{name}: about {one} simulations a start, sensitivities counted, and at most {counted(most, 'start')}"
-        return words, one, one if most == 1 else most * (one + SCREENED * parameters)
+        least, most = 10 * (1 + parameters), starts or 8
+        words = (
+            f"{name}: about {least} simulations a start, sensitivities counted, and at most {counted(most, 'start')}"
+        )
+        return words, least, least if most == 1 else most * (least + SCREENED * parameters)
     if isinstance(method, Swarm):
         count = _simulations(method, starts)
         sizes = f"{starts or 1} x {method.particles} particles x {method.iterations} iterations"
@@ -157,13 +159,13 @@ class Identification(Outcome):
         if not fit.experiments:
             own = fit.values[: len(study.parameters)]  # what follows belongs to sensors
             return study.motion(float(fit.data.coordinate.values[-1]), own)
-        found = {}
+        motions = {}
         for table, item in list(zip(study.file.experiments, fit.experiments, strict=True))[:MOST_MOTIONS]:
             names = [f"{table.name}.{name}" if name in table.local else name for name in study.parameters.names]
             variant = study.variant(table)
             values = np.array([fit.estimates[name] for name in names])
-            found[table.name] = variant.motion(float(item.data.coordinate.values[-1]), values)
-        return found
+            motions[table.name] = variant.motion(float(item.data.coordinate.values[-1]), values)
+        return motions
 
 
 class Identify(Task):
@@ -176,10 +178,10 @@ class Identify(Task):
     needs = (needs_parameters, needs_solver)
 
     def keys(self) -> dict[str, Any]:
-        own = ", ".join(f"'{name}'" for name in methods() if name != "scipy")
-        tables = one_of([table_of(target, name, varying=False) for name, target in methods().items()])
-        method = Annotated[told_apart(lambda value: isinstance(value, str), str, tables), AfterValidator(_buildable)]
-        names = f"{own}, a minimiser of SciPy, or a table with kind and settings"
+        names_known = ", ".join(f"'{name}'" for name in methods() if name != "scipy")
+        tables = any_of([table_of(target, name, varying=False) for name, target in methods().items()])
+        method = Annotated[alternative(lambda value: isinstance(value, str), str, tables), AfterValidator(_buildable)]
+        names = f"{names_known}, a minimiser of SciPy, or a table with kind and settings"
         return {"method": (method, Field(DEFAULT, description=names))}
 
     def wrong(self, file: Any) -> list[str]:
@@ -202,11 +204,11 @@ class Identify(Task):
         if study.table.noise is not None:
             weights = assessments.weights(study.table.weights, model, data)
             likelihood_of(study.table, model, data, weights, self.name, open_orders=True)
-        names = assessments.whole(model).parameters.names
+        names = assessments.full(model).parameters.names
         return f"identifies {', '.join(names)} from {_measured(model, data)} by {_cost(study.table, len(names))[0]}"
 
     def effort(self, study: Study) -> Effort:
-        model = assessments.whole(posed(study)[0])
+        model = assessments.full(posed(study)[0])
         _, least, most = _cost(study.table, len(model.parameters))
         method = settings(study.table.method)
         if isinstance(method, Swarm):
@@ -257,7 +259,7 @@ class Identify(Task):
 
 
 def _identified(study: Study, fit: "Fit", further_results: Mapping[str, Any]) -> Identification:
-    known = [one if np.isfinite(one) else None for one in fit.deviations.tolist()]
+    known = [deviation if np.isfinite(deviation) else None for deviation in fit.deviations.tolist()]
     deviations = dict(zip(fit.parameters.names, known, strict=True))
     values = fit.parameters.mapping(fit.values)
     return Identification(
@@ -266,23 +268,23 @@ def _identified(study: Study, fit: "Fit", further_results: Mapping[str, Any]) ->
 
 
 def _wrong_population(file: Any) -> list[str]:
-    asked, where = file.identify.population, "[identify], population"
-    if not asked:
+    population, where = file.identify.population, "[identify], population"
+    if not population:
         return []
-    held = file.identify.validation if isinstance(file.identify.validation, list) else []
-    specimens = [table for table in file.experiments if table.name not in held]
+    validation = file.identify.validation if isinstance(file.identify.validation, list) else []
+    specimens = [table for table in file.experiments if table.name not in validation]
     if len(specimens) < FEWEST:
         return [
             f"{where}: there are {len(specimens)} experiments to fit, and a spread needs at least {FEWEST} specimens; "
             "add [[experiments]], or leave the key out"
         ]
     common = [name for name in specimens[0].local if all(name in table.local for table in specimens)]
-    if asked is True:
+    if population is True:
         none = f"{where}: the experiments have no local parameter in common; name those that vary in local of each"
         return [] if common else [none]
     return [
         f"{where}: {name!r} is no local parameter of all experiments; name it in local of each"
-        for name in asked
+        for name in population
         if name not in common
     ]
 

@@ -95,8 +95,8 @@ class IdentifyBands(ResultTask):
 
 
 def _method(study: Study) -> Any:
-    given = study.table.method
-    return band_methods()[DEFAULT]() if given is None else given.settings()
+    method = study.table.method
+    return band_methods()[DEFAULT]() if method is None else method.settings()
 
 
 def _cost(method: Any, parameters: int) -> tuple[str, int | None]:

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from dalembert.data.record import FIRST
 from dalembert.errors import DataError, unknown
-from dalembert.study.run.duration import Effort, whole
+from dalembert.study.run.duration import Effort, repeatedly
 from dalembert.study.run.events import Emit
 from dalembert.study.tables.builder import named_values, tree_of
 from dalembert.study.tables.data_table import DataFile, DataTable
@@ -71,22 +71,22 @@ class IdentifyInertias(ResultTask):
             return wrong
         tree = file.model.robot_table.tree
         expected = [name for pair in channels_of(tree) for name in pair]
-        given = file.data.channels
-        wrong = [f"[data], columns: no column is given for {name!r}" for name in expected if name not in given]
-        wrong += [unknown("channel", name, expected, "[data], columns") for name in given if name not in expected]
+        channels = file.data.channels
+        wrong = [f"[data], columns: no column is given for {name!r}" for name in expected if name not in channels]
+        wrong += [unknown("channel", name, expected, "[data], columns") for name in channels if name not in expected]
         if file.identify_inertias.unseen is not None and file.data.more:
             wrong.append(
                 "[identify_inertias], unseen: the data have further files (more), and the unseen motion is one file; "
                 "write all columns of each motion into one file"
             )
-        own = file.identify_inertias.deviations
-        if isinstance(own, dict):
+        deviations = file.identify_inertias.deviations
+        if isinstance(deviations, dict):
             joints, where = [joint.name for joint in tree.moving], "[identify_inertias], deviations"
-            wrong += [unknown("joint", name, joints, where) for name in own if name not in joints]
-            wrong += [f"{where}: none is given for joint {name!r}" for name in joints if name not in own]
-        elif own is not None:
-            own = dict.fromkeys(file.model.robot_table.drive_units, own)
-        wrong += wrong_units(own or {}, file.model.robot_table.drive_units, "[identify_inertias], deviations")
+            wrong += [unknown("joint", name, joints, where) for name in deviations if name not in joints]
+            wrong += [f"{where}: none is given for joint {name!r}" for name in joints if name not in deviations]
+        elif deviations is not None:
+            deviations = dict.fromkeys(file.model.robot_table.drive_units, deviations)
+        wrong += wrong_units(deviations or {}, file.model.robot_table.drive_units, "[identify_inertias], deviations")
         return wrong
 
     def plan(self, study: Study) -> str:
@@ -105,7 +105,7 @@ class IdentifyInertias(ResultTask):
         return ()
 
     def effort(self, study: Study) -> Effort:
-        return Effort(whole(lambda: _identified(study)), 1, 1, 1, "this identification, done once")
+        return Effort(repeatedly(lambda: _identified(study)), 1, 1, 1, "this identification, done once")
 
     def result(self, study: Study, emit: Emit) -> Any:
         return _identified(study)
@@ -159,7 +159,7 @@ def regressor_of(study: Study) -> Any:
     chosen = np.isin(parameter_names(tree), kept_names(tree))
     slip = float(np.real(resolved(_robot(study).slip, values, "[model.robot], slip")))
     gravity = model.gravity or (0.0, 0.0, -9.81)
-    pull = tuple(float(np.real(resolved(one, values, "[model], gravity"))) for one in gravity)
+    pull = tuple(float(np.real(resolved(component, values, "[model], gravity"))) for component in gravity)
 
     def columns(q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
         return regressor(tree, q, v, a, pull, slip=slip)[..., chosen]
@@ -191,10 +191,10 @@ def _record(study: Study, table: DataTable, where: str) -> tuple[np.ndarray, np.
 def _records(study: Study) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
     data, unseen = study.file.data, study.table.unseen
     assert data is not None  # or the study was refused
-    found = [_record(study, data, "[data]")]
+    records = [_record(study, data, "[data]")]
     if unseen is not None:
-        found.append(_record(study, _as_read(data, unseen), "[identify_inertias], unseen"))
-    return found
+        records.append(_record(study, _as_read(data, unseen), "[identify_inertias], unseen"))
+    return records
 
 
 def _as_read(data: DataTable, file: Path) -> DataTable:
@@ -213,12 +213,12 @@ def _identified(study: Study) -> "TorquePrediction":
     from dalembert.inverse.inertial import TorquePrediction, identify_inertias
     from dalembert.multibody.trees import parameter_names, parameters_of
 
-    tree, (fitted, *others) = prior_of(study), _records(study)
+    tree, (fitted, *further) = prior_of(study), _records(study)
     names, joints = kept_names(tree), [joint.name for joint in tree.moving]
     prior = dict(zip(parameter_names(tree), parameters_of(tree).tolist(), strict=True))
     links = [link.name for link in tree.links if link.inertia is not None]
-    given = study.table.deviations
-    found = identify_inertias(
+    deviations = study.table.deviations
+    estimate = identify_inertias(
         fitted[1],
         fitted[2],
         names,
@@ -227,9 +227,9 @@ def _identified(study: Study) -> "TorquePrediction":
         joints=joints,
         positive=names[10 * len(links) :],
         regularisation=study.table.regularisation,
-        deviations=[given[name] for name in joints] if isinstance(given, dict) else given,
+        deviations=[deviations[name] for name in joints] if isinstance(deviations, dict) else deviations,
     )
     none = (np.zeros(0), np.zeros((0, len(joints), len(names))), np.zeros((0, len(joints))))
-    times, columns, torques = others[0] if others else none
-    told = times, torques, found.torques(columns)
-    return TorquePrediction(found, fitted[0], fitted[2], found.torques(fitted[1]), *told)
+    times, columns, torques = further[0] if further else none
+    prediction = times, torques, estimate.torques(columns)
+    return TorquePrediction(estimate, fitted[0], fitted[2], estimate.torques(fitted[1]), *prediction)

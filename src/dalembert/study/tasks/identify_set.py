@@ -67,15 +67,17 @@ class IdentifySet(ResultTask):
         data, table = study.data(), study.table
 
         picked = table.picked("resolution", "most_boxes")
-        given = {key: value for key, value in picked.items() if value is not None}
+        settings = {key: value for key, value in picked.items() if value is not None}
         if table.scheme is not None:
-            given["scheme"] = table.scheme.settings()
+            settings["scheme"] = table.scheme.settings()
         model = study.forward(data.channels, data.coordinate.values)
-        return identify_set(model, data, error=table.error, seed=table.seed, on_event=teller(emit, as_record), **given)
+        return identify_set(
+            model, data, error=table.error, seed=table.seed, on_event=teller(emit, as_record), **settings
+        )
 
-    def outcome(self, study: Study, found: Any) -> Outcome:
+    def outcome(self, study: Study, result: Any) -> Outcome:
         """Outcome of a set, with the ends of its outer box."""
-        box = found.outer
+        box = result.outer
         ends = () if box is None else ((name, interval) for name, interval in box.items())
         values = {f"{name} {side}": getattr(interval, side) for name, interval in ends for side in ("lower", "upper")}
-        return Outcome(study, found, {"values": values}, {"truth": study.table.truth})
+        return Outcome(study, result, {"values": values}, {"truth": study.table.truth})

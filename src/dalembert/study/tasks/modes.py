@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import Field
 
 from dalembert.errors import InputError
-from dalembert.study.run.duration import Effort, whole
+from dalembert.study.run.duration import Effort, repeatedly
 from dalembert.study.run.events import Emit
 from dalembert.study.tables.study import Study
 from dalembert.study.tasks.requirements import needs_structure
@@ -43,7 +43,7 @@ class Modes(ResultTask):
         return f"finds the lowest {_count(study, structure)} of {structure.size} modes: 1 simulation"
 
     def effort(self, study: Study) -> Effort:
-        return Effort(whole(lambda: _shapes(study)), 1, 1, 1, "these modes, found once")
+        return Effort(repeatedly(lambda: _shapes(study)), 1, 1, 1, "these modes, found once")
 
     def unknowns(self, study: Study) -> tuple[str, ...]:
         return ()

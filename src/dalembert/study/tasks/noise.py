@@ -51,13 +51,13 @@ class ChannelNoiseTable(StudyTable):
         """The noise model."""
         from dalembert.inverse.noise.models.noise_catalogue import from_table
 
-        return from_table(self._given())
+        return from_table(self._settings())
 
-    def _given(self) -> dict[str, Any]:
+    def _settings(self) -> dict[str, Any]:
         plain = self.picked(*(key for key in type(self).model_fields if key in self.model_fields_set))
         if isinstance(self.deviation, DeviationTable):
-            given = self.deviation.picked(*self.deviation.model_fields_set)
-            plain["deviation"] = {"model": self.deviation.model, **given}
+            settings = self.deviation.picked(*self.deviation.model_fields_set)
+            plain["deviation"] = {"model": self.deviation.model, **settings}
         return {name: value for name, value in plain.items() if value is not None}
 
 
@@ -85,8 +85,8 @@ class NoiseTable(ChannelNoiseTable):
         return {name: table.settings() for name, table in self.channels.items()}
 
 
-def _table(given: object) -> object:
-    return {"model": given} if isinstance(given, str) else given
+def _table(entry: object) -> object:
+    return {"model": entry} if isinstance(entry, str) else entry
 
 
 Noise = Annotated[NoiseTable | None, BeforeValidator(_table, json_schema_input_type=NoiseTable | Model | None)]
@@ -112,8 +112,8 @@ def noise_of(table: Any, model: Any, place: str) -> Any:
     if table.noise is None:
         return None
     units = channel_units_of(model)
-    given = table.noise.channels or dict.fromkeys(units, table.noise)
-    for sentence in wrong_units(given, units, f"[{place}.noise]"):
+    tables = table.noise.channels or dict.fromkeys(units, table.noise)
+    for sentence in wrong_units(tables, units, f"[{place}.noise]"):
         raise InputError(sentence)
     return table.noise.noise()
 
@@ -140,7 +140,11 @@ def likelihood_of(table: Any, model: Any, data: Any, weights: Any, place: str, *
 
     noise = noise_of(table, model, place)
     if open_orders and noise is not None:
-        noise = {name: _closed(one) for name, one in noise.items()} if isinstance(noise, Mapping) else _closed(noise)
+        noise = (
+            {name: _closed(model_here) for name, model_here in noise.items()}
+            if isinstance(noise, Mapping)
+            else _closed(noise)
+        )
     return likelihood(model, data, noise=noise, weights=weights)
 
 

@@ -112,10 +112,10 @@ class Propagate(ResultTask):
 
 
 def _box(study: Study) -> Box:
-    given = study.table.intervals
+    intervals = study.table.intervals
     return Box.of(
         {
-            item.name: given[item.name].interval() if item.name in given else (item.lower, item.upper)
+            item.name: intervals[item.name].interval() if item.name in intervals else (item.lower, item.upper)
             for item in study.parameters
         }
     )
@@ -128,5 +128,5 @@ def _methods(study: Study) -> list[Any]:
     if not table.compare:
         return [first]
     reference = kinds[REFERENCE]() if table.reference is None else table.reference.settings()
-    others = [method.settings() for method in table.compare]
-    return [*(method for method in (first, *others) if method != reference), reference]
+    compared = [method.settings() for method in table.compare]
+    return [*(method for method in (first, *compared) if method != reference), reference]

@@ -11,13 +11,13 @@ from dalembert.study.tables.study import Study
 from dalembert.study.tables.unused import few, unused_parameters
 from dalembert.study.tasks.requirements import needs_parameters, needs_solver, unnamed
 from dalembert.study.tasks.task import Outcome, ResultTask
-from dalembert.study.text.table import Read, StudyTable, told_apart
+from dalembert.study.text.table import Read, StudyTable, alternative
 
 ROUND = 40
 """Simulations of a round beside its sensitivities, about: ten gradients by the adjoint."""
 
 
-_WEIGHT: Any = told_apart(
+_WEIGHT: Any = alternative(
     lambda value: isinstance(value, str), Literal["l-curve", "discrepancy"], Annotated[float, Field(gt=0)]
 )
 
@@ -75,8 +75,8 @@ class Regularise(ResultTask):
 
     def effort(self, study: Study) -> Effort:
         model: Any = posed(study)[0]
-        one = ROUND + len(model.parameters)
-        return evaluated(model, model.parameters.start, 2 * one, study.table.rounds * one)
+        per_round = ROUND + len(model.parameters)
+        return evaluated(model, model.parameters.start, 2 * per_round, study.table.rounds * per_round)
 
     def result(self, study: Study, emit: Emit) -> Any:
         from dalembert.inverse import regularise
@@ -94,8 +94,8 @@ class Regularise(ResultTask):
 
 
 def _smooth(file: Any) -> list[str] | None:
-    given = file.regularise.smooth
-    if not isinstance(given, str):
-        return given
-    numbered = [name for name in file.parameters if name.removeprefix(f"{given}_").isdigit()]
-    return numbered or [given]
+    smooth = file.regularise.smooth
+    if not isinstance(smooth, str):
+        return smooth
+    numbered = [name for name in file.parameters if name.removeprefix(f"{smooth}_").isdigit()]
+    return numbered or [smooth]

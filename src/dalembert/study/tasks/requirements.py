@@ -50,17 +50,17 @@ def needs_bands(file: Any, task: str) -> list[str]:
 def needs_samples(file: Any, task: str) -> list[str]:
     """Sentences about samples and channels of a response: of a mechanism over time, of a structure over frequency."""
     table, forward = getattr(file, task), file.model.forward is not None
-    own, other = ("frequencies", "times") if file.vibrates else ("times", "frequencies")
+    right, other = ("frequencies", "times") if file.vibrates else ("times", "frequencies")
     model = "a structure" if file.vibrates else "a mechanism"
     wrong = []
-    for key in (own, "channels"):
-        given = getattr(table, key) is not None
-        if not forward and not given:
+    for key in (right, "channels"):
+        is_stated = getattr(table, key) is not None
+        if not forward and not is_stated:
             wrong.append(f"[{task}]: the key {key!r} is missing; {model} needs it")
-        if forward and given:
+        if forward and is_stated:
             wrong.append(f"[{task}], {key}: a forward model has its own; leave the key out")
     if getattr(table, other) is not None:
-        why = "a forward model has its own" if forward else f"the response of {model} lies along {own}"
+        why = "a forward model has its own" if forward else f"the response of {model} lies along {right}"
         wrong.append(f"[{task}], {other}: {why}; leave the key out")
     return wrong
 
@@ -71,19 +71,19 @@ def response(study: Any) -> Any:
     return study.forward(table.channels or (), np.array(table.times or table.frequencies or ()))
 
 
-def unmatched(given: Mapping[str, Any] | None, channels: Collection[str], what: str, where: str) -> list[str]:
+def unmatched(stated: Mapping[str, Any] | None, channels: Collection[str], what: str, where: str) -> list[str]:
     """Sentences about channels that have no weight, error or the like, and about those that there are not.
 
     >>> unmatched({"x": 1.0}, ["x", "y"], "weight", "[identify], weights")
     ["[identify], weights: no weight is given for channel 'y'"]
     """
-    if given is None:
+    if stated is None:
         return []
-    missing = [f"{where}: no {what} is given for channel {name!r}" for name in channels if name not in given]
-    return missing + [unknown("channel", name, channels, where) for name in given if name not in channels]
+    missing = [f"{where}: no {what} is given for channel {name!r}" for name in channels if name not in stated]
+    return missing + [unknown("channel", name, channels, where) for name in stated if name not in channels]
 
 
-def unnamed(given: Iterable[str], parameters: Collection[str], where: str) -> list[str]:
+def unnamed(names: Iterable[str], parameters: Collection[str], where: str) -> list[str]:
     """Sentences about names that no parameter has, or only a fixed one, and about units that are not theirs.
 
     >>> unnamed(["theta3"], ["theta1", "theta2"], "[sweep.over]")
@@ -91,13 +91,13 @@ def unnamed(given: Iterable[str], parameters: Collection[str], where: str) -> li
     """
     tables = parameters if isinstance(parameters, Mapping) else {}
     wrong = []
-    if isinstance(given, Mapping):
-        wrong += wrong_units(given, {name: table.symbol for name, table in tables.items()}, where)
-    given = tuple(given)
-    wrong += [unknown("parameter", name, parameters, where) for name in given if name not in parameters]
+    if isinstance(names, Mapping):
+        wrong += wrong_units(names, {name: table.symbol for name, table in tables.items()}, where)
+    names = tuple(names)
+    wrong += [unknown("parameter", name, parameters, where) for name in names if name not in parameters]
     return wrong + [
         f"{where}: parameter {name!r} is fixed by equal bounds; leave it out here, or give bounds that differ"
-        for name in given
+        for name in names
         if name in tables and tables[name].parameter(name).is_fixed
     ]
 

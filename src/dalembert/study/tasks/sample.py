@@ -100,7 +100,7 @@ class Sample(Task):
         )
 
     def effort(self, study: Study) -> Effort:
-        model = assessments.whole(posed(study)[0])
+        model = assessments.full(posed(study)[0])
         return evaluated(model, model.parameters.start, *_cost(study.table, len(model.parameters)))
 
     def foresight(self, study: Study) -> int:
@@ -153,7 +153,7 @@ def samplers() -> dict[str, type]:
 
 
 def _starts(model: Any) -> dict[str, float]:
-    parameters = assessments.whole(model).parameters
+    parameters = assessments.full(model).parameters
     return parameters.mapping(parameters.start)
 
 
@@ -179,16 +179,16 @@ def _priors(study: Study, model: Any, data: Any) -> dict[str, Any]:
     table, where = study.table, "[sample.priors]"
     weights = assessments.weights(table.weights, model, data)
     known = likelihood_of(table, model, data, weights, "sample", open_orders=False).noise_parameters
-    items, found = {item.name: item for item in known}, {}
-    for name, given in table.priors.items():
+    items, priors = {item.name: item for item in known}, {}
+    for name, table_here in table.priors.items():
         if name not in items:
             raise InputError(unknown("noise parameter", name, items, where))
         item = items[name]
         try:
-            found[name] = prior(given, (item.lower, item.upper), partial(_quantity, unit=item.unit or None))
+            priors[name] = prior(table_here, (item.lower, item.upper), partial(_quantity, unit=item.unit or None))
         except InputError as error:
             raise InputError(f"{where}, {name}: {error}") from None
-    return found
+    return priors
 
 
 def _quantity(value: Any, unit: str | None) -> float:

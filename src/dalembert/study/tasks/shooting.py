@@ -51,8 +51,8 @@ class ShootingTable(StudyTable):
         return MultipleShooting(states, self.segments)
 
 
-def _table(given: object) -> object:
-    return {} if given is True else None if given is False else given
+def _table(entry: object) -> object:
+    return {} if entry is True else None if entry is False else entry
 
 
 Shooting = Annotated[ShootingTable | None, BeforeValidator(_table, json_schema_input_type=ShootingTable | bool | None)]

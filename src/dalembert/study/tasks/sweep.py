@@ -18,7 +18,7 @@ from dalembert.study.tables.study import Study
 from dalembert.study.tasks.requirements import needs_solver, unnamed
 from dalembert.study.tasks.task import ResultTask
 from dalembert.study.text.numbers import MOST, Number, samples
-from dalembert.study.text.table import Read, StudyTable, problem, told_apart
+from dalembert.study.text.table import Read, StudyTable, alternative, problem
 
 _BATCH = 64  # points between two events
 
@@ -31,7 +31,7 @@ class BoundsTable(StudyTable):
 
 Along = Annotated[
     BoundsTable | tuple[float, ...],
-    Read(told_apart(lambda value: isinstance(value, dict) and set(value) <= {"count"}, BoundsTable, samples(None))),
+    Read(alternative(lambda value: isinstance(value, dict) and set(value) <= {"count"}, BoundsTable, samples(None))),
 ]
 
 
@@ -235,12 +235,12 @@ def _fill(study: Study, model: ForwardModel, curve: Curve) -> Iterator[tuple[int
 def _dataset(curve: Curve) -> Any:
     import xarray as xr
 
-    given = [("{}", curve.responses, "{}", "response")]
+    arrays = [("{}", curve.responses, "{}", "response")]
     if curve.sensitivities is not None:
-        given.append(("d({})", curve.sensitivities, f"{{}}/({curve.unit or '1'})", "sensitivity"))
+        arrays.append(("d({})", curve.sensitivities, f"{{}}/({curve.unit or '1'})", "sensitivity"))
     variables = {
         label.format(name): (curve.parameter, values[:, column], {"units": form.format(unit), "role": role})
-        for label, values, form, role in given
+        for label, values, form, role in arrays
         for column, (name, unit) in enumerate(zip(curve.channels, curve.units, strict=True))
     }
     return xr.Dataset(variables, {curve.parameter: (curve.parameter, curve.values, {"units": curve.unit})})

@@ -76,8 +76,8 @@ class Outcome:
     def save(self, path: Path) -> None:
         """Write the result and what is beside it as NetCDF, each whole or not at all."""
         self.result.save(path)
-        for name, one in self.further_results.items():
-            one.save(path.with_name(f"{name}.nc"))
+        for name, result in self.further_results.items():
+            result.save(path.with_name(f"{name}.nc"))
 
     def report(self, path: Path) -> None:
         """Write the HTML report, whole or not at all."""

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from pydantic import Field
 
-from dalembert.study.run.duration import Effort, whole
+from dalembert.study.run.duration import Effort, repeatedly
 from dalembert.study.run.events import Emit
 from dalembert.study.tables.study import Study
 from dalembert.study.tasks.requirements import needs_structure, unnamed
@@ -55,7 +55,7 @@ class TrackResonance(ResultTask):
 
     def effort(self, study: Study) -> Effort:
         count = len(_values(study))
-        part = whole(lambda: _track(study, _values(study)[:1]))
+        part = repeatedly(lambda: _track(study, _values(study)[:1]))
         return Effort(part, 1, count, count, "the peak at the first value")
 
     def result(self, study: Study, emit: Emit) -> Any:

@@ -23,12 +23,12 @@ def meanings(target: type) -> dict[str, str]:
     ('Initial angle from the x axis, rad.', False)
     """
     section = _SECTION.search(inspect.getdoc(target) or "")
-    found = {}
+    result = {}
     for names, text in _ENTRY.findall(f"{section[1]}\n") if section else ():
         plain = _UNIT.sub("", _ROLE.sub(r"\1", " ".join(text.split())).replace("``", "").replace("\\|", "|"), count=1)
         if plain:
-            found |= {name.strip(): plain[0].upper() + plain[1:] for name in names.split(",")}
-    return found
+            result |= {name.strip(): plain[0].upper() + plain[1:] for name in names.split(",")}
+    return result
 
 
 def explained(meaning: str) -> Callable[[dict[str, Any]], None] | None:

@@ -117,7 +117,7 @@ class Expression:
         return float(value.real) if real else complex(value)
 
 
-def resolved(given: float | Expression, values: Mapping[str, Any], where: str) -> complex:
+def resolved(number: float | Expression, values: Mapping[str, Any], where: str) -> complex:
     """Return a number; that of an expression at values of its names.
 
     Raises
@@ -126,7 +126,7 @@ def resolved(given: float | Expression, values: Mapping[str, Any], where: str) -
         With the place ``where``.
     """
     try:
-        return given(values) if isinstance(given, Expression) else given
+        return number(values) if isinstance(number, Expression) else number
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
 
@@ -182,13 +182,13 @@ OF_BOUNDS = ("lower", "upper", "start", "scale", "deviation")
 
 def kinds_of(document: Mapping[str, Any], names: Iterable[str], series: Mapping[str, Iterable[str]]) -> Kinds:
     """Return the units of the parameters and constants of a document; ``series`` are those that share a table."""
-    found: dict[str, Unit | None] = dict.fromkeys(names)
+    units: dict[str, Unit | None] = dict.fromkeys(names)
     for name, table in _tables(document, "parameters"):
-        for one in series.get(name, (name,)):
-            found[one] = _of_parameter(table) if isinstance(table, Mapping) else None
+        for member in series.get(name, (name,)):
+            units[member] = _of_parameter(table) if isinstance(table, Mapping) else None
     for name, value in _tables(document, "constants"):
-        found[name] = _of_constant(value, found)
-    return found
+        units[name] = _of_constant(value, units)
+    return units
 
 
 def _tables(document: Mapping[str, Any], name: str) -> Iterable[tuple[str, Any]]:
@@ -249,15 +249,15 @@ def _kind(node: ast.expr, known: Kinds) -> Unit | None:
         case ast.UnaryOp(operand=operand) | ast.Call(func=ast.Name(id="abs"), args=[operand]):
             return _kind(operand, known)
         case ast.BinOp(left=left, op=ast.Add() | ast.Sub(), right=right):
-            one, other = _kind(left, known), _kind(right, known)
-            if one is not None and other is not None and difference(one, other) is not None:
+            first, second = _kind(left, known), _kind(right, known)
+            if first is not None and second is not None and difference(first, second) is not None:
                 raise InputError(f"{ast.unparse(node)!r} adds quantities of different kinds")
-            return one or other
+            return first or second
         case ast.BinOp(left=left, op=ast.Mult() | ast.Div() as operation, right=right):
-            one, other = _kind(left, known), _kind(right, known)
-            if one is None or other is None:
+            first, second = _kind(left, known), _kind(right, known)
+            if first is None or second is None:
                 return None
-            return one * other ** (1 if isinstance(operation, ast.Mult) else -1)
+            return first * second ** (1 if isinstance(operation, ast.Mult) else -1)
         case ast.BinOp(left=left, op=ast.Pow(), right=ast.Constant(value=int() as power)) if abs(power) < 10:
             base = _kind(left, known)
             return None if base is None else base**power
@@ -279,9 +279,9 @@ def require_kind(expression: Expression, unit: str, known: Kinds) -> None:
     ------
     InputError
     """
-    given, wanted = kind_of(expression, known), _unit(unit)
-    if given is None or wanted is None:
+    unit_here, wanted = kind_of(expression, known), _unit(unit)
+    if unit_here is None or wanted is None:
         return
-    reason = difference(given, wanted)
+    reason = difference(unit_here, wanted)
     if reason is not None:
-        raise InputError(reason or f"it measures something else, in {si_unit(given)}")
+        raise InputError(reason or f"it measures something else, in {si_unit(unit_here)}")

@@ -74,9 +74,9 @@ class FunctionReference:
         try:
             inspect.signature(function).bind(*arguments, **named)
         except TypeError as error:
-            given = [*(f"a {type(one).__name__}" for one in arguments), *map(repr, named)]
+            kinds = [*(f"a {type(argument).__name__}" for argument in arguments), *map(repr, named)]
             raise InputError(
-                f"{self} cannot be called with {listed(given) if given else 'no arguments'}: {error}"
+                f"{self} cannot be called with {listed(kinds) if kinds else 'no arguments'}: {error}"
             ) from None
         except ValueError:  # a function that does not say what it takes
             pass

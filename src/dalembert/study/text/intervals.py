@@ -23,9 +23,9 @@ class IntervalTable(StudyTable):
     relative: Number | None = None
 
     def _wrong(self) -> list[str]:
-        given = self.model_fields_set
-        if given not in _FORMS:
-            raise problem(f"the keys {', '.join(sorted(given)) or 'none'} were given; expected {_WAYS}")
+        keys = self.model_fields_set
+        if keys not in _FORMS:
+            raise problem(f"the keys {', '.join(sorted(keys)) or 'none'} were given; expected {_WAYS}")
         try:
             self.interval()
         except InputError as error:

@@ -44,7 +44,7 @@ def mistakes(error: ValidationError, document: Any, context: Context) -> list[tu
     context : Context
         With which the document was validated.
     """
-    found = []
+    result = []
     for entry, path, table in _likeliest(document, error.errors(include_url=False)):
         where = path
         if entry["type"] == "extra_forbidden":
@@ -52,8 +52,8 @@ def mistakes(error: ValidationError, document: Any, context: Context) -> list[tu
             texts = [unknown("key", str(key), context.known_keys(table))]
         else:
             texts = _texts(entry, is_in_space(document.get("model")))
-        found += [(tuple(path), _placed(document, where, text)) for text in texts]
-    return found
+        result += [(tuple(path), _placed(document, where, text)) for text in texts]
+    return result
 
 
 def _likeliest(document: Any, entries: Iterable[Any]) -> list[tuple[Any, list[str | int], Any]]:
@@ -61,13 +61,13 @@ def _likeliest(document: Any, entries: Iterable[Any]) -> list[tuple[Any, list[st
 
     A member of another type says nothing where a member of the same type found a mistake at the value, or within it.
     """
-    found = [(entry, *_follow(document, entry["loc"])) for entry in entries]
+    followed = [(entry, *_follow(document, entry["loc"])) for entry in entries]
     kept = []
-    for entry, path, holder in found:
+    for entry, path, holder in followed:
         of_union = len(entry["loc"]) > len(path) and entry["type"] != "missing"
-        other = [one for one in found if one[1][: len(path)] == path and one[0] is not entry]
-        within = any(len(one[1]) > len(path) for one in other)
-        at = any(one[1] == path and not _of_type(one[0]) for one in other)
+        other = [candidate for candidate in followed if candidate[1][: len(path)] == path and candidate[0] is not entry]
+        within = any(len(candidate[1]) > len(path) for candidate in other)
+        at = any(candidate[1] == path and not _of_type(candidate[0]) for candidate in other)
         if not (of_union and (within or (at and _of_type(entry)))):
             kept.append((entry, path, holder))
     return kept
@@ -160,10 +160,10 @@ def _texts(entry: Any, space: bool) -> list[str]:
 
 
 def _unknown_kind(kind: str, known: list[str], space: bool) -> str:
-    others = KINDS if space else SPATIAL_KINDS
+    other_kinds = KINDS if space else SPATIAL_KINDS
     here = SPATIAL_KINDS if space else KINDS
     for base in ("Body", "Joint", "Load"):
-        if kind in others[base] and not set(here[base]).isdisjoint(known):
+        if kind in other_kinds[base] and not set(here[base]).isdisjoint(known):
             what = (
                 "a planar component, and the model is in space (space = true)"
                 if space

@@ -19,7 +19,7 @@ from pydantic_core import CoreSchema
 
 from dalembert.errors import InputError, unknown
 from dalembert.study.text.expressions import Expression, require_kind
-from dalembert.study.text.table import Context, Read, StudyTable, checked, completed, problem, told_apart
+from dalembert.study.text.table import Context, Read, StudyTable, alternative, checked, completed, problem
 from dalembert.units import expected, is_quantity, sentence, si
 
 MOST = 1_000_000  # numbers of a range
@@ -95,18 +95,18 @@ class WithUnit(float):
         number = read_number(value, None)
         if not isinstance(value, str) or not is_quantity(value):
             return number  # pyright: ignore[reportReturnType] - no names are offered to it
-        found = cls(number)  # pyright: ignore[reportArgumentType]
-        found.text = value
-        return found
+        result = cls(number)  # pyright: ignore[reportArgumentType]
+        result.text = value
+        return result
 
 
-def wrong_units(given: Mapping[str, Any], units: Mapping[str, str | None], where: str) -> Iterator[str]:
+def wrong_units(numbers: Mapping[str, Any], units: Mapping[str, str | None], where: str) -> Iterator[str]:
     """Yield sentences on numbers by name, or tables of them, whose unit is not that of the quantity of the name."""
-    for name, value in given.items():
-        for one in _with_units(value):
+    for name, value in numbers.items():
+        for number in _with_units(value):
             if units.get(name) is not None:
                 try:
-                    read_number(one.text, units[name])
+                    read_number(number.text, units[name])
                 except InputError as error:
                     yield f"{where}, {name}: {error}"
 
@@ -116,10 +116,10 @@ def _with_units(value: object) -> Iterator[WithUnit]:
     if isinstance(value, WithUnit):
         yield value
     elif isinstance(value, list | tuple):
-        for one in value:
-            yield from _with_units(one)
+        for entry in value:
+            yield from _with_units(entry)
     elif isinstance(value, StudyTable):
-        yield from _with_units([one for key, one in vars(value).items() if key != "relative"])
+        yield from _with_units([entry for key, entry in vars(value).items() if key != "relative"])
 
 
 @dataclass(frozen=True)
@@ -170,9 +170,9 @@ class Grid(StudyTable):
 @cache
 def samples(unit: str | None) -> Any:
     """Type of a key that takes increasing numbers: a list of them, or a :class:`Grid`; read as a tuple."""
-    one = fixed(unit)
-    grid = completed(Grid, start=(one, 0.0), end=(one, ...), every=(one | None, None))
-    either = told_apart(lambda value: isinstance(value, dict | Grid), grid, list[one])
+    single = fixed(unit)
+    grid = completed(Grid, start=(single, 0.0), end=(single, ...), every=(single | None, None))
+    either = alternative(lambda value: isinstance(value, dict | Grid), grid, list[single])
     return Annotated[either, AfterValidator(_increasing)]
 
 
@@ -186,8 +186,8 @@ def row(of: Any, count: int) -> Any:
     return Annotated[list[of], Field(min_length=count, max_length=count)]
 
 
-def _increasing(given: Grid | list[float]) -> tuple[float, ...]:
-    numbers = given.values.tolist() if isinstance(given, Grid) else given
+def _increasing(values: Grid | list[float]) -> tuple[float, ...]:
+    numbers = values.values.tolist() if isinstance(values, Grid) else values
     if not numbers:
         raise problem("an empty list was given; expected at least one number")
     for earlier, later in pairwise(numbers):
@@ -207,6 +207,6 @@ Times = Annotated[tuple[float, ...], Read(samples("s"))]
 Frequencies = Annotated[tuple[float, ...], Read(samples("Hz"))]
 FrequencyEnds = Annotated[list[float], Read(pair(fixed("Hz")))]
 NumberOfEach = Annotated[
-    float | dict[str, float], Read(told_apart(lambda value: isinstance(value, dict), dict[str, Number], Number))
+    float | dict[str, float], Read(alternative(lambda value: isinstance(value, dict), dict[str, Number], Number))
 ]
 """One number for all channels, or one for each."""

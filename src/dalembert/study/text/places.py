@@ -61,10 +61,10 @@ def read_place(value: object, names: Iterable[str] | None = None, *, bare: bool 
     match value:
         case "ground" if bare:
             return Place()
-        case str() if found := _GROUND.fullmatch(value.strip()):
-            return _on_ground(_COMMA.split(found[1]), value, names, space)
-        case str() if found := _POINT.fullmatch(value.strip()):
-            return Place(found[1], found[2])
+        case str() if match := _GROUND.fullmatch(value.strip()):
+            return _on_ground(_COMMA.split(match[1]), value, names, space)
+        case str() if match := _POINT.fullmatch(value.strip()):
+            return Place(match[1], match[2])
         case {"x": x, "y": y, **rest} if not rest and not space:
             return _on_ground([x, y], value, names, space)
         case [*numbers]:
@@ -78,7 +78,7 @@ def _on_ground(numbers: list, value: object, names: Iterable[str] | None, space:
     if len(numbers) not in (2, 3):
         raise InputError(f"{value!r} was given; expected x and y, or x, y and an angle, such as 'ground(0.3, 0)'")
     units = ("m", "m", "m" if space else "rad")
-    return Place(position=tuple(read_number(one, unit, names) for one, unit in zip(numbers, units, strict=False)))
+    return Place(position=tuple(read_number(number, unit, names) for number, unit in zip(numbers, units, strict=False)))
 
 
 def _ways(bare: bool, space: bool) -> str:

@@ -46,7 +46,7 @@ def by_joint(derivative: int) -> Any:
             name: units[str(name).rpartition(".")[2].startswith("displacement") and "." in str(name)][derivative]
             for name in value
         }
-        return {name: checked(read_number, one, own[name], names) for name, one in value.items()}
+        return {name: checked(read_number, number, own[name], names) for name, number in value.items()}
 
     return read
 

@@ -53,10 +53,10 @@ class Context:
     used: dict[str, Path] = field(default_factory=dict)
     _keys: dict[int, tuple[str, ...]] = field(default_factory=dict)
 
-    def file(self, given: str) -> Path:
+    def file(self, name: str) -> Path:
         """Path of a file named in the study."""
-        path = self.files.get(given, self.folder / given)
-        self.used[given] = path
+        path = self.files.get(name, self.folder / name)
+        self.used[name] = path
         return path
 
     def remember(self, table: Any, keys: Iterable[str]) -> None:
@@ -148,7 +148,7 @@ def completed(table: type[Table], **keys: Any) -> type[Table]:
     return create_model(table.__name__, __base__=table, __doc__=table.__doc__, __module__=table.__module__, **keys)
 
 
-def told_apart(is_first: Callable[[Any], bool], first: Any, other: Any) -> Any:
+def alternative(is_first: Callable[[Any], bool], first: Any, other: Any) -> Any:
     """Type of a key that takes one of two things, told apart by a test of what is given."""
     return Annotated[
         Annotated[first, Tag("#1")] | Annotated[other, Tag("#2")],

@@ -5,7 +5,7 @@ import io
 import pytest
 from rich.console import Console
 
-from dalembert.study.run.progress import Told, Watch
+from dalembert.study.run.progress import ProgressText, Watch
 
 
 def _printed(event: dict, names: tuple[str, ...] = ()) -> str:
@@ -80,6 +80,6 @@ def test_the_best_values_have_the_names_of_the_unknowns():
 
 
 def test_values_are_listed_in_their_units():
-    told = Told(("angle", "drag"), units={"angle": ("mrad", 1e-3)})
+    told = ProgressText(("angle", "drag"), units={"angle": ("mrad", 1e-3)})
     told.take({"event": "iteration", "start": 0, "simulations": 3, "best": 0.5, "values": [0.25, 0.1]})
     assert told.last[0] == "start 1 · 3 simulations · best 0.5 · angle = 250 mrad, drag = 0.1"

@@ -7,7 +7,7 @@ import pytest
 from pydantic import TypeAdapter, ValidationError
 
 from dalembert.errors import InputError
-from dalembert.study.tables.dataclass_tables import one_of, settings_of, table_of
+from dalembert.study.tables.dataclass_tables import any_of, settings_of, table_of
 from dalembert.study.text.expressions import Expression
 from dalembert.study.text.places import Place
 
@@ -64,8 +64,8 @@ class Push:
 
 
 BAR = table_of(Bar)
-PUSH = table_of(Push, signal=one_of([table_of(Wave)]))
-EITHER = TypeAdapter(one_of([BAR, PUSH]))
+PUSH = table_of(Push, signal=any_of([table_of(Wave)]))
+EITHER = TypeAdapter(any_of([BAR, PUSH]))
 
 
 def test_every_kind_of_key():
@@ -158,7 +158,7 @@ def test_the_schema_tells_units_and_kinds():
 
 
 def test_the_default_kind_need_not_be_named():
-    adapter = TypeAdapter(one_of([table_of(Wave, default=True)], "Wave"))
+    adapter = TypeAdapter(any_of([table_of(Wave, default=True)], "Wave"))
     assert adapter.validate_python({"height": 1, "rate": 2}).settings() == Wave(1.0, 2.0)
 
 

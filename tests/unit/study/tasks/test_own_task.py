@@ -15,7 +15,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from dalembert.files import write_text
-from dalembert.study.run.duration import Effort, whole
+from dalembert.study.run.duration import Effort, repeatedly
 from dalembert.study.text.table import StudyTable
 from dalembert.study.tasks.task import ResultTask
 from dalembert.study.tasks.requirements import needs_structure
@@ -60,7 +60,7 @@ class RingingTask(ResultTask):
         return "finds how long modes ring: 1 simulation"
 
     def effort(self, study):
-        return Effort(whole(lambda: self._result(study)), 1, 1, 1, "the modes")
+        return Effort(repeatedly(lambda: self._result(study)), 1, 1, 1, "the modes")
 
     def parts(self, study):
         return ()

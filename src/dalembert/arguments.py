@@ -63,18 +63,18 @@ class Checked:
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
-        own = cls.__dict__.get("__post_init__")
-        if own is not None:
+        post_init = cls.__dict__.get("__post_init__")
+        if post_init is not None:
 
-            @wraps(own)
-            def first_checked(self: Any, *given: Any) -> None:
-                _check(self, given)
-                own(self, *given)
+            @wraps(post_init)
+            def first_checked(self: Any, *arguments: Any) -> None:
+                _check(self, arguments)
+                post_init(self, *arguments)
 
             cls.__post_init__ = first_checked  # type: ignore[attr-defined]
 
-    def __post_init__(self, *given: Any) -> None:
-        _check(self, given)
+    def __post_init__(self, *arguments: Any) -> None:
+        _check(self, arguments)
 
 
 class _Argument(NamedTuple):
@@ -89,42 +89,48 @@ class _Argument(NamedTuple):
     range: Range | None
 
 
-def _check(made: Any, passed_on: tuple[Any, ...]) -> None:
-    for argument in _arguments(type(made)):
+def _check(instance: Any, passed_on: tuple[Any, ...]) -> None:
+    for argument in _arguments(type(instance)):
         name, tests, place, default, kinds, unit, within = argument
-        value = getattr(made, name) if place is None else passed_on[place]
+        value = getattr(instance, name) if place is None else passed_on[place]
         if value is default:
             continue
         for test in tests:
             if test(value):
                 break
         else:
-            raise InputError(refusal(_owner(made, name), name, value, kinds, unit))
+            raise InputError(refusal(_owner(instance, name), name, value, kinds, unit))
         if within is None or value is None or isinstance(value, str):
             continue
         if isinstance(value, float) and within.above < value < within.below and within.least <= value <= within.most:
             continue
         if value not in within:
-            first = next(one for one in np.ravel(np.real(value)) if one not in within)
+            first = next(entry for entry in np.ravel(np.real(value)) if entry not in within)
             number = f"{first:g} {unit}".strip()
             words = str(within).replace("number", "whole number") if int in kinds else str(within)
-            raise InputError(f"{_owner(made, name)}: {name} is {number}; expected {words}")
+            raise InputError(f"{_owner(instance, name)}: {name} is {number}; expected {words}")
 
 
-def _owner(made: Any, argument: str) -> str:
+def _owner(instance: Any, argument: str) -> str:
     """Class and name of an object, for messages about an argument."""
-    named = argument != "name" and any(entry.name == "name" for entry in fields(made)) and isinstance(made.name, str)
-    return type(made).__name__ + (f" {made.name!r}" if named else "")
+    named = (
+        argument != "name"
+        and any(entry.name == "name" for entry in fields(instance))
+        and isinstance(instance.name, str)
+    )
+    return type(instance).__name__ + (f" {instance.name!r}" if named else "")
 
 
 @cache
-def _arguments(made: type) -> tuple[_Argument, ...]:
-    entries = [entry for entry in made.__dataclass_fields__.values() if entry.init and not of_class(entry.type)]  # type: ignore[attr-defined]
+def _arguments(checked_class: type) -> tuple[_Argument, ...]:
+    entries = [
+        entry for entry in checked_class.__dataclass_fields__.values() if entry.init and not of_class(entry.type)
+    ]  # type: ignore[attr-defined]
     try:
-        annotations = typing.get_type_hints(made)
+        annotations = typing.get_type_hints(checked_class)
     except Exception:  # a name that only type checkers know
         annotations = {}
-    found, passed_on = [], 0
+    arguments, passed_on = [], 0
     for entry in entries:
         annotation, place = annotations.get(entry.name, entry.type), None
         if isinstance(annotation, InitVar):
@@ -134,8 +140,8 @@ def _arguments(made: type) -> tuple[_Argument, ...]:
         tests, within = tuple(map(_test, kinds)), entry.metadata.get("range")
         if unit and float in kinds:  # a quantity
             tests = tuple(_is_finite if kind is float else _test(kind) for kind in kinds)
-        found.append(_Argument(entry.name, tests, place, entry.default, kinds, unit, within))
-    return tuple(found)
+        arguments.append(_Argument(entry.name, tests, place, entry.default, kinds, unit, within))
+    return tuple(arguments)
 
 
 def of_class(annotation: Any) -> bool:
@@ -172,7 +178,7 @@ def _test(kind: Any) -> Callable[[Any], bool]:
     origin = typing.get_origin(kind)
     if origin is Callable:
         return callable
-    inner = [_any_of(one) for one in typing.get_args(kind)]
+    inner = [_any_of(member) for member in typing.get_args(kind)]
     if origin is tuple and Ellipsis not in typing.get_args(kind):
         return lambda value: _is_row(value) and len(value) == len(inner) and all(map(_holds, inner, value))
     if origin in (tuple, list, Sequence, Iterable):
@@ -321,8 +327,8 @@ _TESTS.update(
 
 def refusal(owner: str, name: str, value: Any, kinds: tuple[Any, ...], unit: str = "") -> str:
     """Sentence for an argument that is of none of these kinds."""
-    given = [kind for kind in kinds if kind is not type(None)]
-    return f"{owner}: {name} is {shown(value)}; expected {' or '.join(_words(kind, value, unit) for kind in given)}"
+    stated = [kind for kind in kinds if kind is not type(None)]
+    return f"{owner}: {name} is {shown(value)}; expected {' or '.join(_words(kind, value, unit) for kind in stated)}"
 
 
 _COUNTS = {2: "two", 3: "three"}
@@ -351,7 +357,7 @@ def _words(kind: Any, value: Any, unit: str) -> str:
     return _WORDS.get(kind) or getattr(kind, "IN_WORDS", None) or f"a {kind.__name__}"
 
 
-def names_of(given: str | Iterable[str], owner: str, what: str) -> tuple[str, ...]:
+def names_of(entries: str | Iterable[str], owner: str, what: str) -> tuple[str, ...]:
     """Names from a sequence of them, or from a single one.
 
     Raises
@@ -364,16 +370,16 @@ def names_of(given: str | Iterable[str], owner: str, what: str) -> tuple[str, ..
     >>> names_of("rod.end.x", "TimeResponse", "channels"), names_of(["a", "b"], "TimeResponse", "channels")
     (('rod.end.x',), ('a', 'b'))
     """
-    if isinstance(given, str):
-        return (str(given),)
-    names = tuple(given) if isinstance(given, Iterable) else ()
-    if not isinstance(given, Iterable) or not all(isinstance(name, str) for name in names):
-        wrong = next((name for name in names if not isinstance(name, str)), given)
+    if isinstance(entries, str):
+        return (str(entries),)
+    names = tuple(entries) if isinstance(entries, Iterable) else ()
+    if not isinstance(entries, Iterable) or not all(isinstance(name, str) for name in names):
+        wrong = next((name for name in names if not isinstance(name, str)), entries)
         raise InputError(f"{owner}: {what} is {shown(wrong)}; expected names, such as ['AB.end.x', 'AB.end.y']")
     return tuple(map(str, names))
 
 
-def numbers_of(given: Any, owner: str, what: str) -> np.ndarray:
+def numbers_of(numbers: Any, owner: str, what: str) -> np.ndarray:
     """Real numbers as an array of floats.
 
     >>> numbers_of([1, 2], "design", "deviations")
@@ -383,36 +389,36 @@ def numbers_of(given: Any, owner: str, what: str) -> np.ndarray:
     dalembert.errors.InputError: design: deviations is 'many'; expected real numbers
     """
     try:
-        if given is not None and not isinstance(given, str | bytes):
-            return np.array(given, dtype=object).astype(float)
+        if numbers is not None and not isinstance(numbers, str | bytes):
+            return np.array(numbers, dtype=object).astype(float)
     except (TypeError, ValueError):
         pass
-    raise InputError(f"{owner}: {what} is {shown(given)}; expected real numbers")
+    raise InputError(f"{owner}: {what} is {shown(numbers)}; expected real numbers")
 
 
-def samples_of(given: Any, owner: str, what: str) -> np.ndarray:
+def samples_of(values: Any, owner: str, what: str) -> np.ndarray:
     """Real numbers as an array (samples,) of at least one.
 
     >>> samples_of(3.5, "PythonModel", "samples")
     Traceback (most recent call last):
     dalembert.errors.InputError: PythonModel: samples is 3.5; expected a list of real numbers
     """
-    numbers = np.zeros(0) if np.ndim(given) != 1 else numbers_of(given, owner, what)
+    numbers = np.zeros(0) if np.ndim(values) != 1 else numbers_of(values, owner, what)
     if not len(numbers):
-        raise InputError(f"{owner}: {what} is {shown(given)}; expected a list of real numbers")
+        raise InputError(f"{owner}: {what} is {shown(values)}; expected a list of real numbers")
     return numbers
 
 
-def check_model(owner: str, given: Any) -> None:
+def check_model(owner: str, model: Any) -> None:
     """Raise unless something may be a forward model; its channels are not looked at, as they may take long.
 
     >>> check_model("Sensors", 3.5)
     Traceback (most recent call last):
     dalembert.errors.InputError: Sensors: model is 3.5; expected a forward model, such as TimeResponse or PythonModel
     """
-    if not (hasattr(type(given), "evaluate") and hasattr(given, "parameters")):
+    if not (hasattr(type(model), "evaluate") and hasattr(model, "parameters")):
         raise InputError(
-            f"{owner}: model is {shown(given)}; expected a forward model, such as TimeResponse or PythonModel"
+            f"{owner}: model is {shown(model)}; expected a forward model, such as TimeResponse or PythonModel"
         )
 
 

@@ -86,8 +86,8 @@ def new(
     from dalembert.study.template import begin, templates
 
     if template is None:
-        for one in templates().values():
-            typer.echo(f"{one.name:10}{one.title}: {one.description}")
+        for entry in templates().values():
+            typer.echo(f"{entry.name:10}{entry.title}: {entry.description}")
         typer.echo("Create a study with: dalembert new TEMPLATE FOLDER")
     else:
         typer.echo(f"Run it with: dalembert run {begin(template, folder or Path(template))}")
@@ -178,11 +178,11 @@ def list_runs(
     """List the runs with their states and best values."""
     from dalembert.study.run.listing import rows, table
 
-    found = rows(runs)
-    if not found:
+    runs_listed = rows(runs)
+    if not runs_listed:
         typer.echo(f"no runs in {runs}")
     else:
-        _console(sys.stdout, width=None if sys.stdout.isatty() else 200).print(table(found))
+        _console(sys.stdout, width=None if sys.stdout.isatty() else 200).print(table(runs_listed))
 
 
 @app.command()
@@ -207,9 +207,9 @@ def compare(
     """Rank identified models of the same data by their predictions, and report if the difference means nothing."""
     from dalembert.study.run.compare_runs import compare_runs
 
-    found = compare_runs([_folder(run) for run in runs], leave_out)
-    typer.echo(found.summary())
-    typer.echo(f"report: {found.report(out)}")
+    comparison = compare_runs([_folder(run) for run in runs], leave_out)
+    typer.echo(comparison.summary())
+    typer.echo(f"report: {comparison.report(out)}")
 
 
 @app.command()

@@ -55,9 +55,9 @@ class Contents:
             file.attrs.update(self.attributes)
 
 
-def _entries(given: Mapping[str, tuple]) -> Iterator[tuple[str, tuple[str, ...], np.ndarray, dict[str, Any]]]:
+def _entries(variables: Mapping[str, tuple]) -> Iterator[tuple[str, tuple[str, ...], np.ndarray, dict[str, Any]]]:
     """Name, dimensions, values and attributes of each variable."""
-    for name, (over, values, *attributes) in given.items():
+    for name, (over, values, *attributes) in variables.items():
         yield name, (over,) if isinstance(over, str) else tuple(over), np.asarray(values), dict(*attributes)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from pathlib import Path
 
-_OWN = str(Path(__file__).parent)
+_PACKAGE = str(Path(__file__).parent)
 _LONGEST = 60  # text of a value in a sentence
 _ROOM = "see that the disk has room and that the folder may be written to"
 _BEGUN = f"; what was written before is whole: {_ROOM}, and continue the run by 'dalembert resume'"
@@ -77,7 +77,7 @@ def unchanged(error: Exception) -> str:
 _MOST_SHOWN, _FEW_SHOWN = 60, 12  # names in a sentence: all of them, or the first ones of many
 
 
-def unknown(what: str, given: object, known: Iterable[str], where: str = "") -> str:
+def unknown(what: str, name: object, known: Iterable[str], where: str = "") -> str:
     """Sentence for an unknown name, with the closest known ones.
 
     >>> unknown("channel", "AB.end.z", ["AB.end.x", "AB.end.y", "OA.end.x"])
@@ -89,30 +89,30 @@ def unknown(what: str, given: object, known: Iterable[str], where: str = "") -> 
     "unknown channel 'bar.tip.x'; did you mean 'bar.end.x' or 'bar.top.y'?"
     """
     names = sorted(known)
-    close = _closest(str(given), names)
+    close = _closest(str(name), names)
     prefix = f"{where}: " if where else ""
     if close:
-        return f"{prefix}unknown {what} {given!r}; did you mean {' or '.join(map(repr, close))}?"
+        return f"{prefix}unknown {what} {name!r}; did you mean {' or '.join(map(repr, close))}?"
     shown = names if len(names) <= _MOST_SHOWN else [*names[:_FEW_SHOWN], f"and {len(names) - _FEW_SHOWN} more"]
-    return f"{prefix}unknown {what} {given!r}; known: {', '.join(shown) or 'none'}"
+    return f"{prefix}unknown {what} {name!r}; known: {', '.join(shown) or 'none'}"
 
 
-def require_known(what: str, given: object, known: Iterable[str], where: str = "") -> None:
+def require_known(what: str, name: object, known: Iterable[str], where: str = "") -> None:
     """Refuse a name that is not among the known ones, see :func:`unknown`.
 
     Raises
     ------
     InputError
     """
-    if given not in (names := list(known)):
-        raise InputError(unknown(what, given, names, where))
+    if name not in (names := list(known)):
+        raise InputError(unknown(what, name, names, where))
 
 
-def _closest(given: str, names: list[str]) -> list[str]:
+def _closest(wrong: str, names: list[str]) -> list[str]:
     """Up to two close names; those that end in the part that the given one ends in, or is meant to, come first."""
-    close = get_close_matches(given, names, n=len(names) or 1, cutoff=0.6)
+    close = get_close_matches(wrong, names, n=len(names) or 1, cutoff=0.6)
     kinds = sorted({name.rpartition(".")[2] for name in names if "." in name})
-    kind = get_close_matches(given.rpartition(".")[2], kinds, n=1, cutoff=0.6) if "." in given else []
+    kind = get_close_matches(wrong.rpartition(".")[2], kinds, n=1, cutoff=0.6) if "." in wrong else []
     return sorted(close, key=lambda name: name.rpartition(".")[2] not in kind)[:2]
 
 
@@ -190,8 +190,8 @@ def users_place(error: BaseException | None) -> str:
     >>> users_place(KeyError("never raised"))
     ''
     """
-    others = ("<", _OWN, *sysconfig.get_paths().values())
+    foreign = ("<", _PACKAGE, *sysconfig.get_paths().values())
     frames = traceback.walk_tb(error.__traceback__ if error else None)
     places = [(frame.f_code.co_filename, line) for frame, line in frames]
-    own = [(Path(name).name, line) for name, line in places if not name.startswith(others)]
-    return "{}, line {}".format(*own[-1]) if own else ""
+    of_user = [(Path(name).name, line) for name, line in places if not name.startswith(foreign)]
+    return "{}, line {}".format(*of_user[-1]) if of_user else ""

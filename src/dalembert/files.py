@@ -69,7 +69,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
 def free_path(path: Path, taken: Callable[[Path], bool] = Path.exists) -> Path:
     """Return the path itself, or ``NAME-2`` and so on: the first that is not taken."""
     paths = chain([path], (path.with_name(f"{path.name}-{number}") for number in count(2)))
-    return next(one for one in paths if not taken(one))
+    return next(candidate for candidate in paths if not taken(candidate))
 
 
 def set_aside(path: Path, *suffixes: str) -> Path:
@@ -124,8 +124,8 @@ def read_dataset(path: str | os.PathLike[str], *, form: str, expected: str) -> "
     except Exception as error:  # each layer below has errors of its own for a file that is not NetCDF
         raise DataError(f"{path}: cannot be read as NetCDF ({error}); expected {expected}") from error
     if dataset.attrs.get("format") != form:
-        found = dataset.attrs.get("format", f"no {form.split()[1]}")
-        raise DataError(f"{path}: holds {found!r}; expected {form!r}, {expected}")
+        format_of_file = dataset.attrs.get("format", f"no {form.split()[1]}")
+        raise DataError(f"{path}: holds {format_of_file!r}; expected {form!r}, {expected}")
     return dataset
 
 
@@ -133,8 +133,8 @@ def _number(error: BaseException) -> int:
     """Number of the system's error, which HDF5 gives in its text alone where it closes a file; 0 if there is none."""
     if isinstance(error, OSError) and error.errno is not None:
         return error.errno
-    found = re.search(r"\berrno = (\d+)", str(error)) if isinstance(error, OSError | RuntimeError) else None
-    return int(found[1]) if found else 0
+    match = re.search(r"\berrno = (\d+)", str(error)) if isinstance(error, OSError | RuntimeError) else None
+    return int(match[1]) if match else 0
 
 
 def _sync(path: Path) -> None:

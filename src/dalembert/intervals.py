@@ -126,18 +126,18 @@ class Box:
                 raise InputError(f"interval of {name!r}: ({lower}, {upper}) was given; expected {_EXPECTED}")
 
     @classmethod
-    def of(cls, given: "Box | Mapping[str, Interval | tuple[float, float] | float]") -> "Box":
+    def of(cls, intervals: "Box | Mapping[str, Interval | tuple[float, float] | float]") -> "Box":
         """Box from a mapping of names to intervals, to pairs (lower, upper), or to numbers that are known exactly."""
-        if isinstance(given, Box):
-            return given
-        if not isinstance(given, Mapping):
+        if isinstance(intervals, Box):
+            return intervals
+        if not isinstance(intervals, Mapping):
             raise InputError(
-                f"intervals are {shown(given)}; expected a mapping from names to bounds, such as "
+                f"intervals are {shown(intervals)}; expected a mapping from names to bounds, such as "
                 "{'stiffness': (1e3, 1e5)}"
             )
-        pairs = [_pair(name, entry) for name, entry in given.items()]
+        pairs = [_pair(name, entry) for name, entry in intervals.items()]
         bounds = np.array(pairs, dtype=float).reshape(-1, 2)
-        return cls(tuple(given), bounds[:, 0], bounds[:, 1])
+        return cls(tuple(intervals), bounds[:, 0], bounds[:, 1])
 
     @property
     def middle(self) -> np.ndarray:

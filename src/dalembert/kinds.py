@@ -76,8 +76,8 @@ def named(package: str, *bases: type, plugins: str = PLUGINS) -> dict[str, type]
     """
     load_modules(package)
     load_plugins(plugins)
-    found = (kind for base in bases for kind in (base, *derived(base)) if hasattr(kind, "name"))
-    return distinct(filterfalse(inspect.isabstract, found), attrgetter("name"))
+    kinds = (kind for base in bases for kind in (base, *derived(base)) if hasattr(kind, "name"))
+    return distinct(filterfalse(inspect.isabstract, kinds), attrgetter("name"))
 
 
 @cache

@@ -1,6 +1,6 @@
 """Named parameters with bounds, units and scales: the words that models and methods share."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -178,9 +178,9 @@ class Parameters:
         """Refuse a prior of several parameters that not all of them have."""
         if not isinstance(item.prior, CorrelatedNormal):
             return
-        others = {one.name for one in self.items if one.prior == item.prior}
+        sharing = {member.name for member in self.items if member.prior == item.prior}
         for name in item.prior.names:
-            if name not in others:
+            if name not in sharing:
                 raise InputError(
                     f"parameter {item.name!r}: its prior is that of {', '.join(item.prior.names)}, but {name!r} has "
                     "another one or none. Give all of them the same prior"
@@ -189,7 +189,7 @@ class Parameters:
     @classmethod
     def of(
         cls,
-        given: "Parameters | Mapping[str, Parameter | tuple[float, float]] | list[Parameter] | tuple[Parameter, ...]",
+        parameters: "Parameters | Mapping[str, Parameter | tuple[float, float]] | Sequence[Parameter]",
     ) -> "Parameters":
         """Parameters from a mapping of names to bounds (or to :class:`Parameter`), or from a list.
 
@@ -198,16 +198,16 @@ class Parameters:
         InputError
             For anything else, and where the name of a :class:`Parameter` differs from its key.
         """
-        if isinstance(given, Parameters):
-            return given
-        if isinstance(given, Mapping):
-            return cls(tuple(_named(name, entry) for name, entry in given.items()))
-        if isinstance(given, str | Parameter) or not isinstance(given, Iterable):
+        if isinstance(parameters, Parameters):
+            return parameters
+        if isinstance(parameters, Mapping):
+            return cls(tuple(_named(name, entry) for name, entry in parameters.items()))
+        if isinstance(parameters, str | Parameter) or not isinstance(parameters, Iterable):
             raise InputError(
-                f"parameters are {shown(given)}; expected a mapping from names to bounds, such as "
+                f"parameters are {shown(parameters)}; expected a mapping from names to bounds, such as "
                 "{'stiffness': (1e3, 1e5)}, or a list of Parameter"
             )
-        return cls(tuple(given))
+        return cls(tuple(parameters))
 
     def __iter__(self) -> Iterator[Parameter]:
         return iter(self.items)
@@ -240,15 +240,19 @@ class Parameters:
     def scale(self) -> np.ndarray:
         """Typical sizes, shape (parameters,)."""
         largest = np.maximum(np.abs(self.lower), np.abs(self.upper))
-        given = [item.scale for item in self.items]
-        return np.array([size if own is None else own for own, size in zip(given, largest, strict=True)], dtype=float)
+        scales = [item.scale for item in self.items]
+        return np.array(
+            [size if scale is None else scale for scale, size in zip(scales, largest, strict=True)], dtype=float
+        )
 
     @cached_property
     def start(self) -> np.ndarray:
         """First guesses, shape (parameters,)."""
         middle = (self.lower + self.upper) / 2
-        given = [item.start for item in self.items]
-        return np.array([mid if own is None else own for own, mid in zip(given, middle, strict=True)], dtype=float)
+        starts = [item.start for item in self.items]
+        return np.array(
+            [mid if start is None else start for start, mid in zip(starts, middle, strict=True)], dtype=float
+        )
 
     def vector(self, values: Mapping[str, float] | ArrayLike) -> np.ndarray:
         """Vector of shape (parameters,) from a mapping by name, or from a sequence in order.

@@ -60,7 +60,7 @@ def quantity(channel: str, unit: str = "") -> str:
     return labelled(*_known(channel, unit))
 
 
-def unit(channel: str, given: str = "") -> str:
+def unit(channel: str, default: str = "") -> str:
     """Unit of a channel; the given one if its name does not tell it.
 
     Examples
@@ -68,7 +68,7 @@ def unit(channel: str, given: str = "") -> str:
     >>> unit("AB.end.x"), unit("A.rx peak"), unit("gauge 7", "V"), unit("gauge 7")
     ('m', 'rad', 'V', '')
     """
-    return _known(channel, given)[1]
+    return _known(channel, default)[1]
 
 
 def derivative(channel: str, along: str, unit: str = "") -> str:
@@ -79,8 +79,8 @@ def derivative(channel: str, along: str, unit: str = "") -> str:
     >>> derivative("AB.end.x", "rad"), derivative("AB.end.x", ""), derivative("gauge 7", "rad")
     ('derivative (m/rad)', 'derivative (m)', 'derivative')
     """
-    own = _known(channel, unit)[1]
-    return labelled("derivative", f"{own}/{along}" if own and along else own)
+    unit_here = _known(channel, unit)[1]
+    return labelled("derivative", f"{unit_here}/{along}" if unit_here and along else unit_here)
 
 
 def _known(channel: str, unit: str) -> tuple[str, str]:

@@ -136,14 +136,14 @@ class EndedResult(Result):
         return (*self.outcome, *self.findings)
 
     def contents(self) -> Contents:
-        found = super().contents()
-        return replace(found, attributes={**found.attributes, "status": self.status})
+        contents = super().contents()
+        return replace(contents, attributes={**contents.attributes, "status": self.status})
 
 
 def fixed_of(result: Any) -> tuple[Parameter, ...]:
     """Parameters of a result that were fixed by equal bounds."""
-    held = getattr(getattr(result, "parameters", None), "fixed", ())
-    return getattr(result, "fixed", held)
+    fixed = getattr(getattr(result, "parameters", None), "fixed", ())
+    return getattr(result, "fixed", fixed)
 
 
 def fixed_facts(result: Any) -> dict[str, str]:

@@ -146,22 +146,22 @@ def encoded(value: Any) -> Any:
     if is_dataclass(value):
         return {part.name: encoded(getattr(value, part.name)) for part in fields(value)}
     if isinstance(value, Mapping):
-        return {key: encoded(one) for key, one in value.items()}
+        return {key: encoded(entry) for key, entry in value.items()}
     if isinstance(value, tuple | list):
-        return [encoded(one) for one in value]
+        return [encoded(entry) for entry in value]
     return value
 
 
 def _decoded(hint: Any, value: Any, source: Source) -> Any:
     """Return a setting as its type wants it: tuples and dataclasses again."""
     if isinstance(hint, UnionType) and value is not None:
-        (hint,) = (one for one in get_args(hint) if one is not type(None))
+        (hint,) = (member for member in get_args(hint) if member is not type(None))
     if value is None:
         return None
     if get_origin(hint) is tuple:
         kinds = get_args(hint)
         kinds = kinds[:1] * len(value) if kinds[-1] is Ellipsis else kinds
-        return tuple(_decoded(kind, one, source) for kind, one in zip(kinds, value, strict=True))
+        return tuple(_decoded(kind, member, source) for kind, member in zip(kinds, value, strict=True))
     if is_dataclass(hint) and isinstance(hint, type):
         return restore(hint, source, value)
     return hint(value) if hint in (bool, int, float, str) else value

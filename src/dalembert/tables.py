@@ -138,8 +138,8 @@ def in_words(value: float, unit: str, digits: int = 6) -> str:
     >>> in_words(1.8883e-4, "m"), in_words(2.5, "rad")
     ('188.83 µm', '2.5 rad')
     """
-    factor, own = prefixed(abs(value), unit)
-    return f"{shown(factor * value, digits=digits)} {own}"
+    factor, prefixed_unit = prefixed(abs(value), unit)
+    return f"{shown(factor * value, digits=digits)} {prefixed_unit}"
 
 
 def labelled(name: str, unit: str) -> str:
@@ -201,8 +201,8 @@ class Table:
         """A table of the rows of each experiment, whose names are the first column unless one has no name."""
         if "" not in rows:
             columns = ("experiment", *columns)
-            rows = {experiment: [(experiment, *row) for row in own] for experiment, own in rows.items()}
-        return cls.of_rows(name, caption, columns, [row for own in rows.values() for row in own])
+            rows = {experiment: [(experiment, *row) for row in rows_here] for experiment, rows_here in rows.items()}
+        return cls.of_rows(name, caption, columns, [row for rows_here in rows.values() for row in rows_here])
 
     @property
     def csv(self) -> str:
@@ -271,7 +271,7 @@ def marks(texts: Iterable[str]) -> list[Cell]:
 
 def unless(done: Iterable[bool], text: str) -> list[Cell]:
     """Notes on what is not done."""
-    return marks("" if one else text for one in done)
+    return marks("" if is_done else text for is_done in done)
 
 
 def few_values(parameters: Iterable[Parameter], texts: Iterable[str]) -> dict[str, str]:

@@ -20,7 +20,7 @@ def _controller() -> ThreadpoolController:
 
 def threads() -> int:
     """Return the number of threads that linear algebra takes in this process now."""
-    return max((one["num_threads"] for one in _controller().select(user_api="blas").info()), default=1)
+    return max((library["num_threads"] for library in _controller().select(user_api="blas").info()), default=1)
 
 
 @contextmanager
@@ -31,7 +31,7 @@ def with_threads(number: int) -> Iterator[None]:
 
 
 @contextmanager
-def one_thread() -> Iterator[None]:
+def single_thread() -> Iterator[None]:
     """A block, or as a decorator a function, in which linear algebra takes one thread.
 
     Threads that wait for each other cost up to thirty times the time on a busy machine.

@@ -46,7 +46,7 @@ class Unit:
         if power == 1:
             return self
         scale = self.scale**power  # a float where the power is no whole number, as in N*m/rad^1.5
-        return Unit(Fraction(scale), self.turns * power, tuple(power * one for one in self.exponents))
+        return Unit(Fraction(scale), self.turns * power, tuple(power * exponent for exponent in self.exponents))
 
     def times(self, scale: str | Fraction) -> "Unit":
         """Return a multiple of this unit."""
@@ -54,7 +54,7 @@ class Unit:
 
 
 def _base(name: str) -> Unit:
-    return Unit(exponents=tuple(int(name == one) for one in BASE))
+    return Unit(exponents=tuple(int(name == base) for base in BASE))
 
 
 NONE = Unit()
@@ -157,15 +157,15 @@ def readings(text: str) -> tuple[Unit, ...]:
     if text == "U":  # a turn in "U/min", a voltage alone
         return ()
     try:
-        found, place = _product(text, 0) if text else ([NONE], 0)
+        units, place = _product(text, 0) if text else ([NONE], 0)
     except (KeyError, RecursionError):
         return ()
-    return tuple(dict.fromkeys(found)) if place == len(text) else ()
+    return tuple(dict.fromkeys(units)) if place == len(text) else ()
 
 
 def _product(text: str, place: int) -> tuple[list[Unit], int]:
     """Readings of the product that begins at a place, and the place behind it."""
-    found, begin = [NONE], place
+    so_far, begin = [NONE], place
     while (token := _TOKEN.match(text, place)) is not None:
         if place == begin and token["sign"]:
             raise KeyError(text)
@@ -184,11 +184,11 @@ def _product(text: str, place: int) -> tuple[list[Unit], int]:
             factors = [(list(_named(name)), power if name is names[-1] else 1) for name in names]
         sign = -1 if token["sign"] in ("/", "per") else 1
         for units, power in factors:
-            found = [one * unit ** (sign * power) if found != [NONE] or sign * power != 1 else unit
-                     for one, unit in product(found, units)]  # fmt: skip
+            so_far = [first * unit ** (sign * power) if so_far != [NONE] or sign * power != 1 else unit
+                     for first, unit in product(so_far, units)]  # fmt: skip
     if place == begin:
         raise KeyError(text)
-    return found, place
+    return so_far, place
 
 
 def _power(text: str, place: int) -> tuple[int | Fraction, int]:
@@ -210,15 +210,15 @@ def _named(word: str) -> tuple[Unit, ...]:
     """
     if word == "1":
         return (NONE,)
-    found = next(iter(_found(word, _SYMBOLS, _WORDS)), None)
-    second = next(iter(_found(word, {"g": _SECOND["g"]}, _SECOND)), None)
-    units = tuple(one for one in (found, second) if one is not None)
+    units_found = next(iter(_prefixed(word, _SYMBOLS, _WORDS)), None)
+    second = next(iter(_prefixed(word, {"g": _SECOND["g"]}, _SECOND)), None)
+    units = tuple(unit for unit in (units_found, second) if unit is not None)
     if not units:
         raise KeyError(word)
     return units
 
 
-def _found(word: str, symbols: dict[str, tuple[Unit, str]], words: dict[str, tuple[Unit, str]]) -> Iterator[Unit]:
+def _prefixed(word: str, symbols: dict[str, tuple[Unit, str]], words: dict[str, tuple[Unit, str]]) -> Iterator[Unit]:
     """Yield a unit of a symbol or a word: as it is, then with a prefix, then as a long name with a long prefix."""
     lower = word.lower()
     for known, name in ((symbols, word), (words, lower), (words, lower.removesuffix("s"))):

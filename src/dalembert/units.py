@@ -100,10 +100,10 @@ def symbol(text: str) -> str:
     if match is None:
         return ""
     try:
-        given = _reading(match[2], None)
+        unit = _reading(match[2], None)
     except ValueError as error:
         raise InputError(sentence(text, None, "", str(error))) from None
-    return si_unit(given)
+    return si_unit(unit)
 
 
 def is_si(unit: str) -> bool:
@@ -112,7 +112,7 @@ def is_si(unit: str) -> bool:
     >>> is_si("Pa"), is_si("rad/s"), is_si("mm"), is_si("deg"), is_si("potato")
     (True, True, False, False, False)
     """
-    return any(one.factor == 1 and one.offset == 0 for one in readings(unit)[:1])
+    return any(reading.factor == 1 and reading.offset == 0 for reading in readings(unit)[:1])
 
 
 def factor_of(unit: str, wanted: str | None = None, *, measured: bool = False) -> float:
@@ -138,12 +138,12 @@ def factor_of(unit: str, wanted: str | None = None, *, measured: bool = False) -
     (0.001, 0.001, 9.80665, 9.80665)
     """
     try:
-        found = _reading(unit, wanted, measured=measured)
+        reading = _reading(unit, wanted, measured=measured)
     except ValueError as error:
         raise InputError(str(error) or f"the unit {unit!r} was given; expected that of {expected(wanted)}") from None
-    if found.offset:
+    if reading.offset:
         raise InputError(f"the unit {unit!r} has an offset; expected a multiple of an SI unit, such as 'K'")
-    return found.factor
+    return reading.factor
 
 
 def wrong_kind(unit: str, wanted: str) -> str:
@@ -198,10 +198,10 @@ def _converted(value: object, unit: str | None) -> float:
             return float(value)
         except ValueError:
             raise ValueError from None
-    number, given = float(match[1]), _reading(match[2], unit)
-    if given.turns or not math.isfinite(number) or number == 0:
-        return _tidy(number * given.factor)
-    return float((Fraction(match[1]) + given.offset) * given.scale)
+    number, reading = float(match[1]), _reading(match[2], unit)
+    if reading.turns or not math.isfinite(number) or number == 0:
+        return _tidy(number * reading.factor)
+    return float((Fraction(match[1]) + reading.offset) * reading.scale)
 
 
 def _tidy(number: float) -> float:
@@ -218,35 +218,35 @@ def _reading(text: str, wanted: str | None, *, measured: bool = False) -> Unit:
     ValueError
         With the reason, which is empty where the unit measures something else.
     """
-    found = readings(text)
-    if not found:
+    candidates = readings(text)
+    if not candidates:
         more = f" because it has several meanings; write {DOUBTFUL[text]}" if text in DOUBTFUL else ""
         raise ValueError(f"the unit {text!r} is unknown{more}")
     if wanted is None or not readings(wanted):
         if measured and text.strip().isalpha():
-            return found[-1]
-        return next((one for one in found if _is_known(one)), found[0])
-    reasons = [difference(one, readings(wanted)[0]) for one in found]
-    for one, reason in zip(found, reasons, strict=True):
+            return candidates[-1]
+        return next((candidate for candidate in candidates if _is_known(candidate)), candidates[0])
+    reasons = [difference(candidate, readings(wanted)[0]) for candidate in candidates]
+    for candidate, reason in zip(candidates, reasons, strict=True):
         if reason is None:
-            return one
+            return candidate
     raise ValueError(reasons[0])
 
 
-def difference(given: Unit, wanted: Unit) -> str | None:
+def difference(unit: Unit, wanted: Unit) -> str | None:
     """Return why a unit does not measure what another one does, in words or ``""``; None if it does.
 
     Radians, cycles and counts are numbers, so ``"N*m"`` stands for ``"N*m/rad"`` too.
     """
-    if given.exponents[:_RAD] != wanted.exponents[:_RAD]:
+    if unit.exponents[:_RAD] != wanted.exponents[:_RAD]:
         return ""
-    if given.exponents[_COUNT] != wanted.exponents[_COUNT] and any(wanted.exponents[:_COUNT]):
+    if unit.exponents[_COUNT] != wanted.exponents[_COUNT] and any(wanted.exponents[:_COUNT]):
         return ""
-    if given.exponents[_CYCLE] and wanted.exponents[_RAD]:
+    if unit.exponents[_CYCLE] and wanted.exponents[_RAD]:
         return "a frequency in Hz is no angular velocity: multiply it by 2 pi, or write it in rpm"
-    if given.exponents[_RAD] and wanted.exponents[_CYCLE]:
+    if unit.exponents[_RAD] and wanted.exponents[_CYCLE]:
         return "an angular velocity is no frequency: divide it by 2 pi, and write it in Hz"
-    if wanted == readings("rad/s")[0] and not given.exponents[_RAD] and given.scale != 1:
+    if wanted == readings("rad/s")[0] and not unit.exponents[_RAD] and unit.scale != 1:
         return "a rate without an angle is no angular velocity: write it in rpm or rad/s"
     return None
 

@@ -25,8 +25,8 @@ def versions() -> dict[str, str]:
     for path in sorted(root.rglob("*.py")):
         if path.relative_to(root).parts[0] not in _DRAWING:
             digest.update(path.read_bytes())
-    own = {"dalembert": dalembert.__version__, "sources": digest.hexdigest()[:12]}
-    return own | {name: version(name) for name in PACKAGES}
+    package = {"dalembert": dalembert.__version__, "sources": digest.hexdigest()[:12]}
+    return package | {name: version(name) for name in PACKAGES}
 
 
 def difference(other: Mapping[str, str], expected: Mapping[str, str]) -> str:

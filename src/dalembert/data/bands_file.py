@@ -60,14 +60,14 @@ def read_bands(
     names = None if columns is None else tuple(column for pair in columns.values() for column in pair)
     along_column = (frequency or time) if sampling is None else None
     request = Request(along_column, names, units=tuple(units or ()), separator=separator, decimal=decimal)
-    found = columns_in(path, request, format)
+    from_file = columns_in(path, request, format)
     if sampling is not None:
-        found = replace(found, along=found.along / rate_of(path, sampling))
-    along, table = replace(found, frequency=found.frequency or frequency is not None).converted(units)
+        from_file = replace(from_file, along=from_file.along / rate_of(path, sampling))
+    along, table = replace(from_file, frequency=from_file.frequency or frequency is not None).converted(units)
     pairs = _pairs(path, table) if columns is None else columns
     with errors_with_file(path):
         bands = Bands.of(along, {name: (table[lower], table[upper]) for name, (lower, upper) in pairs.items()})
-    named = found.named_units(units)
+    named = from_file.named_units(units)
     return replace(
         bands,
         source_units={

@@ -247,7 +247,7 @@ def _numbers(
             plain = [cell.replace(",", ".") for cell in cells] if text.decimal == "," else cells
             column = np.array(plain, dtype=float)
             quick = bool(np.all(np.isfinite(column))) and all(map(is_plain, cells))
-            quick = quick and not (text.decimal == "," and any("." in one for one in cells))
+            quick = quick and not (text.decimal == "," and any("." in text_here for text_here in cells))
         except ValueError:
             quick = False
         table[k] = column if quick else _slowly(path, text, k, frozenset() if k == time else gaps)

@@ -29,16 +29,18 @@ def motion(trajectory: Trajectory, frames: int | None, points: int) -> Iterator[
     cells, marks = _cells(sizes, len(bodies))
     if corners:
         numbers = [list(drawn.lines).index(name) for name in drawn.surfaces]
-        first = sum(sizes) + np.cumsum([0, *(own.shape[1] for own in corners)])
+        first = sum(sizes) + np.cumsum([0, *(part.shape[1] for part in corners)])
         triangles = [surface.triangles for surface in drawn.surfaces.values()]
-        cells.append(("triangle", np.concatenate([own + start for own, start in zip(triangles, first, strict=False)])))
+        cells.append(
+            ("triangle", np.concatenate([part + start for part, start in zip(triangles, first, strict=False)]))
+        )
         marks["body"].append(np.repeat(numbers, list(map(len, triangles))))
         marks["joint"].append(np.full(len(marks["body"][-1]), -1))
     sections = {name: np.zeros(places.shape[1]) for name in ("height", "width")}
     of_bodies = sizes[: len(bodies)]
     for name, values in sections.items():
-        own = [float(np.real(getattr(body, name, 0.0))) for body in trajectory.system.bodies]
-        values[: sum(of_bodies)] = np.repeat(own, of_bodies)
+        part = [float(np.real(getattr(body, name, 0.0))) for body in trajectory.system.bodies]
+        values[: sum(of_bodies)] = np.repeat(part, of_bodies)
     for time, place in zip(times, places, strict=True):
         fields = {"displacement": (place - places[0]).real, "velocity": place.imag / STEP}
         yield float(time), Mesh(place.real, cells, fields | sections, marks)
@@ -61,7 +63,7 @@ def _cells(sizes: list[int], bodies: int) -> tuple[list[tuple[str, np.ndarray]],
         if not places:
             continue
         starts = [first[place] + np.arange(max(sizes[place] - 1, 1)) for place in places]
-        owner = np.repeat(places, [len(own) for own in starts])
+        owner = np.repeat(places, [len(ends) for ends in starts])
         begin = np.concatenate(starts)
         cells.append((kind, np.column_stack([begin, begin + 1]) if kind == "line" else begin[:, None]))
         marks["body"].append(np.where(owner < bodies, owner, -1))

@@ -56,13 +56,13 @@ def period(shape: Deformation, frames: int) -> Iterator[tuple[float, Mesh]]:
 
 def _amplitudes(shape: Deformation) -> dict[int, np.ndarray]:
     """Complex amplitudes (nodes, 3) by harmonic: a cosine's minus i times a sine's coefficients; the mean is real."""
-    found, column = {}, 0
+    amplitudes, column = {}, 0
     for order in shape.orders:
         width = 2 if order else 1
-        own = shape.coefficients[..., column : column + width]
-        found[order] = own @ np.array([1.0, -1j][:width])
+        block = shape.coefficients[..., column : column + width]
+        amplitudes[order] = block @ np.array([1.0, -1j][:width])
         column += width
-    return found
+    return amplitudes
 
 
 def _parts(name: str, shape: np.ndarray) -> dict[str, np.ndarray]:

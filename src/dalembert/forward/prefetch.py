@@ -71,7 +71,7 @@ def prefetched(model: ForwardModel, work: Work[Item], items: Sequence[Item]) -> 
         return None
 
     remote = rebuilt(model, answering)
-    silent = rebuilt(model, lambda one: _Unasked(one.model) if isinstance(one, Distributed) else None)
+    silent = rebuilt(model, lambda submodel: _Unasked(submodel.model) if isinstance(submodel, Distributed) else None)
     missing = [not _known(silent, work, item) for item in items]
     answer = partial(_answers, packed((work, remote, kept)))
     wanted = [item for item, lacks in zip(items, missing, strict=True) if lacks]

@@ -37,11 +37,11 @@ class LinearModel:
     @cached_property
     def regularised(self) -> Regularised:
         """The problem of the free parameters alone, without bounds."""
-        return self._whole if self.free.all() else Regularised.of(self.slopes[:, self.free], -self.residual)
+        return self._full if self.free.all() else Regularised.of(self.slopes[:, self.free], -self.residual)
 
     def step(self, mu: float) -> np.ndarray:
         """The step (parameters,) of least ‖r + S d‖² + μ² ‖d‖² between the bounds."""
-        full = self._whole
+        full = self._full
         step = full.steps(mu)
         if np.all((self.down <= step) & (step <= self.up)):
             return step
@@ -61,5 +61,5 @@ class LinearModel:
         return -float((2 * self.residual + change) @ change)
 
     @cached_property
-    def _whole(self) -> Regularised:
+    def _full(self) -> Regularised:
         return Regularised.of(self.slopes, -self.residual)

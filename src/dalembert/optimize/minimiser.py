@@ -23,7 +23,7 @@ GRADIENT = ("CG", "BFGS", "Newton-CG", "L-BFGS-B", "TNC", "SLSQP", "trust-constr
 GLOBAL = ("differential_evolution", "dual_annealing", "basinhopping", "shgo", "direct")
 BATCHED = "differential_evolution"
 NAMES = (*BOUNDED, *UNBOUNDED, *GLOBAL)
-OWN = {"func", "bounds", "rng", "x0", "args", "callback"}  # arguments of global minimisers that are no options
+SET_HERE = {"func", "bounds", "rng", "x0", "args", "callback"}  # arguments of global minimisers that are no options
 # How much worse than the worst a failed sample is told to be: SciPy interpolates, which no infinity survives.
 FAILED = 10.0
 
@@ -67,7 +67,7 @@ class Minimiser(Checked):
         if self.name in GLOBAL:
             import scipy.optimize as so
 
-            taken = set(signature(getattr(so, self.name)).parameters) - OWN
+            taken = set(signature(getattr(so, self.name)).parameters) - SET_HERE
             for option in self.options:
                 require_known("option", option, taken, f"Minimiser({self.name!r})")
 

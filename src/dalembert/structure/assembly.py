@@ -34,26 +34,26 @@ def library(name: str, what: str) -> Any:
         ) from None
 
 
-def require_lengths(where: str, what: str, given: Sequence, count: int) -> None:
+def require_lengths(where: str, what: str, lengths: Sequence, count: int) -> None:
     """Refuse lengths that are not ``count`` positive numbers.
 
     Raises
     ------
     InputError
     """
-    if len(given) != count or not all(is_number(one) and np.real(one) > 0 for one in given):
-        raise InputError(f"{where}: {what} is {shown(given)}; expected {_COUNTS[count]} positive numbers in m")
+    if len(lengths) != count or not all(is_number(length) and np.real(length) > 0 for length in lengths):
+        raise InputError(f"{where}: {what} is {shown(lengths)}; expected {_COUNTS[count]} positive numbers in m")
 
 
-def require_counts(where: str, given: Sequence, count: int) -> None:
+def require_counts(where: str, counts: Sequence, count: int) -> None:
     """Refuse numbers of elements that are not ``count`` positive whole numbers.
 
     Raises
     ------
     InputError
     """
-    if len(given) != count or not all(is_whole(one) and one > 0 for one in given):
-        raise InputError(f"{where}: elements is {shown(given)}; expected {_COUNTS[count]} positive whole numbers")
+    if len(counts) != count or not all(is_whole(number) and number > 0 for number in counts):
+        raise InputError(f"{where}: elements is {shown(counts)}; expected {_COUNTS[count]} positive whole numbers")
 
 
 def assemble(local: np.ndarray, dofs: np.ndarray, size: int) -> csc_array:

@@ -105,8 +105,8 @@ class Campbell(Result):
 
     def direction(self, mode: int, row: int | None = None) -> str:
         """Return how a mode, numbered from 0 on, whirls at one speed, or at most speeds."""
-        own = self.whirl[:, mode] if row is None else self.whirl[[row], mode]
-        return direction(float(np.nanmedian(own))) if np.isfinite(own).any() else ""
+        whirl = self.whirl[:, mode] if row is None else self.whirl[[row], mode]
+        return direction(float(np.nanmedian(whirl))) if np.isfinite(whirl).any() else ""
 
     @cached_property
     def critical_speeds(self) -> tuple[CriticalSpeed, ...]:
@@ -119,7 +119,7 @@ class Campbell(Result):
             return ()
         from scipy.interpolate import CubicSpline  # mechanisms that do not rotate start without it
 
-        found = []
+        critical = []
         order = np.argsort(self.speeds)
         for mode in range(self.roots.shape[1]):
             gap = (np.imag(self.roots[:, mode]) - self.speeds)[order]
@@ -130,8 +130,8 @@ class Campbell(Result):
             for speed in CubicSpline(speeds, gap[known]).roots(extrapolate=False):
                 if speed > 0.0:
                     row = int(np.nanargmin(np.abs(self.speeds - speed)))
-                    found.append(CriticalSpeed(float(speed), mode + 1, self.direction(mode, row)))
-        return tuple(sorted(found))
+                    critical.append(CriticalSpeed(float(speed), mode + 1, self.direction(mode, row)))
+        return tuple(sorted(critical))
 
     @property
     def findings(self) -> tuple[Finding, ...]:  # type: ignore[override]
@@ -169,7 +169,7 @@ class Campbell(Result):
     def summary(self) -> str:
         """Status, critical speeds and findings."""
         rows = [["critical speed (rad/s)", "mode", "whirl"]]
-        rows += [[f"{own.speed:.6g}", str(own.mode), own.direction] for own in self.critical_speeds]
+        rows += [[f"{critical.speed:.6g}", str(critical.mode), critical.direction] for critical in self.critical_speeds]
         lines = [self.status, *(text_table(rows) if len(rows) > 1 else [])]
         return "\n".join([*lines, *map(str, self.findings)])
 
@@ -188,11 +188,11 @@ class Campbell(Result):
     @classmethod
     def from_xarray(cls, dataset: "Dataset") -> "Campbell":
         """The diagram that :meth:`to_xarray` turned into a dataset."""
-        found = {name: dataset[name].values for name in ("values", "speeds", "real", "imaginary", "whirl", "growth")}
-        roots = found["real"] + 1j * found["imaginary"]
+        arrays = {name: dataset[name].values for name in ("values", "speeds", "real", "imaginary", "whirl", "growth")}
+        roots = arrays["real"] + 1j * arrays["imaginary"]
         facts = dataset.attrs
-        own = found["values"], found["speeds"], roots, found["whirl"], found["growth"]
-        return cls(str(facts["parameter"]), str(facts["unit"]), *own, str(facts["frame"]))
+        fields = arrays["values"], arrays["speeds"], roots, arrays["whirl"], arrays["growth"]
+        return cls(str(facts["parameter"]), str(facts["unit"]), *fields, str(facts["frame"]))
 
 
 def direction(whirl: float) -> str:
@@ -208,21 +208,21 @@ def followed(modes: Sequence[SpeedModes], count: int | None) -> tuple[np.ndarray
     """
     from scipy.optimize import linear_sum_assignment  # mechanisms that do not rotate start without it
 
-    order = np.argsort([-own.speed for own in modes], kind="stable")
+    order = np.argsort([-mode.speed for mode in modes], kind="stable")
     first = modes[order[0]]
     columns = list(range(len(first.roots)))[:count]
     width = len(columns)
     roots = np.full((len(modes), width), np.nan, dtype=complex)
     whirl = np.full((len(modes), width), np.nan)
-    known_roots, known_shapes, known_whirl = (own[..., columns] for own in (first.roots, first.shapes, first.whirl))
+    known_roots, known_shapes, known_whirl = (mode[..., columns] for mode in (first.roots, first.shapes, first.whirl))
     roots[order[0]], whirl[order[0]] = known_roots, known_whirl
     for row in order[1:]:
-        own = modes[row]
-        cost = _distance(known_roots, known_shapes, known_whirl, own)
+        mode = modes[row]
+        cost = _distance(known_roots, known_shapes, known_whirl, mode)
         for column, other in zip(*linear_sum_assignment(cost), strict=True):
-            roots[row, column], whirl[row, column] = own.roots[other], own.whirl[other]
-            known_roots[column], known_shapes[:, column] = own.roots[other], own.shapes[:, other]
-            known_whirl[column] = own.whirl[other]
+            roots[row, column], whirl[row, column] = mode.roots[other], mode.whirl[other]
+            known_roots[column], known_shapes[:, column] = mode.roots[other], mode.shapes[:, other]
+            known_whirl[column] = mode.whirl[other]
     return roots, whirl
 
 

@@ -19,7 +19,7 @@ NEIGHBOURS = 0.01
 """Modes whose frequencies differ by less, relative, share their shapes when a reduction is judged."""
 
 
-class HeldBases:
+class CachedBases:
     """Bases of the reductions in a builder of systems. Later calls use the bases of the first one.
 
     So differences of the reduced matrices leave out how the basis changes, as the complex step does.
@@ -32,11 +32,11 @@ class HeldBases:
     @contextmanager
     def call(self) -> Iterator[None]:
         """One call of the function: its reductions get the bases in their order."""
-        self._next, before = 0, _held.set(self)
+        self._next, before = 0, _cached.set(self)
         try:
             yield
         finally:
-            _held.reset(before)
+            _cached.reset(before)
 
     def basis(self, make: Callable[[], np.ndarray]) -> np.ndarray:
         """The basis of the next reduction."""
@@ -46,7 +46,7 @@ class HeldBases:
         return self._bases[self._next - 1]
 
 
-_held: ContextVar[HeldBases | None] = ContextVar("held", default=None)
+_cached: ContextVar[CachedBases | None] = ContextVar("held", default=None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +89,7 @@ class ReducedStructure(Structure):
     basis: np.ndarray = field(kw_only=True)
     full_dofs: Dofs = field(kw_only=True)
 
-    def fixed(self, held: str | Sequence[str]) -> "ReducedStructure":
+    def fixed(self, clamped: str | Sequence[str]) -> "ReducedStructure":
         """The structure with some of its degrees of freedom clamped.
 
         Parameters
@@ -97,7 +97,7 @@ class ReducedStructure(Structure):
         held : str or sequence of str
             Degrees of freedom, nodes for all of theirs, or sets of nodes.
         """
-        less = super().fixed(held)
+        less = super().fixed(clamped)
         return replace(less, basis=self.basis[:, self.dofs.rows(less.dofs.names)])  # type: ignore[call-arg]
 
     def expand(self, motion: np.ndarray) -> np.ndarray:
@@ -181,41 +181,45 @@ def craig_bampton(structure: Structure, masters: str | Sequence[str], modes: int
     """
     if modes < 0:
         raise InputError(f"craig_bampton: modes is {modes}; expected 0 or more")
-    held = np.array(structure.rows(masters), dtype=int)
-    inner = np.setdiff1d(np.arange(structure.size), held)
+    master_rows = np.array(structure.rows(masters), dtype=int)
+    inner = np.setdiff1d(np.arange(structure.size), master_rows)
     count = min(modes, len(inner))
-    bases = _held.get()
+    bases = _cached.get()
     basis = (
-        bases.basis(lambda: _basis(structure, held, inner, count)) if bases else _basis(structure, held, inner, count)
+        bases.basis(lambda: _basis(structure, master_rows, inner, count))
+        if bases
+        else _basis(structure, master_rows, inner, count)
     )
 
     def reduced(matrix: Matrix) -> np.ndarray:
         small = basis.T @ (matrix @ basis)
         return (small + small.T) / 2
 
-    names = [structure.dofs.names[row] for row in held] + [f"mode {number}.q" for number in range(1, count + 1)]
+    names = [structure.dofs.names[row] for row in master_rows] + [f"mode {number}.q" for number in range(1, count + 1)]
     return ReducedStructure(
         dofs=Dofs(tuple(names)), nodes=structure.nodes, basis=basis, full_dofs=structure.dofs,
         **changed(structure, reduced),
     )  # fmt: skip
 
 
-def _basis(structure: Structure, held: np.ndarray, inner: np.ndarray, count: int) -> np.ndarray:
+def _basis(structure: Structure, master_rows: np.ndarray, inner: np.ndarray, count: int) -> np.ndarray:
     """Static shapes of the masters and the lowest modes with these held, (n, masters + modes)."""
     mass, stiffness = real_part(structure.mass), real_part(structure.stiffness)
-    basis = np.zeros((structure.size, len(held) + count))
-    basis[held, np.arange(len(held))] = 1.0
+    basis = np.zeros((structure.size, len(master_rows) + count))
+    basis[master_rows, np.arange(len(master_rows))] = 1.0
     if len(inner):
-        own = block(stiffness, inner)
-        solve = factorise(own, "craig_bampton: the stiffness with the masters held", "; clamp it or add masters")
-        basis[inner, : len(held)] = -solve(dense(block(stiffness, inner, held)))
-        own_mass = block(mass, inner)
+        inner_stiffness = block(stiffness, inner)
+        solve = factorise(
+            inner_stiffness, "craig_bampton: the stiffness with the masters held", "; clamp it or add masters"
+        )
+        basis[inner, : len(master_rows)] = -solve(dense(block(stiffness, inner, master_rows)))
+        inner_mass = block(mass, inner)
         if len(inner) <= max(DENSE, 2 * count):
-            shapes = all_modes(own_mass, own)[1][:, :count]
+            shapes = all_modes(inner_mass, inner_stiffness)[1][:, :count]
         elif count:
-            squares, shapes = lanczos(csc_array(own_mass), csc_array(own), count, solve)
+            squares, shapes = lanczos(csc_array(inner_mass), csc_array(inner_stiffness), count, solve)
             shapes = shapes[:, np.argsort(squares)]
         else:
             shapes = np.zeros((len(inner), 0))
-        basis[inner, len(held) :] = shapes
+        basis[inner, len(master_rows) :] = shapes
     return basis

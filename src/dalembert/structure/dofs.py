@@ -71,13 +71,13 @@ class Dofs:
         """
         if name in self._places:
             return self._places[name]
-        own = self._of_node.get(name, [])
-        if len(own) == 1:
-            return own[0]
-        if own:
+        rows = self._of_node.get(name, [])
+        if len(rows) == 1:
+            return rows[0]
+        if rows:
             raise InputError(
                 f"{where}{': ' * bool(where)}the node {name!r} has the degrees of freedom "
-                f"{', '.join(self.names[row] for row in own)}; name one"
+                f"{', '.join(self.names[row] for row in rows)}; name one"
             )
         raise InputError(unknown("degree of freedom", name, self.names, where))
 
@@ -101,7 +101,7 @@ class Dofs:
 
     @cached_property
     def _of_node(self) -> dict[str, list[int]]:
-        own: dict[str, list[int]] = {}
+        rows: dict[str, list[int]] = {}
         for row, name in enumerate(self.names):
-            own.setdefault(name.rpartition(".")[0], []).append(row)
-        return own
+            rows.setdefault(name.rpartition(".")[0], []).append(row)
+        return rows

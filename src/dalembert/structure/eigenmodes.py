@@ -86,7 +86,7 @@ def eigenmodes(structure: Structure, count: int = 10, shift: float = 0.0) -> Eig
     return EigenModes(np.sqrt(np.clip(squares[near], 0.0, None)) / (2 * np.pi), shapes)
 
 
-def similarity(shapes: np.ndarray, others: np.ndarray, mass: Matrix) -> np.ndarray:
+def similarity(shapes: np.ndarray, references: np.ndarray, mass: Matrix) -> np.ndarray:
     r"""Return the modal assurance criterion of each pair of shapes, weighted by the mass.
 
     :math:`(\phi^T M \psi)^2 / (\phi^T M \phi \; \psi^T M \psi)`: 1 for the same shape, 0 for orthogonal ones.
@@ -109,8 +109,8 @@ def similarity(shapes: np.ndarray, others: np.ndarray, mass: Matrix) -> np.ndarr
     >>> similarity(np.array([[1.0], [1.0]]), np.array([[2.0, 1.0], [2.0, 0.0]]), np.eye(2)).round(12)
     array([[1. , 0.5]])
     """
-    sizes, other_sizes = (np.einsum("ij,ij->j", one, mass @ one) for one in (shapes, others))
-    return (shapes.T @ (mass @ others)) ** 2 / np.outer(sizes, other_sizes)
+    sizes, other_sizes = (np.einsum("ij,ij->j", modes, mass @ modes) for modes in (shapes, references))
+    return (shapes.T @ (mass @ references)) ** 2 / np.outer(sizes, other_sizes)
 
 
 def real_part(matrix: Matrix) -> Matrix:

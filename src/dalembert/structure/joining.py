@@ -40,15 +40,18 @@ def combine(parts: Mapping[str, Structure]) -> Structure:
     if not structures:
         raise InputError("combine: there are no parts; expected at least one")
 
-    def whole(name: str) -> csc_array | None:
-        matrices = [getattr(one, name) for one in structures]
-        if all(one is None for one in matrices):
+    def joined(name: str) -> csc_array | None:
+        matrices = [getattr(structure, name) for structure in structures]
+        if all(structure is None for structure in matrices):
             return None
-        given = [0 * one.mass if own is None else own for one, own in zip(structures, matrices, strict=True)]
-        return csc_array(block_diag([csc_array(one) for one in given], format="csc"))
+        blocks = [
+            0 * structure.mass if matrix is None else matrix
+            for structure, matrix in zip(structures, matrices, strict=True)
+        ]
+        return csc_array(block_diag([csc_array(structure) for structure in blocks], format="csc"))
 
-    names = tuple(f"{part}/{name}" for part, one in parts.items() for name in one.dofs.names)
-    return Structure(dofs=Dofs(names), nodes=_nodes(parts), **{name: whole(name) for name in MATRICES})
+    names = tuple(f"{part}/{name}" for part, structure in parts.items() for name in structure.dofs.names)
+    return Structure(dofs=Dofs(names), nodes=_nodes(parts), **{name: joined(name) for name in MATRICES})
 
 
 @takes_checked()
@@ -128,17 +131,20 @@ def tie(structure: Structure, joined: Sequence[tuple[str, str]]) -> Structure:
 
     nodes = structure.nodes
     if nodes is not None:
-        sets = {name: tuple(dict.fromkeys(keeper.get(node, node) for node in own)) for name, own in nodes.sets.items()}
+        sets = {
+            name: tuple(dict.fromkeys(keeper.get(node, node) for node in members))
+            for name, members in nodes.sets.items()
+        }
         rows = {name: row for row, name in enumerate(nodes.names)}
-        own = np.array([rows[keeper.get(name, name)] for name in nodes.names], dtype=int)
-        nodes = replace(nodes, sets=sets, faces=None if nodes.faces is None else own[nodes.faces])
+        members = np.array([rows[keeper.get(name, name)] for name in nodes.names], dtype=int)
+        nodes = replace(nodes, sets=sets, faces=None if nodes.faces is None else members[nodes.faces])
     return replace(structure, dofs=Dofs(names), nodes=nodes, **changed(structure, tied))
 
 
 def _nodes(parts: Mapping[str, Structure]) -> Nodes | None:
-    if any(one.nodes is None for one in parts.values()):
+    if any(structure.nodes is None for structure in parts.values()):
         return None
-    every = {part: one.nodes for part, one in parts.items() if one.nodes is not None}
+    every = {part: structure.nodes for part, structure in parts.items() if structure.nodes is not None}
     starts = np.cumsum([0, *(len(nodes.names) for nodes in every.values())])
     faces = [
         nodes.faces + start
@@ -149,9 +155,9 @@ def _nodes(parts: Mapping[str, Structure]) -> Nodes | None:
         tuple(f"{part}/{name}" for part, nodes in every.items() for name in nodes.names),
         np.vstack([nodes.places for nodes in every.values()]),
         {
-            f"{part}/{name}": tuple(f"{part}/{node}" for node in own)
+            f"{part}/{name}": tuple(f"{part}/{node}" for node in members)
             for part, nodes in every.items()
-            for name, own in nodes.sets.items()
+            for name, members in nodes.sets.items()
         },
         np.vstack(faces) if len(faces) == len(every) else None,
     )

@@ -32,8 +32,8 @@ def _named(matrix: Any) -> NamedMatrix:
 
 def npz(path: Path) -> Matrices:
     """Arrays of an NPZ file; sparse ones are NAME.data, NAME.indices and NAME.indptr by columns; dofs names rows."""
-    with np.load(path, allow_pickle=False) as held:
-        arrays = dict(held)
+    with np.load(path, allow_pickle=False) as file:
+        arrays = dict(file)
     dofs = tuple(map(str, arrays.pop("dofs"))) if "dofs" in arrays else None
     dense = {name: NamedMatrix(array, dofs) for name, array in arrays.items() if array.ndim == 2 and "." not in name}
     sparse = {}
@@ -57,11 +57,11 @@ def matrix_market(path: Path) -> Matrices:
 def _abaqus(path: Path) -> Matrices:
     """``*MATRIX OUTPUT, FORMAT=MATRIX INPUT``: the lower or the upper triangle, or all."""
     table = np.loadtxt(path, delimiter=",", comments=["*"], ndmin=2)
-    rows, columns = ([_dof(*one) for one in table[:, at : at + 2].astype(int)] for at in (0, 2))
+    rows, columns = ([_dof(*entry) for entry in table[:, at : at + 2].astype(int)] for at in (0, 2))
     dofs = tuple(dict.fromkeys(rows + columns))
     places = {name: place for place, name in enumerate(dofs)}
-    own, other = ([places[name] for name in names] for names in (rows, columns))
-    return {path.stem: NamedMatrix(completed(own, other, table[:, 4], len(dofs)), dofs)}
+    row_places, other = ([places[name] for name in names] for names in (rows, columns))
+    return {path.stem: NamedMatrix(completed(row_places, other, table[:, 4], len(dofs)), dofs)}
 
 
 def calculix(path: Path) -> Matrices:
@@ -70,13 +70,15 @@ def calculix(path: Path) -> Matrices:
     if not names.is_file():
         raise DataError(f"{path}: beside it {names.name} is missing, in which CalculiX says which row is which")
     dofs = tuple(_dof(*map(int, line.split("."))) for line in names.read_text(encoding="utf-8").split())
-    found = {}
+    matrices_by_role = {}
     for role, suffix in (("stiffness", ".sti"), ("mass", ".mas")):
-        one = path.with_suffix(suffix)
-        if one.is_file():
-            rows, columns, values = np.loadtxt(one, ndmin=2).T
-            found[role] = NamedMatrix(completed(rows.astype(int) - 1, columns.astype(int) - 1, values, len(dofs)), dofs)
-    return found
+        file = path.with_suffix(suffix)
+        if file.is_file():
+            rows, columns, values = np.loadtxt(file, ndmin=2).T
+            matrices_by_role[role] = NamedMatrix(
+                completed(rows.astype(int) - 1, columns.astype(int) - 1, values, len(dofs)), dofs
+            )
+    return matrices_by_role
 
 
 def mat(path: Path) -> Matrices:
@@ -85,29 +87,29 @@ def mat(path: Path) -> Matrices:
 
     if h5py.is_hdf5(path):
         raise DataError(f"{path}: it is a MAT file of version 7.3; save it in MATLAB with save(..., '-v7')")
-    held = {name: value for name, value in version_5(path).items() if not name.startswith("__")}
+    variables = {name: value for name, value in version_5(path).items() if not name.startswith("__")}
     return {
         name: _named(value)
-        for name, value in held.items()
+        for name, value in variables.items()
         if issparse(value) or (isinstance(value, np.ndarray) and value.ndim == 2)
     }
 
 
 def op4(path: Path) -> Matrices:
     """Matrices of Nastran's OUTPUT4, by pyYeti; their rows have no names."""
-    held = _pyyeti("op4", path, "OP4 files").load(str(path), sparse=None)
-    return {name: _named(matrix) for name, (matrix, *_) in held.items()}
+    matrices_read = _pyyeti("op4", path, "OP4 files").load(str(path), sparse=None)
+    return {name: _named(matrix) for name, (matrix, *_) in matrices_read.items()}
 
 
 def dmig(path: Path) -> Matrices:
     """DMIG entries of Nastran's bulk data or punch file, by pyYeti; scalar points (component 0) count as x."""
-    held = _pyyeti("bulk", path, "DMIG entries").rddmig(str(path))
-    found = {}
-    for name, table in held.items():
+    entries = _pyyeti("bulk", path, "DMIG entries").rddmig(str(path))
+    matrices_read = {}
+    for name, table in entries.items():
         dofs = tuple(_dof(int(node), max(int(component), 1)) for node, component in table.index)
         if table.shape[0] == table.shape[1] and list(table.index) == list(table.columns):
-            found[name] = NamedMatrix(csc_array(table.to_numpy()), dofs)
-    return found
+            matrices_read[name] = NamedMatrix(csc_array(table.to_numpy()), dofs)
+    return matrices_read
 
 
 def _pyyeti(module: str, path: Path, what: str) -> Any:
@@ -120,15 +122,15 @@ def ansys_full(path: Path) -> Matrices:
     reader = library("ansys.mapdl.reader", path, "full files of ANSYS", "ansys", "ansys-mapdl-reader")
     file = reader.read_binary(str(path))
     dofs, stiffness, mass = file.load_km(as_sparse=True, sort=False)
-    held = {tuple(one) for one in np.asarray(file.const).tolist()}
-    kept = [row for row, one in enumerate(np.asarray(dofs).tolist()) if tuple(one) not in held]
+    clamped = {tuple(pair) for pair in np.asarray(file.const).tolist()}
+    kept = [row for row, pair in enumerate(np.asarray(dofs).tolist()) if tuple(pair) not in clamped]
     names = tuple(_dof(int(dofs[row, 0]), int(dofs[row, 1]) + 1) for row in kept)
-    found = {}
+    matrices_read = {}
     for role, triangle in (("stiffness", stiffness), ("mass", mass)):
         if triangle is not None:
-            one = coo_array(csc_array(triangle)[:, kept][kept])
-            found[role] = NamedMatrix(completed(one.row, one.col, one.data, len(names)), names)
-    return found
+            pair = coo_array(csc_array(triangle)[:, kept][kept])
+            matrices_read[role] = NamedMatrix(completed(pair.row, pair.col, pair.data, len(names)), names)
+    return matrices_read
 
 
 READERS: dict[str, Callable[[Path], Matrices]] = {
@@ -159,17 +161,17 @@ def matrices(path: Path) -> Matrices:
             f"{path}: matrices are not read from {path.suffix or 'such'} files; known: {', '.join(READERS)}"
         )
     with reading(path, f"matrices ({path.suffix})"):
-        found = reader(path)
-    return {name: one for name, one in found.items() if one.matrix.shape[0] == one.matrix.shape[1]}
+        matrices_read = reader(path)
+    return {name: matrix for name, matrix in matrices_read.items() if matrix.matrix.shape[0] == matrix.matrix.shape[1]}
 
 
 def completed(rows: Iterable[int], columns: Iterable[int], values: np.ndarray, size: int) -> csc_array:
     """A symmetric matrix from entries of which each pair (i, j), (j, i) is given once or twice."""
     where = (np.asarray(rows), np.asarray(columns))
-    given = csc_array(coo_array((values, where), shape=(size, size)))
+    entries = csc_array(coo_array((values, where), shape=(size, size)))
     known = csc_array(coo_array((np.ones(len(values)), where), shape=(size, size)))
     known.data[:] = 1.0  # an entry that comes in parts counts once
-    total, times = csc_array(given + given.T).tocoo(), csc_array(known + known.T)
+    total, times = csc_array(entries + entries.T).tocoo(), csc_array(known + known.T)
     return csc_array((total.data / times[total.row, total.col], (total.row, total.col)), shape=(size, size))
 
 

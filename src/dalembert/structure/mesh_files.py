@@ -48,7 +48,7 @@ def read_mesh(path: str | Path) -> tuple[Any, np.ndarray, dict[str, np.ndarray]]
     except (Exception, SystemExit) as error:  # meshio prints the reason and ends the process
         reason = told(error) if isinstance(error, Exception) else " ".join(said.getvalue().split())
         raise DataError(f"{path}: no mesh can be read from it: {reason}") from error
-    sets = {name: np.unique(np.asarray(own, dtype=int)) for name, own in (read.point_sets or {}).items()}
+    sets = {name: np.unique(np.asarray(members, dtype=int)) for name, members in (read.point_sets or {}).items()}
     return mesh, read.points, sets
 
 
@@ -115,6 +115,6 @@ def _with_27_nodes(points: np.ndarray, cells: np.ndarray) -> tuple[np.ndarray, n
     on_faces = points[edges].sum(axis=2) / 2 - points[corners].sum(axis=2) / 4
     inside = points[cells[:, 8:20]].sum(axis=1) / 4 - points[cells[:, :8]].sum(axis=1) / 4
     faces = len(points) + place.reshape(len(cells), 6)
-    own = len(points) + len(first) + np.arange(len(cells))[:, None]
+    centres = len(points) + len(first) + np.arange(len(cells))[:, None]
     everywhere = np.vstack([points, on_faces.reshape(-1, 3)[first], inside])
-    return everywhere, np.hstack([cells, faces, own]), "hexahedron27"
+    return everywhere, np.hstack([cells, faces, centres]), "hexahedron27"

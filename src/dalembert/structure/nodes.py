@@ -54,10 +54,10 @@ class Nodes:
             )
         object.__setattr__(self, "places", places)
         object.__setattr__(
-            self, "sets", MappingProxyType({name: tuple(map(str, own)) for name, own in self.sets.items()})
+            self, "sets", MappingProxyType({name: tuple(map(str, members)) for name, members in self.sets.items()})
         )
-        for name, own in self.sets.items():
-            for node in own:
+        for name, members in self.sets.items():
+            for node in members:
                 if node not in self._rows:
                     raise InputError(unknown("node", node, self.names, f"Nodes: set {name!r}"))
 

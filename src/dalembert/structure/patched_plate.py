@@ -124,11 +124,11 @@ def patched_plate(
     for number in range(1, 5):
         parts[f"patch {number}"] = solid(replace(strip, doflocs=np.array([x, y, z])), patch.material)
         x, y = side - y, x
-    whole = combine(parts)
+    full = combine(parts)
     for number in range(1, 5):
-        joined = pairs(whole, f"patch {number}/middle", "plate/top", ROUNDING)
-        whole = tie(whole, [(plate, strip) for strip, plate in joined])
-    return whole
+        joined = pairs(full, f"patch {number}/middle", "plate/top", ROUNDING)
+        full = tie(full, [(plate, strip) for strip, plate in joined])
+    return full
 
 
 def foot_pairs(structure: Structure, every: bool = False) -> Pairs:
@@ -141,12 +141,12 @@ def foot_pairs(structure: Structure, every: bool = False) -> Pairs:
         All 13 nodes of each foot, not only four that pass on its moments too: middles of edges of elements, since those
         and not the corners of a brick of 20 nodes carry a pressure.
     """
-    found = []
+    foot_pairs_here = []
     for number in range(1, 5):
         for foot in ("outer", "inner"):
             below = pairs(structure, f"patch {number}/{foot} foot", "plate/top", ROUNDING)
-            found += below if every else _quarters(structure, below)
-    return tuple(found)
+            foot_pairs_here += below if every else _quarters(structure, below)
+    return tuple(foot_pairs_here)
 
 
 def _quarters(structure: Structure, foot: Pairs) -> list[tuple[str, str]]:

@@ -81,22 +81,22 @@ def read_structure(
     names = names or {}
     for role in (*files, *names):
         require_known("role of a matrix", role, ROLES, "read_structure")
-    whole = not isinstance(path, Mapping)
+    single_file = not isinstance(path, Mapping)
     read = {file: matrices(Path(file)) for file in dict.fromkeys(files.values())}
-    found = {}
+    matrices_by_role = {}
     for role, file in files.items():
-        one = _of_role(role, read[file], names.get(role), alone=not whole)
-        if one is not None:
-            found[role] = one
-        elif role not in OPTIONAL or not whole:
+        matrix = _of_role(role, read[file], names.get(role), alone=not single_file)
+        if matrix is not None:
+            matrices_by_role[role] = matrix
+        elif role not in OPTIONAL or not single_file:
             raise DataError(
                 f"{file}: no {role} matrix is found; name it, such as names={{{role!r}: NAME}}; the file has "
                 f"{', '.join(read[file]) or 'no square matrices'}"
             )
-    if whole and not names:
-        _require_all_read(path, read[path], found)  # pyright: ignore[reportArgumentType]
-    rows = _rows(found, dofs, directions)
-    aligned = {role: _aligned(one, rows) for role, one in found.items()}
+    if single_file and not names:
+        _require_all_read(path, read[path], matrices_by_role)  # pyright: ignore[reportArgumentType]
+    rows = _rows(matrices_by_role, dofs, directions)
+    aligned = {role: _aligned(matrix, rows) for role, matrix in matrices_by_role.items()}
     for role in ("mass", "stiffness"):
         if role not in aligned:
             raise InputError(f"read_structure: no file is given for the {role}; expected files for mass and stiffness")
@@ -131,36 +131,42 @@ def write_structure(structure: Structure, path: str | Path) -> None:
         np.savez(temporary, **arrays)  # type: ignore[arg-type]
 
 
-def _of_role(role: str, held: Mapping[str, NamedMatrix], name: str | None, alone: bool) -> NamedMatrix | None:
+def _of_role(role: str, matrices: Mapping[str, NamedMatrix], name: str | None, alone: bool) -> NamedMatrix | None:
     """The matrix of a file for a role: the named one, the only one of a file of its own, or one with a usual name."""
     if name is not None:
-        if name not in held:
-            raise DataError(unknown("matrix", name, held, f"read_structure: {role}"))
-        return held[name]
-    if alone and len(held) == 1:
-        return next(iter(held.values()))
-    usual = [one for key, one in held.items() if key.lower() in ROLES[role]]
+        if name not in matrices:
+            raise DataError(unknown("matrix", name, matrices, f"read_structure: {role}"))
+        return matrices[name]
+    if alone and len(matrices) == 1:
+        return next(iter(matrices.values()))
+    usual = [matrix for key, matrix in matrices.items() if key.lower() in ROLES[role]]
     return usual[0] if len(usual) == 1 else None
 
 
-def _require_all_read(file: str | Path, held: Mapping[str, NamedMatrix], found: Mapping[str, NamedMatrix]) -> None:
-    sizes, read = {one.matrix.shape for one in found.values()}, list(found.values())
-    left = [name for name, one in held.items() if one.matrix.shape in sizes and not any(one is own for own in read)]
+def _require_all_read(file: str | Path, matrices: Mapping[str, NamedMatrix], chosen: Mapping[str, NamedMatrix]) -> None:
+    sizes, read = {matrix.matrix.shape for matrix in chosen.values()}, list(chosen.values())
+    left = [
+        name
+        for name, matrix in matrices.items()
+        if matrix.matrix.shape in sizes and not any(matrix is used for used in read)
+    ]
     if left:
-        known = {role: next(name for name, one in held.items() if one is own) for role, own in found.items()}
+        known = {
+            role: next(name for name, matrix in matrices.items() if matrix is used) for role, used in chosen.items()
+        }
         raise DataError(
             f"{file}: it is not known what the matrix {left[0]!r} is. Name the matrices to read, such as "
             f"names={known | {'damping': left[0]}}, or names={known} to leave it out"
         )
 
 
-def _rows(found: Mapping[str, NamedMatrix], dofs: Sequence[str] | None, directions: Sequence[str]) -> tuple[str, ...]:
+def _rows(chosen: Mapping[str, NamedMatrix], dofs: Sequence[str] | None, directions: Sequence[str]) -> tuple[str, ...]:
     if dofs is not None:
         return tuple(dofs)
-    named = [name for one in found.values() for name in one.dofs or ()]
+    named = [name for matrix in chosen.values() for name in matrix.dofs or ()]
     if named:
         return tuple(dict.fromkeys(named))
-    size = next(iter(found.values())).matrix.shape[0]
+    size = next(iter(chosen.values())).matrix.shape[0]
     if size % len(directions):
         raise InputError(
             f"read_structure: the matrices have {size} rows, which is no multiple of the {len(directions)} directions "
@@ -187,13 +193,13 @@ def _split(aligned: Mapping[str, Matrix]) -> dict[str, Matrix]:
     return real
 
 
-def _aligned(one: NamedMatrix, rows: tuple[str, ...]) -> Matrix:
+def _aligned(matrix: NamedMatrix, rows: tuple[str, ...]) -> Matrix:
     """The matrix in the order of all rows, with zeros where its file does not name them."""
-    if one.dofs is None or one.dofs == rows or set(one.dofs) - set(rows):
-        return one.matrix
+    if matrix.dofs is None or matrix.dofs == rows or set(matrix.dofs) - set(rows):
+        return matrix.matrix
     place = {name: row for row, name in enumerate(rows)}
     spread = csc_array(
-        (np.ones(len(one.dofs)), ([place[name] for name in one.dofs], np.arange(len(one.dofs)))),
-        shape=(len(rows), len(one.dofs)),
+        (np.ones(len(matrix.dofs)), ([place[name] for name in matrix.dofs], np.arange(len(matrix.dofs)))),
+        shape=(len(rows), len(matrix.dofs)),
     )
-    return csc_array(spread @ csc_array(one.matrix) @ spread.T)
+    return csc_array(spread @ csc_array(matrix.matrix) @ spread.T)

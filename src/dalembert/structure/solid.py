@@ -148,7 +148,7 @@ def solid(mesh: Any, material: Material | Mapping[str, Material], element: str |
         name: tuple(map(str, np.unique(basis.get_dofs(facets).all())))
         for name, facets in (mesh.boundaries or {}).items()
     }
-    node_sets = {name: _nodes_at(places, points[own]) for name, own in sets.items()}
+    node_sets = {name: _nodes_at(places, points[members]) for name, members in sets.items()}
     return Structure(
         assemble(_mass(weighing, density), dofs, size),
         assemble(_stiffness(basis, first, second), dofs, size),
@@ -162,14 +162,14 @@ def _nodes_at(places: np.ndarray, points: np.ndarray) -> tuple[str, ...]:
     from scipy.spatial import KDTree
 
     near = SAME * np.ptp(places, axis=0).max()
-    found = KDTree(places).query_ball_point(points, near)
-    return tuple(map(str, sorted({node for own in found for node in own})))
+    near_nodes = KDTree(places).query_ball_point(points, near)
+    return tuple(map(str, sorted({node for nodes in near_nodes for node in nodes})))
 
 
 def _materials(mesh: Any, material: Material | Mapping[str, Material]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """λ, μ and the density of each element."""
     regions = {"": material} if isinstance(material, Material) else material
-    constants = [(*one.lame, one.density) for one in regions.values()]
+    constants = [(*region.lame, region.density) for region in regions.values()]
     table = np.zeros((3, mesh.nelements), dtype=np.result_type(float, *(value for row in constants for value in row)))
     for name, row in zip(regions, constants, strict=True):
         if name and name not in (mesh.subdomains or {}):

@@ -132,11 +132,13 @@ class Structure(Displayed, Checked):
         sets = self.nodes.sets if self.nodes else {}
         names = names_of(names, "Structure", "a list of degrees of freedom, nodes or sets")
         single = [
-            name for given in names for name in (filter(self.dofs.has_node, sets[given]) if given in sets else [given])
+            name
+            for name_or_set in names
+            for name in (filter(self.dofs.has_node, sets[name_or_set]) if name_or_set in sets else [name_or_set])
         ]
         return list(dict.fromkeys(self.dofs.rows(single)))
 
-    def fixed(self, held: str | Sequence[str]) -> Structure:
+    def fixed(self, clamped: str | Sequence[str]) -> Structure:
         """Return the structure with clamped degrees of freedom: their rows and columns are removed.
 
         Parameters
@@ -145,7 +147,7 @@ class Structure(Displayed, Checked):
             Degrees of freedom, nodes for all of theirs, or sets of nodes.
         """
         out = np.ones(self.size, dtype=bool)
-        out[self.rows(held)] = False
+        out[self.rows(clamped)] = False
         kept = np.flatnonzero(out)
         return replace(
             self,
@@ -200,8 +202,8 @@ class Structure(Displayed, Checked):
 
 def changed(structure: Structure, change: Callable[[Matrix], Matrix]) -> dict[str, Matrix]:
     """Return the matrices of a structure by name, each after a change."""
-    given = {name: getattr(structure, name) for name in MATRICES}
-    return {name: change(matrix) for name, matrix in given.items() if matrix is not None}
+    matrices = {name: getattr(structure, name) for name in MATRICES}
+    return {name: change(matrix) for name, matrix in matrices.items() if matrix is not None}
 
 
 def known_nodes(structure: Structure, where: str) -> Nodes:

@@ -281,17 +281,17 @@ def button(text: str, on_click: Callable[[], object], *, icon: str, colour: str 
     return ui.button(text, on_click=on_click, icon=icon, color=colour).props("no-caps no-wrap unelevated")
 
 
-def tipped(made: ui.button, text: str) -> ui.button:
+def tipped(button: ui.button, text: str) -> ui.button:
     """Give a button a tip, and return it.
 
     The tip is a child of the button and goes with it. A tip beside it looks for a button that may be gone.
     """
-    with made:
+    with button:
         ui.tooltip(text)
-    return made
+    return button
 
 
 def icon_button(icon: str, label: str, on_click: Callable[[], object]) -> ui.button:
     """A button with an icon alone, and what it does as its label and tip."""
-    made = ui.button(on_click=on_click, icon=icon).props(f'flat round dense aria-label="{label}"')
-    return tipped(made, label)
+    button = ui.button(on_click=on_click, icon=icon).props(f'flat round dense aria-label="{label}"')
+    return tipped(button, label)

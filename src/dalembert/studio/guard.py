@@ -44,7 +44,7 @@ class Guard:
             return
         request = HTTPConnection(scope)
         answer = self._refusal(request)
-        if answer is None and self.token and self._given(request) and scope["type"] == "http":
+        if answer is None and self.token and self._has_token(request) and scope["type"] == "http":
             cookie = f"{COOKIE}={self.token}; HttpOnly; SameSite=Strict; Path=/"
             path = "/" + quote(scope["path"].lstrip("/"))  # with two slashes it would be another site
             answer = PlainTextResponse("", 303, {"location": path, "set-cookie": cookie})
@@ -66,14 +66,14 @@ class Guard:
         length = headers.get("content-length", "0")
         if not length.isdigit() or int(length) > MOST_BYTES:
             return PlainTextResponse(f"The file is too large: a request may have {MOST_BYTES} bytes.", 413)
-        if self.token and not self._given(request) and not self._is_token(request.cookies.get(COOKIE, "")):
+        if self.token and not self._has_token(request) and not self._is_token(request.cookies.get(COOKIE, "")):
             opened = "Open the address that 'dalembert studio' printed when it started: it has the token in it."
             return PlainTextResponse(opened, 401)
         return None
 
-    def _given(self, request: HTTPConnection) -> bool:
+    def _has_token(self, request: HTTPConnection) -> bool:
         """Whether the address has the token."""
         return self._is_token(request.query_params.get("token", ""))
 
-    def _is_token(self, given: str) -> bool:
-        return secrets.compare_digest(given.encode(), self.token.encode())
+    def _is_token(self, token: str) -> bool:
+        return secrets.compare_digest(token.encode(), self.token.encode())

@@ -25,22 +25,22 @@ class Latest:
     """
 
     def __init__(self, work: Callable[[], Awaitable[object]], pause: float = 0.0) -> None:
-        self._work, self._pause, self._asked, self._busy = work, pause, False, False
+        self._work, self._pause, self._pending, self._busy = work, pause, False, False
 
     def __call__(self) -> None:
         """Ask for a turn."""
-        self._asked = True
+        self._pending = True
         if not self._busy:
             self._busy = True
             background_tasks.create(self._turns())
 
     async def _turns(self) -> None:
         try:
-            while self._asked:
-                self._asked = False
+            while self._pending:
+                self._pending = False
                 if self._pause > 0:
                     await asyncio.sleep(self._pause)
-                if not self._asked:
+                if not self._pending:
                     await self._work()
         finally:
             self._busy = False

@@ -19,9 +19,9 @@ def context() -> "ForkServerContext | SpawnContext":
     """Return how processes begin here."""
     if sys.platform != "linux":  # macOS: forked processes must not use its libraries for linear algebra
         return multiprocessing.get_context("spawn")
-    found = multiprocessing.get_context("forkserver")
-    found.set_forkserver_preload([READY])
-    return found
+    result = multiprocessing.get_context("forkserver")
+    result.set_forkserver_preload([READY])
+    return result
 
 
 def prepare() -> None:

@@ -102,7 +102,7 @@ class Worker:
         self._connection: Connection | None = None
         self._ended = ""
         self._cause: Cause = "ended"
-        self._asked = self._interrupted = 0  # number of the last request, and of the last one that must not go on
+        self._requests = self._interrupted = 0  # number of the last request, and of the last one that must not go on
         self._computed: object | None = None
         self._stopped = False
         self._lock = Lock()  # of the process, which several threads end
@@ -139,8 +139,8 @@ class Worker:
         mine = self._newest[subject] = object()
         answer: Future[T | None] = Future()
         request = (partial(function, **named) if named else function), arguments
-        self._asked += 1
-        number = self._asked
+        self._requests += 1
+        number = self._requests
 
         def turn() -> None:
             if not answer.set_running_or_notify_cancel():
@@ -175,7 +175,7 @@ class Worker:
         """
         with self._lock:
             if not self._killed(STOPPED):
-                self._interrupted = self._asked
+                self._interrupted = self._requests
 
     def stop(self) -> None:
         """End the process for good, and drop the requests that have no answer."""

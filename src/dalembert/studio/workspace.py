@@ -72,8 +72,8 @@ class Workspace:
 
     def _files(self) -> dict[str, Path]:
         """All TOML files in folders of studies, by their names without ``.toml``; hidden ones are left out."""
-        found = sorted((self.root / "studies").glob("*/*.toml"))
-        shown = [path for path in found if not (path.name.startswith(".") or path.parent.name.startswith("."))]
+        paths = sorted((self.root / "studies").glob("*/*.toml"))
+        shown = [path for path in paths if not (path.name.startswith(".") or path.parent.name.startswith("."))]
         return {f"{path.parent.name}/{path.stem}": path for path in shown}
 
     def free(self, name: str) -> str:
@@ -109,10 +109,10 @@ class Workspace:
             file = ""
         if not file:
             raise InputError(f"{path.name} names no model file; its model is in the study itself")
-        found = Path(os.path.normpath(path.parent / file))
-        if not found.is_relative_to(self.root / "studies") or found.suffix != ".toml":
+        model_path = Path(os.path.normpath(path.parent / file))
+        if not model_path.is_relative_to(self.root / "studies") or model_path.suffix != ".toml":
             raise InputError(f"{file} is no TOML file in the folder of the studies; edit it with another program")
-        return found
+        return model_path
 
     def create(self, name: str, content: str, beside: Callable[[Path], object] = lambda folder: None) -> str:
         """Make a new study with its text and the schema beside it; return its name as :meth:`studies` gives it.

@@ -191,9 +191,11 @@ def _with_model_file(document: dict[str, Any], context: Context, path: Path, con
     if "file" in _table(shared, "model") or "model" not in shared:
         raise _wrong_file(path, f"{model_file}: expected a [model] table with the model itself")
     document["model"] = shared["model"]
-    own = _table(document, "constants")  # first, so that the model's constants may use the study's
-    taken = {*own, *_table(document, "parameters")}
-    constants = own | {name: value for name, value in _table(shared, "constants").items() if name not in taken}
+    constants_here = _table(document, "constants")  # first, so that the model's constants may use the study's
+    taken = {*constants_here, *_table(document, "parameters")}
+    constants = constants_here | {
+        name: value for name, value in _table(shared, "constants").items() if name not in taken
+    }
     if constants:
         document["constants"] = constants
     return model_file

@@ -122,7 +122,7 @@ class Comparison(EndedResult):
     def contents(self) -> Contents:
         """All results as arrays over the dimension ``method``; what a method does not know is NaN."""
         parts = [result.contents() for result in self.results]
-        own = [{"attributes": part.attributes, "variables": list(part.variables)} for part in parts]
+        of_parts = [{"attributes": part.attributes, "variables": list(part.variables)} for part in parts]
         variables = {}
         for name, (over, like, *_) in {name: entry for part in parts for name, entry in part.variables.items()}.items():
             missing = ((), np.full(np.shape(like), np.nan))
@@ -130,7 +130,7 @@ class Comparison(EndedResult):
             variables[name] = ("method", *over), np.stack([part.variables.get(name, missing)[1] for part in parts])
         coordinates = {**parts[0].coordinates, "method": ("method", [result.method for result in self.results])}
         settings = {
-            "results": own,
+            "results": of_parts,
             "refused": self.refused,
             "findings": stored_findings(self.findings),
             "outcome": stored_findings(self.outcome),
@@ -141,12 +141,14 @@ class Comparison(EndedResult):
     @classmethod
     def from_xarray(cls, dataset: Any) -> "Comparison":
         """The comparison that :meth:`to_xarray` turned into a dataset."""
-        told = stored_settings(dataset)
+        settings = stored_settings(dataset)
         results = tuple(
-            Propagation.from_xarray(dataset.isel(method=number)[own["variables"]].assign_attrs(own["attributes"]))
-            for number, own in enumerate(told["results"])
+            Propagation.from_xarray(
+                dataset.isel(method=number)[settings_here["variables"]].assign_attrs(settings_here["attributes"])
+            )
+            for number, settings_here in enumerate(settings["results"])
         )
-        return cls(results, str(dataset.attrs["reference"]), tuple(map(tuple, told["refused"])))
+        return cls(results, str(dataset.attrs["reference"]), tuple(map(tuple, settings["refused"])))
 
 
 @takes_executor

@@ -144,7 +144,7 @@ def global_sensitivity(
 
 
 @dataclass(frozen=True, eq=False)
-class _Made:
+class _Accumulated:
     """A surrogate of all samples and channels, the channel of each of its outputs, and its checks."""
 
     surrogate: Surrogate
@@ -152,7 +152,7 @@ class _Made:
     checks: Checks | None
 
 
-def _surrogate(runs: Runs, inputs: Inputs, scheme: Scheme, count: int | None, seed: int) -> _Made:
+def _surrogate(runs: Runs, inputs: Inputs, scheme: Scheme, count: int | None, seed: int) -> _Accumulated:
     samples, channels = runs.shape
     groups, box = np.tile(np.arange(channels), samples), inputs.box
 
@@ -161,13 +161,13 @@ def _surrogate(runs: Runs, inputs: Inputs, scheme: Scheme, count: int | None, se
 
     surrogate = fit(function, box.lower, box.upper, scheme, seed=seed, groups=groups)
     if not len(runs.free):
-        return _Made(surrogate, groups, None)
+        return _Accumulated(surrogate, groups, None)
     number = int(np.clip(SHARE * surrogate.runs, FEWEST, MOST)) if count is None else count
     points = inputs.random(number, np.random.default_rng((seed, 5)))
     errors = function(points) - surrogate(points)
     known = np.isfinite(errors).all(axis=1)
     checks = Checks(inputs.eta(points[known]), errors[known]) if known.sum() > 1 else None
-    return _Made(surrogate, groups, checks)
+    return _Accumulated(surrogate, groups, checks)
 
 
 def _of_tails(inputs: Inputs, overall: SobolIndices, names: tuple[str, ...], tolerance: float) -> np.ndarray:

@@ -58,20 +58,20 @@ class MechanismSliders(anywidget.AnyWidget):
     def values(self) -> dict[str, float]:
         """Current values of the parameters by name, SI."""
         starts = {item["name"]: item["value"] for item in self.parameters}
-        asked: Any = self.asked
-        return starts | {name: float(value) for name, value in asked["values"].items() if name in starts}
+        request: Any = self.asked
+        return starts | {name: float(value) for name, value in request["values"].items() if name in starts}
 
     def _answer(self) -> None:
         """Simulate at the values that are asked for."""
-        asked: Any = self.asked
-        number = int(asked["number"])
+        request: Any = self.asked
+        number = int(request["number"])
         try:
             motion = self._source.at(self.values)
-            found: dict[str, Any] = {"film": asdict(self._film(motion)), "curves": self._lines(motion), "message": ""}
+            answer: dict[str, Any] = {"film": asdict(self._film(motion)), "curves": self._lines(motion), "message": ""}
         except DalembertError as error:
-            found = {"message": str(error)}
+            answer = {"message": str(error)}
         with self.hold_sync():
-            for name, value in {**found, "answered": number}.items():
+            for name, value in {**answer, "answered": number}.items():
                 setattr(self, name, value)
 
     def _film(self, motion: Trajectory) -> Film:
@@ -85,19 +85,19 @@ class MechanismSliders(anywidget.AnyWidget):
             return {}
         values = motion.channels(self._source.channels)
         series = dict(zip(self._source.channels, values.T.tolist(), strict=True))
-        ranges = {name: [shown(end, digits=3) for end in (min(own), max(own))] for name, own in series.items()}
+        ranges = {name: [shown(end, digits=3) for end in (min(line), max(line))] for name, line in series.items()}
         return {"series": series, "ranges": ranges, "measured": self._measured}
 
     @cached_property
     def _measured(self) -> dict[str, list[list[float]]]:
         """Measured points of the channels, the first and every few of them."""
-        data, found = self._source.data, {}
+        data, by_channel = self._source.data, {}
         for column, name in enumerate(data.channels if data else ()):
             assert data is not None
             points = np.column_stack([data.coordinate.values / self._source.end, data.values[:, column]])
             points = points[np.isfinite(points).all(axis=1) & (points[:, 0] <= 1.0)]
-            found[name] = points[:: max(1, len(points) // MOST)].tolist()
-        return found
+            by_channel[name] = points[:: max(1, len(points) // MOST)].tolist()
+        return by_channel
 
 
 def _slider(item: Parameter, value: float) -> dict[str, Any]:

@@ -52,8 +52,8 @@ class Source:
     def at(self, values: Mapping[str, float]) -> Trajectory:
         """The motion at values by name; those that are not given are the starts, and all are kept within bounds."""
         items = self.parameters
-        given = np.array([values.get(name, start) for name, start in zip(items.names, items.start, strict=True)])
-        return self.motion(np.clip(given, items.lower, items.upper), self.times)
+        vector = np.array([values.get(name, start) for name, start in zip(items.names, items.start, strict=True)])
+        return self.motion(np.clip(vector, items.lower, items.upper), self.times)
 
 
 def sliders(

@@ -20,7 +20,7 @@ from dalembert.inverse.shooting.nodes import Nodes
 from dalembert.inverse.shooting.segments import ShootingState
 from dalembert.inverse.starts.spread import spread_points
 from dalembert.optimize import Squares
-from dalembert.threads import one_thread
+from dalembert.threads import single_thread
 
 WORSE = 1.1
 """Ratio of misfits up to which fewer segments are taken to explain the data as well as more of them."""
@@ -147,7 +147,7 @@ def _shot(
 ) -> End:
     """Segments that meet, from a search point, merged as far as they can be."""
     values = problem.search.vectors(point)
-    with one_thread():  # for the many small linear systems
+    with single_thread():  # for the many small linear systems
         try:
             return _merged(problem, list(_levels(problem, shooting, values)), method, floor, len(values))
         except SolveError as error:

@@ -95,9 +95,9 @@ class Choices:
         """The column of times, and those of channels."""
         return (self.time, *self.channels.values())
 
-    def unit(self, found: Preview, key: Key) -> Unit:
+    def unit(self, preview: Preview, key: Key) -> Unit:
         """Unit of a column: the chosen one, or else the guessed one."""
-        column = found.column(key)
+        column = preview.column(key)
         if key in self.units or column is None:
             return Unit(self.units.get(key, ""), "")
         return unit_of(column, times=key == self.time)
@@ -106,11 +106,11 @@ class Choices:
         """The same with another unit of a column."""
         return replace(self, units={**self.units, key: unit})
 
-    def use(self, found: Preview, units: Mapping[str, str]) -> Use:
+    def use(self, preview: Preview, units: Mapping[str, str]) -> Use:
         """The same for a search of problems; ``units`` are the SI units of channels."""
         return Use(
             self.time,
-            {column.key: self.unit(found, column.key) for column in found.columns},
+            {column.key: self.unit(preview, column.key) for column in preview.columns},
             {channel: (key, units.get(channel, "")) for channel, key in self.channels.items()},
             self.start if self.start is None or isinstance(self.start, (int, float, str)) else 0.0,
             "refuse" if self.missing == "refuse" else "leave-out",
@@ -121,12 +121,12 @@ class Choices:
 
     def mapped(self, channel: str, key: Key | None) -> "Choices":
         """The same with another column of a channel, which has none if that is None."""
-        others = {name: column for name, column in self.channels.items() if name != channel}
-        channels = others if key is None else {**others, channel: key}
+        kept = {name: column for name, column in self.channels.items() if name != channel}
+        channels = kept if key is None else {**kept, channel: key}
         return replace(self, channels=channels, wraps=tuple(name for name in self.wraps if name in channels))
 
 
-def guessed(found: Preview, channels: Mapping[str, str], before: Choices | None = None) -> Choices:
+def guessed(preview: Preview, channels: Mapping[str, str], before: Choices | None = None) -> Choices:
     """Return how a file is probably to be used.
 
     Times that do not begin at 0 count from the first sample. A column is used for the channel of its name.
@@ -139,15 +139,15 @@ def guessed(found: Preview, channels: Mapping[str, str], before: Choices | None 
     before : Choices, optional
         Choices on another file: the use of its columns is kept if this file has columns of the same names.
     """
-    time = time_column(found)
-    names = {column.key: column.key for column in found.columns if column.key != time and column.key in channels}
-    choices = Choices(found.path.name, time, channels={str(name): key for name, key in names.items()})
-    if before is not None and all(key is not None and found.column(key) for key in before.used):
+    time = time_column(preview)
+    names = {column.key: column.key for column in preview.columns if column.key != time and column.key in channels}
+    choices = Choices(preview.path.name, time, channels={str(name): key for name, key in names.items()})
+    if before is not None and all(key is not None and preview.column(key) for key in before.used):
         time = before.time
         choices = replace(choices, time=time, channels=before.channels, units=before.units, wraps=before.wraps)
-    times = None if time is None else found.column(time)
+    times = None if time is None else preview.column(time)
     late = times is not None and len(times.values) > 0 and times.values[0] != 0.0
-    gaps = any(column.missing for column in found.columns if column.key != time)
+    gaps = any(column.missing for column in preview.columns if column.key != time)
     return replace(choices, start="first" if late else None, missing="leave-out" if gaps else "refuse")
 
 
@@ -173,7 +173,7 @@ def of_table(table: Mapping[str, Any]) -> Choices:
     )
 
 
-def table_of(choices: Choices, found: Preview) -> dict[str, Any]:
+def table_of(choices: Choices, preview: Preview) -> dict[str, Any]:
     """Return the keys of the `[data]` table that choices say.
 
     Raises
@@ -191,8 +191,8 @@ def table_of(choices: Choices, found: Preview) -> dict[str, Any]:
     table |= {"time": choices.time} if choices.time not in ("t", None) else {}
     table |= {"sampling": choices.sampling} if choices.time is None else {}
     table["columns"] = dict(choices.channels)
-    units = {str(key): choices.unit(found, key).name for key in dict.fromkeys(choices.used) if key is not None}
-    named = {str(column.key): column.unit for column in found.columns}
+    units = {str(key): choices.unit(preview, key).name for key in dict.fromkeys(choices.used) if key is not None}
+    named = {str(column.key): column.unit for column in preview.columns}
     units = {
         key: unit
         for key, unit in units.items()

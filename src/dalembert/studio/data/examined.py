@@ -118,28 +118,28 @@ def examine(kept: Kept, study: Path, text: str, file: str, choices: Choices | No
     marks = (AUTO, AUTO, ()) if choices is None else (choices.separator, choices.decimal, tuple(choices.absent))
     path = study.parent / file
     stamp = (path.stat().st_mtime_ns, path.stat().st_size) if path.is_file() else None
-    found = kept.newest("data file", (path, *marks, stamp), lambda: preview(path, *marks))
-    choices = guessed(found, channels, before) if choices is None else choices
-    if choices.time == "t" and found.column("t") is None and found.column(1) is not None:
+    file_preview = kept.newest("data file", (path, *marks, stamp), lambda: preview(path, *marks))
+    choices = guessed(file_preview, channels, before) if choices is None else choices
+    if choices.time == "t" and file_preview.column("t") is None and file_preview.column(1) is not None:
         choices = replace(choices, time=1)  # the first column of a file without names
-    found = without(found, [float(word) for word in choices.absent if is_number(word)], choices.time)
-    use = choices.use(found, channels)
-    times = None if choices.time is None else found.column(choices.time)
-    along = _along(choices, found.samples) if times is None else times.values * use.factor(choices.time)
+    file_preview = without(file_preview, [float(word) for word in choices.absent if is_number(word)], choices.time)
+    use = choices.use(file_preview, channels)
+    times = None if choices.time is None else file_preview.column(choices.time)
+    along = _along(choices, file_preview.samples) if times is None else times.values * use.factor(choices.time)
     begins = float(along[0]) if len(along) else 0.0
     start = use.start if isinstance(use.start, (int, float)) else begins if use.start == "first" else 0.0
-    table, lacks = _table(choices, found)
+    table, lacks = _table(choices, file_preview)
     return Examined(
         choices,
         channels,
-        found.layout,
-        found.separator,
-        found.decimal,
-        found.first,
-        found.samples,
-        tuple(_curve(column, choices, found, along - start) for column in found.columns),
+        file_preview.layout,
+        file_preview.separator,
+        file_preview.decimal,
+        file_preview.first,
+        file_preview.samples,
+        tuple(_curve(column, choices, file_preview, along - start) for column in file_preview.columns),
         begins,
-        tuple(problems(found, use)),
+        tuple(problems(file_preview, use)),
         table,
         lacks,
     )
@@ -179,33 +179,33 @@ def _suspect(study: Path, text: str) -> Iterator[Finding]:
     from dalembert.study.tables.sensor_table import reads
 
     try:
-        one = study_of(Kept(), study, text)  # with other data than the text of the page
-        data = one.data()
-        if one.task != "identify" or len(data.coordinate.values) > FEW:
+        candidate = study_of(Kept(), study, text)  # with other data than the text of the page
+        data = candidate.data()
+        if candidate.task != "identify" or len(data.coordinate.values) > FEW:
             return
-        found = first_findings(one.forward(data.channels, data.coordinate.values), data)
+        suspects = first_findings(candidate.forward(data.channels, data.coordinate.values), data)
     except DalembertError:  # the page says what is wrong with the study
         return
-    offsets = [name for name, sensor in one.file.sensors.items() if sensor.offset is not None]
-    for finding in found:
+    offsets = [name for name, sensor in candidate.file.sensors.items() if sensor.offset is not None]
+    for finding in suspects:
         known = any(reads(name, [finding.values["channel"]]) for name in offsets)
         if finding.code != "suspect-offset" or not known:
             yield finding
 
 
-def _table(choices: Choices, found: Preview) -> tuple[dict[str, Any], str]:
+def _table(choices: Choices, file_preview: Preview) -> tuple[dict[str, Any], str]:
     """The `[data]` table, or what it lacks."""
     try:
-        return table_of(choices, found), ""
+        return table_of(choices, file_preview), ""
     except InputError as error:
         return {}, str(error)
 
 
-def _curve(column: PreviewColumn, choices: Choices, found: Preview, along: np.ndarray) -> Curve:
+def _curve(column: PreviewColumn, choices: Choices, file_preview: Preview, along: np.ndarray) -> Curve:
     far = np.zeros((2, 0))
     if column.key in choices.channels.values():
-        there = np.flatnonzero(np.isfinite(column.values))
-        rows = there[outliers(column.values[there])][:POINTS]
+        finite = np.flatnonzero(np.isfinite(column.values))
+        rows = finite[outliers(column.values[finite])][:POINTS]
         far = np.stack([along[rows], column.values[rows]])
     points = thinned(along, column.values, POINTS)
-    return Curve(column.key, choices.unit(found, column.key), *points, far, column.missing)
+    return Curve(column.key, choices.unit(file_preview, column.key), *points, far, column.missing)

@@ -64,15 +64,17 @@ class DataGuide:
     def files(self) -> list[str]:
         """Names of the data files beside the study."""
         suffixes = tuple(suffix for form in known_formats().values() for suffix in form.suffixes)
-        found = (path.name for path in self.draft.path.parent.iterdir() if path.is_file() and path.name[0] != ".")
-        named = (name for name in found if name.lower().removesuffix(".gz").endswith(suffixes))
+        names = (path.name for path in self.draft.path.parent.iterdir() if path.is_file() and path.name[0] != ".")
+        named = (name for name in names if name.lower().removesuffix(".gz").endswith(suffixes))
         return sorted(name for name in named if name != SCHEMA)
 
     @property
     def tables(self) -> dict[Place, str]:
         """Tables that may be written, with their names."""
         experiments = _document(self.draft.text).get("experiments", [])
-        names = {("experiments", k): f"[[experiments]] {one.get('name', k + 1)}" for k, one in enumerate(experiments)}
+        names = {
+            ("experiments", k): f"[[experiments]] {table.get('name', k + 1)}" for k, table in enumerate(experiments)
+        }
         return names or {DATA: "[data]"}
 
     @property
@@ -135,8 +137,8 @@ class DataGuide:
         text = self.draft.text if good is None else good.text
         file, choices = self.file, self.choices
         try:
-            given = self.draft.path, text, file, choices, self._before
-            examined = await self._worker.ask("data", examine, *given)
+            arguments = self.draft.path, text, file, choices, self._before
+            examined = await self._worker.ask("data", examine, *arguments)
         except DalembertError as error:
             self.examined, self.suspects, self.error = None, (), _short(error, self.draft.path)
             return
@@ -151,9 +153,9 @@ class DataGuide:
             self.suspects = ()
             return
         try:
-            found = await self._worker.ask("suspects", compare, self.draft.path, self.candidate)
-            if found is not None:  # otherwise there is a newer request
-                self.suspects = found
+            suspects = await self._worker.ask("suspects", compare, self.draft.path, self.candidate)
+            if suspects is not None:  # otherwise there is a newer request
+                self.suspects = suspects
         except DalembertError:  # a model that fails says so where it is simulated
             self.suspects = ()
 

@@ -28,8 +28,8 @@ FEW = 200
 def drawn_columns(examined: Examined) -> Sequence[Curve]:
     """The columns that are drawn: no times, and those that are used first."""
     used = tuple(examined.choices.channels.values())
-    others = [curve for curve in examined.curves if curve.key != examined.choices.time]
-    return sorted(others, key=lambda curve: curve.key not in used)[:MOST]
+    curves = [curve for curve in examined.curves if curve.key != examined.choices.time]
+    return sorted(curves, key=lambda curve: curve.key not in used)[:MOST]
 
 
 def columns_figure(examined: Examined) -> go.Figure:
@@ -117,12 +117,14 @@ class ChannelPicker:
     def _chosen(self, part: str | None) -> None:
         if part is None:
             return
-        found = channels_of_part(part, self._channels)
+        channels = channels_of_part(part, self._channels)
         self._view.mark([part], [])
         self._offers.clear()
-        self._says.set_text(f"Channels of {part}:" if found else f"There is no channel of {part}. Click another part.")
+        self._says.set_text(
+            f"Channels of {part}:" if channels else f"There is no channel of {part}. Click another part."
+        )
         with self._offers:
-            for channel in found:
+            for channel in channels:
                 ui.button(channel, on_click=partial(self._taken, channel)).props("outline no-caps dense").classes(
                     "px-2"
                 )

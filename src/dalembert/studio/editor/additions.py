@@ -59,16 +59,16 @@ def additions(text: str, only: Collection[str] = ()) -> tuple[Addition, ...]:
     document = tolerant(text)
     parts = _STRUCTURE if model_kind(document) == "structure" else _MECHANISM
     elsewhere = model_elsewhere(document)
-    found = [
+    result = [
         Addition(label, ("model", key, 0), kinds_at(document, ("model", key, 0)), elsewhere=elsewhere)
         for key, label in parts.items()
     ]
-    found += [Addition(label, (key,), names="channel" if key == "sensors" else "") for key, label in _NAMED.items()]
+    result += [Addition(label, (key,), names="channel" if key == "sensors" else "") for key, label in _NAMED.items()]
     tables = {place[0]: meaning for place, meaning in tables_of(document).items() if len(place) == 1}
     rest = {key: meaning for key, meaning in tables.items() if key not in (*task_names(), *_NAMED, *document)}
     tasks = {str(key): meaning for key, meaning in tables.items() if key in task_names() and key not in document}
-    found += [Addition(TASK, (), tasks), Addition("Table", (), {str(key): one for key, one in rest.items()})]
-    return tuple(filter(None, (_within(one, only) for one in found))) if only else tuple(found)
+    result += [Addition(TASK, (), tasks), Addition("Table", (), {str(key): table for key, table in rest.items()})]
+    return tuple(filter(None, (_within(table, only) for table in result))) if only else tuple(result)
 
 
 def _within(addition: Addition, tables: Collection[str]) -> Addition | None:
@@ -109,7 +109,7 @@ def added(text: str, addition: Addition, what: str) -> tuple[str, Place]:
     values = {KIND: what}
     model = document.get("model") or {}
     entry = {"model": {**model, str(addition.place[1]): [values]}}
-    if any(one.key == "name" for one in fields_at(entry, addition.place)):
+    if any(field.key == "name" for field in fields_at(entry, addition.place)):
         values["name"] = _free(model, str(addition.place[1]))
     return with_table(text, addition.place, values)
 

@@ -123,11 +123,11 @@ def _home(document: Any, name: str) -> _Home:
         experiment = f"{table.get('name')}."
         if name == experiment + START:
             return _Home(table, "start", {})
-        own = name.removeprefix(experiment)
-        if own in table.get("own", ()) and own in shared:
+        local_name = name.removeprefix(experiment)
+        if local_name in table.get("own", ()) and local_name in shared:
             if not hasattr(table["own"], "items"):
                 _tabulate(table)
-            return _Home(table["own"], own, shared[own])
+            return _Home(table["own"], local_name, shared[local_name])
     raise InputError(f"{name!r} is not described by a table of the study. Change the text where its value comes from.")
 
 

@@ -69,7 +69,9 @@ def completions(
     for what, known in (more or {}).items():
         names[what] = tuple(dict.fromkeys((*names.get(what, ()), *known)))
     make = {"header": _headers, "key": _keys, "value": _values}[cursor.where]
-    options = [one for one in make(document, cursor, names) if not tables or _table(one, cursor) in tables]
+    options = [
+        completion for completion in make(document, cursor, names) if not tables or _table(completion, cursor) in tables
+    ]
     typed = cursor.typed
     if cursor.where == "value" and not any(option.label.lower().startswith(typed.lower()) for option in options):
         typed = _WORD.search(typed)[0]  # type: ignore[index]  # the last name of an expression
@@ -114,8 +116,8 @@ def _headers(document: Any, cursor: Cursor, names: Names) -> Iterator[Option]:
 
 
 def _keys(document: Any, cursor: Cursor, names: Names) -> Iterator[Option]:
-    given = child(document, cursor.place)
-    taken = set(given) - {cursor.typed} if isinstance(given, Mapping) else set()
+    present = child(document, cursor.place)
+    taken = set(present) - {cursor.typed} if isinstance(present, Mapping) else set()
     for field in fields_at(document, cursor.place):
         if field.key not in taken and (cursor.place != ("model",) or fits_model(document, field.key)):
             yield Option(field.key, f"{field.key} = ", field.facts, field.meaning)

@@ -61,22 +61,22 @@ def cursor_at(text: str, position: int) -> Cursor | None:
 def _followed(table: Place, text: str) -> Cursor | None:
     """Follow the keys and values of a table to the end of a text."""
     place, typed, in_value, quoted = table, "", False, False
-    given: dict[str, str] = {}
+    values: dict[str, str] = {}
     stack: list[tuple[str, Place, dict[str, str]]] = []  # open brackets, with what was before them
     pieces = _PIECES.findall(text)
     for piece in pieces:
         if piece[0] in "\"'" and in_value:
             typed = piece.strip(piece[0])
             quoted = len(piece) == 1 or piece[-1] != piece[0]
-            given[str(place[-1])] = typed
+            values[str(place[-1])] = typed
         elif piece == "=" and not in_value:
             place, in_value, typed = (*place, *_parts(typed)), True, ""
-            given[str(place[-1])] = ""
+            values[str(place[-1])] = ""
         elif piece == "{" or (piece == "[" and in_value):
-            stack.append((piece, place, given))
-            given, in_value, typed = ({}, False, "") if piece == "{" else (given, True, "")
+            stack.append((piece, place, values))
+            values, in_value, typed = ({}, False, "") if piece == "{" else (values, True, "")
         elif piece in "}]" and stack:
-            _, place, given = stack.pop()
+            _, place, values = stack.pop()
             in_value, typed = True, ""
         elif piece == "," and stack:
             place, in_value, typed = stack[-1][1], stack[-1][0] == "[", ""
@@ -86,7 +86,7 @@ def _followed(table: Place, text: str) -> Cursor | None:
             typed = (typed + piece).lstrip()
     if pieces and pieces[-1].startswith("#"):
         return None
-    return Cursor("value" if in_value else "key", place, typed, quoted, given if stack else {})
+    return Cursor("value" if in_value else "key", place, typed, quoted, values if stack else {})
 
 
 def _parts(key: str) -> list[str]:
@@ -111,7 +111,7 @@ def tolerant(text: str) -> dict[str, Any]:
     table = document
     for number, line in enumerate(text.splitlines(), 1):
         if number in headers:
-            table = _made(document, headers[number])
+            table = _with_tables(document, headers[number])
         else:
             try:
                 table |= tomllib.loads(line)
@@ -120,7 +120,7 @@ def tolerant(text: str) -> dict[str, Any]:
     return document
 
 
-def _made(document: dict[str, Any], place: Place) -> dict[str, Any]:
+def _with_tables(document: dict[str, Any], place: Place) -> dict[str, Any]:
     """The table at a place, made where it is not there."""
     table: Any = document
     for step, following in zip(place, (*place[1:], ""), strict=True):

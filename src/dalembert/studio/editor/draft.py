@@ -70,7 +70,7 @@ class Draft:
         self.selection: Place | None = None
         self.disk: Disk = "same"
         self.watched_files = WatchedFiles()
-        self._found: tuple[Mistake, ...] = ()
+        self._later_mistakes: tuple[Mistake, ...] = ()
 
     @property
     def name(self) -> str:
@@ -85,7 +85,7 @@ class Draft:
     @property
     def mistakes(self) -> tuple[Mistake, ...]:
         """Mistakes of the text, and those that panels found."""
-        return (*self.reading.mistakes, *self._found)
+        return (*self.reading.mistakes, *self._later_mistakes)
 
     @property
     def saved(self) -> str:
@@ -168,7 +168,7 @@ class Draft:
         """Accept what a text is as a study, unless the text has changed meanwhile."""
         if reading.text != self.text:
             return
-        self.reading, self._found = reading, ()
+        self.reading, self._later_mistakes = reading, ()
         self.watched_files.take(reading.files)
         if reading.study is not None:
             self._start_values(reading.study)
@@ -178,9 +178,9 @@ class Draft:
 
     def find(self, sentence: str) -> None:
         """Add what is wrong with a study whose text is valid, such as a mechanism that cannot be assembled."""
-        found = mistake(self.text, (), sentence)
-        if found not in self._found:
-            self._found = (*self._found, found)
+        mistake_here = mistake(self.text, (), sentence)
+        if mistake_here not in self._later_mistakes:
+            self._later_mistakes = (*self._later_mistakes, mistake_here)
             self._tell("mistakes")
 
     def select(self, place: Place | None) -> None:
@@ -311,14 +311,14 @@ class Draft:
 
 def _parameters(study: Outline) -> Parameters:
     """Parameters of a study, of its sensors, and of single experiments."""
-    items = (*study.parameters.declared, *(item for own in study.parts.values() for item in own))
+    items = (*study.parameters.declared, *(item for part in study.parts.values() for item in part))
     return Parameters(tuple({item.name: item for item in items}.values()))
 
 
 def _stamp(path: Path) -> tuple[int, int]:
     """Time and size of a file."""
-    found = path.stat()
-    return found.st_mtime_ns, found.st_size
+    status = path.stat()
+    return status.st_mtime_ns, status.st_size
 
 
 def _taken(path: Path) -> bool:

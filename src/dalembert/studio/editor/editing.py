@@ -121,11 +121,11 @@ def with_table(text: str, place: Place, values: Mapping[str, Any]) -> tuple[str,
     at = max((end for table, _, end in blocks if _rank(table, order) <= _rank(place, order)), default=_beginning(lines))
     gap_before = "\n" if at and lines[at - 1].strip() else ""
     gap_after = "\n" if at < len(lines) and lines[at].strip() else ""
-    made = tomlkit.document()
+    document = tomlkit.document()
     for key, value in values.items():
-        made[key] = _item(value)
+        document[key] = _item(value)
     header = f"[[{name}]]" if is_entry else f"[{name}]"
-    lines.insert(at, f"{gap_before}{header}\n{tomlkit.dumps(made)}{gap_after}")
+    lines.insert(at, f"{gap_before}{header}\n{tomlkit.dumps(document)}{gap_after}")
     return "".join(lines), place
 
 
@@ -184,25 +184,25 @@ def _blocks(text: str) -> list[tuple[Place, int, int]]:
     """Tables with headers, the lines of these, from 0, and the lines after the last key of each."""
     lines = text.splitlines()
     headers = [*tables(text), ((), len(lines) + 1)]
-    found = []
+    blocks = []
     for (table, first), (_, after) in pairwise(headers):
         end = after - 1
         while end > first and (not lines[end - 1].strip() or lines[end - 1].lstrip().startswith("#")):
             end -= 1
-        found.append((table, first - 1, end))
-    return found
+        blocks.append((table, first - 1, end))
+    return blocks
 
 
 def _table_with(text: str, place: Place) -> Place | None:
     """The table with a header that a key at a place stands in; None if there is none."""
-    found = [table for table, _, _ in _blocks(text) if is_within(place, table) and len(table) < len(place)]
-    return max(found, key=len, default=None)
+    tables = [table for table, _, _ in _blocks(text) if is_within(place, table) and len(table) < len(place)]
+    return max(tables, key=len, default=None)
 
 
 def _changed(text: str, table: Place, change: Callable[[Any], None]) -> str:
     """The text after a change of the keys of a table."""
     lines = [f"{line}\n" for line in text.splitlines()]
-    first, end = next((first, end) for found, first, end in _blocks(text) if found == table)
+    first, end = next((first, end) for header, first, end in _blocks(text) if header == table)
     try:
         block = tomlkit.parse("".join(lines[first + 1 : end]))
         change(block)
@@ -217,12 +217,12 @@ def _changed(text: str, table: Place, change: Callable[[Any], None]) -> str:
 def _item(value: Any) -> Item:
     """A value as TOML writes it, tables in one line."""
     if isinstance(value, Mapping):
-        pairs = ", ".join(f"{_key(str(key))} = {_item(one).as_string()}" for key, one in value.items())
+        pairs = ", ".join(f"{_key(str(key))} = {_item(entry).as_string()}" for key, entry in value.items())
         return tomlkit.value(f"{{ {pairs} }}" if value else "{}")
     if isinstance(value, Sequence) and not isinstance(value, str):
         array = tomlkit.array()
-        for one in value:
-            array.append(_item(one))
+        for entry in value:
+            array.append(_item(entry))
         return array
     return tomlkit.item(value)
 

@@ -19,34 +19,34 @@ DIGITS = 6
 
 def table_at(document: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     """Return a table of a document; an empty one if it is not there."""
-    found = document.get(name)
-    return found if isinstance(found, Mapping) else {}
+    entry = document.get(name)
+    return entry if isinstance(entry, Mapping) else {}
 
 
-def number_of(given: object) -> float | None:
+def number_of(entry: object) -> float | None:
     """Return the number that an entry is, in SI units; None for an expression of names, and for no entry.
 
     >>> number_of("1 ms"), number_of(0.5), number_of("pi / 2"), number_of("angle"), number_of(None)
     (0.001, 0.5, 1.5707963267948966, None, None)
     """
-    if given is None or isinstance(given, bool):
+    if entry is None or isinstance(entry, bool):
         return None
     try:
-        found = read_number(given, None, None)
+        number = read_number(entry, None, None)
     except InputError:
         return None
-    return None if isinstance(found, Expression) else float(found)
+    return None if isinstance(number, Expression) else float(number)
 
 
-def units_of(given: object) -> str:
+def units_of(entry: object) -> str:
     """Return the unit that an entry has with it; empty if there is none.
 
     >>> units_of("1 ms"), units_of(0.001), units_of("pi / 2")
     ('ms', '', '')
     """
-    if not isinstance(given, str) or not is_quantity(given):
+    if not isinstance(entry, str) or not is_quantity(entry):
         return ""
-    return _NUMBER.sub("", given).strip()
+    return _NUMBER.sub("", entry).strip()
 
 
 def unit_among(entries: Iterable[object]) -> tuple[str, float]:
@@ -58,11 +58,11 @@ def unit_among(entries: Iterable[object]) -> tuple[str, float]:
     (('ms', 0.001), ('', 1.0))
     """
     unit = next(filter(None, map(units_of, entries)), "")
-    zero, one = (number_of(f"{size} {unit}") for size in (0, 1)) if unit else (None, None)
-    return (unit, one) if zero == 0 and one else ("", 1.0)
+    zero, unity = (number_of(f"{size} {unit}") for size in (0, 1)) if unit else (None, None)
+    return (unit, unity) if zero == 0 and unity else ("", 1.0)
 
 
-def like(given: object, number: float, table: Mapping[str, Any] | None = None) -> str | float:
+def like(entry: object, number: float, table: Mapping[str, Any] | None = None) -> str | float:
     """Return a number in SI units as an entry with the unit of another one.
 
     Parameters
@@ -71,14 +71,14 @@ def like(given: object, number: float, table: Mapping[str, Any] | None = None) -
         An entry.
     number : float
     table : mapping, optional
-        Others of its entries give the unit if ``given`` has none.
+        Others of its entries give the unit if ``entry`` has none.
 
     Examples
     --------
     >>> like("1 ms", 0.0005), like(0.001, 0.0005), like(0, 1.0, {"lower": 0, "upper": "90 deg"})
     ('0.5 ms', 0.0005, '57.2958 deg')
     """
-    unit, size = unit_among([given, *(table or {}).values()])
+    unit, size = unit_among([entry, *(table or {}).values()])
     return f"{number / size:.{DIGITS}g} {unit}" if unit else float(f"{number:.{DIGITS}g}")
 
 

@@ -93,10 +93,10 @@ def fields_at(document: Any, place: Place) -> tuple[TableField, ...]:
     tables = _tables_at(document, place)
     chosen = _chosen(tables, child(document, place)) or {}
     keys, required, kinds = chosen.get("properties", {}), chosen.get("required", ()), tuple(_kinds(tables))
-    found = [_field(key, node, key in required, kinds if key == KIND else ()) for key, node in keys.items()]
+    fields = [_field(key, node, key in required, kinds if key == KIND else ()) for key, node in keys.items()]
     if kinds and KIND not in keys:  # it chooses among the tables
-        found.insert(0, TableField(KIND, "choice", _OF_KIND, required=not keys, choices=kinds))
-    return tuple(found)
+        fields.insert(0, TableField(KIND, "choice", _OF_KIND, required=not keys, choices=kinds))
+    return tuple(fields)
 
 
 def field_at(document: Any, place: Place) -> TableField | None:
@@ -129,17 +129,19 @@ def keys_named(place: Place) -> str:
 
 def tables_of(document: Any) -> dict[Place, str]:
     """Return the meanings of the tables that a study may have, by their places; those of lists have a trailing 0."""
-    found: dict[Place, str] = {}
+    meanings: dict[Place, str] = {}
     for path in ((), ("model",)):
         for key, node in (
             (_chosen(_tables_at(document, path), child(document, path)) or {}).get("properties", {}).items()
         ):
-            for one in _alternatives(node):
-                if one.get("type") == "array" and any(map(_is_table, _alternatives(one.get("items", {})))):
-                    found[(*path, key, 0)] = _meaning(node)
-                elif _is_table(one):
-                    found.setdefault((*path, key), _meaning({**one, **node}))
-    return found
+            for alternative in _alternatives(node):
+                if alternative.get("type") == "array" and any(
+                    map(_is_table, _alternatives(alternative.get("items", {})))
+                ):
+                    meanings[(*path, key, 0)] = _meaning(node)
+                elif _is_table(alternative):
+                    meanings.setdefault((*path, key), _meaning({**alternative, **node}))
+    return meanings
 
 
 def child(value: Any, place: Sequence[str | int]) -> Any:
@@ -164,14 +166,14 @@ def _tables_at(document: Any, place: Place) -> list[Node]:
     value: Any = document
     for step in place:
         if isinstance(step, int):
-            nodes = [node["items"] for one in nodes for node in _alternatives(one) if "items" in node]
+            nodes = [node["items"] for parent in nodes for node in _alternatives(parent) if "items" in node]
         else:
-            tables = [one for node in nodes for one in _alternatives(node) if _is_table(one)]
+            tables = [parent for node in nodes for parent in _alternatives(node) if _is_table(parent)]
             table = _chosen(tables, value) or {}
             inner = table.get("properties", {}).get(step, table.get("additionalProperties"))
             nodes = [inner] if isinstance(inner, Mapping) else []
         value = child(value, (step,))
-    return [one for node in nodes for one in _alternatives(node) if _is_table(one)]
+    return [parent for node in nodes for parent in _alternatives(node) if _is_table(parent)]
 
 
 def _more_at(document: Any, place: Place) -> Node | None:
@@ -184,8 +186,8 @@ def _more_at(document: Any, place: Place) -> Node | None:
 def _alternatives(node: Node) -> Iterator[Node]:
     """The schemas that a schema allows one of, references resolved."""
     while "$ref" in node:
-        own = {key: value for key, value in node.items() if key != "$ref"}
-        node = {**schema_file.schema()["$defs"][node["$ref"].rpartition("/")[2]], **own}
+        node_here = {key: value for key, value in node.items() if key != "$ref"}
+        node = {**schema_file.schema()["$defs"][node["$ref"].rpartition("/")[2]], **node_here}
     choices = [*node.get("anyOf", ()), *node.get("oneOf", ())]
     if not choices:
         yield node
@@ -200,9 +202,11 @@ def _is_table(node: Node) -> bool:
 
 def _chosen(tables: Sequence[Node], value: Any) -> Node | None:
     """The table that a value is by its kind; the only one, or the one of the default kind, without a value."""
-    given = value if isinstance(value, Mapping) else {}
-    fitting = [one for one in tables if all(given.get(key, default) == const for key, default, const in _fixed(one))]
-    return max(fitting, key=lambda one: sum(key in given for key, _, _ in _fixed(one)), default=None)
+    entries = value if isinstance(value, Mapping) else {}
+    fitting = [
+        table for table in tables if all(entries.get(key, default) == const for key, default, const in _fixed(table))
+    ]
+    return max(fitting, key=lambda table: sum(key in entries for key, _, _ in _fixed(table)), default=None)
 
 
 def _fixed(table: Node) -> Iterator[tuple[str, Any, Any]]:
@@ -222,24 +226,29 @@ def _kinds(tables: Sequence[Node]) -> dict[str, str]:
 
 def _field(key: str, node: Node, required: bool, kinds: tuple[str, ...]) -> TableField:
     choices = list(_alternatives(node))
-    whole = next(_alternatives({name: value for name, value in node.items() if name not in ("anyOf", "oneOf")}))
-    inner = [*choices, *(one for choice in choices if "items" in choice for one in _alternatives(choice["items"]))]
+    full = next(_alternatives({name: value for name, value in node.items() if name not in ("anyOf", "oneOf")}))
+    inner = [
+        *choices,
+        *(alternative for choice in choices if "items" in choice for alternative in _alternatives(choice["items"])),
+    ]
     texts = kinds or tuple(
         dict.fromkeys(
             str(text)
-            for one in choices
-            for text in one.get("enum", [one["const"]] if "const" in one else _kinds([one]))
+            for alternative in choices
+            for text in alternative.get(
+                "enum", [alternative["const"]] if "const" in alternative else _kinds([alternative])
+            )
         )
     )
     return TableField(
         key,
         _shape(choices, texts),
-        _OF_KIND if kinds else _meaning(whole),
-        next((one[UNIT] for one in inner if UNIT in one), None),
-        whole.get("default"),
+        _OF_KIND if kinds else _meaning(full),
+        next((alternative[UNIT] for alternative in inner if UNIT in alternative), None),
+        full.get("default"),
         required,
         texts,
-        next((one[NAMES] for one in inner if NAMES in one), _NAMED.get(key, "")),
+        next((alternative[NAMES] for alternative in inner if NAMES in alternative), _NAMED.get(key, "")),
     )
 
 
@@ -251,8 +260,8 @@ def _meaning(node: Node) -> str:
 def _shape(choices: Sequence[Node], texts: Sequence[str]) -> Shape:
     types = {
         kind
-        for one in choices
-        for kind in ([one.get("type")] if isinstance(one.get("type"), str) else one.get("type") or [])
+        for choice in choices
+        for kind in ([choice.get("type")] if isinstance(choice.get("type"), str) else choice.get("type") or [])
     }
     if texts and types <= {"string", "object", "boolean"}:
         return "switch" if types == {"boolean"} else "choice"

@@ -95,8 +95,8 @@ def form_at(text: str, selection: Place | None, mistakes: Iterable[Mistake] = ()
     place = (*_table_in(document, text, selection or ()), *inner)
     values = child(document, place)
     values = values if isinstance(values, Mapping) else {}
-    own = (field_at(document, (*place, key)) for key in values)
-    fields = fields_at(document, place) or tuple(filter(None, own))
+    fields_here = (field_at(document, (*place, key)) for key in values)
+    fields = fields_at(document, place) or tuple(filter(None, fields_here))
     if place == ("model",):
         fields = tuple(field for field in fields if field.key in values or fits_model(document, field.key))
     if not place or not fields:
@@ -104,7 +104,7 @@ def form_at(text: str, selection: Place | None, mistakes: Iterable[Mistake] = ()
     keys = {field.key for field in fields}
     about = [mistake for mistake in mistakes if is_within(mistake.place, place)]
     rows = tuple(FormRow(field, values.get(field.key), _sentences(about, (*place, field.key))) for field in fields)
-    rest = tuple(one.sentence for one in about if one.place == place or one.place[len(place)] not in keys)
+    rest = tuple(entry.sentence for entry in about if entry.place == place or entry.place[len(place)] not in keys)
     kinds = kinds_at(document, place)
     kind = next((row.value or row.field.default for row in rows if row.field.key == KIND), None)
     return Form(place, _title(document, place), kinds.get(str(kind), ""), rows, rest)

@@ -38,12 +38,12 @@ def place_at(text: str, line: int) -> Place:
     >>> place_at(text, 2), place_at(text, 3)
     (('model', 'body', 0), ('model', 'body', 0, 'name'))
     """
-    found: Place = ()
+    table: Place = ()
     for place, number in _places(text):
         if number > line:
             break
-        found = place
-    return found
+        table = place
+    return table
 
 
 def is_within(place: Place | None, table: Place) -> bool:
@@ -79,8 +79,8 @@ def lines_of(text: str, table: Place) -> range:
     """
     lines = text.splitlines()
     headers = [*tables(text), ((), len(lines) + 1)]
-    for (found, first), (_, after) in pairwise(headers):
-        if found == table:
+    for (header, first), (_, after) in pairwise(headers):
+        if header == table:
             while after - 1 > first and not lines[after - 2].strip():
                 after -= 1
             return range(first, after)

@@ -51,8 +51,8 @@ def fits_model(document: Any, key: object) -> bool:
 
 def model_file(document: Any) -> str:
     """Return the name of the file that holds the model; empty if the document holds it itself."""
-    given = _model(document).get("file")
-    return given if isinstance(given, str) else ""
+    name = _model(document).get("file")
+    return name if isinstance(name, str) else ""
 
 
 def model_elsewhere(document: Any) -> str:

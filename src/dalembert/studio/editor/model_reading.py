@@ -60,9 +60,9 @@ def _read(kept: Kept, study: Path, text: str, used: dict[str, Path]) -> Reading:
     from dalembert.study.run.model_findings import model_findings
 
     try:
-        found = study_with_model(kept, study, text, used)
-        does = f"As the model of {study.name}, it {plan(found)}."
-        return Reading(text, Outline.of(found, text), does, model_findings(found))
+        study_here = study_with_model(kept, study, text, used)
+        does = f"As the model of {study.name}, it {plan(study_here)}."
+        return Reading(text, Outline.of(study_here, text), does, model_findings(study_here))
     except StudyError as error:
         return Reading(text, mistakes=tuple(_mistakes(error, study, text)))
     except DalembertError as error:

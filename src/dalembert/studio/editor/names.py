@@ -32,7 +32,11 @@ def names_in(document: Mapping[str, Any]) -> dict[str, tuple[str, ...]]:
         "joint": tuple(str(joint["name"]) for _, joint in _entries(model, "joint")),
         "point": (
             "ground",
-            *(f"{body['name']}.{one}" for number, body in bodies.items() for one in _points(document, number, body)),
+            *(
+                f"{body['name']}.{point}"
+                for number, body in bodies.items()
+                for point in _points(document, number, body)
+            ),
         ),
         "parameter": parameters,
         "constant": constants,
@@ -70,12 +74,12 @@ def _points(document: Mapping[str, Any], number: int, body: Mapping[str, Any]) -
 
 def _entries(table: Mapping[str, Any], key: str) -> Iterator[tuple[int, Mapping[str, Any]]]:
     """Tables of a list that have a name, with their numbers."""
-    given = table.get(key)
-    for number, entry in enumerate(given if isinstance(given, list) else ()):
+    entries = table.get(key)
+    for number, entry in enumerate(entries if isinstance(entries, list) else ()):
         if isinstance(entry, dict) and "name" in entry:
             yield number, entry
 
 
 def _table(table: Mapping[str, Any], key: str) -> Mapping[str, Any]:
-    given = table.get(key)
-    return given if isinstance(given, Mapping) else {}
+    entry = table.get(key)
+    return entry if isinstance(entry, Mapping) else {}

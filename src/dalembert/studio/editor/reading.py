@@ -81,8 +81,8 @@ def reading(kept: Kept, path: Path, text: str) -> Reading:
     for kind in OF_FILES:
         kept.drop(kind)
     used: dict[str, Path] = {}
-    found = _read(kept, path, text, used)
-    return replace(found, files=stamps_of(used.values()))
+    result = _read(kept, path, text, used)
+    return replace(result, files=stamps_of(used.values()))
 
 
 def _read(kept: Kept, path: Path, text: str, used: dict[str, Path]) -> Reading:
@@ -96,8 +96,8 @@ def _read(kept: Kept, path: Path, text: str, used: dict[str, Path]) -> Reading:
         does = f"It {plan(study)}."
         return Reading(text, Outline.of(study, text), does, model_findings(study))
     except StudyError as error:
-        found = ((place, sentence.replace(f"{path.parent}/", "")) for place, sentence in error.mistakes)
-        return Reading(text, mistakes=tuple(mistake(text, *one) for one in found))
+        places = ((place, sentence.replace(f"{path.parent}/", "")) for place, sentence in error.mistakes)
+        return Reading(text, mistakes=tuple(mistake(text, *entry) for entry in places))
     except DalembertError as error:
         sentence = str(error).replace(f"{path}: ", "").replace(f"{path.parent}/", "")
         return Reading(text, mistakes=(mistake(text, (), sentence),))
@@ -154,11 +154,11 @@ def mistake(text: str, place: Place, sentence: str) -> Mistake:
 
 def _is_of_file(document: Mapping[str, Any], place: Place, sentence: str) -> bool:
     """Whether a mistake is one of the tables that a model file holds, and not of the key that names it."""
-    found = _PLACE.match(sentence)
-    named = place or (tuple(found[1].split(".")) if found else ())
+    match = _PLACE.match(sentence)
+    named = place or (tuple(match[1].split(".")) if match else ())
     if constant := _CONSTANT.match(sentence):
-        own = document.get("constants")
-        return not (isinstance(own, Mapping) and constant[1] in own)
+        constants = document.get("constants")
+        return not (isinstance(constants, Mapping) and constant[1] in constants)
     return named[:1] == ("model",) and not sentence.startswith("[model], file: ")
 
 
@@ -166,16 +166,16 @@ def _line_in(sentence: str, text: str) -> int:
     """The line that a sentence of the TOML reader names."""
     if "(at end of document)" in sentence:
         return max(1, len(text.splitlines()))
-    found = re.search(r"\(at line (\d+), column \d+\)", sentence)
-    return int(found[1]) if found else 1
+    match = re.search(r"\(at line (\d+), column \d+\)", sentence)
+    return int(match[1]) if match else 1
 
 
 def _named(text: str, sentence: str) -> Place:
     """The place of the table and the key that a sentence begins with; an empty one if there is none."""
-    found = _PLACE.match(sentence)
-    if found is None:
+    match = _PLACE.match(sentence)
+    if match is None:
         return ()
-    table, name, key = found.groups()
+    table, name, key = match.groups()
     place: Place = tuple(table.split("."))
     if name is not None:
         number = _number_of(text, place, name)

@@ -74,8 +74,8 @@ class StudyEditor(ui.codemirror, component="study_editor.js", esm={"dalembert-co
             names, text = await self._names(), self.value or ""
             start, options = completions(text, position, names, self._tables)
             reply = {"typed": text[start:position], "options": [asdict(option) for option in options[:_MOST]]}
-        elif found := explanation(self.value or "", position):
-            reply = asdict(found)
+        elif meaning := explanation(self.value or "", position):
+            reply = asdict(meaning)
         self.run_method("answer", event.args["number"], reply)
 
 
@@ -172,7 +172,7 @@ class TextEditor:
     def _mark(self) -> None:
         text, place = self.draft.text, self.draft.selection
         last = max(1, len(text.splitlines()))
-        wrong = {min(one.line, last) for one in self.draft.mistakes}
+        wrong = {min(mistake.line, last) for mistake in self.draft.mistakes}
         chosen = set(lines_of(text, table_of(text, place))) if place else set()
         marks = [{"kind": "line", "line": line, "class": CHOSEN} for line in sorted(chosen - wrong)]
         marks += [{"kind": "line", "line": line, "class": WRONG} for line in sorted(wrong)]

@@ -19,19 +19,21 @@ def places_of(study: "Study") -> dict[str, Place]:
     """
     model = study.file.model
     other = "robot" if model.robot_table is not None else "function" if model.function is not None else "structure"
-    found: dict[str, Place] = {"": ("model", other), "gravity gravity": ("model", "gravity")}
+    places: dict[str, Place] = {"": ("model", other), "gravity gravity": ("model", "gravity")}
     for table in ("body", "joint", "load"):
-        found |= {f"{table} {part.name}": ("model", table, number) for number, part in enumerate(getattr(model, table))}
-    found |= {f"sensor {name}": ("sensors", name) for name in study.file.sensors}
-    found |= {f"input {name}": ("inputs", name) for name in study.file.inputs}
+        places |= {
+            f"{table} {part.name}": ("model", table, number) for number, part in enumerate(getattr(model, table))
+        }
+    places |= {f"sensor {name}": ("sensors", name) for name in study.file.sensors}
+    places |= {f"input {name}": ("inputs", name) for name in study.file.inputs}
     for table, role in STRUCTURE.items():
         for number, part in enumerate(getattr(model, table)):
             names = [f"{role} {name}" for name in _names(table, part)]
-            free = [name for name in names if name not in found] or [f"{names[0]} ({number + 1})"]
-            found |= dict.fromkeys(free, ("model", table, number))
+            free = [name for name in names if name not in places] or [f"{names[0]} ({number + 1})"]
+            places |= dict.fromkeys(free, ("model", table, number))
     channels = shown_channels(study)
-    found |= {f"measured {name.rpartition('.')[0]}": _channel_place(study, name) for name in channels}
-    return found | {f"channel {channel}": _channel_place(study, channel) for channel in channels}
+    places |= {f"measured {name.rpartition('.')[0]}": _channel_place(study, name) for name in channels}
+    return places | {f"channel {channel}": _channel_place(study, channel) for channel in channels}
 
 
 def place_of(places: Mapping[str, Place], part: str) -> Place:
@@ -56,10 +58,10 @@ def parts_at(places: Mapping[str, Place], place: Place | None, drawn: Collection
     """
     if place is None or len(place) < 2:
         return []
-    own = [name for name, table in places.items() if name and (is_within(place, table) or is_within(table, place))]
+    names = [name for name, table in places.items() if name and (is_within(place, table) or is_within(table, place))]
     other = places.get("")
-    if own or other is None or not is_within(place, other):
-        return own
+    if names or other is None or not is_within(place, other):
+        return names
     loose = [part for part in dict.fromkeys(drawn) if part not in places and part.partition(" ")[2]]
     key = str(place[-1])
     return [part for part in loose if part.partition(" ")[2] in (key, key.rpartition(".")[0])] or loose
@@ -75,13 +77,13 @@ def absent_parts(places: Mapping[str, Place], drawn: Collection[str]) -> list[st
     ['load stop']
     """
     shown = {place for part, place in places.items() if part in drawn and not part.startswith("channel ")}
-    found = {
+    absent = {
         part if part.startswith("channel ") else place: part
         for part, place in reversed([*places.items()])
         if part not in ("", "gravity gravity") and part not in drawn and place not in shown
         if not part.startswith("measured ")
     }
-    return [part for part in places if part in found.values()]
+    return [part for part in places if part in absent.values()]
 
 
 def shown_channels(study: "Study") -> list[str]:

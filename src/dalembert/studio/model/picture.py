@@ -32,16 +32,16 @@ def measured_positions(study: "Study", axes: Sequence[str]) -> Positions:
     from dalembert.report.sections.motion.trajectory import measured
 
     tables = study.file.experiments or ([] if study.file.data is None else [study.file.data])
-    found: dict[str, list[np.ndarray]] = {}
+    parts_of_point: dict[str, list[np.ndarray]] = {}
     for table in tables:
         try:
             data = table.read()
         except DalembertError:  # the panel of the data says it
             continue
         for point, positions in measured(data.channels, data.values, "".join(axes)).items():
-            found.setdefault(point, []).append(positions[np.isfinite(positions).all(axis=1)])
-    whole = {point: np.concatenate(parts) for point, parts in found.items()}
-    return {point: own[:: max(1, len(own) // MOST)] for point, own in whole.items() if len(own)}
+            parts_of_point.setdefault(point, []).append(positions[np.isfinite(positions).all(axis=1)])
+    joined = {point: np.concatenate(parts) for point, parts in parts_of_point.items()}
+    return {point: path[:: max(1, len(path) // MOST)] for point, path in joined.items() if len(path)}
 
 
 def near_positions(measured: Positions, model: np.ndarray) -> tuple[Positions, list[str]]:
@@ -49,9 +49,11 @@ def near_positions(measured: Positions, model: np.ndarray) -> tuple[Positions, l
     known = model[np.isfinite(model).all(axis=1)]
     size = float(np.ptp(known, axis=0).max())
     far = [
-        point for point, own in measured.items() if np.ptp(np.concatenate([own, known]), axis=0).max() > FAR * size > 0
+        point
+        for point, positions in measured.items()
+        if np.ptp(np.concatenate([positions, known]), axis=0).max() > FAR * size > 0
     ]
-    return {point: own for point, own in measured.items() if point not in far}, far
+    return {point: positions for point, positions in measured.items() if point not in far}, far
 
 
 Reader = Callable[[Kept, Path, str], "Study"]
@@ -172,7 +174,7 @@ def _mechanism(
         canvas.svg("Drawing of the mechanism"),
         None if view.flat else mechanism_scene(drawn, channels, near, places),
     )
-    seen = [name for _, own in channels.values() for name in own]
+    seen = [name for _, channel_names in channels.values() for name in channel_names]
     return Picture(svg, scene, places, corners, _absent(places, svg, scene, seen), message, mistake)
 
 
@@ -205,21 +207,21 @@ def _parts(svg: str) -> set[str]:
 def _marks(study: "Study", system: Any) -> list[str]:
     """Points of bodies that a table names, and those whose channels are shown."""
     shown = {channel.rpartition(".")[0] for channel in shown_channels(study)}
-    own = [f"{body.name}.{point}" for body in system.bodies for point in body.point_names]
+    points = [f"{body.name}.{point}" for body in system.bodies for point in body.point_names]
     declared = {f"{body.name}.{point}" for body in system.bodies for point in getattr(body, "points", ())}
-    return [point for point in own if point in shown or point in declared][:MOST_POINTS]
+    return [point for point in points if point in shown or point in declared][:MOST_POINTS]
 
 
 def _channels(study: "Study", drawn: "Sketch") -> dict[str, tuple[np.ndarray, list[str]]]:
     """Positions of points, joints and loads with shown channels, and these channels."""
     known = {name: ends.mean(axis=0) for name, ends in drawn.ends.items()}
     known |= {name: motion[0] for name, motion in drawn.drawing.joints.items()} | drawn.marks
-    found: dict[str, tuple[np.ndarray, list[str]]] = {}
+    result: dict[str, tuple[np.ndarray, list[str]]] = {}
     for channel in shown_channels(study):
         owner = channel.rpartition(".")[0]
         if owner in known:
-            found.setdefault(owner, (known[owner], []))[1].append(channel)
-    return found
+            result.setdefault(owner, (known[owner], []))[1].append(channel)
+    return result
 
 
 def _box(points: np.ndarray, before: np.ndarray | None) -> np.ndarray:

@@ -51,16 +51,16 @@ def mechanism_scene(
         shapes.append(_mesh("ground", drawing.ground.corners, drawing.ground.triangles, INK))
     for joint in sketch.system.joints:
         ends, at = sketch.ends.get(joint.name), drawing.joints.get(joint.name)
-        own = ends if ends is not None else at
-        if own is None:
+        span = ends if ends is not None else at
+        if span is None:
             continue
-        part, centre = f"joint {joint.name}", own[-1:] if at is None else at[:1]
+        part, centre = f"joint {joint.name}", span[-1:] if at is None else at[:1]
         shapes.append(_shape("ball", part, centre, INK))
         if is_grounded(joint):
-            held = own[:1] if isinstance(joint.b, Point) else own[-1:]
-            shapes.append(_shape("ground", part, held, INK))
-        shapes += [_shape("dashes", part, own, INK)] * (len(own) == 2)
-        names.append(_name(part, own.mean(axis=0)))
+            attached = span[:1] if isinstance(joint.b, Point) else span[-1:]
+            shapes.append(_shape("ground", part, attached, INK))
+        shapes += [_shape("dashes", part, span, INK)] * (len(span) == 2)
+        names.append(_name(part, span.mean(axis=0)))
     for load in sketch.system.loads:
         if load.name in sketch.ends:
             shapes.append(_load(load, sketch))
@@ -68,10 +68,10 @@ def mechanism_scene(
             named = tables is None or name["part"] in tables
             if named or not any(np.allclose(name["at"], other["at"], atol=1e-9) for other in names):
                 names.append(name)
-    for owner, (position, own) in channels.items():
-        outputs = ", ".join(channel.rpartition(".")[2] for channel in own)
-        shapes.append(_shape("ring", f"channel {own[0]}", position[None], COLOURS[1]))
-        names.append(_name(f"channel {own[0]}", position, f"{owner}: {outputs}", COLOURS[1]))
+    for owner, (position, span) in channels.items():
+        outputs = ", ".join(channel.rpartition(".")[2] for channel in span)
+        shapes.append(_shape("ring", f"channel {span[0]}", position[None], COLOURS[1]))
+        names.append(_name(f"channel {span[0]}", position, f"{owner}: {outputs}", COLOURS[1]))
     shapes += [_shape("point", f"point {name}", position[None], INK) for name, position in sketch.marks.items()]
     shapes += [_shape("points", f"measured {name}", positions, INK) for name, positions in measured.items()]
     pull = np.real(np.array(sketch.system.gravity, dtype=complex))
@@ -131,7 +131,9 @@ def _load(load: Any, sketch: "Sketch") -> dict[str, Any]:
 
 def _shape(kind: str, part: str, points: np.ndarray, colour: str) -> dict[str, Any]:
     """A shape through points; those that are not finite are gaps of a line."""
-    numbers = [[None if np.isnan(one) else round(one, 7) for one in point] for point in np.asarray(points).tolist()]
+    numbers = [
+        [None if np.isnan(number) else round(number, 7) for number in point] for point in np.asarray(points).tolist()
+    ]
     return {"kind": kind, "part": part, "points": numbers, "colour": colour}
 
 

@@ -112,8 +112,8 @@ class Viewer(ui.element):
         return self._space if self._in_space and not self._is_unable else self._drawing
 
     def _place(self) -> None:
-        for one in (self._drawing, self._space):
-            one.set_visibility(one is self._view)
+        for view in (self._drawing, self._space):
+            view.set_visibility(view is self._view)
 
     def _stay_flat(self) -> None:
         self._is_unable = True

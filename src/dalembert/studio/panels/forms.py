@@ -46,9 +46,9 @@ class FormField:
         if field.shape == "switch":
             self.element: ui.input | ui.select = ui.select(["true", "false"], clearable=True)
         elif field.choices or names:
-            own = "add-unique" if self._takes_any else None
+            mode = "add-unique" if self._takes_any else None
             options = list(dict.fromkeys((*field.choices, *names)))
-            self.element = ui.select(options, with_input=True, new_value_mode=own, clearable=not field.required)
+            self.element = ui.select(options, with_input=True, new_value_mode=mode, clearable=not field.required)
         else:
             self.element = ui.input()
         self.element.props(f'outlined dense stack-label label="{field.key}{_unit(field.unit)}" hide-bottom-space')
@@ -57,10 +57,10 @@ class FormField:
         self.element.classes("w-full")
         if enter is not None:
             with self.element.add_slot("append"):
-                made = ui.button(icon="tune", on_click=enter).props(
+                button = ui.button(icon="tune", on_click=enter).props(
                     f'flat round dense size=sm aria-label="Edit {field.key} as a table"'
                 )
-                tipped(made, "Edit as a table")
+                tipped(button, "Edit as a table")
         self.element.on("focus", lambda: explain(self.row))
         self.show(row)
         if isinstance(self.element, ui.select):
@@ -135,29 +135,29 @@ class Additions:
 
     def update(self) -> None:
         """Show what can be added to the text."""
-        found = additions(self.draft.text, self.tables)
-        if found == self.shown:
+        offered = additions(self.draft.text, self.tables)
+        if offered == self.shown:
             return
-        self.shown = found
+        self.shown = offered
         self.bar.clear()
         with self.bar:
-            for addition in found:
+            for addition in offered:
                 self._button(addition)
-            for sentence in dict.fromkeys(addition.elsewhere for addition in found if addition.elsewhere):
+            for sentence in dict.fromkeys(addition.elsewhere for addition in offered if addition.elsewhere):
                 ui.label(sentence).classes("text-sm break-words")
 
     def _button(self, addition: Addition) -> None:
-        made = ui.button(addition.label, icon="add", color=None).props(
+        button = ui.button(addition.label, icon="add", color=None).props(
             "outline dense no-caps size=sm padding='4px 8px'"
         )
-        made.props["aria-label"] = _add(addition)
+        button.props["aria-label"] = _add(addition)
         if addition.elsewhere:
-            made.disable()
+            button.disable()
             return
         if not addition.kinds:
-            made.on_click(partial(self._ask, addition))
+            button.on_click(partial(self._ask, addition))
             return
-        with made, ui.menu().props("max-height=60vh"):
+        with button, ui.menu().props("max-height=60vh"):
             for kind, meaning in addition.kinds.items():
                 with (
                     ui.menu_item(on_click=partial(self._add, addition, kind)).props("role=menuitem"),
@@ -181,9 +181,9 @@ class Additions:
             with ui.row().classes("w-full justify-end"):
                 ui.button("Cancel", on_click=lambda: dialog.submit(None)).props("flat no-caps")
                 button("Add", lambda: dialog.submit(name.value), icon="add")
-        given = await dialog
-        if given:
-            self._add(addition, str(given).strip())
+        answer = await dialog
+        if answer:
+            self._add(addition, str(answer).strip())
 
     def _add(self, addition: Addition, what: str) -> None:
         with complaints("add part"):
@@ -250,11 +250,11 @@ class Editor:
             self.wrong = ui.label().classes("text-sm text-negative whitespace-pre-wrap").props("role=alert")
             self.names = names_in(tolerant(self.draft.text)) | dict(self.channels.known)
             usual = [row for row in form.rows if row.is_usual]
-            others = [row for row in form.rows if not row.is_usual]
+            unusual = [row for row in form.rows if not row.is_usual]
             self._grid(form, usual)
-            if others:
-                with ui.expansion(f"Further keys ({len(others)})", value=not usual).props("dense").classes("w-full"):
-                    self._grid(form, others)
+            if unusual:
+                with ui.expansion(f"Further keys ({len(unusual)})", value=not usual).props("dense").classes("w-full"):
+                    self._grid(form, unusual)
             self.help = ui.label().classes("text-sm opacity-90 break-words").props("aria-live=polite")
 
     def _grid(self, form: Form, rows: list[FormRow]) -> None:

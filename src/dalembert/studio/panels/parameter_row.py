@@ -240,8 +240,6 @@ class ParameterRow:
 def _bar(channel: str, effect: float, share: float, colour: str) -> str:
     """A bar, with the effect in words for those who do not see it."""
     percent = f"{effect:.0f} ×" if effect > 10 else f"{100 * effect:.{0 if effect > 0.1 else 1}f} %"
-    name, told = escape(channel), f"Changes {escape(channel)} by about {percent} of its range between the bounds"
+    name, tip = escape(channel), f"Changes {escape(channel)} by about {percent} of its range between the bounds"
     inside = f'<span class="bar" style="width:{100 * share:.0f}%;background:{colour};display:block"></span>'
-    return (
-        f'<span class="effect" title="{told}"><span class="track">{inside}</span><span>{name} {percent}</span></span>'
-    )
+    return f'<span class="effect" title="{tip}"><span class="track">{inside}</span><span>{name} {percent}</span></span>'

@@ -52,7 +52,7 @@ class Sliders:
         self._drawn: tuple[Source, str] | None = None
         self._at_start: float | None = None
         self._later: list[asyncio.TimerHandle] = []
-        self._visible, self._asked, self._stale = False, False, False
+        self._visible, self._requested, self._stale = False, False, False
         with ui.column().classes("w-full gap-2"):
             self._build()
         draft.follow("study", self._take_study)
@@ -151,8 +151,8 @@ class Sliders:
         self._ask()
 
     def _enable(self) -> None:
-        for one in (self._start, self._reset):
-            one.set_enabled(bool(self._changed))
+        for control in (self._start, self._reset):
+            control.set_enabled(bool(self._changed))
 
     def _reset_value(self, name: str) -> None:
         self._draft.set_value(name, self._draft.starts[name])
@@ -180,8 +180,8 @@ class Sliders:
         """
         if self._draft.study is None or self._draft.reading.text != self._draft.text:
             return
-        self._stale = self._asked and not self._visible
-        self._asked = True
+        self._stale = self._requested and not self._visible
+        self._requested = True
         if not self._stale:
             background_tasks.create(self._simulate())
 
@@ -193,31 +193,31 @@ class Sliders:
         self._wait(PATIENCE, lambda: self._busy.set_visibility(True))
         values, figures = dict(draft.values), self._drawn != (source, name)
         try:
-            found = await worker.ask("simulation", simulated, source, name, values, figures=figures)
+            result = await worker.ask("simulation", simulated, source, name, values, figures=figures)
         except WorkerError as error:
             self._show_problem(str(error))
             return
-        if found is None:  # a newer one is on its way
+        if result is None:  # a newer one is on its way
             return
         if figures:
             self._drawn = source, name
-        self._show(found, received)
-        if found.hint:
+        self._show(result, received)
+        if result.hint:
             return
         self._wait(STILL, lambda: background_tasks.create(self._weigh(source, name, values)))
 
     async def _weigh(self, source: Source, name: str, values: dict[str, float]) -> None:
         """Show how strongly the parameters act at the values."""
         try:
-            found = await self._services.worker.ask("influences", influences, source, name, values)
+            result = await self._services.worker.ask("influences", influences, source, name, values)
         except WorkerError:  # what is wrong was said by the simulation, or there are no derivatives
-            found = Influences((), {})
-        if found is None:
+            result = Influences((), {})
+        if result is None:
             return
-        largest = max((effect for effects in found.effects.values() for effect in effects), default=0.0)
+        largest = max((effect for effects in result.effects.values() for effect in effects), default=0.0)
         for name, row in self._rows.items():
             row.settle()
-            row.show_effects(found.channels, found.effects.get(name, []) if largest > 0 else [], largest)
+            row.show_effects(result.channels, result.effects.get(name, []) if largest > 0 else [], largest)
 
     def _wait(self, seconds: float, act: Any) -> None:
         """Act after some time without another change; what waited before is left out."""
@@ -234,48 +234,48 @@ class Sliders:
         self._problem.set_text(sentence)
         self._problem.set_visibility(bool(sentence))
 
-    def _show(self, found: Simulated, received: float) -> None:
+    def _show(self, result: Simulated, received: float) -> None:
         self._show_problem("")
-        self._told.set_text(found.hint or self._facts(found))
-        self._scene.set_visibility(found.film is not None)
-        if found.film is not None:
-            own = {"received": received, "simulated": found.seconds, "computed": found.computed}
-            self._player.show(found.film, **own, answered=time.time())
-        if any(curves.figure for curves in found.curves) or len(found.curves) != len(self._plots):
-            self._draw(found)
+        self._told.set_text(result.hint or self._facts(result))
+        self._scene.set_visibility(result.film is not None)
+        if result.film is not None:
+            times_shown = {"received": received, "simulated": result.seconds, "computed": result.computed}
+            self._player.show(result.film, **times_shown, answered=time.time())
+        if any(curves.figure for curves in result.curves) or len(result.curves) != len(self._plots):
+            self._draw(result)
             return
-        for plot, curves in zip(self._plots, found.curves, strict=True):
+        for plot, curves in zip(self._plots, result.curves, strict=True):
             assert isinstance(plot.figure, dict)
             for trace, (x, y) in curves.lines.items():
                 plot.figure["data"][trace] |= {"x": x, "y": y}
             plot.update()
 
-    def _draw(self, found: Simulated) -> None:
+    def _draw(self, result: Simulated) -> None:
         """Draw the figures anew; a figure keeps its place and the user's zoom."""
-        if len(found.curves) != len(self._plots):
+        if len(result.curves) != len(self._plots):
             self._curves.clear()
             with self._curves:
                 self._plots = [
                     ui.plotly({"config": CONFIG})
                     .classes("w-full")
                     .props('role=img aria-label="Computed channels and data"')
-                    for _ in found.curves
+                    for _ in result.curves
                 ]
-        for plot, curves in zip(self._plots, found.curves, strict=True):
+        for plot, curves in zip(self._plots, result.curves, strict=True):
             curves.figure["layout"]["uirevision"] = "kept"
             plot.update_figure(curves.figure)
 
-    def _facts(self, found: Simulated) -> str:
+    def _facts(self, result: Simulated) -> str:
         """The misfit and what it is at the first guesses, residuals and time, in words."""
         facts = []
-        if found.misfit is not None:
+        if result.misfit is not None:
             if not self._changed:
-                self._at_start = found.misfit
+                self._at_start = result.misfit
             start = "" if self._at_start is None else f" (at the start values {self._at_start:.4g})"
-            facts.append(f"Misfit {found.misfit:.4g}{start}")
-        sizes = list(found.residuals.items())[:4]
-        facts += [f"rms residual of {name} {size:.3g} {found.units.get(name, '')}".rstrip() for name, size in sizes]
-        return " · ".join([*facts, f"simulated in {_duration(found.seconds)}"])
+            facts.append(f"Misfit {result.misfit:.4g}{start}")
+        sizes = list(result.residuals.items())[:4]
+        facts += [f"rms residual of {name} {size:.3g} {result.units.get(name, '')}".rstrip() for name, size in sizes]
+        return " · ".join([*facts, f"simulated in {_duration(result.seconds)}"])
 
 
 def _duration(seconds: float) -> str:

@@ -53,9 +53,9 @@ class StudyMotion:
 
     def vector(self, values: Mapping[str, float], parameters: Parameters | None = None) -> np.ndarray:
         """Parameters (parameters,), the model's if not given: values by name, first guesses of those not named."""
-        own = self.parameters if parameters is None else parameters
-        given = zip(own.names, own.start.tolist(), strict=True)
-        return np.array([values.get(self.named(name), start) for name, start in given])
+        named = self.parameters if parameters is None else parameters
+        pairs = zip(named.names, named.start.tolist(), strict=True)
+        return np.array([values.get(self.named(name), start) for name, start in pairs])
 
     def motion(self, values: Mapping[str, float], times: np.ndarray) -> "Trajectory":
         """The motion of the mechanism at some times (s)."""
@@ -99,11 +99,11 @@ def _measured(study: "Study", name: str) -> StudyMotion:
     named: Callable[[str], str] = str
     model, data = posed(study)
     if isinstance(model, list):
-        found = {experiment.name: experiment for experiment in model}
-        require_known("experiment", name, found)
+        experiments = {experiment.name: experiment for experiment in model}
+        require_known("experiment", name, experiments)
         table = next(table for table in study.file.experiments if table.name == name)
         named = table.named
-        study, model, data = study.variant(table), found[name].model, found[name].data
+        study, model, data = study.variant(table), experiments[name].model, experiments[name].data
     assert data is not None
     return StudyMotion(study, model, data, float(data.coordinate.values[-1]) if study.has_system else 0.0, named)
 

@@ -15,7 +15,7 @@ from dalembert.study.template import Template, templates
 
 
 def template_cards(
-    workspace: Workspace, name: Callable[[], str], shown: Callable[[Template], bool] = lambda one: True
+    workspace: Workspace, name: Callable[[], str], shown: Callable[[Template], bool] = lambda template: True
 ) -> None:
     """A card for each template, with a button that begins a study from it.
 
@@ -28,12 +28,12 @@ def template_cards(
         Says whether a template is shown.
     """
     with ui.element("div").classes("grid grid-cols-1 sm:grid-cols-2 lg:grid-cols-3 gap-4 w-full").props("role=list"):
-        for one in filter(shown, templates().values()):
+        for template in filter(shown, templates().values()):
             with ui.column().classes("border rounded p-3 gap-2 min-w-0").props("role=listitem"):
-                picture = ui.element("img").props(f'src="/picture-of-template/{one.name}" alt="" loading=lazy')
+                picture = ui.element("img").props(f'src="/picture-of-template/{template.name}" alt="" loading=lazy')
                 picture.props("width=360 height=225").classes("w-full h-40 object-contain")
-                button(one.title, partial(_begin, workspace, one, name), icon="add").classes("w-full")
-                ui.label(one.description).classes("text-sm break-words")
+                button(template.title, partial(_begin, workspace, template, name), icon="add").classes("w-full")
+                ui.label(template.description).classes("text-sm break-words")
 
 
 def begin(workspace: Workspace, name: str, text: str, beside: dict[str, str]) -> None:

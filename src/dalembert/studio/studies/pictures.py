@@ -40,10 +40,10 @@ class Pictures:
 
     async def of_template(self, name: str) -> str:
         """Return the picture of a template, an unknown one included."""
-        found = [folder for folder in TEMPLATES.iterdir() if folder.name.partition("-")[2] == name]
-        if not found:
+        folders = [folder for folder in TEMPLATES.iterdir() if folder.name.partition("-")[2] == name]
+        if not folders:
             return message_picture("No such template")
-        with as_file(found[0]) as folder:
+        with as_file(folders[0]) as folder:
             return await self.of(folder / "study.toml")
 
     def close(self) -> None:
@@ -66,8 +66,8 @@ def _draw(kept: Kept, path: Path) -> str:
 
 def _stamp(folder: Path) -> Stamp:
     """Names, times and sizes of the files that a picture may depend on."""
-    found = []
+    stamps = []
     for entry in sorted(folder.iterdir()) if folder.is_dir() else ():
         about = entry.stat()
-        found.append((entry.name, about.st_mtime_ns, about.st_size))
-    return tuple(found)
+        stamps.append((entry.name, about.st_mtime_ns, about.st_size))
+    return tuple(stamps)

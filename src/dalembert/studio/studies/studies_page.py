@@ -22,23 +22,23 @@ def studies_page(workspace: Workspace) -> None:
             search = ui.input("Search studies").classes("grow max-w-md").props("outlined dense clearable type=search")
             button("New study", lambda: ui.navigate.to("/new"), icon="add")
 
-        def is_found(one: Template) -> bool:
-            return has_words((one.name, one.title, one.description), search.value or "")
+        def matches(template: Template) -> bool:
+            return has_words((template.name, template.title, template.description), search.value or "")
 
         @ui.refreshable
         def listed(folders: list[StudyFolder] | None) -> None:
             if folders is None:
                 ui.spinner(size="lg").props('aria-label="The studies are read"')
                 return
-            found = [folder for folder in folders if folder.matches(search.value or "")]
-            own = [folder for folder in found if not folder.example]
-            examples = [folder for folder in found if folder.example]
+            matching = [folder for folder in folders if folder.matches(search.value or "")]
+            of_user = [folder for folder in matching if not folder.example]
+            examples = [folder for folder in matching if folder.example]
             heading("Your studies")
             none = "None of these matches the search." if search.value else "None yet. Start from a template."
-            _cards(own, none)
-            if any(map(is_found, templates().values())):
+            _cards(of_user, none)
+            if any(map(matches, templates().values())):
                 heading("Templates")
-                template_cards(workspace, lambda: "", is_found)
+                template_cards(workspace, lambda: "", matches)
             if examples:
                 heading("Examples")
                 ui.label("Studies with known results, which tests check.").classes("text-sm")
@@ -83,7 +83,7 @@ def _cards(folders: list[StudyFolder], none: str) -> None:
 
 def _card(folder: StudyFolder) -> None:
     """Picture, title, description and states of a folder with studies."""
-    first, *others = folder.entries
+    first, *more = folder.entries
     with ui.column().classes("border rounded p-3 gap-2 min-w-0").props("role=listitem"):
         with ui.link(target=f"/study/{quote(first.name)}").classes("w-full font-bold break-words"):
             picture(f"/picture/{quote(first.name)}")
@@ -92,14 +92,14 @@ def _card(folder: StudyFolder) -> None:
             ui.label(folder.name).classes("text-xs opacity-80 break-all")
         ui.label(folder.description).classes("text-sm break-words line-clamp-4")
         ui.space()
-        if not others:
+        if not more:
             _state(first)
             return
         _entry(first)
         with ui.element("details").classes("w-full text-sm"):
             with ui.element("summary").classes("cursor-pointer"):
-                ui.label(f"{len(others)} more {'study' if len(others) == 1 else 'studies'}").classes("inline")
-            for entry in others:
+                ui.label(f"{len(more)} more {'study' if len(more) == 1 else 'studies'}").classes("inline")
+            for entry in more:
                 _entry(entry)
 
 

@@ -82,10 +82,10 @@ def has_words(texts: Iterable[str], words: str) -> bool:
 
 def study_folders(workspace: Workspace) -> list[StudyFolder]:
     """Return all folders with studies, by name."""
-    runs, found = last_runs(workspace.runs_folder), {}
+    runs, entries = last_runs(workspace.runs_folder), {}
     for name in workspace.studies():
-        found.setdefault(name.partition("/")[0], []).append(_entry(workspace, name, runs))
-    return [_folder(workspace.root / "studies" / name, own) for name, own in found.items()]
+        entries.setdefault(name.partition("/")[0], []).append(_entry(workspace, name, runs))
+    return [_folder(workspace.root / "studies" / name, entries_here) for name, entries_here in entries.items()]
 
 
 def _entry(workspace: Workspace, name: str, runs: dict[tuple[Path, str], LastRun]) -> Entry:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from dalembert.errors import DataError, InputError
 from dalembert.study.run.folder import RunFolder
-from dalembert.threads import one_thread
+from dalembert.threads import single_thread
 
 if TYPE_CHECKING:
     from dalembert.inverse import Fit, ModelComparison, Posterior
@@ -32,7 +32,7 @@ def compare_runs(folders: Sequence[RunFolder], leave_out: str | None = None) -> 
     for folder in folders:
         name = folder.path.name if folder.path.name not in results else str(folder.path)
         results[name] = fit_or_posterior(folder)
-    with one_thread():
+    with single_thread():
         return compare_models(results, leave_out=leave_out)
 
 

@@ -26,7 +26,7 @@ from dalembert.study.run.validation import plan
 from dalembert.study.tables.study import Study
 from dalembert.study.tasks import TASKS, Outcome
 from dalembert.study.text.functions import users_code
-from dalembert.threads import one_thread
+from dalembert.threads import single_thread
 from dalembert.versions import versions
 
 Listener = Callable[[Event], None]
@@ -208,7 +208,7 @@ def _computed(attempt: Attempt) -> Outcome:
         noted(client, lambda workers: folder.add_computed_with(this_process(workers))),
         Checkpoint(folder.checkpoint, lambda sentence: log.emit(LOST, message=sentence)) as checkpoint,
         users_code(),
-        one_thread(),
+        single_thread(),
     ):
         for workers in [] if client is None else worker_versions(client):
             folder.add_computed_with(this_process(workers))
@@ -263,7 +263,7 @@ def report_run(folder: RunFolder) -> Path:
     study = folder.kept()
     for name, digest in (state.get("digests") or {}).items():
         folder.check(folder.path / name, digest)
-    with users_code(), one_thread():
+    with users_code(), single_thread():
         _with_findings(TASKS[study.task].load(study, folder.result), folder).report(folder.report)
     return folder.report
 

@@ -16,7 +16,7 @@ from dalembert.study.run.progress import duration_text
 from dalembert.study.tables.study import Study
 from dalembert.study.tasks import TASKS
 from dalembert.study.text.functions import users_code
-from dalembert.threads import one_thread
+from dalembert.threads import single_thread
 
 
 class FirstSimulation(BaseException):
@@ -95,7 +95,7 @@ def forecast(study: Study, limit: float = inf) -> Iterator[str]:
         What the first simulations of a run would raise.
     """
     task, began = TASKS[study.task], monotonic()
-    with users_code(), one_thread():
+    with users_code(), single_thread():
         yield from (f"Warning: {finding}" for finding in time_scale_findings(study))
         effort = task.effort(study)
         try:

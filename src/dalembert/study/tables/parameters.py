@@ -177,9 +177,9 @@ def read_constants(document: Any, info: ValidationInfo) -> dict[str, float | Exp
     wrong, constants = [], {}
     for name, value in document.items():
         try:
-            constants[name] = found = read_number(value, None, parameters | set(constants))
-            if isinstance(found, Expression):
-                kind_of(found, known)
+            constants[name] = number = read_number(value, None, parameters | set(constants))
+            if isinstance(number, Expression):
+                kind_of(number, known)
         except InputError as error:
             constants[name] = 0.0
             wrong.append(f"{name}: {error}")

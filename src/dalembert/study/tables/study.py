@@ -204,16 +204,16 @@ class Study(Displayed):
 
     def forward(self, channels: Sequence[str], samples: np.ndarray) -> ForwardModel:
         """The model between parameters and channels, at samples of its coordinate."""
-        made = self._forward(channels, samples)
+        forward = self._forward(channels, samples)
         if self.file.model.forward is not None:
             with placed(self._named_in):
-                _require_channels(channels, made)
+                _require_channels(channels, forward)
         else:
             self.system()  # what is wrong with the model itself is told as such
             with placed(self._named_in):
-                made.channels  # noqa: B018 (an unknown one is found here)
-            made.fingerprint  # noqa: B018 (and what cannot be assembled here)
-        model = on_cluster(made, self.executor)
+                forward.channels  # noqa: B018 (an unknown one is found here)
+            forward.fingerprint  # noqa: B018 (and what cannot be assembled here)
+        model = on_cluster(forward, self.executor)
         if self.checkpoint is None:
             return model
         varied = _plain({"constants": self.file.constants, "arguments": self.file.model.arguments})

@@ -157,8 +157,8 @@ class Identification(Outcome):
         if not study.has_system:
             return None
         if not fit.experiments:
-            own = fit.values[: len(study.parameters)]  # what follows belongs to sensors
-            return study.motion(float(fit.data.coordinate.values[-1]), own)
+            fitted = fit.values[: len(study.parameters)]  # what follows belongs to sensors
+            return study.motion(float(fit.data.coordinate.values[-1]), fitted)
         motions = {}
         for table, item in list(zip(study.file.experiments, fit.experiments, strict=True))[:MOST_MOTIONS]:
             names = [f"{table.name}.{name}" if name in table.local else name for name in study.parameters.names]

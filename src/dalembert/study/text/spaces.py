@@ -42,11 +42,11 @@ def by_joint(derivative: int) -> Any:
         if not isinstance(value, Mapping):
             raise problem(f"{value!r} was given; expected a table of joints, such as {{ pin = '30 deg' }}")
         names = info.context.names if isinstance(info.context, Context) else None
-        own = {
+        units_here = {
             name: units[str(name).rpartition(".")[2].startswith("displacement") and "." in str(name)][derivative]
             for name in value
         }
-        return {name: checked(read_number, number, own[name], names) for name, number in value.items()}
+        return {name: checked(read_number, number, units_here[name], names) for name, number in value.items()}
 
     return read
 

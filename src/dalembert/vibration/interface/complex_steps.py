@@ -13,7 +13,7 @@ from scipy.sparse import issparse
 
 from dalembert.forward.complex_steps import check_steps
 from dalembert.parameters import Parameters
-from dalembert.structure.craig_bampton import HeldBases
+from dalembert.structure.craig_bampton import CachedBases
 from dalembert.structure.structure import MATRICES, Structure
 from dalembert.vibration.interface.lowering import Lowered, lower
 from dalembert.vibration.laws.law_block import LawBlock
@@ -66,7 +66,7 @@ def _check(
     parts: Callable[[VibrationSystem], Iterator[Part]],
     thorough: bool,
 ) -> None:
-    bases = HeldBases()
+    bases = CachedBases()
 
     def numbers(vector: np.ndarray) -> list[Part]:
         arguments = [value if value.imag else value.real for value in vector.tolist()]  # one of them is complex at most

@@ -8,7 +8,7 @@ import numpy as np
 from dalembert.arguments import takes_checked
 from dalembert.errors import InputError
 from dalembert.forward import Checkpoint
-from dalembert.threads import one_thread
+from dalembert.threads import single_thread
 from dalembert.units import unit_of
 from dalembert.vibration.balance.equations import equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
@@ -41,7 +41,7 @@ WEAK = 1e-3
 
 
 @takes_checked("amplitudes")
-@one_thread()
+@single_thread()
 def backbone(
     system: VibrationSystem,
     amplitudes: np.ndarray | Sequence[float] | tuple[float, float],

@@ -9,7 +9,7 @@ import numpy as np
 from dalembert.errors import InputError
 from dalembert.structure.mode_shapes import drawn_nodes, node_motion
 from dalembert.structure.structure import known_nodes
-from dalembert.threads import one_thread
+from dalembert.threads import single_thread
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.fourier import synthesis
@@ -138,7 +138,7 @@ def _largest(curve: FrequencyCurve) -> int:
     return int(np.nanargmax(sizes)) if np.isfinite(sizes).any() else -1
 
 
-@one_thread()
+@single_thread()
 def _response(system: VibrationSystem, curve: FrequencyCurve, point: int) -> np.ndarray:
     """Coefficients of all degrees of freedom, (size, coefficients), from the unknowns that the curve keeps."""
     problem = Equations(lower(system).real, HarmonicBalance(**curve.provenance["method"]))

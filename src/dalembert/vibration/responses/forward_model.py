@@ -16,7 +16,7 @@ from dalembert.forward.builders import built, check_function, cores, inexact, re
 from dalembert.forward.complex_steps import Compared
 from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES, central_differences
 from dalembert.parameters import Parameter, Parameters
-from dalembert.threads import one_thread
+from dalembert.threads import single_thread
 from dalembert.units import unit_of
 from dalembert.vibration.balance.equations import Equations, equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
@@ -143,7 +143,7 @@ class FrequencyResponse:
             except Exception as error:  # the user's builder raised: this sample's failure, not the batch's
                 failures[row] = told(error)
 
-        with one_thread():
+        with single_thread():
             list(ensemble(work, range(len(vectors)), workers=self.workers))
         return Responses(values, tuple(failures))
 
@@ -239,7 +239,7 @@ class FrequencyResponse:
         """The whole result at a parameter vector (parameters,)."""
         return frequency_response(self.system(vector), self.frequencies, self.balance, check=False)
 
-    @one_thread()
+    @single_thread()
     def _linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         problem = equations(self.system(vector), self.balance, derivatives=True)
         places = self._places(problem.lowered)

@@ -9,7 +9,7 @@ import numpy as np
 from dalembert.arguments import takes_checked
 from dalembert.errors import InputError, require_known
 from dalembert.forward import Checkpoint
-from dalembert.threads import one_thread
+from dalembert.threads import single_thread
 from dalembert.vibration.balance.arc_length import PathPoint
 from dalembert.vibration.balance.conclusions import (
     Unconverged,
@@ -73,7 +73,7 @@ CurvePoint = tuple[FrequencyCurve, int]
 
 
 @takes_checked("frequencies", "continuation", "observe")
-@one_thread()
+@single_thread()
 def frequency_response(
     system: VibrationSystem,
     frequencies: np.ndarray | tuple[float, float],

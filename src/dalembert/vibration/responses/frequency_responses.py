@@ -16,7 +16,7 @@ from dalembert.contents import Contents
 from dalembert.errors import DalembertError, InputError, SolveError, StorageError, told
 from dalembert.forward import Checkpoint, Executor, ensemble
 from dalembert.forward.builders import check_function
-from dalembert.threads import one_thread
+from dalembert.threads import single_thread
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.paths.curve import FrequencyCurve
@@ -100,7 +100,7 @@ def frequency_responses(
     follow = _Follow(builder, parameter, frequencies, method or HarmonicBalance(), options)
     curves: list[FrequencyCurve | None] = []
     errors: list[DalembertError | None] = []
-    with one_thread(), closing(_followed(follow, numbers, workers, executor, checkpoint)) as outcomes:
+    with single_thread(), closing(_followed(follow, numbers, workers, executor, checkpoint)) as outcomes:
         for row, (curve, error, _) in enumerate(outcomes):
             curves.append(curve)
             errors.append(error)

@@ -17,7 +17,7 @@ from dalembert.errors import InputError
 from dalembert.findings import Finding
 from dalembert.forward import Checkpoint
 from dalembert.forward.builders import check_function
-from dalembert.threads import one_thread
+from dalembert.threads import single_thread
 from dalembert.vibration.balance.arc_length import PathTangent, direction_at, zero_between
 from dalembert.vibration.balance.equations import Equations, equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
@@ -46,7 +46,7 @@ NARROW = 1e-6
 
 
 @takes_checked("values")
-@one_thread()
+@single_thread()
 def track_resonance(
     builder: Callable[..., VibrationSystem],
     parameter: str,

@@ -4,7 +4,7 @@ import numpy as np
 
 from dalembert.arguments import takes_checked
 from dalembert.errors import require_known
-from dalembert.threads import one_thread
+from dalembert.threads import single_thread
 from dalembert.vibration.balance.equations import equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.paths.curve import FrequencyCurve
@@ -14,7 +14,7 @@ from dalembert.vibration.system.system import VibrationSystem
 
 
 @takes_checked("way")
-@one_thread()
+@single_thread()
 def floquet_multipliers(system: VibrationSystem, curve: FrequencyCurve, point: int, way: str = AUTOMATIC) -> np.ndarray:
     """Return the Floquet multipliers: the factors by which small perturbations of a periodic motion grow in a period.
 

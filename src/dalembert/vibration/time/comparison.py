@@ -10,7 +10,7 @@ import numpy as np
 from dalembert.arguments import takes_checked
 from dalembert.errors import InputError
 from dalembert.forward import Checkpoint, ensemble
-from dalembert.threads import one_thread
+from dalembert.threads import single_thread
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.paths.curve import FrequencyCurve
@@ -86,7 +86,7 @@ class TimeComparison(VibrationResult):
 
 
 @takes_checked("points", "frequencies", "way", "kind")
-@one_thread()
+@single_thread()
 def compare_in_time(
     system: VibrationSystem,
     curve: FrequencyCurve,

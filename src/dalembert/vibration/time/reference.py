@@ -10,7 +10,7 @@ from scipy.sparse.linalg import LinearOperator, gmres
 
 from dalembert.arguments import takes_checked
 from dalembert.errors import InputError, SolveError, require_known
-from dalembert.threads import one_thread
+from dalembert.threads import single_thread
 from dalembert.vibration.balance.equations import equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.preparation import balance_kernels, prepare_together
@@ -33,7 +33,7 @@ WARMING = 5
 
 
 @takes_checked("way", "observe")
-@one_thread()
+@single_thread()
 def steady_state(
     system: VibrationSystem,
     frequency: float,

@@ -65,7 +65,7 @@ from dalembert.kernels.kernel import inner
 from dalembert.multibody import Kind
 from dalembert.multibody.components.fields import Number, number, pair
 from dalembert.multibody.components.base_body import with_points
-from dalembert.multibody.components.planar.rigid import Rigid
+from dalembert.multibody.components.planar.rigid import PlanarRigid
 from dalembert.multibody.components.points import Place
 
 @inner
@@ -81,7 +81,7 @@ DISC = Kind("own_disc", coordinates=3, numbers=("mass", "inertia"), residual=res
 
 @with_points("centre")
 @dataclass(frozen=True)
-class OwnDisc(Rigid):
+class OwnDisc(PlanarRigid):
     """A disc without weight."""
 
     radius: Number = number("m")

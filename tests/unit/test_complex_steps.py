@@ -126,7 +126,7 @@ def test_rounding_to_few_decimals_is_found(name: str, at: float) -> None:
 
 @pytest.mark.parametrize("name", [*CARRYING, *SMOOTH_OR_KINKED])
 @pytest.mark.parametrize("scale", [0.1, 1.0, 10.0])
-@pytest.mark.parametrize(("at", "room"), [(1.2, (-0.7, 0.8)), (1.2345, (-0.05, 0.1)), (0.77, (-0.27, 1.23))])
+@pytest.mark.parametrize(("at", "scratch"), [(1.2, (-0.7, 0.8)), (1.2345, (-0.05, 0.1)), (0.77, (-0.27, 1.23))])
 def test_smooth_steep_and_kinked_functions_do_not_follow_steps(
     name: str, scale: float, at: float, scratch: tuple[float, float]
 ) -> None:

@@ -230,7 +230,7 @@ def _of_experiments(fit: Fit, chosen: tuple[str, ...] | None) -> Estimates:
     if not names:
         raise InputError(
             "population: the experiments of the fit have no local parameter in common. Declare those that vary as "
-            "local, with own of each experiment."
+            "local, with local of each experiment."
         )
     for name in names:
         require_known("local parameter", name, common, "population")

@@ -77,7 +77,7 @@ def _(model: BaseSystem) -> Summary | None:
     drawing = picture(model)
     kinds = {"bodies": model.bodies, "joints": model.joints, "loads and sensors": model.loads}
     facts = {name: ", ".join(_named(own)) for name, own in kinds.items() if own}
-    return None if drawing is None else Summary("BaseSystem", facts=facts, pictures=[drawing])
+    return None if drawing is None else Summary("Mechanism", facts=facts, pictures=[drawing])
 
 
 @shown_in_notebook.register

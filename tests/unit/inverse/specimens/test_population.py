@@ -75,7 +75,7 @@ def test_experiments_without_a_common_local_parameter_are_refused(joint):
     with pytest.raises(da.InputError) as refused:
         da.population(joint)
     assert str(refused.value) == snapshot(
-        "population: the experiments of the fit have no local parameter in common. Declare those that vary as local, with own of each experiment."
+        "population: the experiments of the fit have no local parameter in common. Declare those that vary as local, with local of each experiment."
     )
 
 

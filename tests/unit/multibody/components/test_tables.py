@@ -199,7 +199,7 @@ def test_a_held_table_has_no_derivative_by_its_delay() -> None:
     assert model.evaluate(AT).failures == (None,)
     sentence = (
         "Table: the response to a held value has no derivative by its delay, since each change of the value moves in "
-        "time as a jump; take kind = 'linear', or a delay that depends on no parameter"
+        "time as a jump; take interpolation = 'linear', or a delay that depends on no parameter"
     )
     with pytest.raises(InputError, match=says(sentence)):
         model.jacobian(AT)

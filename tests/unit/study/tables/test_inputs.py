@@ -324,14 +324,14 @@ column = "i"
         (
             MODEL + INPUT + 'interpolation = "held"' + DATA,
             "[inputs.current], delay: the response to a held input has no derivative by its delay, since each change "
-            "of the value moves in time as a jump; take kind = 'linear', or a delay that depends on no parameter",
+            "of the value moves in time as a jump; take interpolation = 'linear', or a delay that depends on no parameter",
         ),
         (
             MODEL + INPUT + 'interpolation = "hold"' + DATA,
             "[inputs.current], interpolation: 'hold' was given; expected 'linear', 'cubic' or 'held'",
         ),
         (
-            MODEL + INPUT + EXPERIMENTS.replace("inputs.current.kind", "inputs.curent.kind"),
+            MODEL + INPUT + EXPERIMENTS.replace("inputs.current.interpolation", "inputs.curent.interpolation"),
             "[[experiments]] 'second', inputs: unknown input 'curent'; did you mean 'current'?",
         ),
         (

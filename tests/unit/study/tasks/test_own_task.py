@@ -81,14 +81,14 @@ class RingingTask(ResultTask):
     "own_ringing_section": '''
 """The section on a Ringing."""
 
-from dalembert.report import Part, sections_of
+from dalembert.report import ReportSection, sections_of
 from own_ringing import Ringing
 from own_ringing_figure import ringing_times
 
 
 @sections_of(Ringing)
 def ringing(result, asked):
-    return [Part("Ringing", (result.summary() + ".",), {"One bar a mode.": ringing_times(result)})]
+    return [ReportSection("Ringing", (result.summary() + ".",), {"One bar a mode.": ringing_times(result)})]
 ''',
     "own_ringing_figure": '''
 """The figure of a Ringing."""

@@ -78,7 +78,7 @@ def test_a_population_is_estimated_saved_and_reported(write, tmp_path):
             {"first": '["rate"]', "second": '["height"]', "third": "[]"},
             tuple(RATES),
             snapshot(
-                "decay.toml: [identify], population: the experiments have no local parameter in common; name those that vary in own of each"
+                "decay.toml: [identify], population: the experiments have no local parameter in common; name those that vary in local of each"
             ),
         ),
         (
@@ -86,7 +86,7 @@ def test_a_population_is_estimated_saved_and_reported(write, tmp_path):
             '["rate"]',
             tuple(RATES),
             snapshot(
-                "decay.toml: [identify], population: 'height' is no local parameter of all experiments; name it in own of each"
+                "decay.toml: [identify], population: 'height' is no local parameter of all experiments; name it in local of each"
             ),
         ),
     ],

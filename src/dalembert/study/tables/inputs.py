@@ -258,8 +258,8 @@ def wrong_inputs(file: Any) -> list[str]:
         if any(item.interpolation == "held" and _varies(item.delay, file) for item in tables or [table]):
             wrong.append(
                 f"[inputs.{name}], delay: the response to a held input has no derivative by its delay, since each "
-                "change of the value moves in time as a jump; take interpolation = 'linear', or a delay that depends on no "
-                "parameter"
+                "change of the value moves in time as a jump; take interpolation = 'linear', or a delay that depends on "
+                "no parameter"
             )
     if file.inputs and any(table.unknown_start is not None for table in (file.data, *file.experiments) if table):
         wrong.append(

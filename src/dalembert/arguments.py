@@ -360,11 +360,6 @@ def _words(kind: Any, value: Any, unit: str) -> str:
 def names_of(entries: str | Iterable[str], owner: str, what: str) -> tuple[str, ...]:
     """Names from a sequence of them, or from a single one.
 
-    Raises
-    ------
-    InputError
-        For anything else.
-
     Examples
     --------
     >>> names_of("rod.end.x", "TimeResponse", "channels"), names_of(["a", "b"], "TimeResponse", "channels")

@@ -27,13 +27,6 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
 
     The content is on the disk before the name is, so that not even a power cut leaves half a file.
 
-    Raises
-    ------
-    InputError
-        If there is no folder to write to.
-    StorageError
-        If there is no room, or no right to write.
-
     Examples
     --------
     >>> folder = Path(tempfile.mkdtemp())
@@ -108,11 +101,6 @@ def read_dataset(path: str | os.PathLike[str], *, form: str, expected: str) -> "
     """Dataset of a NetCDF-4 file whose attribute ``format`` is ``form``, for example ``"dalembert fit 1"``.
 
     ``expected`` says in an error what should have been there, for example ``"a fit written by Fit.save"``.
-
-    Raises
-    ------
-    DataError
-        For a file that is not there, is not NetCDF, or holds something else.
     """
     from xarray import load_dataset
 

@@ -188,13 +188,7 @@ def placed(lower: np.ndarray, upper: np.ndarray, eta: np.ndarray) -> np.ndarray:
 
 
 def corners(lower: ArrayLike, upper: ArrayLike, *, flat: bool = False) -> tuple[np.ndarray, np.ndarray]:
-    """Return both corners of a box as arrays of shape (d,); a ``flat`` box may have directions without width.
-
-    Raises
-    ------
-    InputError
-        For what is not two finite vectors of one length, the lower bounds first.
-    """
+    """Return both corners of a box as arrays of shape (d,); a ``flat`` box may have directions without width."""
     low, high = np.array(lower, dtype=float, ndmin=1), np.array(upper, dtype=float, ndmin=1)
     before, sign = (np.less_equal, "<=") if flat else (np.less, "<")
     if low.ndim != 1 or low.shape != high.shape or not np.all(np.isfinite(low) & np.isfinite(high) & before(low, high)):

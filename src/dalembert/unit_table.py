@@ -201,13 +201,7 @@ def _power(text: str, place: int) -> tuple[int | Fraction, int]:
 
 @cache
 def _named(word: str) -> tuple[Unit, ...]:
-    """Units that a word may name.
-
-    Raises
-    ------
-    KeyError
-        If there are none.
-    """
+    """Units that a word may name."""
     if word == "1":
         return (NONE,)
     units_found = next(iter(_prefixed(word, _SYMBOLS, _WORDS)), None)

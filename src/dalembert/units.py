@@ -59,11 +59,6 @@ def si(value: object, unit: str | None, where: str = "") -> float:
     where : str
         Place named at the front of an error, for example ``"beam OA, length"``.
 
-    Raises
-    ------
-    InputError
-        If the value is not a finite number, or its unit is unknown or measures something else.
-
     Examples
     --------
     >>> si("400 mm", "m"), si(0.4, "m"), si("60 rpm", "rad/s")
@@ -126,11 +121,6 @@ def factor_of(unit: str, wanted: str | None = None, *, measured: bool = False) -
     measured : bool
         Whether it is the unit of measured numbers: ``"g"`` and ``"lb"`` alone are then an acceleration and a force if
         nothing else decides.
-
-    Raises
-    ------
-    InputError
-        If the unit is unknown, measures something else, or has an offset.
 
     Examples
     --------
@@ -211,13 +201,7 @@ def _tidy(number: float) -> float:
 
 
 def _reading(text: str, wanted: str | None, *, measured: bool = False) -> Unit:
-    """What a unit is: of several readings the one that measures what is wanted, or else the usual one.
-
-    Raises
-    ------
-    ValueError
-        With the reason, which is empty where the unit measures something else.
-    """
+    """What a unit is: of several readings the one that measures what is wanted, or else the usual one."""
     candidates = readings(text)
     if not candidates:
         more = f" because it has several meanings; write {DOUBTFUL[text]}" if text in DOUBTFUL else ""

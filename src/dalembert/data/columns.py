@@ -119,13 +119,7 @@ def trial_label(value: object) -> str:
 
 
 def of_trial(path: Path, labels: Sequence[str], trial: Trial) -> np.ndarray:
-    """Mask of the samples of a trial, from the label of each sample.
-
-    Raises
-    ------
-    DataError
-        Where there is no such trial.
-    """
+    """Mask of the samples of a trial, from the label of each sample."""
     mask = np.array([label == trial.label for label in labels])
     if not mask.any():
         known = dict.fromkeys(labels)
@@ -145,12 +139,6 @@ def chosen(
 
     Times that are dates become seconds since the first, whatever unit their name has. Without ``names`` all columns of
     numbers as long as the times are chosen. Without ``time`` samples are numbered.
-
-    Raises
-    ------
-    DataError
-        Naming file, column and sample: a missing column (with the nearest names), one of another length, text, complex
-        numbers, a value that is not finite (NaN unless it is to be left out), a time that does not grow.
     """
     wanted = None if names is None else list(dict.fromkeys(names))
     if trial is not None:

@@ -93,13 +93,7 @@ def _numbers(along: np.ndarray, present: np.ndarray, step: float) -> np.ndarray:
 
 
 def _spacing(times: np.ndarray) -> float:
-    """Distance of even samples, s, between gaps.
-
-    Raises
-    ------
-    DataError
-        For samples that are not even.
-    """
+    """Distance of even samples, s, between gaps."""
     apart = np.diff(times)
     if len(apart) < 1:
         raise DataError("there is one sample; a low-pass filter needs several")

@@ -17,13 +17,6 @@ def guarded(path: Path, what: str, module: str, function: str, **options: Any) -
     ----------
     what : str
         The kind of the file, for messages.
-
-    Raises
-    ------
-    DataError
-        Where the reader broke down.
-    ValueError
-        With the last line of what it raised.
     """
     command = [sys.executable, "-c", _READER, module, function, str(path), json.dumps(options)]
     done = subprocess.run(command, capture_output=True, check=False)

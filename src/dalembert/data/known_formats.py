@@ -15,13 +15,7 @@ def known_formats() -> dict[str, type[Format]]:
 
 
 def columns_in(path: Path, request: Request, format: str | None = None) -> Columns:  # noqa: A002
-    """Columns of a file, in the given format or else that of its suffix.
-
-    Raises
-    ------
-    DataError
-        For a format or a suffix that is unknown, and whatever is wrong with the file.
-    """
+    """Columns of a file, in the given format or else that of its suffix."""
     return _reader(path, format, trials=request.trial is not None).columns(path, request)
 
 
@@ -33,12 +27,7 @@ def trial_labels(
     decimal: str = AUTO,
     format: str | None = None,  # noqa: A002
 ) -> list[str]:
-    """Labels of the trials that a column of a text or JSON file numbers, in the order in which they begin.
-
-    Raises
-    ------
-    DataError
-    """
+    """Labels of the trials that a column of a text or JSON file numbers, in the order in which they begin."""
     labels = _reader(path, format, trials=True).trial_labels(path, column, separator, decimal)
     return list(dict.fromkeys(labels))
 

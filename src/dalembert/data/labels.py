@@ -13,12 +13,7 @@ from dalembert.forward import Coordinate
 
 
 def check_labels(coordinate: Coordinate, channels: tuple[str, ...], **arrays: np.ndarray) -> None:
-    """Refuse samples that do not grow, channels that repeat, and arrays that are not (samples, channels).
-
-    Raises
-    ------
-    DataError
-    """
+    """Refuse samples that do not grow, channels that repeat, and arrays that are not (samples, channels)."""
     samples = coordinate.values
     expected = (len(samples), len(channels))
     if len(samples) == 0 or len(channels) == 0:
@@ -45,13 +40,7 @@ def check_labels(coordinate: Coordinate, channels: tuple[str, ...], **arrays: np
 
 
 def coordinate_of(coordinate: Coordinate | ArrayLike) -> Coordinate:
-    """A coordinate as it is; an array, shape (samples,), as times in seconds.
-
-    Raises
-    ------
-    DataError
-        For values that are not real numbers, or not one row of them.
-    """
+    """A coordinate as it is; an array, shape (samples,), as times in seconds."""
     if isinstance(coordinate, Coordinate):
         there = coordinate.values
         if isinstance(there, np.ndarray) and there.dtype == float and there.ndim == 1:
@@ -65,11 +54,6 @@ def coordinate_of(coordinate: Coordinate | ArrayLike) -> Coordinate:
 
 def real_numbers(values: Any, what: str) -> np.ndarray:
     """Array of floats from anything like an array.
-
-    Raises
-    ------
-    DataError
-        For complex numbers, dates, and what is not a number, with the first such entry.
 
     Examples
     --------
@@ -105,12 +89,7 @@ def real_numbers(values: Any, what: str) -> np.ndarray:
 
 
 def by_name(columns: Any) -> Mapping[str, Any]:
-    """Columns by name, refused if they are anything else.
-
-    Raises
-    ------
-    DataError
-    """
+    """Columns by name, refused if they are anything else."""
     if not isinstance(columns, Mapping):
         raise DataError(
             f"the channels are {shown(columns)}; expected columns by their names, such as {{'AB.end.x': values}}"
@@ -119,13 +98,7 @@ def by_name(columns: Any) -> Mapping[str, Any]:
 
 
 def table_of(coordinate: Coordinate, columns: Mapping[str, ArrayLike]) -> np.ndarray:
-    """Array (samples, channels) of columns (samples,) by name.
-
-    Raises
-    ------
-    DataError
-        For a column of another length than the coordinate.
-    """
+    """Array (samples, channels) of columns (samples,) by name."""
     arrays = [real_numbers(column, f"channel {name!r}") for name, column in columns.items()]
     for name, column in zip(columns, arrays, strict=True):
         if column.shape != coordinate.values.shape:

@@ -24,12 +24,7 @@ class LinesFormat(Format):
 
     @abstractmethod
     def lines(self, path: Path) -> list[Line]:
-        """Return the lines that are not blank, with their numbers.
-
-        Raises
-        ------
-        DataError
-        """
+        """Return the lines that are not blank, with their numbers."""
 
     def columns(self, path: Path, request: Request) -> Columns:
         request_here = request
@@ -81,13 +76,6 @@ def columns_of(
         The one trial whose lines are read.
     absent : iterable of str
         Further words for a cell without a value.
-
-    Raises
-    ------
-    DataError
-        Naming file, line and column: no such file, empty file, no text, another separator, missing column (with the
-        nearest names) or one that is there twice, a cell that is empty, NaN or not a number, a line too short or too
-        long, a time that does not grow.
     """
     _refuse_marks(path, separator, decimal)
     if not lines:
@@ -140,12 +128,7 @@ def _laid_out(
 def labels_of(
     path: Path, lines: Sequence[Line], column: str | int, separator: str = AUTO, decimal: str = AUTO
 ) -> list[str]:
-    """Label of the trial that each line belongs to, by the column that numbers them.
-
-    Raises
-    ------
-    DataError
-    """
+    """Label of the trial that each line belongs to, by the column that numbers them."""
     _refuse_marks(path, separator, decimal)
     text = layout(lines, column, separator, decimal)
     _refuse_rows(path, text)

@@ -33,13 +33,7 @@ class Decoders:
         self._decoders: dict[tuple[int, str], Callable[[bytes], Any] | None] = {}
 
     def decoded(self, schema: Any, channel: Any, message: Any) -> Any:
-        """Return a message as nested mappings, lists and numbers or as an object; None if nothing decodes it.
-
-        Raises
-        ------
-        DataError
-            If the package that decodes it is not installed.
-        """
+        """Return a message as nested mappings, lists and numbers or as an object; None if nothing decodes it."""
         if channel.message_encoding == "json":
             return json.loads(message.data)
         key = (channel.schema_id, channel.message_encoding)

@@ -36,13 +36,7 @@ def reading(path: Path, what: str) -> Iterator[None]:
 
 
 def library(name: str, path: Path, what: str, extra: str = "data", package: str = "") -> Any:
-    """A module that comes with an extra.
-
-    Raises
-    ------
-    DataError
-        Saying what to install, if it is not there.
-    """
+    """A module that comes with an extra."""
     try:
         return import_module(name)
     except ImportError:
@@ -50,13 +44,7 @@ def library(name: str, path: Path, what: str, extra: str = "data", package: str 
 
 
 def require(name: str, path: Path, what: str, extra: str) -> None:
-    """Refuse a file if the package that another process reads it with is not installed.
-
-    Raises
-    ------
-    DataError
-        Saying what to install.
-    """
+    """Refuse a file if the package that another process reads it with is not installed."""
     if find_spec(name) is None:
         raise _missing(name, path, what, extra)
 

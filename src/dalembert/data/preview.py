@@ -92,11 +92,6 @@ def preview(path: Path, separator: str = AUTO, decimal: str = AUTO, absent: Sequ
     absent : sequence of str
         Further words for a cell without a value in a text file.
 
-    Raises
-    ------
-    DataError
-        If the file cannot be read, or has no line of numbers.
-
     Examples
     --------
     >>> from tempfile import TemporaryDirectory

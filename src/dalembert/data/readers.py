@@ -144,12 +144,7 @@ def read(
 def _refuse_wrong_kinds(
     path: Any, time: Any, columns: Any, units: Any, missing: Any, separator: Any, trial: Any
 ) -> None:
-    """Refuse arguments of another type than :func:`read` takes.
-
-    Raises
-    ------
-    DataError
-    """
+    """Refuse arguments of another type than :func:`read` takes."""
     is_names = isinstance(missing, str) or (isinstance(missing, Sequence) and not isinstance(missing, bytes))
     of_text = isinstance(units, Mapping) and all(isinstance(unit, str) for unit in units.values())
     is_pair = isinstance(trial, Sequence) and not isinstance(trial, str) and len(trial) == 2

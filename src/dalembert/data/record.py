@@ -107,11 +107,6 @@ class Record:
 
         A model's motion begins at time 0, and few records do.
 
-        Raises
-        ------
-        DataError
-            For another word.
-
         Examples
         --------
         >>> from dalembert.data import Measurements
@@ -128,24 +123,12 @@ class Record:
         return self._rows(slice(samples), cut(self.coordinate, samples))
 
     def between(self, begin: float, end: float) -> Self:
-        """The samples from ``begin`` to ``end`` of the coordinate, both included.
-
-        Raises
-        ------
-        DataError
-            If there are none.
-        """
+        """The samples from ``begin`` to ``end`` of the coordinate, both included."""
         along = self.coordinate.values
         return self._picked((along >= begin) & (along <= end), f"from {begin:.10g} to {end:.10g}")
 
     def every(self, step: int) -> Self:
-        """Every ``step``-th sample, the first one among them; the others' information is lost.
-
-        Raises
-        ------
-        DataError
-            For a step below 1, and for channels with different time stamps, of which some would be lost.
-        """
+        """Every ``step``-th sample, the first one among them; the others' information is lost."""
         if step < 1:
             raise DataError(f"every {step} samples; expected at least 1")
         if step > 1 and not self.taken.all():
@@ -180,13 +163,7 @@ Recorded = TypeVar("Recorded", bound=Record)
 
 
 def beginning(along: np.ndarray, start: float | str) -> float:
-    """The time of a record (samples,) at which the motion begins: a number, or its first one.
-
-    Raises
-    ------
-    DataError
-        For another word.
-    """
+    """The time of a record (samples,) at which the motion begins: a number, or its first one."""
     if isinstance(start, str):
         if start != FIRST:
             raise DataError(f"start is {start!r}; expected {FIRST!r}, or the time at which the motion begins")

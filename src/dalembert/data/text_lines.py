@@ -17,23 +17,13 @@ def text_lines(path: Path) -> list[tuple[int, str]]:
     """The lines that are not blank, with their numbers in the file.
 
     UTF-8, UTF-16 with a byte order mark, or else Windows-1252, in which older instruments write a degree sign.
-
-    Raises
-    ------
-    DataError
-        For a file that is not there, cannot be read, or is no text.
     """
     text = _decoded(path, file_bytes(path))
     return [(number, line) for number, line in enumerate(text.splitlines(), start=1) if line.strip()]
 
 
 def file_bytes(path: Path) -> bytes:
-    """Bytes of a file, decompressed if it is a gzip file.
-
-    Raises
-    ------
-    DataError
-    """
+    """Bytes of a file, decompressed if it is a gzip file."""
     try:
         content = path.read_bytes()
         return gzip.decompress(content) if content.startswith(_GZIP) else content

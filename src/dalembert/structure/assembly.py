@@ -19,13 +19,7 @@ _COUNTS = {2: "two", 3: "three"}
 
 
 def library(name: str, what: str) -> Any:
-    """Import a module that comes with the extra ``fem``.
-
-    Raises
-    ------
-    InputError
-        Saying what to install, if it is not there.
-    """
+    """Import a module that comes with the extra ``fem``."""
     try:
         return import_module(name)
     except ImportError:
@@ -35,23 +29,13 @@ def library(name: str, what: str) -> Any:
 
 
 def require_lengths(where: str, what: str, lengths: Sequence, count: int) -> None:
-    """Refuse lengths that are not ``count`` positive numbers.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse lengths that are not ``count`` positive numbers."""
     if len(lengths) != count or not all(is_number(length) and np.real(length) > 0 for length in lengths):
         raise InputError(f"{where}: {what} is {shown(lengths)}; expected {_COUNTS[count]} positive numbers in m")
 
 
 def require_counts(where: str, counts: Sequence, count: int) -> None:
-    """Refuse numbers of elements that are not ``count`` positive whole numbers.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse numbers of elements that are not ``count`` positive whole numbers."""
     if len(counts) != count or not all(is_whole(number) and number > 0 for number in counts):
         raise InputError(f"{where}: elements is {shown(counts)}; expected {_COUNTS[count]} positive whole numbers")
 

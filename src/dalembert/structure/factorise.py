@@ -26,11 +26,6 @@ def factorise(matrix: Any, what: str, advice: str = "; clamp it") -> Callable[[n
         Its name in the error.
     advice : str
         End of the sentence of the error.
-
-    Raises
-    ------
-    SolveError
-        For a singular matrix.
     """
     singular = f"{what} is singular: the structure, or a part of it, moves without being held{advice}"
     if not issparse(matrix):

@@ -28,13 +28,7 @@ BULK = (".bdf", ".nas", ".fem")
 
 
 def read_mesh(path: str | Path) -> tuple[Any, np.ndarray, dict[str, np.ndarray]]:
-    """Mesh of a file, its points (points, 3), and rows of these in the sets of nodes that it names.
-
-    Raises
-    ------
-    DataError
-        For a file that is missing, cannot be read, or mixes kinds of cells.
-    """
+    """Mesh of a file, its points (points, 3), and rows of these in the sets of nodes that it names."""
     library("meshio", "solid")
     if not Path(path).is_file():
         raise DataError(f"{path}: there is no such file")

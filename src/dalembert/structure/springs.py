@@ -62,11 +62,6 @@ def with_springs(structure: Structure, springs: Sequence[Spring]) -> Structure:
         Degrees of freedom (None for the ground), N/m and N s/m; the loss factor η of hysteretic damping is 0 if not
         given.
 
-    Raises
-    ------
-    InputError
-        For a degree of freedom that is not there, a spring from one to itself, and numbers that are none.
-
     Examples
     --------
     >>> from dalembert.structure import lumped

@@ -214,12 +214,7 @@ def known_nodes(structure: Structure, where: str) -> Nodes:
 
 
 def checked_factor(what: str, factor: Any) -> Any:
-    """Return a loss factor that is a number and not negative.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return a loss factor that is a number and not negative."""
     if not is_number(factor) or np.real(factor) < 0 or abs(np.imag(factor)) > FAINT:
         raise InputError(f"{what} is {shown(factor)}; expected a real number that is not negative")
     return factor

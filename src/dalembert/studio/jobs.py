@@ -103,11 +103,6 @@ def pause(folder: RunFolder) -> None:
     """Stop a run to resume it later; its state says so.
 
     The process ends: a paused run takes no memory, holds no lock that others wait for, and survives a restart.
-
-    Raises
-    ------
-    InputError
-        If it is not going on.
     """
     _require_running(folder)
     folder.pause.touch()
@@ -115,13 +110,7 @@ def pause(folder: RunFolder) -> None:
 
 
 def stop(folder: RunFolder) -> None:
-    """Ask a run to end, as Ctrl-C does; whoever started it.
-
-    Raises
-    ------
-    InputError
-        If it is not going on.
-    """
+    """Ask a run to end, as Ctrl-C does; whoever started it."""
     os.kill(int(_require_running(folder)["process"]), signal.SIGTERM)
 
 

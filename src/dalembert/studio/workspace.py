@@ -49,13 +49,7 @@ class Workspace:
         return find_runs(self.runs_folder)
 
     def run(self, name: str) -> RunFolder:
-        """The run of a name.
-
-        Raises
-        ------
-        InputError
-            If there is none.
-        """
+        """The run of a name."""
         known = {folder.path.name: folder for folder in self.runs()}
         require_known("run", name, known)
         return known[name]
@@ -81,13 +75,7 @@ class Workspace:
         return free_path(self.root / "studies" / name).name
 
     def study(self, name: str) -> Path:
-        """The file of a study. A file that is opened in this way counts as a study, whatever it holds.
-
-        Raises
-        ------
-        InputError
-            If there is none.
-        """
+        """The file of a study. A file that is opened in this way counts as a study, whatever it holds."""
         path = self._files().get(name)
         if path is None:
             raise InputError(unknown("study", name, self.studies()))
@@ -95,13 +83,7 @@ class Workspace:
         return path
 
     def model_of(self, name: str) -> Path:
-        """The file that the saved text of a study names for its model.
-
-        Raises
-        ------
-        InputError
-            If there is no such study, if it names no file, or one that is no TOML file below ``studies/``.
-        """
+        """The file that the saved text of a study names for its model."""
         path = self.study(name)
         try:
             file = model_file(tolerant(path.read_text(encoding="utf-8")))
@@ -123,12 +105,6 @@ class Workspace:
         content : str
         beside : callable
             Writes further files into the folder. If it fails, there is no new study.
-
-        Raises
-        ------
-        InputError
-            If a study has this name already, if the name has characters that :func:`checked` does not allow, and if
-            the text has more than ``LARGEST`` bytes.
         """
         name = checked(name)
         folder = self.root / "studies" / name
@@ -160,12 +136,6 @@ class Workspace:
         name : str
             File name. A file of this name is replaced.
         content : bytes
-
-        Raises
-        ------
-        InputError
-            If the study does not exist, if :func:`checked` refuses the name, if it ends in ``.py``, ``.pyc``, ``.so``
-            or ``.toml``, and if the content has more than ``MOST_BYTES`` bytes.
         """
         name = checked(name)
         if Path(name).suffix.lower() in (".py", ".pyc", ".so", ".toml"):
@@ -194,13 +164,7 @@ def checked(name: str) -> str:
 
 
 def as_text(content: bytes, name: str) -> str:
-    """Text of an uploaded study.
-
-    Raises
-    ------
-    InputError
-        If it is too large, or not UTF-8.
-    """
+    """Text of an uploaded study."""
     if len(content) > LARGEST:
         raise InputError(f"{name} has more than {LARGEST} bytes; expected a study file")
     try:

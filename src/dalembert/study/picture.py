@@ -13,13 +13,7 @@ from dalembert.study.tables.study import Study
 
 
 def picture_or_message(path: Path) -> str:
-    """Return the picture of a study file, or one that says why there is none.
-
-    Raises
-    ------
-    MemoryError
-        If the model needs more memory than there is.
-    """
+    """Return the picture of a study file, or one that says why there is none."""
     try:
         return study_picture(load(path)) or message_picture("No drawing: the model has no shape")
     except MemoryError:  # of the process that draws, which says so
@@ -41,11 +35,6 @@ def study_picture(study: Study, label: str | None = None) -> str | None:
     study : Study
     label : str, optional
         Description for screen readers.
-
-    Raises
-    ------
-    ModelError
-        Where the mechanism cannot be assembled.
     """
     if study.file.model.forward is not None:
         return None

@@ -45,13 +45,7 @@ def templates() -> dict[str, Template]:
 
 
 def begin(template: str, folder: Path) -> Path:
-    """Write a template's files and the schema into a new folder; the path of its study, which has the folder's name.
-
-    Raises
-    ------
-    InputError
-        For a template that there is not, and a folder that is there already or cannot be made.
-    """
+    """Write a template's files and the schema into a new folder; the path of its study, which has the folder's name."""
     known = templates()
     require_known("template", template, known)
     try:

@@ -36,13 +36,7 @@ class Json(Format):
 def json_columns(
     path: Path, time: str | int | None, names: Iterable[str | int] | None, missing: str, trial: Trial | None = None
 ) -> Columns:
-    """Times and columns by name; those of rows by their numbers from 1.
-
-    Raises
-    ------
-    DataError
-        With the line and column where the file is no JSON; for another form; as :func:`chosen`.
-    """
+    """Times and columns by name; those of rows by their numbers from 1."""
     content = _content(path)
     columns = {name: _array(path, name, entries) for name, entries in _by_name(path, content).items()}
     rows = isinstance(content, list) and isinstance(content[0], list)
@@ -52,12 +46,7 @@ def json_columns(
 
 
 def json_labels(path: Path, column: str | int) -> list[str]:
-    """Label of the trial that each sample belongs to, by the column that numbers them.
-
-    Raises
-    ------
-    DataError
-    """
+    """Label of the trial that each sample belongs to, by the column that numbers them."""
     columns = _by_name(path, _content(path))
     if str(column) not in columns:
         raise DataError(unknown("column", str(column), columns, str(path)))

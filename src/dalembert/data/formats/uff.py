@@ -34,12 +34,6 @@ def uff_columns(path: Path, names: Iterable[str] | None, missing: str, units: It
 
     Where several functions have the same response they are numbered, ``12:+X#1``, ``12:+X#2``; a function may be named
     by its first ID line too, if no other has the same. ``units`` are the columns whose unit is known.
-
-    Raises
-    ------
-    DataError
-        Also for functions that are to be read together and have not one abscissa, and for a function whose unit is
-        none of SI, as its label or dataset 164 says, where no unit is known.
     """
     with reading(path, "UFF"):
         file = library("pyuff", path, "UFF files").UFF(str(path))

@@ -174,13 +174,7 @@ def of_table(table: Mapping[str, Any]) -> Choices:
 
 
 def table_of(choices: Choices, preview: Preview) -> dict[str, Any]:
-    """Return the keys of the `[data]` table that choices say.
-
-    Raises
-    ------
-    InputError
-        If no column is used as the times, or none for a channel.
-    """
+    """Return the keys of the `[data]` table that choices say."""
     if choices.time is None and choices.sampling is None:
         raise InputError("No column has the times. Choose the column of the times, or give the sampling rate.")
     if not choices.channels:

@@ -108,11 +108,6 @@ def examine(kept: Kept, study: Path, text: str, file: str, choices: Choices | No
     choices : Choices, optional
     before : Choices, optional
         Of another file, which are kept if this one has the same columns.
-
-    Raises
-    ------
-    DataError
-        If the file cannot be read.
     """
     channels = kept.newest("channels", text, lambda: _channels(kept, study, text))
     marks = (AUTO, AUTO, ()) if choices is None else (choices.separator, choices.decimal, tuple(choices.absent))

@@ -160,13 +160,7 @@ class DataGuide:
             self.suspects = ()
 
     def write(self) -> None:
-        """Write the choices into the draft.
-
-        Raises
-        ------
-        InputError
-            If they lack something, or the text is not valid TOML.
-        """
+        """Write the choices into the draft."""
         if self.examined is None or not self.examined.table:
             raise InputError(self.examined.lacks if self.examined else "Choose a data file first.")
         if self.is_reading:
@@ -187,13 +181,7 @@ class DataGuide:
         return f"Use {unit}" if finding.code == "suspect-unit" and (unit := self._unit(values)) else ""
 
     def apply(self, finding: Finding) -> None:
-        """Do what the button beside a finding does.
-
-        Raises
-        ------
-        InputError
-            If the text of the study is not valid TOML.
-        """
+        """Do what the button beside a finding does."""
         fix, values = fix_of(finding), finding.values
         assert self.choices is not None
         if fix is not None:

@@ -51,11 +51,6 @@ def unit_in(document: Any, name: str) -> tuple[str, float]:
 def use_as_start(document: Any, values: Mapping[str, float]) -> None:
     """Write values by name (SI units) as first guesses of parameters; those of sensors have none, and are left out.
 
-    Raises
-    ------
-    InputError
-        If all are parameters of sensors.
-
     Examples
     --------
     >>> import tomlkit

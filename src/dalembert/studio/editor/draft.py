@@ -138,13 +138,7 @@ class Draft:
         self.check_disk(always=True)
 
     def edit(self, function: Callable[[tomlkit.TOMLDocument], object]) -> None:
-        """Change the text by a function that changes the document; comments and order stay.
-
-        Raises
-        ------
-        InputError
-            If the text is not valid TOML.
-        """
+        """Change the text by a function that changes the document; comments and order stay."""
         try:
             document = tomlkit.parse(self.text)
         except TOMLKitError as error:
@@ -190,30 +184,14 @@ class Draft:
             self._tell("selection")
 
     def set_value(self, name: str, number: float) -> None:
-        """Set the current value of a parameter (SI units), which changes no text.
-
-        Raises
-        ------
-        InputError
-            If there is no parameter of this name.
-        """
+        """Set the current value of a parameter (SI units), which changes no text."""
         require_known("parameter", name, self.values)
         if number != self.values[name]:
             self.values[name] = number
             self._tell("values")
 
     def save(self) -> None:
-        """Write the text to the file.
-
-        Raises
-        ------
-        ChangedOnDiskError
-            If the file is no longer what was read or saved last.
-        InputError
-            If the text is too long.
-        StorageError
-            If there is no room or no right to write.
-        """
+        """Write the text to the file."""
         self.check_disk(always=True)
         if self.disk == "changed":
             raise ChangedOnDiskError(

@@ -132,11 +132,6 @@ def with_table(text: str, place: Place, values: Mapping[str, Any]) -> tuple[str,
 def value_of(text: str, field: TableField) -> Any:
     """Return the value that a text in a form stands for, by the shape of its field; None if it is empty.
 
-    Raises
-    ------
-    InputError
-        If a list or a table is not valid TOML.
-
     Examples
     --------
     >>> number, names = Field("length", "number"), Field("channels", "list")

@@ -111,13 +111,7 @@ def form_at(text: str, selection: Place | None, mistakes: Iterable[Mistake] = ()
 
 
 def with_row(text: str, place: Place, field: TableField, written: str) -> str:
-    """Return the text with what is written in a form; a key is removed where nothing is.
-
-    Raises
-    ------
-    InputError
-        If it is a list or a table that is not valid TOML.
-    """
+    """Return the text with what is written in a form; a key is removed where nothing is."""
     value = value_of(written, field)
     before = child(tolerant(text), (*place, field.key))
     if value == before and type(value) is type(before):

@@ -43,11 +43,6 @@ def study_with_model(kept: Kept, study: Path, text: str, used: dict[str, Path] |
     ----------
     used : dict of str to Path, optional
         Takes the other files that the study names, if it is read now.
-
-    Raises
-    ------
-    DalembertError
-        If the study or the text has mistakes.
     """
     from dalembert.study import load
 

@@ -110,11 +110,6 @@ def study_of(kept: Kept, path: Path, text: str, used: dict[str, Path] | None = N
     ----------
     used : dict of str to Path, optional
         Takes the other files that the text names, if it is read now.
-
-    Raises
-    ------
-    DalembertError
-        If the text has mistakes.
     """
     study, stamps = kept.newest("study", (path, text), lambda: _loaded(path, text, used))
     if stamps != _stamps(study):

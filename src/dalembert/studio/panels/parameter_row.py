@@ -70,11 +70,6 @@ def typed_number(text: str | None, unit: str = "", size: float = 1.0) -> float:
     size : float
         Of that unit in SI units.
 
-    Raises
-    ------
-    InputError
-        If the text is not a number, or has the unit of another quantity.
-
     Examples
     --------
     >>> typed_number("-2,5", "mm", 1e-3), typed_number("400 mN/m", "N/m"), typed_number("3")

@@ -28,13 +28,7 @@ class Deleted:
 
 
 def rename(workspace: Workspace, old: str, new: str) -> None:
-    """Rename a run.
-
-    Raises
-    ------
-    InputError
-        If it is running, if the name is taken, and for a name that :func:`~dalembert.studio.workspace.checked` refuses.
-    """
+    """Rename a run."""
     path, target = _idle(workspace, old).path, workspace.runs_folder / checked(new)
     if target.exists():
         raise InputError(f"there is a run {new!r} already; choose another name")
@@ -42,13 +36,7 @@ def rename(workspace: Workspace, old: str, new: str) -> None:
 
 
 def delete(workspace: Workspace, name: str) -> Deleted:
-    """Move a run to the trash.
-
-    Raises
-    ------
-    InputError
-        If it is running.
-    """
+    """Move a run to the trash."""
     path, trash = _idle(workspace, name).path, workspace.runs_folder / TRASH
     try:
         trash.mkdir(exist_ok=True)
@@ -60,13 +48,7 @@ def delete(workspace: Workspace, name: str) -> Deleted:
 
 
 def restore(workspace: Workspace, deleted: Deleted) -> str:
-    """Move a run back from the trash; return its name, which is another one if its own is taken meanwhile.
-
-    Raises
-    ------
-    InputError
-        If it is no longer in the trash.
-    """
+    """Move a run back from the trash; return its name, which is another one if its own is taken meanwhile."""
     if not deleted.path.is_dir():
         raise InputError(f"the run {deleted.name!r} is no longer in the trash; look for it in {deleted.path.parent}")
     target = free_path(workspace.runs_folder / deleted.name)
@@ -105,11 +87,6 @@ def continued(workspace: Workspace, folder: RunFolder, name: str, text: str) -> 
     -------
     str
         ``"folder/file"``, as :meth:`Workspace.studies` lists it.
-
-    Raises
-    ------
-    InputError
-        If the name is taken or not allowed, and for a run without the copies of its files.
     """
     kept = _kept(folder)
     places = {given: _beside(given) for given in kept["files"]}

@@ -37,13 +37,7 @@ def read_note(run: Path) -> Note:
 
 
 def write_note(run: Path, note: Note) -> None:
-    """Write the note of a run.
-
-    Raises
-    ------
-    InputError
-        If it has more than ``LONGEST`` characters.
-    """
+    """Write the note of a run."""
     if len(note.text) + sum(map(len, note.tags)) > LONGEST:
         raise InputError(f"the note has more than {LONGEST} characters; shorten it")
     write_text(run / NOTE, json.dumps({"note": note.text, "tags": note.tags}, indent=1, ensure_ascii=False) + "\n")

@@ -74,13 +74,7 @@ def parameters_of(study: "Study") -> dict[str, tuple[Parameter, ...]]:
 
 
 def part(study: "Study", name: str) -> StudyMotion:
-    """Return the part with a name.
-
-    Raises
-    ------
-    NothingToSimulateError
-        If the task names nothing that can be simulated.
-    """
+    """Return the part with a name."""
     if study.task in FROM_DATA:
         return _measured(study, name)
     if study.has_system and study.file.solver is not None:

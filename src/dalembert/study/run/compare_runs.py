@@ -20,11 +20,6 @@ def compare_runs(folders: Sequence[RunFolder], leave_out: str | None = None) -> 
     folders : sequence of RunFolder
     leave_out : {"values", "blocks", "experiments"}, optional
         See :func:`dalembert.inverse.compare_models`.
-
-    Raises
-    ------
-    InputError
-        For a run that has neither, two runs of one name, and models that cannot be compared.
     """
     from dalembert.inverse import compare_models
 
@@ -37,13 +32,7 @@ def compare_runs(folders: Sequence[RunFolder], leave_out: str | None = None) -> 
 
 
 def fit_or_posterior(folder: RunFolder) -> "Fit | Posterior":
-    """Return the fit or the posterior of a run.
-
-    Raises
-    ------
-    InputError
-        For a run without a result, or of another task.
-    """
+    """Return the fit or the posterior of a run."""
     from dalembert.inverse import Fit, Posterior
 
     for kind in (Fit, Posterior):

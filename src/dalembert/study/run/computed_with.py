@@ -16,12 +16,7 @@ def this_process(versions: Mapping[str, str]) -> dict[str, Any]:
 
 
 def refuse_other_sources(folder: RunFolder) -> None:
-    """Refuse to resume a run that other source files of the package began.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse to resume a run that other source files of the package began."""
     for process in folder.computed_with():
         if changes := difference(versions(), process):
             raise InputError(

@@ -173,13 +173,7 @@ def too_long(effort: Effort, timing: Timing) -> Finding | None:
 
 
 def within(limit: float, sentences: Callable[[], Iterator[str]]) -> Iterator[str]:
-    """Yield sentences as they come, for at most ``limit`` seconds; their thread is left behind after that.
-
-    Raises
-    ------
-    TimeoutError
-        When the time is over.
-    """
+    """Yield sentences as they come, for at most ``limit`` seconds; their thread is left behind after that."""
     answers: Queue[str | BaseException | None] = Queue()
 
     def work() -> None:

@@ -268,11 +268,6 @@ def new_folder(name: str, out: Path | None = None, *, force: bool = False) -> Ru
     Without ``out`` it is ``runs/<name>``, or ``runs/<name>-2`` and so on while those are taken. With ``out`` or
     ``force`` it is the one named, and what a run left there is removed only if ``force`` says so. A run that was
     refused before it computed anything takes no folder.
-
-    Raises
-    ------
-    InputError
-        If the folder is taken, is at work, or holds something that is not a run.
     """
     path = out or Path("runs") / name
     if out is None and not force:

@@ -88,11 +88,6 @@ def forecast(study: Study, limit: float = inf) -> Iterator[str]:
     study : Study
     limit : float
         Seconds. What takes longer is left out, and a sentence says so.
-
-    Raises
-    ------
-    DalembertError
-        What the first simulations of a run would raise.
     """
     task, began = TASKS[study.task], monotonic()
     with users_code(), single_thread():

@@ -97,13 +97,7 @@ class InputTable(FileTable):
         return shared.model_copy(update=self.picked(*self.model_fields_set))
 
     def read(self, name: str, data_table: DataTable | None) -> "MeasuredInput":
-        """The samples of the input, from its file or that of the data ``data_table``.
-
-        Raises
-        ------
-        DataError
-            For what is wrong with the file, and for an input without one.
-        """
+        """The samples of the input, from its file or that of the data ``data_table``."""
         assert self.column is not None  # or the study was refused
         table = data_table
         if self.file is not None:
@@ -177,10 +171,6 @@ class MeasuredInput:
 
         A scale that has a unit must turn the unit of the column into that of what is driven; a plain number may stand
         for any. The offset must have the unit of what is driven.
-
-        Raises
-        ------
-        DataError
         """
         scaled, scale = "scale" in self.table.model_fields_set, self.table.unit_of("scale")
         offset = self.table.unit_of("offset")
@@ -208,13 +198,7 @@ class MeasuredInput:
                 )
 
     def require(self, end: float) -> None:
-        """Refuse an input that does not last as long as a motion until ``end`` (s).
-
-        Raises
-        ------
-        DataError
-            With the times of both.
-        """
+        """Refuse an input that does not last as long as a motion until ``end`` (s)."""
         first, last = self.times[[0, -1]]
         slack = _OUTSIDE * end + 2 * float(np.median(np.diff(self.times)))
         if first > slack or last < end - slack:
@@ -258,8 +242,8 @@ def wrong_inputs(file: Any) -> list[str]:
         if any(item.interpolation == "held" and _varies(item.delay, file) for item in tables or [table]):
             wrong.append(
                 f"[inputs.{name}], delay: the response to a held input has no derivative by its delay, since each "
-                "change of the value moves in time as a jump; take interpolation = 'linear', or a delay that depends on "
-                "no parameter"
+                "change of the value moves in time as a jump; take interpolation = 'linear', or a delay that depends "
+                "on no parameter"
             )
     if file.inputs and any(table.unknown_start is not None for table in (file.data, *file.experiments) if table):
         wrong.append(

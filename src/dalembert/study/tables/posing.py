@@ -96,12 +96,7 @@ def channel_units_of(model: "ForwardModel | Sequence[Experiment]") -> dict[str, 
 
 
 def _check_units(table: DataTable, model: ForwardModel, where: str, sensors: Mapping[str, SensorTable]) -> None:
-    """Refuse deviations and offsets whose unit is not that of their channel, and derivatives of another kind.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse deviations and offsets whose unit is not that of their channel, and derivatives of another kind."""
     units = channel_units_of(model)
     for file in (table, *table.more):
         for sentence in wrong_units(file.deviations or {}, units, f"{where}, deviations"):
@@ -132,12 +127,7 @@ def _model(study: Study, data: "Measurements", table: DataTable, later: Sequence
 
 
 def _refuse_late(table: DataTable, data: "Measurements") -> None:
-    """Refuse a record that begins late, and of which nobody says when the motion began.
-
-    Raises
-    ------
-    DataError
-    """
+    """Refuse a record that begins late, and of which nobody says when the motion began."""
     stamps = data.coordinate.values
     if table.start is not None or table.between is not None or len(stamps) < 2:
         return

@@ -81,12 +81,7 @@ class CorrelationTable(StudyTable):
     )
 
     def joined(self, items: Sequence[Parameter]) -> CorrelatedNormal:
-        """The prior of these parameters together, from the prior of each.
-
-        Raises
-        ------
-        InputError
-        """
+        """The prior of these parameters together, from the prior of each."""
         known = [item.distribution for item in items]
         mean = [prior.mean for prior in known if isinstance(prior, Normal)]
         deviations = np.array([prior.deviation for prior in known if isinstance(prior, Normal)])

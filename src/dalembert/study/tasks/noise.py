@@ -103,11 +103,6 @@ def noise_of(table: Any, model: Any, place: str) -> Any:
     model : ForwardModel or sequence of Experiment
     place : str
         Name of the table.
-
-    Raises
-    ------
-    InputError
-        For a number whose unit is not that of its channel.
     """
     if table.noise is None:
         return None
@@ -130,11 +125,6 @@ def likelihood_of(table: Any, model: Any, data: Any, weights: Any, place: str, *
         As functions take them.
     open_orders : bool
         Whether an order that is not given will be chosen; it counts as 0.
-
-    Raises
-    ------
-    InputError
-        For noise that the samples do not allow.
     """
     from dalembert.inverse import likelihood
 

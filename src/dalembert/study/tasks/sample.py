@@ -169,13 +169,7 @@ def _cost(table: Any, parameters: int) -> tuple[int, int]:
 
 
 def _priors(study: Study, model: Any, data: Any) -> dict[str, Any]:
-    """Priors of noise parameters, by their names.
-
-    Raises
-    ------
-    InputError
-        For noise that the samples do not allow, a name that no noise parameter has, and a quantity of another unit.
-    """
+    """Priors of noise parameters, by their names."""
     table, where = study.table, "[sample.priors]"
     weights = assessments.weights(table.weights, model, data)
     known = likelihood_of(table, model, data, weights, "sample", open_orders=False).noise_parameters

@@ -86,13 +86,7 @@ class Expression:
 
     @classmethod
     def of(cls, text: str) -> "Expression":
-        """Expression read from text.
-
-        Raises
-        ------
-        InputError
-            If it is not arithmetic, or uses something that is not offered.
-        """
+        """Expression read from text."""
         text = text.strip()
         if len(text) > _LONGEST:
             raise InputError(f"an expression of {len(text)} characters was given; expected at most {_LONGEST}")
@@ -118,13 +112,7 @@ class Expression:
 
 
 def resolved(number: float | Expression, values: Mapping[str, Any], where: str) -> complex:
-    """Return a number; that of an expression at values of its names.
-
-    Raises
-    ------
-    InputError
-        With the place ``where``.
-    """
+    """Return a number; that of an expression at values of its names."""
     try:
         return number(values) if isinstance(number, Expression) else number
     except InputError as error:
@@ -228,11 +216,6 @@ def _unit(text: object) -> Unit | None:
 def kind_of(expression: Expression, known: Kinds) -> Unit | None:
     """Return the unit of an expression; None where a factor without a unit leaves it open.
 
-    Raises
-    ------
-    InputError
-        For a sum of quantities of different kinds.
-
     Examples
     --------
     >>> known = {"L": readings("m")[0], "F": readings("N")[0], "k": None}
@@ -273,12 +256,7 @@ def kind_of_number(value: object, known: Kinds) -> Unit | None:
 
 
 def require_kind(expression: Expression, unit: str, known: Kinds) -> None:
-    """Refuse an expression that measures something else than a unit does.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse an expression that measures something else than a unit does."""
     unit_here, wanted = kind_of(expression, known), _unit(unit)
     if unit_here is None or wanted is None:
         return

@@ -43,13 +43,7 @@ class FunctionReference:
         return self.text
 
     def load(self) -> Callable[..., Any]:
-        """The function itself.
-
-        Raises
-        ------
-        InputError
-            If the file or module cannot be imported, or has no such function.
-        """
+        """The function itself."""
         source, name = self.text.rsplit(":", 1)
         with _importing_from(self.folder):
             try:
@@ -63,13 +57,7 @@ class FunctionReference:
         return function
 
     def fitting(self, *arguments: Any, **named: Any) -> Callable[..., Any]:
-        """The function, if it can be called with these arguments.
-
-        Raises
-        ------
-        InputError
-            As :meth:`load`, and if it cannot.
-        """
+        """The function, if it can be called with these arguments."""
         function = self.load()
         try:
             inspect.signature(function).bind(*arguments, **named)
@@ -85,13 +73,7 @@ class FunctionReference:
 
 @contextmanager
 def users_code() -> Iterator[None]:
-    """A block that calls functions of the user's: what they raise is told with its place in their file.
-
-    Raises
-    ------
-    InputError
-        From any error, not one of ours, that went through the user's code.
-    """
+    """A block that calls functions of the user's: what they raise is told with its place in their file."""
     try:
         yield
     except MemoryError as error:

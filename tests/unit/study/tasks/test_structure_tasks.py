@@ -206,7 +206,11 @@ law = { kind = "Rigid", prediction = "velocity" }
     assert (hard.stiffness, hard.second, stop.gap, stop.second) == (2e9, "m2", 1e-3, None)
     assert [force.__class__.__name__ for force in system.forces] == ["HarmonicForce", "StaticForce"]
     assert system.forces[1].value == 0.6
-    assert (slider.law.tangential_stiffness, second.law.stiffnesses, third.law.prediction) == (1.5, (1.0, 2.0), "velocity")
+    assert (slider.law.tangential_stiffness, second.law.stiffnesses, third.law.prediction) == (
+        1.5,
+        (1.0, 2.0),
+        "velocity",
+    )
 
 
 def test_a_mass_may_move_along_several_axes(write):

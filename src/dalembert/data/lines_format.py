@@ -84,17 +84,11 @@ def columns_of(
     if (separator, decimal) != (AUTO, AUTO):
         _refuse_wrong_marks(path, lines[:HEAD], time, text)
     _refuse_rows(path, text)
-    place = _places(path, text)
     if trial is not None:
-        text = _of_trial(path, text, place(trial.column), trial)
+        text = _of_trial(path, text, _places(path, text)(trial.column), trial)
     if time == "t" and text.named is None:
         time = 1
-    first = None if time is None else place(time)
-    numbering = None if trial is None else place(trial.column)
-    remaining = [k for k in range(len(text.header)) if k not in (first, numbering)]
-    wanted = [place(text.header[k]) for k in remaining] if names is None else [place(name) for name in names]
-    labels = [text.header[k] for k in wanted] if names is None else [str(name) for name in names]
-    _refuse_twice(path, labels, wanted, first)
+    first, labels, wanted = _choice(path, text, time, names, trial)
     places: list[int] = list(dict.fromkeys([*([] if first is None else [first]), *wanted]))
     if numbers is None:
         gaps = gaps_of(absent) if missing == "leave-out" else frozenset()
@@ -110,6 +104,22 @@ def columns_of(
     of_times = text.units[first] or sure_suffix(text.header[first], "s")
     units[str(time)] = "s" if is_clock(text.rows[0][1][first]) else of_times
     return Columns(path, str(time), table[first], columns, units, layout=str(text))
+
+
+def _choice(
+    path: Path, text: Layout, time: str | int | None, names: Iterable[str | int] | None, trial: Trial | None
+) -> tuple[int | None, list[str], list[int]]:
+    """The place of the times, the labels of the other columns that are read, and their places."""
+    place = _places(path, text)
+    first = None if time is None else place(time)
+    if names is None:
+        left_out = (first, None if trial is None else place(trial.column))
+        names = [header for number, header in enumerate(text.header) if number not in left_out]
+    else:
+        names = list(names)
+    labels, wanted = [str(name) for name in names], [place(name) for name in names]
+    _refuse_twice(path, labels, wanted, first)
+    return first, labels, wanted
 
 
 def _laid_out(

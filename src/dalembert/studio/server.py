@@ -51,9 +51,38 @@ def application(root: Path, *, far: bool = False) -> FastAPI:
 
     workspace, jobs, pictures = Workspace(root.resolve()), Jobs(), Pictures()
     watcher = Worker(spares=True)  # of the pages of runs
-    app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
-
     listed = RunList(workspace.runs_folder)
+    app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
+    _add_pages(workspace, jobs, watcher, listed)
+    _add_files(app, workspace, pictures)
+
+    @app.middleware("http")
+    async def headers(request: Any, follow: Any) -> Response:
+        answer = await follow(request)
+        if not request.url.path.startswith(("/files/", ADDRESS)):  # a report has a policy of its own, and a sandbox
+            answer.headers["Content-Security-Policy"] = POLICY
+        answer.headers["X-Content-Type-Options"] = "nosniff"
+        answer.headers["Referrer-Policy"] = "no-referrer"
+        return answer
+
+    ui.run_with(
+        app,
+        title="dalembert",
+        dark=None,
+        show_welcome_message=False,
+        language="en-US",
+        reconnect_timeout=PATIENCE,
+        gzip_middleware_factory=GZipMiddleware if far else None,
+    )
+    pages.on_startup(partial(asyncio.to_thread, listed.rows))  # the first page of runs finds them read
+    pages.on_shutdown(watcher.stop)
+    pages.on_shutdown(pictures.close)
+    return app
+
+
+def _add_pages(workspace: Workspace, jobs: Jobs, watcher: Worker, listed: RunList) -> None:
+    """Add the pages that a browser shows."""
+    from nicegui import ui
 
     @ui.page("/")
     async def runs() -> None:
@@ -87,6 +116,10 @@ def application(root: Path, *, far: bool = False) -> FastAPI:
     def compare(run: list[str] = Query(default=[])) -> None:  # noqa: B008  FastAPI reads the default
         compare_page(workspace, run)
 
+
+def _add_files(app: FastAPI, workspace: Workspace, pictures: Pictures) -> None:
+    """Add what pages load: comparisons, files of runs and pictures."""
+
     @app.get(ADDRESS)
     def comparison(run: list[str] = Query(default=[])) -> Response:  # noqa: B008
         return comparison_file(workspace, run)
@@ -116,29 +149,6 @@ def application(root: Path, *, far: bool = False) -> FastAPI:
     @app.get("/picture-of-template/{name}")
     async def picture_of_template(name: str) -> Response:
         return Response(await pictures.of_template(name), media_type="image/svg+xml")
-
-    @app.middleware("http")
-    async def headers(request: Any, follow: Any) -> Response:
-        answer = await follow(request)
-        if not request.url.path.startswith(("/files/", ADDRESS)):  # a report has a policy of its own, and a sandbox
-            answer.headers["Content-Security-Policy"] = POLICY
-        answer.headers["X-Content-Type-Options"] = "nosniff"
-        answer.headers["Referrer-Policy"] = "no-referrer"
-        return answer
-
-    ui.run_with(
-        app,
-        title="dalembert",
-        dark=None,
-        show_welcome_message=False,
-        language="en-US",
-        reconnect_timeout=PATIENCE,
-        gzip_middleware_factory=GZipMiddleware if far else None,
-    )
-    pages.on_startup(partial(asyncio.to_thread, listed.rows))  # the first page of runs finds them read
-    pages.on_shutdown(watcher.stop)
-    pages.on_shutdown(pictures.close)
-    return app
 
 
 def serve(root: Path, host: str = "127.0.0.1", port: int = 8080, token: str = "", browser: bool = True) -> None:

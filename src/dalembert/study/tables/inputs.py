@@ -1,6 +1,6 @@
 """The tables of measured inputs: columns of files that drive the model, wherever a signal may stand."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
@@ -234,17 +234,8 @@ def wrong_inputs(file: Any) -> list[str]:
             wrong.append(
                 f"[inputs.{name}] is used nowhere in [model]; write {{ input = '{name}' }} where a signal may stand"
             )
-        tables = [entry.inputs[name].over(table) if name in entry.inputs else table for entry in file.experiments]
-        if any(item.column is None for item in tables or [table]):
-            wrong.append(f"[inputs.{name}]: the key 'column' is missing; expected the name of a column")
-        if any(item.file is None for item in tables or [table]) and file.data is None and not file.experiments:
-            wrong.append(f"[inputs.{name}]: the key 'file' is missing, and there are no [data] with a file")
-        if any(item.interpolation == "held" and _varies(item.delay, file) for item in tables or [table]):
-            wrong.append(
-                f"[inputs.{name}], delay: the response to a held input has no derivative by its delay, since each "
-                "change of the value moves in time as a jump; take interpolation = 'linear', or a delay that depends "
-                "on no parameter"
-            )
+        overridden = [entry.inputs[name].over(table) if name in entry.inputs else table for entry in file.experiments]
+        wrong += _wrong_input(name, overridden or [table], file)
     if file.inputs and any(table.unknown_start is not None for table in (file.data, *file.experiments) if table):
         wrong.append(
             "start: the time at which the motion begins is to be identified, and [inputs] drive the model at times of "
@@ -254,6 +245,20 @@ def wrong_inputs(file: Any) -> list[str]:
         where = f"[[experiments]] {entry.name!r}, inputs"
         wrong += [unknown("input", name, file.inputs, where) for name in entry.inputs if name not in file.inputs]
     return wrong
+
+
+def _wrong_input(name: str, tables: Sequence[InputTable], file: Any) -> Iterator[str]:
+    """Sentences about an input, whose table may differ in each experiment."""
+    if any(table.column is None for table in tables):
+        yield f"[inputs.{name}]: the key 'column' is missing; expected the name of a column"
+    if any(table.file is None for table in tables) and file.data is None and not file.experiments:
+        yield f"[inputs.{name}]: the key 'file' is missing, and there are no [data] with a file"
+    if any(table.interpolation == "held" and _varies(table.delay, file) for table in tables):
+        yield (
+            f"[inputs.{name}], delay: the response to a held input has no derivative by its delay, since each change "
+            "of the value moves in time as a jump; take interpolation = 'linear', or a delay that depends on no "
+            "parameter"
+        )
 
 
 def _used(model: Any) -> Iterator[tuple[str, str, str]]:

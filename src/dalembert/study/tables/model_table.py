@@ -119,6 +119,13 @@ class ModelTable(StudyTable):
                 "tables or the [model.structure] of a structure, or function = 'model.py:name', or "
                 "forward = 'model.py:name'"
             )
+        self._refuse_other_parts(ways)
+        if ("body" in ways or self.is_structure) and self.arguments:
+            raise problem("arguments are for a function, and there is none")
+        return [*_wrong_names(self.components, robot), *wrong_structure(self)]
+
+    def _refuse_other_parts(self, ways: list[str]) -> None:
+        """Refuse parts of a structure in a mechanism, and parts of a mechanism in a structure or beside a function."""
         if not self.is_structure and (self.structure is not None or any(getattr(self, name) for name in PARTS)):
             stated = (
                 "here is a mechanism, whose springs and forces stand in [[model.load]]"
@@ -136,9 +143,6 @@ class ModelTable(StudyTable):
                 f"joint, load, gravity, driving, start, pose and rates belong to a model of [[model.body]] "
                 f"tables; {stated}"
             )
-        if ("body" in ways or self.is_structure) and self.arguments:
-            raise problem("arguments are for a function, and there is none")
-        return [*_wrong_names(self.components, robot), *wrong_structure(self)]
 
 
 def _wrong_names(components: list[tuple[str, Any]], robot: RobotTable | None) -> list[str]:

@@ -188,8 +188,7 @@ class Parameters:
 
     @classmethod
     def of(
-        cls,
-        parameters: "Parameters | Mapping[str, Parameter | tuple[float, float]] | Sequence[Parameter]",
+        cls, parameters: "Parameters | Mapping[str, Parameter | tuple[float, float]] | Sequence[Parameter]"
     ) -> "Parameters":
         """Parameters from a mapping of names to bounds (or to :class:`Parameter`), or from a list.
 
@@ -384,19 +383,15 @@ class Parameters:
 
 
 def _named(name: str, entry: "Parameter | tuple[float, float]") -> Parameter:
-    if not isinstance(entry, Parameter):
-        return _within(name, entry)
-    if entry.name != name:
+    if isinstance(entry, Parameter):
+        if entry.name == name:
+            return entry
         raise InputError(
             f"parameters: the key {name!r} has the Parameter {entry.name!r}; expected the same name twice, or a list "
             "of Parameter"
         )
-    return entry
-
-
-def _within(name: str, bounds: tuple[float, float]) -> Parameter:
     try:
-        lower, upper = map(float, bounds)
+        lower, upper = map(float, entry)
     except (TypeError, ValueError) as error:
-        raise InputError(f"parameter {name!r}: bounds are {bounds!r}; expected two numbers, (lower, upper)") from error
+        raise InputError(f"parameter {name!r}: bounds are {entry!r}; expected two numbers, (lower, upper)") from error
     return Parameter(name, lower, upper)

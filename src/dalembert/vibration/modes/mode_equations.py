@@ -128,8 +128,7 @@ class Softened:
 class ModeEquations:
     """The equations of a nonlinear mode, whose amplitude is measured at a row of the structure.
 
-    Motions and directions are read from the problem's checkpoint, if it has one, and new ones added to it. A path goes
-    from one motion to the next, so it takes the same way again, bit for bit.
+    Known motions and directions are read from the problem's checkpoint, so that a path repeats bit for bit.
     """
 
     problem: Equations
@@ -390,13 +389,12 @@ def _numbers(motion: FreeMotion) -> np.ndarray:
 
 def _block(matrix: np.ndarray, system: Uncondensed, place: int) -> np.ndarray:
     """How one coefficient of all retained coordinates acts on itself, (q, q)."""
-    q, count = system.retained, system.series.count
-    return matrix.reshape(q, count, q, count)[:, place, :, place]
+    return matrix.reshape(2 * (system.retained, system.series.count))[:, place, :, place]
 
 
 def _weighted(system: Uncondensed, local: Local, matrix: np.ndarray, place: int) -> np.ndarray:
     """W times a matrix (n, n) for one coefficient."""
-    result = matrix.copy()
-    if local.weight is not None:
-        result[: system.retained] = _block(local.weight, system, place) @ matrix[: system.retained]
-    return result
+    if local.weight is None:
+        return matrix.copy()
+    first = _block(local.weight, system, place) @ matrix[: system.retained]
+    return np.concatenate([first, matrix[system.retained :]])

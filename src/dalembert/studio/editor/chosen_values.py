@@ -119,19 +119,19 @@ def _home(document: Any, name: str) -> _Home:
         if name == experiment + START:
             return _Home(table, "start", {})
         local_name = name.removeprefix(experiment)
-        if local_name in table.get("own", ()) and local_name in shared:
-            if not hasattr(table["own"], "items"):
+        if local_name in table.get("local", ()) and local_name in shared:
+            if not hasattr(table["local"], "items"):
                 _tabulate(table)
-            return _Home(table["own"], local_name, shared[local_name])
+            return _Home(table["local"], local_name, shared[local_name])
     raise InputError(f"{name!r} is not described by a table of the study. Change the text where its value comes from.")
 
 
 def _tabulate(table: Any) -> None:
     """Make a table of a list of own parameters."""
-    names = list(table["own"])
-    table["own"] = {}
+    names = list(table["local"])
+    table["local"] = {}
     for name in names:
-        put(table["own"], name)
+        put(table["local"], name)
 
 
 def _sensor(document: Any, name: str) -> Any:

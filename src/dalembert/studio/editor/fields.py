@@ -21,7 +21,7 @@ KIND = "kind"
 _OF_KIND = "What it is."
 _NAMED = {
     "channels": "channel", "wraps": "channel", "of": "channel", "observe": "channel",
-    "points": "point", "driving": "point", "input": "input", "own": "parameter", "parameters": "parameter",
+    "points": "point", "driving": "point", "input": "input", "local": "parameter", "parameters": "parameter",
     "first": "node", "second": "node", "dof": "node", "fixed": "node", "masters": "node",
 }  # fmt: skip
 """What texts of a key are names of, where the schema does not say it; also the keys of a table of this name."""

@@ -34,7 +34,7 @@ def value_unit(document: Mapping[str, Any], name: str) -> Unit:
     Examples
     --------
     >>> parameters = {"angle": {"lower": "-60 deg", "upper": 0, "unit": "rad"}, "drag": {"lower": 0, "unit": "N*s"}}
-    >>> study = {"parameters": parameters, "experiments": [{"name": "high", "own": ["drag"]}]}
+    >>> study = {"parameters": parameters, "experiments": [{"name": "high", "local": ["drag"]}]}
     >>> value_unit(study, "angle")[0], value_unit(study, "drag"), value_unit(study, "high.drag")
     ('deg', ('N*s', 1.0), ('N*s', 1.0))
     >>> [value_unit(study, name)[0] for name in ("width of bar.end.x", "drag upper", "arm.mass", "runs")]

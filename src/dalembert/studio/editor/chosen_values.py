@@ -127,7 +127,7 @@ def _home(document: Any, name: str) -> _Home:
 
 
 def _tabulate(table: Any) -> None:
-    """Make a table of a list of own parameters."""
+    """Make a table of a list of local parameters."""
     names = list(table["local"])
     table["local"] = {}
     for name in names:

@@ -193,7 +193,7 @@ def corners(lower: ArrayLike, upper: ArrayLike, *, flat: bool = False) -> tuple[
     before, sign = (np.less_equal, "<=") if flat else (np.less, "<")
     if low.ndim != 1 or low.shape != high.shape or not np.all(np.isfinite(low) & np.isfinite(high) & before(low, high)):
         raise InputError(
-            f"bounds are {low.tolist()} and {high.tolist()}; expected two vectors of one length, finite, lower {sign} "
+            f"bounds are {low.tolist()} and {high.tolist()}; expected two finite vectors of equal length, lower {sign} "
             "upper"
         )
     return low, high

@@ -53,7 +53,7 @@ class Checkpoint:
     Attributes
     ----------
     spared : float
-        Seconds that earlier processes computed what this one recalled.
+        Computing time of the recalled results in earlier processes, s: what this process saved.
 
     Raises
     ------
@@ -65,7 +65,7 @@ class Checkpoint:
     A transaction is written whole or not at all (SQLite's rollback journal, which unlike its write-ahead log works on
     shared file systems too), and what was written before stays. A computation that takes longer than half a second is
     on the disk before the next begins; of shorter ones at most half a second is lost. Results wait in memory until a
-    transaction is due, so that those that a summary soon replaces are never written.
+    transaction is due: the summary of a batch soon replaces most of them, which are then never written.
 
     Each result has a digest. A damaged file is kept as ``NAME.damaged-1`` and so on, and a new one takes the results
     whose digests are right.

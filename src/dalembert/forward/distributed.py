@@ -94,7 +94,9 @@ class Distributed(Wrapped):
 
 
 def on_cluster(model: ForwardModel, client: Executor) -> ForwardModel:
-    """A model whose batches go to a Dask cluster; of a recorded one, those that are not known yet.
+    """A model whose batches go to a Dask cluster.
+
+    Of a model with a checkpoint, only samples without a stored result go there.
 
     Parameters
     ----------
@@ -105,7 +107,7 @@ def on_cluster(model: ForwardModel, client: Executor) -> ForwardModel:
     Raises
     ------
     InputError
-        For an address: who connects is to disconnect, too.
+        If ``client`` is the address of a scheduler. Make the client yourself, ``Client(address)``, and close it after.
     """
     if client is None:
         return model

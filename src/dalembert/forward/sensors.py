@@ -27,7 +27,9 @@ Bounds = tuple[float, float] | Parameter
 
 @dataclass(frozen=True)
 class Sensor:
-    """Bounds of what is not known of a sensor that reads gain · y(t − delay) + offset, lag · dy/dt + y = R(t).
+    """Bounds of what is not known of a sensor that reads gain · y(t − delay) + offset.
+
+    With a lag, y follows the response R of the model: lag · dy/dt + y = R(t). Without, y is R.
 
     Parameters
     ----------
@@ -41,8 +43,8 @@ class Sensor:
     offset : (lower, upper) or Parameter, optional
         In the channel's unit; 0 if not given.
     at_rest : bool
-        Whether the channel keeps its first value until the first sample of the model, so that earlier readings are
-        known too; if not, readings from before are refused.
+        Whether the response before the first sample of the model equals its first value, so that delayed readings
+        there can be computed. Otherwise such readings are an error.
     """
 
     delay: Bounds | None = None
@@ -192,7 +194,7 @@ class Sensors:
         check_derivatives(self.model, vector[: len(self.model.parameters)])
 
     def starting(self, values: Mapping[str, float]) -> "Sensors":
-        """The same readings of the model first built at these values of its parameters."""
+        """A copy of these readings whose model starts from the one built at these values of its parameters."""
         return Sensors(starting(self.model, values), self.sensors, self.coordinate.values, self.start)
 
     def first(self, samples: int) -> "Sensors":

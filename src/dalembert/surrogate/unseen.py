@@ -95,13 +95,16 @@ def _part(share: float) -> str:
 
 
 def gaps(eta: np.ndarray, lengths: np.ndarray | None = None) -> Gaps:
-    """Return the gaps between runs at coordinates η (runs, f) in [−1, 1].
+    """Return the largest gaps between runs at coordinates η (runs, f) in [−1, 1].
+
+    Each is a part of the side 2: ``each`` the largest distance of neighbours in one coordinate, ``all_together`` the
+    side of the largest empty cube, ``relative`` its ratio to the correlation length.
 
     Parameters
     ----------
     eta : array, shape (runs, f)
     lengths : array, shape (f,), optional
-        Over which the response varies, as parts of the sides; 1 if not given.
+        Correlation length of the response along each coordinate, as a part of the side; 1 if not stated.
 
     Examples
     --------

@@ -141,7 +141,7 @@ def test_the_standard_move_is_the_textbook_formula():
         ),
         (
             lambda: ParticleSwarm().minimise(sphere, [1, 1], [0, 2], 0),
-            "bounds are [1.0, 1.0] and [0.0, 2.0]; expected two vectors of one length, finite, lower < upper",
+            "bounds are [1.0, 1.0] and [0.0, 2.0]; expected two finite vectors of equal length, lower < upper",
         ),
         (
             lambda: ParticleSwarm(particles=3).minimise(lambda points: points, LOWER, UPPER, 0),

@@ -76,7 +76,7 @@ def refused(message: str, function=cubic, lower=LOWER, scheme=None, **options) -
 
 def test_what_cannot_be_meant_is_refused() -> None:
     refused(
-        "bounds are [1.0, 0.0] and [0.5, 2.5]; expected two vectors of one length, finite, lower <= upper",
+        "bounds are [1.0, 0.0] and [0.5, 2.5]; expected two finite vectors of equal length, lower <= upper",
         lower=[1.0, 0.0],
     )
     refused("held_out is -1; expected zero or more runs", held_out=-1)

@@ -250,4 +250,5 @@ def _of_influence(names: Sequence[str], series: Sequence[SeriesResiduals]) -> It
     )
     where = f"{at:.4g} {unit}".rstrip()
     message = f"The sample of {worst.name!r} at {where} decides the fit (Cook's distance {distance:.3g}){effect}."
-    yield Finding("influential-sample", "note", values, message, "Check this sample, and measure more like it.")
+    advice = "Check this sample for a mistake, and measure more samples under similar conditions."
+    yield Finding("influential-sample", "note", values, message, advice)

@@ -166,7 +166,7 @@ class Segments:
         return jacobian
 
     def slopes_of_gaps(self, at: Tangent) -> np.ndarray:
-        """Derivative of the gaps by all unknowns, shape (gaps, unknowns)."""
+        """Derivative of the gaps, relative to the ranges of the states, by all unknowns, shape (gaps, unknowns)."""
         slopes, first = np.zeros((len(self.ranges), len(at.vector))), 0
         for piece, ends in zip(self.pieces, at.ends, strict=True):
             rows = first + np.arange(len(piece.ends))

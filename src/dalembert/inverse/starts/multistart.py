@@ -105,11 +105,11 @@ def _attempts(
     first: np.ndarray,
     ends: Sequence[End],
 ) -> Iterator[Attempt]:
-    """Up to ``starts`` search points to start from, each with the rung of the ladder to begin on.
+    """Up to ``starts`` search points, each with its first horizon in the ladder, and its end if that is known.
 
-    The given start comes first, its horizon growing from the shortest. If that led to a larger misfit, it is followed
-    by the same start over all samples at once, which is the last one otherwise. Then points spread over the box are
-    simulated in one batch to choose the others from, which a cluster works on at once.
+    The stated start comes first, its horizon growing from the shortest. If its misfit is larger at the end than at the
+    start, the same start over all samples is next; otherwise it is the last. Then points spread over the box are
+    simulated in one batch. The best of them are the other starts; a cluster runs them in parallel.
     """
     yield first, 0, None
     whole = len(ladder) - 1

@@ -115,13 +115,13 @@ class Table(Signal):
         s, positive where the value acts later than the times say. A held table has no derivative by its delay.
     integrals : {0, 1, 2}
         How many times the values, with scale and offset, are integrated over time from 0 at the first of the times. A
-        measured acceleration of a base is a prescribed motion with two. The motion must then end with the table.
+        measured acceleration of a base is a prescribed motion with two. The simulation must then end within the times.
 
     Raises
     ------
     InputError
-        For times that do not increase, and for a held table whose delay depends on a parameter that is varied along
-        exact derivatives.
+        For times that do not increase, and for a held table whose delay depends on a parameter for which exact
+        derivatives are computed.
 
     Examples
     --------

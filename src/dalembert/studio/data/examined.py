@@ -20,7 +20,7 @@ from dalembert.studio.worker import Kept
 
 POINTS = 1000
 """Most points of a curve."""
-FEW = 20_000
+MOST_SAMPLES = 20_000
 """Samples up to which data are compared with the response at the first guesses."""
 
 
@@ -170,13 +170,14 @@ def _channels(kept: Kept, study: Path, text: str) -> dict[str, str]:
 
 
 def _suspect(study: Path, text: str) -> Iterator[Finding]:
+    """Findings on suspicious readings, except offsets that the study identifies."""
     from dalembert.inverse.experiments.suspect_offsets import first_findings
     from dalembert.study.tables.sensor_table import reads
 
     try:
-        candidate = study_of(Kept(), study, text)  # with other data than the text of the page
+        candidate = study_of(Kept(), study, text)  # not that of the page, since the data differ
         data = candidate.data()
-        if candidate.task != "identify" or len(data.coordinate.values) > FEW:
+        if candidate.task != "identify" or len(data.coordinate.values) > MOST_SAMPLES:
             return
         suspects = first_findings(candidate.forward(data.channels, data.coordinate.values), data)
     except DalembertError:  # the page says what is wrong with the study

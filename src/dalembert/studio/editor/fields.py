@@ -225,6 +225,7 @@ def _kinds(tables: Sequence[Node]) -> dict[str, str]:
 
 
 def _field(key: str, node: Node, required: bool, kinds: tuple[str, ...]) -> TableField:
+    """A key of a table; ``kinds`` are the types of components if the key selects one."""
     choices = list(_alternatives(node))
     full = next(_alternatives({name: value for name, value in node.items() if name not in ("anyOf", "oneOf")}))
     inner = [

@@ -37,8 +37,8 @@ class Modes(ResultTask):
         structure = study.system().structure
         if structure.nodes is None:
             raise InputError(
-                "[modes] draws the shapes, and the structure does not say where its nodes are; let a function of "
-                "[model.structure] or [model] give it nodes"
+                "[modes] draws the shapes, and the structure does not say where its nodes are; the function that "
+                "[model.structure] or [model] names must return a structure with nodes=Nodes(...)"
             )
         return f"finds the lowest {_count(study, structure)} of {structure.size} modes: 1 simulation"
 

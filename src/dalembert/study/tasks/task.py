@@ -80,7 +80,7 @@ class Outcome:
             result.save(path.with_name(f"{name}.nc"))
 
     def report(self, path: Path) -> None:
-        """Write the HTML report, whole or not at all."""
+        """Write the HTML report; if that fails, no partial file is left."""
         from dalembert.report import report
 
         notes, text = self.study.file.study.description, self.study.content.decode()

@@ -94,7 +94,7 @@ class Expression:
             tree = ast.parse(text, mode="eval").body
             return cls(text, frozenset(_names(tree)), tree)
         except (SyntaxError, ValueError, RecursionError, MemoryError):
-            raise InputError(f"{text!r} is no arithmetic expression") from None
+            raise InputError(f"{text!r} is no arithmetic expression; expected for example '2*pi/3*sqrt(k/m)'") from None
 
     def __call__(self, values: Mapping[str, complex]) -> complex:
         """Value for named numbers; a float where all of them are real."""

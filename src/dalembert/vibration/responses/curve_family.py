@@ -141,7 +141,7 @@ class CurveFamily(Result):
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """The worst of the curves' findings on harmonics that were chosen, each with the value of its curve."""
+        """The worst findings of all curves on automatic numbers of harmonics, with the parameter's value there."""
         findings = [
             (value, finding)
             for value, curve in zip(self.values.tolist(), self.curves, strict=True)

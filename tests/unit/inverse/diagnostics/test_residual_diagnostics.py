@@ -146,7 +146,7 @@ def test_a_sample_that_decides_the_fit_is_named():
     assert finding.values["at"] == 2.0
     assert finding.values["leverage"] == pytest.approx(0.99, abs=0.02)
     assert str(finding) == snapshot(
-        "The sample of 'x' at 2 s decides the fit (Cook's distance 188): without it 'b' changes by 20 standard deviations. Check this sample, and measure more like it."
+        "The sample of 'x' at 2 s decides the fit (Cook's distance 188): without it 'b' changes by 20 standard deviations. Check this sample for a mistake, and measure more samples under similar conditions."
     )
 
 

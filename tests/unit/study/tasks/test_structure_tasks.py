@@ -484,8 +484,8 @@ def refused(write, text) -> str:
         ),
         (
             (CURVE, "[modes]\n"),
-            "[modes] draws the shapes, and the structure does not say where its nodes are; let a function of "
-            "[model.structure] or [model] give it nodes",
+            "[modes] draws the shapes, and the structure does not say where its nodes are; the function that "
+            "[model.structure] or [model] names must return a structure with nodes=Nodes(...)",
         ),
         (
             (CURVE, "[backbone]\n"),

@@ -75,7 +75,7 @@ class GeneralizedAlpha(Integrator):
         and gradients); for ``adaptive``.
     newton_tolerance : float
         Of the coordinates at each step, relative to their scale. An error of a coordinate is 2 / step times as large in
-        the velocity and adds up over the steps; so the default is rounding.
+        the velocity and adds up over the steps; so the default is near the rounding error.
     most_steps : int
         After which an adaptive run gives up.
 

@@ -427,7 +427,10 @@ CASES: dict[str, Case] = {
     ),
     "one sample decides": Case(
         lambda: da.identify(FAR_SAMPLE, _exact(FAR_SAMPLE, [1.0, 0.5], noise=0.1, seed=1)),
-        ("decides the fit (Cook's distance", "Check this sample for a mistake, and measure more samples under similar conditions."),
+        (
+            "decides the fit (Cook's distance",
+            "Check this sample for a mistake, and measure more samples under similar conditions.",
+        ),
     ),
     "many channels": Case(
         lambda: da.identify(_experiments(names="abcdefghijklmn")),

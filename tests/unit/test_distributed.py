@@ -1,8 +1,10 @@
 """Batches on a Dask cluster: a real scheduler and real workers, as processes on the loopback."""
 
+import pickle
 import shutil
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -13,6 +15,7 @@ import dalembert as da
 from dalembert.errors import ClusterError, InputError
 from dalembert.forward import distributed, takes_executor
 from dalembert.forward.builders import cores
+from dalembert.forward.cluster import Sender, _received, packed
 from dalembert.structure import lumped
 from dalembert.study import RunFolder, load, run_study
 from dalembert.uncertainty import MonteCarlo
@@ -136,6 +139,14 @@ def test_methods_take_an_executor(client, started):
     swarm = da.ParticleSwarm(particles=6, iterations=5)
     sets = [da.identify(decay, data, method=swarm, seed=2, executor=executor) for executor in (None, client)]
     assert sets[0].values.tobytes() == sets[1].values.tobytes()
+
+
+def test_a_model_in_use_goes_from_worker_to_worker(decay):
+    received = _received(packed(decay), Sender())
+    object.__setattr__(received.content, "lock", threading.Lock())  # as caches of a model that computes: it cannot be pickled
+    again = pickle.loads(pickle.dumps(received))
+    vectors = np.array([[0.3]])
+    np.testing.assert_array_equal(again.content.evaluate(vectors).values, decay.evaluate(vectors).values)
 
 
 STUDY = """

@@ -134,9 +134,22 @@ def _refuse_other(worker: dict[str, str], process: dict[str, str]) -> None:
         )
 
 
-def _received(content: bytes, sender: Sender) -> Any:
+class Received:
+    """A model or a function on a worker.
+
+    It goes on to another worker as the bytes that it came in. A model in use cannot be pickled: its caches change.
+    """
+
+    def __init__(self, packed_content: bytes) -> None:
+        self._packed, self.content = packed_content, pickle.loads(packed_content)
+
+    def __reduce__(self) -> tuple[type, tuple[bytes]]:
+        return Received, (self._packed,)
+
+
+def _received(content: bytes, sender: Sender) -> Received:
     with sender.alike():
-        return pickle.loads(content)
+        return Received(content)
 
 
 def worker_versions(client: "Client") -> list[dict[str, str]]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from dalembert.errors import DalembertError, InputError
-from dalembert.forward.cluster import RETRIES, Executor, Sender, futures_of, sent
+from dalembert.forward.cluster import RETRIES, Executor, Received, Sender, futures_of, sent
 from dalembert.forward.model import ForwardModel
 from dalembert.forward.refinement import Refinement, refined
 from dalembert.forward.responses import Responses
@@ -165,8 +165,8 @@ def bare(model: ForwardModel) -> ForwardModel:
     return copied
 
 
-def _answered(model: ForwardModel, vectors: np.ndarray, sender: Sender) -> tuple[np.ndarray, tuple[str | None, ...]]:
+def _answered(model: Received, vectors: np.ndarray, sender: Sender) -> tuple[np.ndarray, tuple[str | None, ...]]:
     """Values and failures of a part of a batch, on a worker."""
     with sender.alike():
-        responses = model.evaluate(vectors)
+        responses = model.content.evaluate(vectors)
     return responses.values, responses.failures

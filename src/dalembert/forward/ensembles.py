@@ -5,7 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any, TypeVar
 
 from dalembert.forward.builders import cores
-from dalembert.forward.cluster import RETRIES, Executor, Sender, connected, futures_of, sent
+from dalembert.forward.cluster import RETRIES, Executor, Received, Sender, connected, futures_of, sent
 
 Item = TypeVar("Item")
 Answer = TypeVar("Answer")
@@ -66,7 +66,7 @@ def _on_cluster(work: Callable[[Item], Answer], items: Sequence[Item], client: A
             yield future.result()
 
 
-def _done(work: Callable[[Item], Answer], item: Item, sender: Sender) -> Answer:
+def _done(work: Received, item: Any, sender: Sender) -> Any:
     """Do the work on a worker."""
     with sender.alike():
-        return work(item)
+        return work.content(item)

@@ -20,7 +20,7 @@ class DalembertError(Exception):
 
 
 class InputError(DalembertError):
-    """An argument, an option or a study file says something that cannot be meant."""
+    """An argument, option or study file is invalid."""
 
 
 class ModelError(DalembertError):

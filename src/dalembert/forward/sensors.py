@@ -171,7 +171,7 @@ class Sensors:
         return None if least is None else least + len(self.parameters) - len(self.model.parameters)
 
     def pullback(self, vector: np.ndarray) -> tuple[np.ndarray, Pull]:
-        """Readings (samples, channels), and the gradients of their weighted sums by the model's adjoint."""
+        """Readings (samples, channels), and a function from weights, shaped alike, to the gradient of their sum."""
         vector, inner = np.asarray(vector, dtype=float), len(self.model.parameters)
         response, pull_model = pullback(self.model, vector[:inner], ADJOINT)
         read, slopes = self._read(vector, response[:, :, None])

@@ -136,8 +136,8 @@ def craig_bampton(structure: Structure, masters: str | Sequence[str], modes: int
 
     With the masters m and the others i, the motion is
     :math:`u_i = -K_{ii}^{-1} K_{im} u_m + \Phi q`, where :math:`\Phi` holds the lowest modes of
-    :math:`K_{ii} \phi = \omega^2 M_{ii} \phi`. Static answers to forces on the masters are exact. Imaginary parts of
-    the matrices (complex steps) go through with the basis of the real parts.
+    :math:`K_{ii} \phi = \omega^2 M_{ii} \phi`. Static answers to forces on the masters are exact. Imaginary
+    parts of the matrices (complex steps) are reduced by the basis of the real parts; its derivative is left out.
 
     Parameters
     ----------

@@ -48,8 +48,9 @@ def design(
     horizons : sequence of float, optional
         Ends of the measurement, along the model's coordinate; its own end if not given.
     criterion : {"D", "E"}
-        ``"D"``: the geometric mean of the deviations of the combinations of p/scale that the singular values belong to,
-        (det SᵀS)^(−1/2d), which does not depend on the scales; ``"E"``: the largest of them, 1/σ_min. Small is good.
+        With the derivative S of the weighted response by p/scale, its singular values σ, and d parameters: ``"D"`` is
+        the geometric mean of 1/σ, (det SᵀS)^(−1/2d); other scales do not change the ranking. ``"E"`` is the largest,
+        1/σ_min. Small is good.
 
     Returns
     -------

@@ -52,15 +52,15 @@ def compare_models(
     Raises
     ------
     InputError
-        For fewer than two models, different data or weights, a robust loss, a fit without a Jacobian, and values that
-        the others do not predict.
+        For fewer than two models, different data or weights, a robust loss, a fit without a Jacobian, and where
+        only values that are left out determine a parameter: choose smaller groups.
 
     Notes
     -----
     AIC = 2k − 2 log L, AICc = AIC + 2k (k + 1)/(n − k − 1), BIC = k log n − 2 log L for k parameters and n values. They
-    take values for independent. elpd is the sum of the log predictive densities of groups that were left out. The
+    assume independent values. elpd is the sum of the log predictive densities of groups that were left out. The
     standard deviation of a difference over G groups is √G times that of the groups' differences. A difference below 4,
-    or below two of its standard deviations, means nothing. Fits with an estimated noise model are compared with it:
+    or below two of its standard deviations, means nothing. If a fit has an estimated noise model, the comparison uses it:
     values that are left out are predicted from their correlated neighbours too, and all densities are normal, with the
     noise that the other values determine.
 

@@ -107,7 +107,7 @@ class Shape(Checked, Written):
             inertia = self.of(self.density * self.volume)
         else:
             stated = "neither mass nor" if self.mass is None else "both mass and"
-            raise InputError(f"{stated} density given; expected one of them")
+            raise InputError(f"{stated} density given; give either a mass or a density")
         turn = self.orientation.matrix
         return Inertia.of(inertia.mass, turn @ inertia.tensor @ turn.T, self.centre)
 

@@ -48,7 +48,7 @@ class _Stop(LawElement):
 
 @dataclass(frozen=True)
 class Gap(_Stop):
-    """A stop on one side: force k (u - gap) where u exceeds the gap, else none.
+    """A stop on one side: force k (u - gap) where the displacement u of ``first`` less ``second`` exceeds the gap.
 
     Parameters
     ----------

@@ -154,8 +154,8 @@ class FrequencyResponse:
     def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Response (samples, channels) and its exact derivative (samples, channels, parameters).
 
-        The derivative of the balance by a parameter comes from a complex step through the builder and the laws, that of
-        the response from the Jacobian of the balance (implicit function).
+        A complex step through the builder and the laws of force gives the derivative of the equations of harmonic
+        balance by a parameter. Their Jacobian then gives that of the response (implicit function theorem).
 
         Raises
         ------

@@ -88,7 +88,7 @@ def _centres(vectors: np.ndarray, mass: np.ndarray) -> np.ndarray:
     for order in range((vectors.shape[1] + 1) // 2):
         cosine = vectors[:, max(2 * order - 1, 0)]
         sine = vectors[:, 2 * order] if order else np.zeros_like(cosine)
-        cosine = cosine if order else np.sqrt(2) * cosine  # the mean comes on both sides
+        cosine = cosine if order else np.sqrt(2) * cosine  # both sides below count it, each half of 4 |p_0|²
         for side in (1, -1):  # p = Σ p_h exp(i h τ) has p_h = (cosine - i sine)/2, and p_-h with the other sign
             part = cosine - side * 1j * sine
             energy = np.einsum("ik,ik->k", part.conj(), mass @ part).real

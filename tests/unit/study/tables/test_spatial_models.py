@@ -285,11 +285,11 @@ def wrong(path: Path) -> list[str]:
         ),
         (
             (INERTIA, '{ kind = "box", sides = [1, 2, 3] }'),
-            f"{HEAD}, inertia: neither mass nor density given; expected one of them",
+            f"{HEAD}, inertia: neither mass nor density given; give either a mass or a density",
         ),
         (
             (INERTIA, '{ kind = "sphere", radius = 1, mass = 1, density = 1 }'),
-            f"{HEAD}, inertia: both mass and density given; expected one of them",
+            f"{HEAD}, inertia: both mass and density given; give either a mass or a density",
         ),
         (
             (INERTIA, '{ kind = "tube", radius = 1, inner = 2, length = 1, density = 1 }'),

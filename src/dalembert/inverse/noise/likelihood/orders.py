@@ -72,7 +72,7 @@ def _best(problem: MisfitProblem, alike: Sequence[Series], model: NoiseModel, at
 def _criteria(
     problem: MisfitProblem, alike: Sequence[Series], model: NoiseModel, at: Linearisation, most: int, *, known: bool
 ) -> Iterator[float]:
-    """Yield the criterion of each order from 0."""
+    """Yield the corrected Akaike criterion (AICc) of the autoregressive orders 0 to ``most`` of some series."""
     number = sum(len(series.rows) for series in alike)
     for order in range(most + 1):
         channels, own = noises_of(problem, {series: replace(model, order=order) for series in alike}, known=known)  # pyright: ignore[reportCallIssue]

@@ -80,7 +80,7 @@ def _converge_along(problem, method, matrices, perturbed, works, h, s, dstart, d
         take_velocities(n, size, method, matrices, h, dstart, b, ds)
         norm = largest(n, problem.scale, b.moved)[0]
         length = largest(n, problem.scale, ds.dx)[0]
-        # Relative to the derivatives of the coordinates; corrections that stop to shrink below 1e-10 are rounding.
+        # Relative to the derivatives of the coordinates; below 1e-10, corrections that no longer shrink are rounding.
         if norm <= 1e-14 * length or not norm < 1e100 or (norm <= 1e-10 * length and norm > 0.5 * before):
             break
         before = norm

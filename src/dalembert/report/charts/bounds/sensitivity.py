@@ -44,7 +44,7 @@ def effects(told: Screening, channel: str, *, title: str = "") -> go.Figure:
 
 
 def indices(told: SensitivityIndices, channel: str, *, title: str = "") -> go.Figure:
-    """First-order and total index of each parameter, above the standard deviation of the channel.
+    """Two charts: the indices of each parameter, and below them the standard deviation of the channel.
 
     Parameters
     ----------

@@ -60,7 +60,7 @@ def compare_models(
     AIC = 2k − 2 log L, AICc = AIC + 2k (k + 1)/(n − k − 1), BIC = k log n − 2 log L for k parameters and n values. They
     assume independent values. elpd is the sum of the log predictive densities of groups that were left out. The
     standard deviation of a difference over G groups is √G times that of the groups' differences. A difference below 4,
-    or below two of its standard deviations, means nothing. If a fit has an estimated noise model, the comparison uses it:
+    or below two of its standard deviations, means nothing. An estimated noise model of a fit is used:
     values that are left out are predicted from their correlated neighbours too, and all densities are normal, with the
     noise that the other values determine.
 

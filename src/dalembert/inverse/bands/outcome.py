@@ -8,9 +8,9 @@ from scipy.special import ndtri
 from dalembert.findings import Finding
 from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.check import BandSolution, scale
-from dalembert.inverse.fit.outcome import converged, failed_simulations
 from dalembert.inverse.noise.noise_floor import quantum, random_residuals
 from dalembert.inverse.problem.matching import place
+from dalembert.inverse.problem.search_findings import converged, failed_simulations
 
 SMALL = 1e-2  # misfit, as a part of the bands' mean width, from which bands are said to be explained badly
 # Rms difference of reproduced and given bands, as part of their mean width, from which the box is not to be used.

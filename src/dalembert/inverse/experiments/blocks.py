@@ -16,7 +16,7 @@ def blocks_of_records(fitted: np.ndarray, parts: Sequence[ExperimentPart], count
     Parameters
     ----------
     fitted : array of bool, shape (samples, channels)
-    parts : sequence of Part
+    parts : sequence of ExperimentPart
         Where several experiments stand; empty for a single one.
     count : callable
         ``count(samples)`` returns the number of blocks of a record with this number of fitted samples.

@@ -43,7 +43,7 @@ class JointModel:
     Parameters
     ----------
     models : tuple of ForwardModel
-    parts : tuple of Part
+    parts : tuple of ExperimentPart
     picked : tuple of array of int
         Measured channels among those of each model.
     wiring : tuple of array of int

@@ -36,7 +36,7 @@ class Residuals:
 
     Parameters
     ----------
-    problem : Problem
+    problem : MisfitProblem
     at : Linearisation
     values : array, shape (values,)
         W^½ (R − data), flat from (samples, channels).

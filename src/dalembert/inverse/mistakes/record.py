@@ -24,7 +24,7 @@ class FittedRecord:
 
     Parameters
     ----------
-    problem : Problem
+    problem : MisfitProblem
     at : Linearisation
         At the identified values.
     known : bool

@@ -1,13 +1,12 @@
 """Measurements smoothed by local polynomials: what a segment begins with, and how exact the data are."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from dalembert.data import Measurements, derivative
 from dalembert.errors import DataError
-from dalembert.findings import Finding
 from dalembert.inverse.experiments.experiment import ExperimentPart
 
 
@@ -64,13 +63,3 @@ def smooth_noise(data: Measurements, parts: Sequence[ExperimentPart]) -> np.ndar
         noise = np.where(seen.deviations > 0, np.maximum(seen.deviations, LEAST * spread), spread)
         found[columns] = np.where(noise > 0, noise, 1.0)
     return found
-
-
-def noise_findings(data: Measurements, noise: np.ndarray | None) -> Iterator[Finding]:
-    """Yield the finding that the noise of the data was estimated by local polynomials; none where it was not."""
-    if noise is None:
-        return
-    values = dict(zip(data.channels, map(float, noise), strict=True))
-    listed = ", ".join(f"{name!r} {own:.3g}" for name, own in values.items())
-    message = f"The data have no deviations. Their noise was estimated by local polynomials: {listed}."
-    yield Finding("smoothed-noise", "note", values, message, "Give deviations if you know them.")

@@ -70,7 +70,7 @@ class PosteriorModes:
 
         Examples
         --------
-        >>> Modes((), np.array([0.7, 0.3])).of_chains(4).tolist()
+        >>> PosteriorModes((), np.array([0.7, 0.3])).of_chains(4).tolist()
         [0, 0, 0, 1]
         """
         counts = np.zeros(len(self.shares), dtype=int)

@@ -30,7 +30,7 @@ class Journal:
         Simulations so far.
     failures : list of str
         Reason of each failed simulation.
-    history : list of Step
+    history : list of SearchIteration
         Steps of all starts.
     starts : list of StartEnd
         Start point, end point and misfit of each start that has ended.

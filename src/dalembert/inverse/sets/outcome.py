@@ -6,8 +6,8 @@ import numpy as np
 
 from dalembert.data import Measurements
 from dalembert.findings import Finding
-from dalembert.inverse.fit.outcome import failed_simulations
 from dalembert.inverse.problem.matching import place
+from dalembert.inverse.problem.search_findings import failed_simulations
 from dalembert.inverse.sets.inversion import Nearest
 from dalembert.inverse.sets.paving import Paving
 

@@ -76,7 +76,7 @@ class Chain:
 
     Parameters
     ----------
-    problem : Problem
+    problem : MisfitProblem
         Of the whole motions.
     segments : Segments
     """

@@ -63,7 +63,7 @@ class Cut:
     Parameters
     ----------
     track : Track
-    nodes : tuple of Node
+    nodes : tuple of SegmentNode
     states : mapping of str to ShootingState
         By the model's parameters of the initial state, which the segments' states are. Without any, segments begin at
         independent coordinates and rates of a model that can begin anew at them.
@@ -87,7 +87,7 @@ class Cut:
 
         Parameters
         ----------
-        begin, end : Node or None
+        begin, end : SegmentNode or None
             None at the first sample and the last one.
         own, after : array of int, shape (states,)
             Where the numbers of both nodes stand among all unknowns.

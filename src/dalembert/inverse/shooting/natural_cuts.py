@@ -47,7 +47,7 @@ def natural_cuts(
 
     Parameters
     ----------
-    problem : Problem
+    problem : MisfitProblem
     tracks : iterable of Track
     values : array, shape (parameters,)
     count : int or None

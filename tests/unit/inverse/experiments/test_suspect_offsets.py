@@ -5,7 +5,7 @@ import pytest
 
 from dalembert.data import Measurements
 from dalembert.forward import Channel, PythonModel
-from dalembert.inverse.experiments.suspect_offsets import first_findings
+from dalembert.inverse.plausibility.suspect_offsets import first_findings
 from dalembert.parameters import Parameter, Parameters
 
 TIMES = np.linspace(0, 4, 81)

@@ -5,7 +5,7 @@ import pytest
 
 import dalembert as da
 from dalembert.data import Measurements
-from dalembert.inverse.experiments.suspect_times import (
+from dalembert.inverse.plausibility.suspect_times import (
     first_times,
     short_time_findings,
     time_findings,

@@ -68,7 +68,7 @@ def estimate_noise(problem: MisfitProblem, noise: Noise, at: Linearisation, *, k
 
     Parameters
     ----------
-    problem : Problem
+    problem : MisfitProblem
     noise : NoiseModel, its name, or mapping of channel to NoiseModel
     at : Linearisation
         At the plain minimum.

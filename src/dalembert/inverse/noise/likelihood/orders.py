@@ -31,7 +31,7 @@ def ordered(
 
     Parameters
     ----------
-    problem : Problem
+    problem : MisfitProblem
     picked : mapping of Series to NoiseModel
     at : Linearisation
         Whose residuals are compared.

@@ -24,7 +24,7 @@ class Restriction:
 
     Parameters
     ----------
-    problem : Problem
+    problem : MisfitProblem
     channels : sequence of ChannelNoise
     parameters : Parameters
         Of the model, then of the noise.

@@ -1,4 +1,4 @@
-"""How an identification ended, and whether there are enough data for it, as findings."""
+"""How a search ended, and how its residuals compare with the noise of the data."""
 
 from collections.abc import Iterator
 
@@ -6,11 +6,13 @@ import numpy as np
 
 from dalembert.errors import counted
 from dalembert.findings import Finding
+from dalembert.inverse.checks.too_few_values import lacks_values
+from dalembert.inverse.identification.assess import Optimum
 from dalembert.inverse.least_squares.descent import End
-from dalembert.inverse.noise.noise_floor import NoiseFloor, signal
+from dalembert.inverse.noise.noise_floor import signal
 from dalembert.inverse.problem.combinations import members, moved, separated
 from dalembert.inverse.problem.problem import MisfitProblem
-from dalembert.inverse.shooting.nodes import Nodes
+from dalembert.inverse.problem.search_findings import converged, failed_simulations
 
 _MEDIAN = 0.6745  # of the size of a standard normal variable
 _AS_GIVEN = 1.2  # standard deviation of the residuals, relative to the given one, up to which they agree
@@ -20,30 +22,12 @@ _SOURCES = {
     "rounded": "estimated from their rounding",
     "arithmetic": "rounding errors of the arithmetic",
 }
-_MORE = (
-    "Measure more samples or channels, fix parameters by equal bounds, or give priors: the start and the deviation of "
-    "parameters."
-)
 
 
-def outcome(
-    problem: MisfitProblem, best: End, response: np.ndarray, floor: NoiseFloor, *, correlated: bool, searched: float
-) -> Iterator[Finding]:
-    """Yield whether the search converged, and how the residuals compare with the noise of the data.
-
-    Parameters
-    ----------
-    problem : Problem
-    best : End
-    response : array, shape (samples, channels)
-        At the identified values.
-    floor : NoiseFloor
-    correlated : bool
-        Whether other findings say that the residuals are correlated.
-    searched : float
-        Misfit of the best start, before noise was estimated.
-    """
-    few = lacking(problem)
+def search_end(optimum: Optimum) -> Iterator[Finding]:
+    """Yield whether the search converged, and how the residuals compare with the noise of the data."""
+    problem, best, floor, response = optimum.problem, optimum.end, optimum.floor, optimum.response
+    few = lacks_values(problem)
     many = "Converged to one of many solutions: the data have fewer values than there are parameters."
     if best.success and best.left_out is not None and not few:
         yield _partly_converged(problem, best, best.left_out)
@@ -51,11 +35,13 @@ def outcome(
         yield converged(best.success, best.message, many if few else "Converged.")
     misfits = [start.misfit for start in problem.journal.starts]
     if len(misfits) > 1:
-        there = sum(misfit <= searched * (1 + 1e-3) + floor.misfit * 1e-3 for misfit in misfits)
-        message = f"{there} of {len(misfits)} starts converged to the smallest misfit."
-        yield Finding("starts-at-best", "note", {"at_best": there, "starts": len(misfits)}, message)
-    if best.nodes is not None:
-        yield _segments(best.nodes)
+        limit = optimum.search.end.misfit * (1 + 1e-3) + floor.misfit * 1e-3
+        at_best = sum(misfit <= limit for misfit in misfits)
+        message = f"{at_best} of {len(misfits)} starts converged to the smallest misfit."
+        yield Finding("starts-at-best", "note", {"at_best": at_best, "starts": len(misfits)}, message)
+    if (nodes := best.nodes) is not None:
+        values = {"segments": nodes.segments, "gap": nodes.gap, "growth": nodes.growth}
+        yield Finding("segments-merged" if nodes.segments == 1 else "segments-separate", "note", values, str(nodes))
     yield from failed_simulations(problem.journal.failures)
     if problem.loss is not None:
         plain = (np.sqrt(problem.weights) * problem.unweighted_residual(response)).ravel()
@@ -69,44 +55,7 @@ def outcome(
     elif best.misfit > floor.misfit:
         yield _explained(best.misfit, signal(problem))
     if not few:  # with fewer values than parameters, a misfit near zero proves nothing
-        yield from _compared(problem, best, response, floor, correlated=correlated)
-
-
-def lacking(problem: MisfitProblem) -> bool:
-    """Whether there are fewer values than parameters."""
-    return problem.compared < len(problem.model.parameters)
-
-
-def too_few_findings(problem: MisfitProblem, *, known: bool) -> Iterator[Finding]:
-    """Return a finding where values are fewer than parameters, or leave no residual to estimate the noise from.
-
-    Parameters
-    ----------
-    problem : Problem
-    known : bool
-        Whether the noise of the data is.
-    """
-    values, parameters = problem.compared, len(problem.model.parameters)
-    counts = {"values": values, "parameters": parameters}
-    if lacking(problem):
-        message = (
-            f"{counted(values, 'value')} cannot determine {counted(parameters, 'parameter')}: other parameters "
-            "explain the data as well."
-        )
-        yield Finding("too-few-data", "warning", counts, message, _MORE)
-    elif values == parameters and not known:
-        message = (
-            f"There are as many parameters as values ({values}), so no residuals are left to estimate the standard "
-            "deviations or to test the model."
-        )
-        yield Finding("too-few-data", "warning", counts, message, _MORE)
-
-
-def converged(success: bool, reason: str, message: str = "Converged.") -> Finding:
-    """Return whether a search converged; ``reason`` is why it stopped."""
-    if success:
-        return Finding("converged", "note", {"reason": reason}, message)
-    return Finding("not-converged", "error", {"reason": reason}, f"Not converged: {reason}.")
+        yield from _compared(optimum)
 
 
 def _partly_converged(problem: MisfitProblem, best: End, left_out: np.ndarray) -> Finding:
@@ -127,29 +76,13 @@ def _partly_converged(problem: MisfitProblem, best: End, left_out: np.ndarray) -
     return Finding("partly-converged", "warning", values, message, advice)
 
 
-def failed_simulations(failures: list[str]) -> Iterator[Finding]:
-    """Yield a finding if simulations failed; ``failures`` are their reasons."""
-    if failures:
-        failed = f"{counted(len(failures), 'simulation')} failed and {'were' if len(failures) > 1 else 'was'} left out"
-        message = f"{failed}; the first: {failures[0]}."
-        yield Finding("failed-simulations", "note", {"failures": len(failures), "first": failures[0]}, message)
-
-
-def _segments(nodes: Nodes) -> Finding:
-    values = {"segments": nodes.segments, "gap": nodes.gap, "growth": nodes.growth}
-    if nodes.segments == 1:
-        return Finding("segments-merged", "note", values, str(nodes))
-    return Finding("segments-separate", "note", values, str(nodes))
-
-
-def _compared(
-    problem: MisfitProblem, best: End, response: np.ndarray, floor: NoiseFloor, *, correlated: bool
-) -> Iterator[Finding]:
+def _compared(optimum: Optimum) -> Iterator[Finding]:
     """Yield how the residuals compare with the noise of the data."""
+    problem, best, floor = optimum.problem, optimum.end, optimum.floor
     if best.misfit <= floor.misfit:
         message = f"The misfit equals the noise level of the data ({_SOURCES[floor.source]})."
         yield Finding("misfit-at-noise", "note", {"source": floor.source}, message)
-    elif problem.loss is not None and floor.known and _usual(problem, response) < _AS_GIVEN:
+    elif problem.loss is not None and floor.known and _usual(problem, optimum.response) < _AS_GIVEN:
         message = "Without the outliers, the residuals agree with the given standard deviations."
         yield Finding("residuals-as-given", "note", {}, message)
     elif floor.known:
@@ -160,7 +93,7 @@ def _compared(
         )
         advice = "Check the standard deviations and the model structure, or increase starts."
         yield Finding("misfit-above-noise", "warning", {"ratio": ratio}, message, advice)
-    elif not correlated:
+    elif not optimum.correlation_is_detected and optimum.minimum.noise is None:
         advice = "Give the standard deviations of the data to compare the residuals with them."
         yield Finding("uncorrelated-residuals", "note", {}, "The residuals are not correlated.", advice)
 

@@ -1,16 +1,16 @@
 """A minimum that a single start reached although its residuals are not noise."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 
-import numpy as np
-
 from dalembert.findings import Finding
+from dalembert.inverse.checks.equal_minima import ALIKE, PROMISING
+from dalembert.inverse.identification.assess import Optimum
+from dalembert.inverse.identification.search import MisfitMinimum
 from dalembert.inverse.least_squares.descent import End, refine
-from dalembert.inverse.noise.noise_floor import NoiseFloor, random_residuals
+from dalembert.inverse.noise.noise_floor import random_residuals
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import MisfitProblem
-from dalembert.inverse.starts.rivals import ALIKE, PROMISING
 from dalembert.optimize import LeastSquares
 
 LEAST = 3
@@ -20,23 +20,21 @@ REFINED = 3
 """Ends of other starts, the best ones, that may confirm a minimum: starts end before their descents have converged."""
 
 
-def unconfirmed_findings(
-    problem: MisfitProblem, best: End, ends: Sequence[End], floor: NoiseFloor, *, white: bool
-) -> Iterator[Finding]:
+def unconfirmed_minimum(optimum: Optimum) -> Iterator[Finding]:
     """Yield a finding if one of several starts reached the smallest misfit and the residuals are not noise.
 
-    Parameters
-    ----------
-    problem : Problem
-    best : End
-        The smallest misfit, refined.
-    ends : sequence of End
-        Of the starts, before the best one was refined.
-    floor : NoiseFloor
-    white : bool
-        Whether the residuals look like white noise: a false minimum hardly leaves such residuals.
+    A false minimum hardly leaves residuals that look like white noise.
     """
-    if len(ends) < LEAST or white or not best.success or best.misfit <= floor.misfit:
+    problem = optimum.problem
+    noise_like = random_residuals(problem.residual(optimum.response), problem.weights.shape, problem.data.present)
+    if optimum.by_squares and optimum.settings.shooting is None and not noise_like:
+        yield from single_start(optimum.search)
+
+
+def single_start(search: MisfitMinimum) -> Iterator[Finding]:
+    """Yield a finding if one of several starts reached the smallest misfit and known noise does not explain it."""
+    problem, best, ends = search.problem, search.end, search.ends
+    if len(ends) < LEAST or not best.success or search.explained_by:
         return
     _, *others = sorted(ends, key=lambda end: end.misfit)
     alike = best.misfit * (1 + ALIKE / max(1, problem.compared - len(best.point)))
@@ -60,8 +58,3 @@ def _refined(problem: MisfitProblem, end: End, alike: float) -> bool:
     misfit = refine(quiet, LeastSquares(), end).misfit
     problem.journal.simulations += quiet.journal.simulations
     return misfit < alike
-
-
-def look_white(problem: MisfitProblem, response: np.ndarray) -> bool:
-    """Return True if the residuals of a response (samples, channels) look like white noise."""
-    return random_residuals(problem.residual(response), problem.weights.shape, problem.data.present)

@@ -6,6 +6,8 @@ import numpy as np
 
 from dalembert.errors import SolveError
 from dalembert.findings import Finding
+from dalembert.inverse.identification.assess import Optimum
+from dalembert.inverse.misfit.delays import delay_findings
 from dalembert.inverse.mistakes.clocks import RESOLUTION, clocks
 from dalembert.inverse.mistakes.hypotheses import HYPOTHESES
 from dalembert.inverse.mistakes.record import NONE, FittedRecord, Mistake, Verdict
@@ -35,8 +37,6 @@ PROMISING = 0.85
 CLOCKS = {"suspect-clock", "suspect-clock-rate"}
 """Codes of findings on times."""
 
-DELAY = "suspect-delay"
-
 BETTER = 0.5
 """Part of the squares that a small delay leaves, which another error of the times must leave at most."""
 
@@ -44,43 +44,45 @@ POINTS = 3
 """Most points at which the response is linearised."""
 
 
-def with_mistakes(
-    followed: Sequence[Finding], record: FittedRecord, others: Sequence[np.ndarray]
-) -> tuple[Finding, ...]:
-    """Return findings on the residuals with those on mistakes that explain them better, in place of delays.
+def record_mistakes(optimum: Optimum) -> Iterator[Finding]:
+    """Yield delays that explain the residuals, and mistakes in the record that explain them better.
 
     A small delay leaves residuals that are proportional to the rate of the response. There a shift by whole periods
-    explains as much.
-
-    Parameters
-    ----------
-    followed : sequence of Finding
-        Of which those on delays have the code ``suspect-delay``.
-    record : FittedRecord
-    others : sequence of array, shape (parameters,)
-        Vectors near which the parameters may be without the mistake: first guesses, ends of other starts.
+    explains as much. Residuals away from a minimum show the search, not the record.
     """
-    found = tuple(mistake_findings(record, others))
-    late = [finding for finding in found if finding.code in CLOCKS]
-    if not late:
-        return (*found, *followed)
-    delays = [finding.values for finding in followed if finding.code == DELAY]
-    linear_range = min(clock.period for clock in clocks(record, channels=False)) / RESOLUTION
-    left = min((1 - one["explained"] for one in delays if abs(one["delay"]) < linear_range), default=np.inf)
-    if any(1 - finding.values["explained"] < BETTER * left for finding in late):
-        return (*found, *(finding for finding in followed if finding.code != DELAY))
-    return (*(finding for finding in found if finding.code not in CLOCKS), *followed)
+    problem, causes, at = optimum.problem, optimum.causes, optimum.linearisation
+    delays = tuple(delay_findings(causes.delays, problem.data.coordinate.name))
+    if at is None or not optimum.minimum.shows_model or not (optimum.by_squares or optimum.end.stationary):
+        yield from delays
+        return
+    record = FittedRecord(problem, at, optimum.noise_is_known)
+    journal = problem.journal
+    ends = sorted((start for start in journal.starts if np.isfinite(start.misfit)), key=lambda start: start.misfit)
+    vectors = [*([] if journal.first is None else [journal.first.vector]), *(start.end for start in ends)]
+    mistakes = tuple(mistake_findings(record, vectors))
+    late = [finding for finding in mistakes if finding.code in CLOCKS]
+    if late:
+        linear_range = min(clock.period for clock in clocks(record, channels=False)) / RESOLUTION
+        left = min((1 - item.explained for item in causes.delays if abs(item.delay) < linear_range), default=np.inf)
+        if any(1 - finding.values["explained"] < BETTER * left for finding in late):
+            delays = ()
+        else:
+            mistakes = tuple(finding for finding in mistakes if finding.code not in CLOCKS)
+    yield from (*mistakes, *delays)
 
 
-def mistake_findings(record: FittedRecord, others: Sequence[np.ndarray]) -> Iterator[Finding]:
-    """Yield findings on the mistake that explains a poor fit best, and on others that explain it as well."""
+def mistake_findings(record: FittedRecord, vectors: Sequence[np.ndarray]) -> Iterator[Finding]:
+    """Yield findings on the mistake that explains a poor fit best, and on others that explain it as well.
+
+    Near ``vectors`` (parameters,) the parameters may be without the mistake: first guesses, ends of other starts.
+    """
     if not len(record.series):
         return
     mistakes = [mistake for hypothesis in HYPOTHESES for mistake in hypothesis(record)]
     mistakes = mistakes if _poor(record) else [mistake for mistake in mistakes if mistake.visible]
     if not mistakes:
         return
-    points = [record.at, *_linearised(record, others)]
+    points = [record.at, *_linearised(record, vectors)]
     estimates = [min((linear(record, mistake, at) for at in points), key=lambda one: one.ratio) for mistake in mistakes]
     hopeful = sorted((one for one in estimates if one.ratio < PROMISING), key=lambda one: one.ratio)[:MOST]
     found = [one for one in (refitted(record, item) for item in hopeful) if _explains(one, 1.0)]
@@ -116,10 +118,10 @@ def _poor(record: FittedRecord) -> bool:
     return bool(correlated_series(record.series, values, np.zeros((len(values), 0))))
 
 
-def _linearised(record: FittedRecord, others: Iterable[np.ndarray]) -> Iterator[Linearisation]:
+def _linearised(record: FittedRecord, vectors: Iterable[np.ndarray]) -> Iterator[Linearisation]:
     """Yield the response at up to some of other vectors that differ."""
     problem, known = record.problem, [record.at.vector]
-    for vector in others:
+    for vector in vectors:
         if len(known) == POINTS:
             return
         if any(np.allclose(vector, other, rtol=1e-2) for other in known):

@@ -6,26 +6,16 @@ import numpy as np
 
 from dalembert.errors import listed
 from dalembert.findings import Finding
-from dalembert.inverse.noise.correlation.correlated_residuals import CorrelatedResiduals, NoiseProcess
+from dalembert.inverse.identification.assess import Optimum
+from dalembert.inverse.noise.correlation.correlated_residuals import NoiseProcess
 
 
-def correlation_findings(
-    correlated: CorrelatedResiduals | None, deviations: np.ndarray, *, explained: bool
-) -> Iterator[Finding]:
-    """Yield findings on the residuals of a fit: that they are correlated, and that the model lacks something.
-
-    That they are correlated is a note where something else says what it means.
-
-    Parameters
-    ----------
-    correlated : CorrelatedResiduals or None
-    deviations : array, shape (parameters,)
-        With the correction.
-    explained : bool
-        Whether the rounding of the data explains the misfit, so that the correlation does not count against the model.
-    """
+def correlated_residuals(optimum: Optimum) -> Iterator[Finding]:
+    """Yield that residuals are correlated, and that the model lacks something; notes where rounding explains them."""
+    correlated, deviations = optimum.correlated, optimum.estimate.deviations
     if correlated is None or not correlated.detected:
         return
+    explained = optimum.minimum.explained_by == "rounded"
     systematic = [process for process in correlated.detected if process.systematic and not explained]
     worst = max(correlated.detected, key=lambda process: abs(process.first))
     seen = np.isfinite(deviations) & (correlated.deviations > 0)

@@ -7,10 +7,10 @@ import numpy as np
 
 from dalembert.findings import Finding
 from dalembert.inverse.assessment.predict import band_end, noise_deviations, response_deviations
-from dalembert.inverse.experiments.validation import Validation
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.noise.correlation.series import series_of
 from dalembert.inverse.problem.problem import MisfitProblem
+from dalembert.inverse.validation.validation import Validation
 
 LEVEL = 0.95
 
@@ -25,7 +25,7 @@ def with_coverage(fit: Fit, problem: MisfitProblem) -> Fit:
     Parameters
     ----------
     fit : Fit
-    problem : Problem
+    problem : MisfitProblem
         The whole one, which its validation is of.
 
     Notes

@@ -6,28 +6,47 @@ import numpy as np
 
 from dalembert.errors import listed
 from dalembert.findings import Finding
+from dalembert.inverse.checks.residual_correlation import systematic_findings
+from dalembert.inverse.identification.assess import Optimum
 from dalembert.inverse.least_squares.estimate import left_vectors
 from dalembert.inverse.noise.correlation.correlated_residuals import NoiseProcess
 from dalembert.inverse.noise.correlation.correlation import correlated_series, period_of
-from dalembert.inverse.noise.correlation.correlation_findings import systematic_findings
 from dalembert.inverse.noise.correlation.series import Series
 from dalembert.inverse.noise.likelihood.channel_noise import ChannelNoise
 from dalembert.inverse.noise.likelihood.estimate_noise import NoiseFit
 from dalembert.inverse.noise.models.correlated_noise import AutoregressiveNoise, OrnsteinUhlenbeckNoise
+from dalembert.inverse.noise.models.noise_model import NoiseModel
 from dalembert.inverse.noise.models.whitening import correlations_of
 from dalembert.inverse.noise.noise_floor import autocorrelation
 
 
-def noise_model_findings(found: NoiseFit) -> Iterator[Finding]:
-    """Yield findings on noise parameters at a bound, residuals that the noise model leaves correlated, and slow noise.
+def noise_estimate(optimum: Optimum) -> Iterator[Finding]:
+    """Yield what was estimated of the noise, and what speaks against the noise model.
 
-    Parameters
-    ----------
-    found : NoiseFit
+    That is noise parameters at a bound, residuals that the noise model leaves correlated, and slow noise.
     """
-    yield from _at_bounds(found)
-    yield from _left_correlated(found)
-    yield from systematic_findings([one for one in _processes(found) if one.systematic])
+    noise = optimum.minimum.noise
+    if noise is None:
+        return
+    slow = systematic_findings([process for process in _processes(noise) if process.systematic])
+    left = tuple(_left_correlated(noise))
+    models = {name: _in_words(model) for name, model in noise.noise.models.items()}
+    words = [
+        f"of {listed([repr(name) for name, item in models.items() if item == kind])}: {kind}"
+        for kind in dict.fromkeys(models.values())
+    ]
+    message = f"The noise is estimated with the parameters, {'; '.join(words)}."
+    message += "" if left else " Whitened by it, the residuals are not correlated."
+    values = {"log_likelihood": noise.noise.log_likelihood, "parameters": len(noise.noise.parameters)}
+    yield Finding("noise-estimated", "note", values, message)
+    yield from (*_at_bounds(noise), *left, *slow)
+
+
+def _in_words(model: NoiseModel) -> str:
+    """Return a noise model in words, such as "autoregressive of order 2, mixed"."""
+    order = f" of order {model.order}" if isinstance(model, AutoregressiveNoise) else ""
+    inner = getattr(model, "deviation", None)
+    return f"{model.name}{order}" + (f", {inner.name}" if isinstance(inner, NoiseModel) else "")
 
 
 def _at_bounds(found: NoiseFit) -> Iterator[Finding]:

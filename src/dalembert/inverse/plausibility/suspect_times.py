@@ -1,6 +1,6 @@
 """Records whose times do not suit the time scales of the response: times in another unit."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -9,7 +9,6 @@ from dalembert.data import Measurements
 from dalembert.errors import DalembertError
 from dalembert.findings import Finding
 from dalembert.forward import ForwardModel
-from dalembert.inverse.experiments.experiment import Experiment
 
 INTERVALS, POINTS = 4, 100
 """Sampling intervals in which the response is looked at, and its points in each."""
@@ -46,28 +45,6 @@ GOLDEN = (np.sqrt(5) - 1) / 2
 
 Respond = Callable[[np.ndarray], np.ndarray | None]
 """From times (times,) to the response at the first guesses, shape (times, channels of the data); None if it fails."""
-
-
-def experiment_time_findings(
-    records: ForwardModel | Sequence[Experiment], data: Measurements | None, joint: Any, vector: np.ndarray
-) -> Iterator[Finding]:
-    """Yield :func:`time_findings` of a model and its data, or of experiments.
-
-    Parameters
-    ----------
-    records : ForwardModel or sequence of Experiment
-    data : Measurements, optional
-        Of a single model.
-    joint : ForwardModel
-        The single model, or the joint one of all experiments.
-    vector : array, shape (parameters,)
-        First guesses of the joint model.
-    """
-    if isinstance(records, Sequence):
-        for experiment, wiring in zip(records, joint.wiring, strict=True):
-            yield from time_findings(experiment.model, experiment.data, vector[wiring])
-    elif data is not None:
-        yield from time_findings(records, data, vector)
 
 
 def time_findings(model: ForwardModel, data: Measurements, vector: np.ndarray) -> tuple[Finding, ...]:

@@ -9,6 +9,7 @@ from dalembert.errors import DalembertError
 from dalembert.findings import Finding
 from dalembert.forward import StateChart, restartable
 from dalembert.inverse.experiments.tracks import Track, tracks
+from dalembert.inverse.identification.assess import Optimum
 from dalembert.inverse.problem.problem import MisfitProblem
 from dalembert.inverse.shooting.natural_cuts import MOST_STATES
 
@@ -19,9 +20,13 @@ PIECES = 10
 """Parts of a motion whose sensitivities are multiplied."""
 
 
-def growth_findings(problem: MisfitProblem, vector: np.ndarray) -> Iterator[Finding]:
-    """Yield the finding that errors grow much along a motion, at a parameter vector (parameters,) of a doubtful fit."""
-    growth = error_growth(problem, vector)
+def growing_errors(optimum: Optimum) -> Iterator[Finding]:
+    """Yield the finding that errors grow much along a motion, at the values of a doubtful fit by least squares."""
+    end, floor = optimum.end, optimum.floor
+    doubtful = optimum.correlation_is_detected or floor.known or not end.success
+    if not optimum.by_squares or optimum.settings.shooting is not None or end.misfit <= floor.misfit or not doubtful:
+        return
+    growth = error_growth(optimum.problem, optimum.vector)
     if growth < CHAOTIC:
         return
     message = (

@@ -1,11 +1,10 @@
 """How much of the variation of held-out data a response explains."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from dalembert.findings import Finding
 from dalembert.inverse.noise.correlation.series import series_of
 from dalembert.inverse.noise.correlation.whiteness import LEVEL, p_value
 from dalembert.inverse.problem.problem import MisfitProblem
@@ -61,7 +60,7 @@ def explained(
 
     Parameters
     ----------
-    problem : Problem
+    problem : MisfitProblem
         The whole one.
     response : array, shape (samples, channels)
     weights : array, shape (samples, channels)
@@ -109,31 +108,14 @@ def percentages(shares: Sequence[Explained]) -> str:
     parts = []
     for record, share in record_shares(shares).items():
         own = [item for item in shares if item.record == record]
-        lead = f"{_percent(share)} of {record!r}" if record else _percent(share)
-        channels = [f"{item.channel!r} {_percent(item.share)}" for item in own]
+        lead = f"{percent(share)} of {record!r}" if record else percent(share)
+        channels = [f"{item.channel!r} {percent(item.share)}" for item in own]
         parts.append(f"{lead} ({', '.join(channels)})" if len(own) > 1 else lead)
     return f"Explained there of the data's variation: {'; '.join(parts)}." if parts else ""
 
 
-def explained_findings(shares: Sequence[Explained]) -> Iterator[Finding]:
-    """Yield a finding for each record of which too little is explained, though noise is not the reason."""
-    for record, share in record_shares(shares).items():
-        poor = [item for item in shares if item.record == record and item.poor]
-        if not poor:
-            continue
-        worst = min(poor, key=lambda item: item.share)
-        what = f"the held-out record {record!r}" if record else "the held-out samples"
-        yield Finding(
-            "validation-unexplained",
-            "warning",
-            {"record": record, "channel": worst.channel, "explained": share, "channel_explained": worst.share},
-            f"The response explains {_percent(share)} of the variation of {what}, "
-            f"{_percent(worst.share)} in {worst.channel!r}.",
-            "The model does not predict this motion. Fit such records too, or look for what the model lacks.",
-        )
-
-
-def _percent(share: float) -> str:
+def percent(share: float) -> str:
+    """Return a share of a variation in words."""
     if np.isnan(share):
         return "undefined (constant data)"
     return "none" if share < 0 else f"{100 * share:.4g} %"

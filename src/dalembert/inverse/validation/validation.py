@@ -9,8 +9,8 @@ import numpy as np
 from dalembert.errors import InputError, require_known
 from dalembert.inverse.experiments.experiment import ExperimentPart
 from dalembert.inverse.experiments.experiments import JointModel
-from dalembert.inverse.experiments.explained import WORSE, Explained, explained, percentages
-from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
+from dalembert.inverse.problem.problem import MisfitProblem
+from dalembert.inverse.validation.explained import WORSE, Explained, explained, percentages
 from dalembert.stored_fields import Over
 
 HeldOut = float | str | Sequence[str] | Mapping[str, float] | None
@@ -83,6 +83,15 @@ class Split:
         misfit, fitted = (_rms(squares, own) for own in (weights, of_fit))
         return Validation(self.what, weights, misfit, fitted, explained(self.whole, response, weights, fitted))
 
+    def whole_table(self, table: np.ndarray, missing: float) -> np.ndarray:
+        """Return a table (samples, channels, ...) of the fitted part in one of the whole problem."""
+        if self.part is self.whole:
+            return table
+        whole = np.full((*self.whole.weights.shape, *table.shape[2:]), missing)
+        columns = [self.whole.data.channels.index(name) for name in self.part.data.channels]
+        whole[: self.part.samples, columns] = table
+        return whole
+
 
 def split(problem: MisfitProblem, validation: HeldOut) -> Split:
     """A problem without a share of its samples at the end, or without some of its experiments after their first parts.
@@ -102,16 +111,6 @@ def split(problem: MisfitProblem, validation: HeldOut) -> Split:
         validation = (validation,)
     lengths = dict(validation) if isinstance(validation, Mapping) else dict.fromkeys(validation, 0.0)
     return _experiments(problem, lengths, everything)
-
-
-def whole_jacobian(whole: MisfitProblem, part: MisfitProblem, at: Linearisation) -> np.ndarray:
-    """Return the jacobian (samples, channels, parameters) of a part in that of the whole, NaN where it has none."""
-    if part is whole:
-        return at.jacobian
-    found = np.full((*whole.weights.shape, at.jacobian.shape[-1]), np.nan)
-    columns = [whole.data.channels.index(name) for name in part.data.channels]
-    found[: part.samples, columns] = at.jacobian
-    return found
 
 
 def _ends(problem: MisfitProblem, share: float, fitted: np.ndarray) -> Split:

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.special import chdtri
 
 from dalembert.findings import Finding
+from dalembert.inverse.identification.assess import Optimum
 from dalembert.inverse.misfit.residuals import Residuals
 from dalembert.inverse.noise.correlation.correlated_residuals import CLEAR, NoiseProcess
 from dalembert.inverse.noise.correlation.series import Series
@@ -61,24 +62,10 @@ def _shown(value: float, unit: str) -> str:
     return f"{value:.4g} {unit}".rstrip()
 
 
-def model_misfits(residuals: Residuals) -> tuple[ModelMisfit, ...]:
-    """Return the channel of each experiment in which the model leaves the data first.
-
-    Only residuals that stay correlated as long as the motion takes to change are those of a model, or correlated ones
-    that are far above given deviations: the size alone may be that of noise.
-    """
-    found: dict[str, ModelMisfit] = {}
-    for own in residuals.series:
-        process = residuals.processes.get(own.name)
-        misfit = _misfit(residuals, own, process) if process is not None and _model(residuals, process) else None
-        if misfit is not None and misfit.at < getattr(found.get(misfit.experiment), "at", np.inf):
-            found[misfit.experiment] = misfit
-    return tuple(found.values())
-
-
-def misfit_findings(misfits: Sequence[ModelMisfit]) -> Iterator[Finding]:
+def model_misfit(optimum: Optimum) -> Iterator[Finding]:
     """Yield a finding for each experiment that the model does not follow."""
-    for item in misfits:
+    residuals = optimum.causes.residuals
+    for item in () if residuals is None else _misfits(residuals):
         record = f" of experiment {item.experiment!r}" if item.experiment else ""
         noise = "given deviation" if item.known else "noise (estimated from neighbouring residuals)"
         names = ("experiment", "channel", "at", "followed", "ratio")
@@ -92,6 +79,21 @@ def misfit_findings(misfits: Sequence[ModelMisfit]) -> Iterator[Finding]:
             f"{_shown(item.followed, item.unit)} can be followed.",
             "Look there in the figure of residuals. Add what the model lacks, widen the bounds, or increase `starts`.",
         )
+
+
+def _misfits(residuals: Residuals) -> tuple[ModelMisfit, ...]:
+    """Return the channel of each experiment in which the model leaves the data first.
+
+    Only residuals that stay correlated as long as the motion takes to change are those of a model, or correlated ones
+    that are far above given deviations: the size alone may be that of noise.
+    """
+    found: dict[str, ModelMisfit] = {}
+    for own in residuals.series:
+        process = residuals.processes.get(own.name)
+        misfit = _misfit(residuals, own, process) if process is not None and _model(residuals, process) else None
+        if misfit is not None and misfit.at < getattr(found.get(misfit.experiment), "at", np.inf):
+            found[misfit.experiment] = misfit
+    return tuple(found.values())
 
 
 def _model(residuals: Residuals, process: NoiseProcess) -> bool:

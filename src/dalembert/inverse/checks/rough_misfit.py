@@ -5,10 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from dalembert.findings import Finding
-from dalembert.inverse.least_squares.descent import End
+from dalembert.inverse.identification.assess import Optimum
 from dalembert.inverse.least_squares.estimate import UNSEEN
 from dalembert.inverse.problem.combinations import amounts
-from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
 
 LARGE = 0.5
 """Distance to the minimum that the sensitivities foresee, in deviations, from which roughness is a warning."""
@@ -17,17 +16,17 @@ SMALL = 0.01
 """Distance below which roughness does not matter."""
 
 
-def roughness_findings(
-    problem: MisfitProblem, best: End, at: Linearisation | None, deviations: np.ndarray
-) -> Iterator[Finding]:
+def rough_misfit(optimum: Optimum) -> Iterator[Finding]:
     """Yield how far the foreseen minimum is from the values, where a rough misfit ended the search.
 
     Notes
     -----
     The distance is δp = −(JᵀWJ)⁻¹ JᵀW r, inside the bounds. A smooth misfit would have led there.
     """
-    if not best.rough or at is None:
+    at = optimum.linearisation
+    if not optimum.end.rough or at is None or optimum.minimum.explained_by == "arithmetic":
         return
+    problem, deviations = optimum.problem, optimum.estimate.deviations
     parameters = problem.model.parameters
     residual, slopes = problem.residuals(at.vector, at.response), problem.slopes(at, parameters.scale)
     left, singular, directions = np.linalg.svd(slopes, full_matrices=False)

@@ -7,9 +7,9 @@ import numpy as np
 from dalembert.data import Measurements
 from dalembert.findings import Finding
 from dalembert.forward import ForwardModel
-from dalembert.inverse.experiments.suspect_units import suspect_units, unit_finding
-from dalembert.inverse.experiments.without_outliers import without_outliers
 from dalembert.inverse.noise.correlation.series import series_of
+from dalembert.inverse.plausibility.suspect_units import suspect_units, unit_finding
+from dalembert.inverse.plausibility.without_outliers import without_outliers
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import MisfitProblem, pose
 

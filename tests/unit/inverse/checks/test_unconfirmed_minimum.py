@@ -8,11 +8,12 @@ import pytest
 from dalembert.data import Measurements
 from dalembert.forward import PythonModel
 from dalembert.inverse import identify
+from dalembert.inverse.checks.unconfirmed_minimum import single_start
+from dalembert.inverse.identification.search import MisfitMinimum
 from dalembert.inverse.least_squares.descent import End
 from dalembert.inverse.noise.noise_floor import NoiseFloor
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import pose
-from dalembert.inverse.starts.unconfirmed import unconfirmed_findings
 
 TIMES = np.linspace(0.0, 10.0, 101)
 FLOOR = NoiseFloor(1e-6, "arithmetic", True)
@@ -30,10 +31,9 @@ def end(problem, rate):
     return End(point, float(problem.misfit(point[None])[0]), True, "")
 
 
-def codes(problem, rates, best=6.3, **changes):
+def codes(problem, rates, best=6.3, floor=FLOOR):
     ends = [end(problem, rate) for rate in rates]
-    given = {"floor": FLOOR, "white": False} | changes
-    return list(unconfirmed_findings(problem, end(problem, best), ends, **given))
+    return list(single_start(MisfitMinimum(problem, end(problem, best), floor, ends)))
 
 
 def test_a_minimum_that_one_start_of_three_reached_is_no_success(problem):
@@ -47,16 +47,23 @@ def test_starts_that_lead_to_the_same_minimum_confirm_it(problem):
     assert not codes(problem, [6.3, 6.32, 1.0])  # on its way
 
 
-@pytest.mark.parametrize("changes", [{"white": True}, {"floor": replace(FLOOR, misfit=1e9)}])
-def test_residuals_like_noise_confirm_a_minimum(problem, changes):
-    assert not codes(problem, [6.3, 1.0, 3.1], **changes)
+def test_a_misfit_that_known_noise_explains_confirms_a_minimum(problem):
+    assert not codes(problem, [6.3, 1.0, 3.1], floor=replace(FLOOR, misfit=1e9))
+
+
+def test_residuals_like_noise_confirm_a_minimum():
+    """One start of three is at the frequency; only noise remains."""
+    noise = 0.05 * np.random.default_rng(0).standard_normal(101)
+    noisy = Measurements.of(TIMES, {"x": np.cos(6.3 * TIMES) + noise})
+    model = PythonModel(lambda rate: np.cos(rate * TIMES), {"rate": (0.5, 30.0)}, ["x"], TIMES)
+    assert identify(model, noisy, starts=3, start={"rate": 6.3}, horizon=None).success
 
 
 def test_two_starts_and_fits_that_did_not_converge_have_no_finding(problem):
     assert not codes(problem, [6.3, 1.0])
     ends = [end(problem, rate) for rate in (6.3, 1.0, 3.1)]
     failed = replace(ends[0], success=False)
-    assert not list(unconfirmed_findings(problem, failed, ends, FLOOR, white=False))
+    assert not list(single_start(MisfitMinimum(problem, failed, FLOOR, ends)))
 
 
 def test_an_identification_with_an_unconfirmed_minimum_is_no_success():

@@ -56,7 +56,7 @@ from dalembert.inverse.sets.identify_set import identify_set
 from dalembert.inverse.sets.parameter_set import ParameterSet
 from dalembert.inverse.shooting.segments import ShootingState
 from dalembert.inverse.shooting.shooting import MultipleShooting
-from dalembert.inverse.specimens.estimate import population
+from dalembert.inverse.specimens.estimate_population import population
 from dalembert.inverse.specimens.population import Population
 from dalembert.inverse.validation.validation import Validation
 

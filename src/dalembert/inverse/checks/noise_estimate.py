@@ -17,7 +17,7 @@ from dalembert.inverse.noise.likelihood.estimate_noise import NoiseFit
 from dalembert.inverse.noise.models.correlated_noise import AutoregressiveNoise, OrnsteinUhlenbeckNoise
 from dalembert.inverse.noise.models.noise_model import NoiseModel
 from dalembert.inverse.noise.models.whitening import correlations_of
-from dalembert.inverse.noise.noise_floor import autocorrelation
+from dalembert.inverse.problem.random_residuals import autocorrelation
 
 
 def noise_estimate(optimum: Optimum) -> Iterator[Finding]:

@@ -8,9 +8,9 @@ from dalembert.inverse.checks.equal_minima import ALIKE, PROMISING
 from dalembert.inverse.identification.assess import Optimum
 from dalembert.inverse.identification.search import MisfitMinimum
 from dalembert.inverse.least_squares.descent import End, refine
-from dalembert.inverse.noise.noise_floor import random_residuals
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import MisfitProblem
+from dalembert.inverse.problem.random_residuals import random_residuals
 from dalembert.optimize import LeastSquares
 
 LEAST = 3

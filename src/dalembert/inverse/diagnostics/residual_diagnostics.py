@@ -13,13 +13,13 @@ from dalembert.inverse.diagnostics.influence import ALONE, Influence, influence
 from dalembert.inverse.diagnostics.noise_tests import normality, runs
 from dalembert.inverse.diagnostics.series_residuals import SeriesResiduals
 from dalembert.inverse.least_squares.estimate import left_vectors
-from dalembert.inverse.misfit.residuals import off_bounds
 from dalembert.inverse.noise.correlation.balanced import balanced
 from dalembert.inverse.noise.correlation.correlated_residuals import NoiseProcess
 from dalembert.inverse.noise.correlation.correlation import SMALL
 from dalembert.inverse.noise.correlation.series import Series, series_of_record
 from dalembert.inverse.noise.correlation.whiteness import LEAST, p_value
 from dalembert.inverse.problem.prior import prior_slopes
+from dalembert.inverse.problem.search_coordinates import off_bounds
 
 if TYPE_CHECKING:
     from dalembert.inverse.fit.fit import Fit

@@ -7,10 +7,10 @@ import numpy as np
 
 from dalembert.errors import SolveError
 from dalembert.forward import refined
-from dalembert.inverse.noise.noise_floor import random_residuals
 from dalembert.inverse.problem.integration_error import as_residuals, integration_error
 from dalembert.inverse.problem.nodes import Nodes
 from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
+from dalembert.inverse.problem.random_residuals import random_residuals
 from dalembert.optimize import Progress, Squares
 
 MANY = 30

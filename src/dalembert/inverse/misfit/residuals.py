@@ -21,10 +21,7 @@ from dalembert.inverse.noise.correlation.correlation import (
 from dalembert.inverse.noise.correlation.series import Series, series_of
 from dalembert.inverse.noise.noise_floor import quantum
 from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
-from dalembert.parameters import Parameters
-
-BOUND = 1e-6
-"""Distance from a bound, as a part of the width between bounds, up to which a parameter is on it."""
+from dalembert.inverse.problem.search_coordinates import off_bounds
 
 STATIONARY = 0.1
 """Squares of residuals that a last step may still take away, in variances of a residual."""
@@ -136,9 +133,3 @@ class Residuals:
         """Return the residuals less ``amount`` of a column (values,) that is orthogonal to the basis."""
         basis = np.column_stack([self.basis, column / np.linalg.norm(column)])
         return replace(self, values=self.values - amount * column, basis=basis)
-
-
-def off_bounds(parameters: Parameters, values: np.ndarray) -> np.ndarray:
-    """Return which parameters are on no bound at values, both of shape (parameters,)."""
-    near = BOUND * (parameters.upper - parameters.lower)
-    return (values - parameters.lower > near) & (parameters.upper - values > near)

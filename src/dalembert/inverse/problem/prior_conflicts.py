@@ -6,8 +6,8 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from dalembert.findings import Finding
-from dalembert.inverse.misfit.residuals import off_bounds
 from dalembert.inverse.problem.prior import prior_residual, prior_slopes, priors
+from dalembert.inverse.problem.search_coordinates import off_bounds
 from dalembert.parameters import Parameters
 from dalembert.priors import SquarePrior
 

@@ -8,8 +8,9 @@ from scipy.special import ndtri
 from dalembert.findings import Finding
 from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.check import BandSolution, scale
-from dalembert.inverse.noise.noise_floor import quantum, random_residuals
+from dalembert.inverse.noise.noise_floor import quantum
 from dalembert.inverse.problem.matching import place
+from dalembert.inverse.problem.random_residuals import random_residuals
 from dalembert.inverse.problem.search_findings import converged, failed_simulations
 
 SMALL = 1e-2  # misfit, as a part of the bands' mean width, from which bands are said to be explained badly

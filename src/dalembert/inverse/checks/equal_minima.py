@@ -49,19 +49,10 @@ def equal_minima(optimum: Optimum) -> Iterator[Finding]:
 def _rivals(search: MisfitMinimum, deviations: np.ndarray, *, known: bool) -> list[End]:
     """Return other minima in which starts ended and whose misfit equals the best within the noise.
 
-    Parameters
-    ----------
-    search : MisfitMinimum
-    deviations : array, shape (parameters,)
-        Of the values at the best end. Without them (NaN) minima that differ by 0.1 % are distinct.
-    known : bool
-        Whether the deviations follow from given ones of the data.
-
-    Notes
-    -----
-    Minima are distinct where a value differs by more than two deviations and by more than 0.1 %. The deviation of a
-    parameter that is not identifiable is infinite, so ends along a flat valley are one minimum. If the values of other
-    parameters differ along the valley, it is recognised by a descent from the middle that keeps the misfit.
+    Minima are distinct where a value differs by more than two ``deviations`` (parameters,) and by more than 0.1 %; NaN
+    decides nothing. The deviation of a parameter that is not identifiable is infinite, so ends along a flat valley are
+    one minimum. If the values of other parameters differ along the valley, it is recognised by a descent from the
+    middle that keeps the misfit. ``known``: whether the deviations follow from given ones of the data.
     """
     problem, best, floor = search.problem, search.end, search.floor
     variance = best.misfit / max(1, problem.compared - len(best.point))

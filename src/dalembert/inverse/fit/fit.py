@@ -24,7 +24,6 @@ from dalembert.inverse.noise.correlation.correlated_residuals import CorrelatedR
 from dalembert.inverse.noise.likelihood.estimated_noise import EstimatedNoise
 from dalembert.inverse.problem.combinations import amounts
 from dalembert.inverse.problem.nodes import Nodes
-from dalembert.inverse.problem.prior import priors
 from dalembert.inverse.validation.validation import Validation
 from dalembert.results import EndedResult, fact_lines, fixed_lines, text_table
 from dalembert.stored_fields import Over, StoredParameters, Table
@@ -206,12 +205,12 @@ class Fit(EndedResult):
         if self.noise is not None:
             return self.noise.known
         given = self.data.deviations is not None and self.provenance.get("weights") == "data"
-        return given or len(priors(self.parameters)) > 0
+        return given or len(self.parameters.square_priors) > 0
 
     @property
     def degrees_of_freedom(self) -> int:
         """Return the number of fitted values and priors, less that of parameters."""
-        return int(np.count_nonzero(self.weights)) + len(priors(self.parameters)) - len(self.parameters)
+        return int(np.count_nonzero(self.weights)) + len(self.parameters.square_priors) - len(self.parameters)
 
     @property
     def effective_degrees_of_freedom(self) -> float:

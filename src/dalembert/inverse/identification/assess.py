@@ -20,36 +20,17 @@ from dalembert.optimize import Squares
 
 @dataclass(frozen=True, eq=False)
 class Optimum:
-    """Identified values and what is known of them: the record that checks examine.
-
-    Parameters
-    ----------
-    posed : PosedIdentification
-    settings : SearchSettings
-    search, minimum : MisfitMinimum
-        Before and after the noise was estimated; the same without a noise model.
-    vector : array, shape (parameters,)
-    linearisation : Linearisation, optional
-    response, whole_response : array, shape (samples, channels)
-        Of the fitted part of the data, and of all.
-    noise_is_known : bool
-        Whether the deviations follow from those of the data, not from the residuals.
-    estimate : Estimate
-    correlated : CorrelatedResiduals, optional
-    integration : IntegrationBias, optional
-    causes : ResidualCauses
-    validation : Validation, optional
-    """
+    """Identified values and what is known of them: the record that checks examine."""
 
     posed: PosedIdentification
     settings: SearchSettings
-    search: MisfitMinimum
-    minimum: MisfitMinimum
-    vector: np.ndarray
+    search: MisfitMinimum  # before the noise was estimated
+    minimum: MisfitMinimum  # with the noise
+    vector: np.ndarray  # (parameters,)
     linearisation: Linearisation | None
-    response: np.ndarray
-    whole_response: np.ndarray
-    noise_is_known: bool
+    response: np.ndarray  # (samples, channels) of the fitted part of the data
+    whole_response: np.ndarray  # (samples, channels) of all data
+    noise_is_known: bool  # whether the deviations follow from those of the data, not from the residuals
     estimate: Estimate
     correlated: CorrelatedResiduals | None
     integration: IntegrationBias | None

@@ -14,15 +14,7 @@ from dalembert.inverse.problem.prior import prior_residual
 
 
 def with_noise(posed: PosedIdentification, minimum: MisfitMinimum) -> MisfitMinimum:
-    """Return the minimum with the weights of the estimated noise; the same minimum without a noise model.
-
-    Raises
-    ------
-    InputError
-        For noise models that the data do not allow.
-    SolveError
-        Where the model has no sensitivities.
-    """
+    """Return the minimum with the weights of the estimated noise; the same minimum without a noise model."""
     if posed.noise is None:
         return minimum
     problem, best, known = minimum.problem, minimum.end, posed.noise_is_given

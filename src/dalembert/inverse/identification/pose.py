@@ -20,49 +20,26 @@ from dalembert.inverse.noise.smoothed import smooth_noise
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.loss import loss_of
 from dalembert.inverse.problem.matching import weights_of
-from dalembert.inverse.problem.prior import priors
 from dalembert.inverse.problem.problem import MisfitProblem, pose
 from dalembert.inverse.validation.validation import HeldOut, Split, split
 
 
 @dataclass(frozen=True, eq=False)
 class PosedIdentification:
-    """A misfit problem, the part of it that is fitted, and the noise that its data are known to have.
+    """A misfit problem, the part of it that is fitted, and the noise that its data are known to have."""
 
-    Parameters
-    ----------
-    model : ForwardModel or sequence of Experiment
-        First built where the search starts.
-    data : Measurements, optional
-        Of a single model.
-    parts : tuple of ExperimentPart
-        Where several experiments stand in the joint response.
-    split : Split
-    validation : float, name or names, or mapping, optional
-    first_point : array, shape (parameters,)
-        Search point of the first guesses.
-    floor : NoiseFloor
-        Of the fitted part.
-    noise : Noise, optional
-        To estimate with the parameters.
-    smooth_noise : array, shape (channels,), optional
-        Standard deviations that local polynomials give to data without any.
-    noise_is_given : bool
-        Whether the weights follow from standard deviations of the data.
-    weights_source : {"noise", "given", "data", "smoothed"}
-    """
-
+    # model, data: as they were given, the model first built where the search starts.
     model: ForwardModel | Sequence[Experiment]
     data: Measurements | None
     parts: tuple[ExperimentPart, ...]
     split: Split
     validation: HeldOut
-    first_point: np.ndarray
-    floor: NoiseFloor
-    noise: Noise | None
-    smooth_noise: np.ndarray | None
-    noise_is_given: bool
-    weights_source: str
+    first_point: np.ndarray  # search point (parameters,) of the first guesses
+    floor: NoiseFloor  # of the fitted part
+    noise: Noise | None  # to estimate with the parameters
+    smooth_noise: np.ndarray | None  # deviations (channels,) that local polynomials give to data without any
+    noise_is_given: bool  # whether the weights follow from standard deviations of the data
+    weights_source: str  # "noise", "given", "data" or "smoothed"
 
     @property
     def whole(self) -> MisfitProblem:
@@ -90,15 +67,7 @@ def pose_identification(
     on_event: OnEvent | None,
     executor: Executor,
 ) -> PosedIdentification:
-    """Return the problem of a model, or of experiments, by the arguments of :func:`dalembert.identify`.
-
-    Raises
-    ------
-    DataError
-        For data that do not fit to the model.
-    InputError
-        For invalid arguments, and for those that cannot be combined.
-    """
+    """Return the problem of a model, or of experiments, by the arguments of :func:`dalembert.identify`."""
     if shooting is not None and validation is not None:
         raise InputError(
             "shooting: validation was given, but a chaotic motion cannot be predicted; leave one of the two out"
@@ -109,7 +78,7 @@ def pose_identification(
     counted, weights = (None, weights) if noise is None else (_counted_values(weights, measured), None)
     _check_noise(noise, loss=loss, shooting=shooting)
     given = measured.deviations is not None and weights is None
-    smoothing = shooting is not None or (noise is not None and len(priors(joint.parameters)) > 0)
+    smoothing = shooting is not None or (noise is not None and len(joint.parameters.square_priors) > 0)
     smooth = smooth_noise(measured, parts) if smoothing and not given and weights is None else None
     journal = Journal(len(measured.coordinate.values), on_event)
     weighed = weights if smooth is None else np.broadcast_to(smooth**-2.0, measured.values.shape)
@@ -138,13 +107,7 @@ def pose_identification(
 
 
 def _counted_values(weights: ArrayLike | None, data: Measurements) -> np.ndarray | None:
-    """Return which values count, 1 or 0, beside a noise model, from which all other weights follow.
-
-    Raises
-    ------
-    InputError
-        For other weights.
-    """
+    """Return which values count, 1 or 0, beside a noise model, from which all other weights follow."""
     if weights is None:
         return None
     counted = weights_of(weights, data.values.shape)
@@ -158,12 +121,7 @@ def _counted_values(weights: ArrayLike | None, data: Measurements) -> np.ndarray
 
 
 def _check_noise(noise: Noise | None, *, loss: str, shooting: object) -> None:
-    """Refuse what cannot be combined with a noise model.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse what cannot be combined with a noise model."""
     if noise is None:
         return
     if loss != "linear":

@@ -38,26 +38,13 @@ class SearchSettings:
 
 @dataclass(frozen=True, eq=False)
 class MisfitMinimum:
-    """The least misfit that was reached.
-
-    Parameters
-    ----------
-    problem : MisfitProblem
-    end : End
-        Of the best start.
-    floor : NoiseFloor
-        Of the problem.
-    ends : list of End
-        Of all starts, before the best one was polished.
-    noise : NoiseFit, optional
-        Noise that was estimated with the parameters; the weights of the problem follow from it.
-    """
+    """The least misfit that was reached."""
 
     problem: MisfitProblem
-    end: End
+    end: End  # of the best start
     floor: NoiseFloor
-    ends: list[End]
-    noise: NoiseFit | None = None
+    ends: list[End]  # of all starts, before the best one was polished
+    noise: NoiseFit | None = None  # estimated with the parameters; the weights follow from it
 
     @property
     def explained_by(self) -> str:
@@ -85,12 +72,7 @@ def search_settings(
     spread: str,
     shooting: MultipleShooting | None,
 ) -> SearchSettings:
-    """Return checked settings, the usual ones where an argument is None.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return checked settings, the usual ones where an argument is None."""
     method = LeastSquares() if method is None else Minimiser(method) if isinstance(method, str) else method
     if isinstance(method, type) or not hasattr(method, "minimise"):
         hint = f"; write {method.__name__}(...)" if isinstance(method, type) else ""
@@ -113,15 +95,7 @@ def search_settings(
 
 
 def find_minimum(posed: PosedIdentification, settings: SearchSettings) -> MisfitMinimum:
-    """Return the least misfit of all starts.
-
-    Raises
-    ------
-    InputError
-        For motions that cannot be cut into segments, and derivatives that differ from differences.
-    SolveError
-        If no start could be simulated.
-    """
+    """Return the least misfit of all starts."""
     problem, floor, method, shooting = posed.problem, posed.floor, settings.method, settings.shooting
     options = {"starts": settings.starts, "seed": settings.seed, "spread": settings.spread}
     if shooting is not None:  # before anything is simulated

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from dalembert.findings import Finding
-from dalembert.inverse.problem.prior import prior_residual, prior_slopes, priors
+from dalembert.inverse.problem.prior import prior_residual, prior_slopes
 from dalembert.inverse.problem.search_coordinates import off_bounds
 from dalembert.parameters import Parameters
 from dalembert.priors import SquarePrior
@@ -83,7 +83,7 @@ def conflicts_of_minimum(
     correlation : array, shape (parameters, parameters)
     """
     free = off_bounds(parameters, values)
-    if not len(priors(parameters)) or not np.all(np.isfinite(deviations)) or not np.all(free):
+    if not len(parameters.square_priors) or not np.all(np.isfinite(deviations)) or not np.all(free):
         return
     slopes = prior_slopes(parameters, values, deviations)
     information = np.linalg.pinv(correlation, hermitian=True) - slopes.T @ slopes

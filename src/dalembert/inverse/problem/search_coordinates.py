@@ -50,7 +50,8 @@ class SearchCoordinates:
 
     def vectors(self, points: np.ndarray) -> np.ndarray:
         """Parameter vectors at coordinates, both (..., parameters), inside the bounds."""
-        return self.parameters.clip(self._unit * np.where(self.logarithmic, np.exp(points * self.logarithmic), points))
+        vectors = self._unit * np.where(self.logarithmic, np.exp(points * self.logarithmic), points)
+        return np.clip(vectors, self.parameters.lower, self.parameters.upper)
 
     def slope(self, vector: np.ndarray) -> np.ndarray:
         """dp/dz at a parameter vector, both (parameters,)."""

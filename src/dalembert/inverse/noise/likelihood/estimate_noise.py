@@ -18,7 +18,7 @@ from dalembert.inverse.noise.likelihood.placing import Noise, base_of, picked_mo
 from dalembert.inverse.noise.models.correlated_noise import CorrelatedNoise
 from dalembert.inverse.noise.models.independent_noise import ProportionalNoise
 from dalembert.inverse.noise.models.noise_model import NoiseModel
-from dalembert.inverse.problem.prior import prior_slopes, priors
+from dalembert.inverse.problem.prior import prior_slopes
 from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
 
 STEP = 1e-4
@@ -91,7 +91,7 @@ def estimate_noise(problem: MisfitProblem, noise: Noise, at: Linearisation, *, k
         picked = again
         likelihood, found = _largest(problem, picked, found.expansion.at, known=known)
     model = problem.model.parameters
-    few = problem.compared + len(priors(model)) <= len(model)  # no residual is left to estimate the noise from
+    few = problem.compared + len(model.square_priors) <= len(model)  # no residual is left to estimate the noise from
     variance = np.nan if few and len(likelihood.noise_parameters) else 1.0
     return NoiseFit(
         likelihood,

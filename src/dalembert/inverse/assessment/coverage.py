@@ -22,11 +22,7 @@ none covered less than 0.86 of an unseen record (tests/unseen_records.py)."""
 def with_coverage(fit: Fit, problem: MisfitProblem) -> Fit:
     """Return the fit with the shares of held-out values inside their 95 % bands, in all and for each channel.
 
-    Parameters
-    ----------
-    fit : Fit
-    problem : MisfitProblem
-        The whole one, which its validation is of.
+    ``problem``: the whole one, which its validation is of.
 
     Notes
     -----

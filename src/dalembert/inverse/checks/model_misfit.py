@@ -30,32 +30,15 @@ OUTSIDE = 3.0
 
 @dataclass(frozen=True)
 class ModelMisfit:
-    """A channel of an experiment whose residuals are far above the noise.
+    """A channel of an experiment whose residuals are far above the noise."""
 
-    Parameters
-    ----------
-    experiment : str
-        Empty for a single one.
-    channel : str
-    at : float
-        Coordinate at which the residuals first leave the band of the noise.
-    followed : float
-        Coordinate up to which the model follows the record, if the record up to there alone is fitted.
-    unit : str
-        Of the coordinate.
-    ratio : float
-        Largest root mean square of the residuals in a window, in deviations of the noise.
-    known : bool
-        Whether the noise follows from given deviations, not from the differences of neighbouring residuals.
-    """
-
-    experiment: str
+    experiment: str  # empty for a single one
     channel: str
-    at: float
-    followed: float
-    unit: str
-    ratio: float
-    known: bool
+    at: float  # coordinate at which the residuals first leave the band of the noise
+    followed: float  # coordinate up to which the model follows the record, if the record up to there alone is fitted
+    unit: str  # of the coordinate
+    ratio: float  # largest root mean square of the residuals in a window, in deviations of the noise
+    known: bool  # whether the noise follows from given deviations, not from the differences of neighbouring residuals
 
 
 def _shown(value: float, unit: str) -> str:

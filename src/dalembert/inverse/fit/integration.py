@@ -21,20 +21,6 @@ CHAOTIC = 1e3
 class IntegrationBias:
     """What one more exact simulation at the identified values says about the error of the integrator.
 
-    Parameters
-    ----------
-    how : str
-        What the more exact simulation was, such as ``"at half the step"``; why there is none if it failed.
-    bias : array, shape (parameters,)
-        Error of the identified values that the steps cause, to first order: values − bias are the corrected ones. NaN
-        without the simulation.
-    misfit : float
-        Of the same values with converged steps.
-    corrected : float
-        Misfit of the corrected values with converged steps.
-    remainder : float
-        Weighted sum of squares of that part of the response's error which no change of the parameters makes up for.
-
     Notes
     -----
     With the responses ŷ_h and ŷ_{h/2} at the identified values and a method of order q, the error of ŷ_h is
@@ -42,10 +28,15 @@ class IntegrationBias:
     their steps ŷ_{h/2} is the response at a tolerance 100 times tighter, and d the difference.
     """
 
-    how: str
+    how: str  # what the more exact simulation was, such as ``"at half the step"``; why there is none if it failed
+    # bias: (parameters,): error of the identified values that the steps cause, to first order: values − bias are the
+    # corrected ones. NaN without the simulation.
     bias: Annotated[np.ndarray, Over("parameter", name="integration_bias")]
-    misfit: Annotated[float, Over(name="integration_misfit")]
+    misfit: Annotated[float, Over(name="integration_misfit")]  # of the same values with converged steps
+    # corrected: misfit of the corrected values with converged steps
     corrected: Annotated[float, Over(name="integration_corrected")]
+    # remainder: weighted sum of squares of that part of the response's error which no change of the parameters makes up
+    # for
     remainder: Annotated[float, Over(name="integration_remainder")]
 
     @property

@@ -29,22 +29,17 @@ REFITTED = LeastSquares(trials=30)
 
 @dataclass(frozen=True, eq=False)
 class Halves:
-    """Parameters of the first and of the second half of each record.
+    """Parameters of the first and of the second half of each record."""
 
-    Parameters
-    ----------
-    values, deviations : array, shape (2, parameters)
-        NaN where a half does not determine the parameter, and for parameters on a bound.
-    differences : array, shape (parameters,)
-        Second less first value in standard deviations of that difference; NaN where a half does not determine it.
-    refitted : bool
-        Whether each half was fitted; if not, the values are those of one Gauss–Newton step from the whole fit, as far
-        as the bounds allow.
-    """
-
+    # values, deviations: (2, parameters): naN where a half does not determine the parameter, and for parameters on a
+    # bound
     values: Annotated[np.ndarray, Over("half", "parameter", name="half_values")]
     deviations: Annotated[np.ndarray, Over("half", "parameter", name="half_deviations")]
+    # differences: (parameters,): second less first value in standard deviations of that difference; NaN where a half
+    # does not determine it
     differences: Annotated[np.ndarray, Over("parameter", name="half_differences")]
+    # refitted: whether each half was fitted; if not, the values are those of one Gauss–Newton step from the whole fit,
+    # as far as the bounds allow
     refitted: bool
 
     @property

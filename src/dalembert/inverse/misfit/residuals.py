@@ -29,28 +29,14 @@ STATIONARY = 0.1
 
 @dataclass(frozen=True, eq=False)
 class Residuals:
-    """Weighted residuals at a minimum.
-
-    Parameters
-    ----------
-    problem : MisfitProblem
-    at : Linearisation
-    values : array, shape (values,)
-        W^½ (R − data), flat from (samples, channels).
-    basis : array, shape (values, columns)
-        Orthonormal; spans the changes that the fit could have explained.
-    free : array of bool, shape (parameters,)
-        Parameters that are on no bound, which alone the basis is of.
-    known : bool
-        Whether the variance of a weighted residual is known to be 1.
-    """
+    """Weighted residuals at a minimum."""
 
     problem: MisfitProblem
     at: Linearisation
-    values: np.ndarray
-    basis: np.ndarray
-    free: np.ndarray
-    known: bool
+    values: np.ndarray  # (values,): W^½ (R − data), flat from (samples, channels)
+    basis: np.ndarray  # (values, columns): orthonormal; spans the changes that the fit could have explained
+    free: np.ndarray  # (parameters,): parameters that are on no bound, which alone the basis is of
+    known: bool  # whether the variance of a weighted residual is known to be 1
 
     @classmethod
     def of(cls, problem: MisfitProblem, at: Linearisation, *, known: bool) -> Self:

@@ -13,22 +13,14 @@ SMALL = 1e-6
 
 @dataclass(frozen=True)
 class NoiseFloor:
-    """Misfit that known noise alone explains.
+    """Misfit that known noise alone explains."""
 
-    Parameters
-    ----------
-    misfit : float
-        99.9 % quantile of the misfit at the true parameters.
-    source : {"given", "smoothed", "rounded", "arithmetic"}
-        Where the noise is known from: given standard deviations, local polynomials, rounding of the data, or rounding
-        errors of the arithmetic.
-    conclusive : bool
-        Whether reaching the floor shows that no better minimum need be looked for: the noise is so small against the
-        signal that a false minimum would not get there.
-    """
-
-    misfit: float
+    misfit: float  # 99.9 % quantile of the misfit at the true parameters
+    # source: {"given", "smoothed", "rounded", "arithmetic"}: where the noise is known from: given standard deviations,
+    # local polynomials, rounding of the data, or rounding errors of the arithmetic
     source: str
+    # conclusive: whether reaching the floor shows that no better minimum need be looked for: the noise is so small
+    # against the signal that a false minimum would not get there
     conclusive: bool
 
     @property

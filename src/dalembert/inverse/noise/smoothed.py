@@ -12,19 +12,13 @@ from dalembert.inverse.experiments.experiment import ExperimentPart
 
 @dataclass(frozen=True, eq=False)
 class Smoothed:
-    """What was measured of a motion, and how fast it changed.
+    """What was measured of a motion, and how fast it changed."""
 
-    Parameters
-    ----------
-    values, rates : array, shape (samples, channels)
-        Without jumps of wrapping channels; interpolated over missing samples. Rates are NaN where there are too few
-        samples for them.
-    deviations, errors : array, shape (channels,)
-        Standard deviation of the noise of both.
-    """
-
+    # values, rates: (samples, channels): without jumps of wrapping channels; interpolated over missing samples. Rates
+    # are NaN where there are too few samples for them.
     values: np.ndarray
     rates: np.ndarray
+    # deviations, errors: (channels,): standard deviation of the noise of both
     deviations: np.ndarray
     errors: np.ndarray
 

@@ -21,13 +21,7 @@ Motions in opposite directions from the same place differ by at most a half.
 
 
 def first_findings(model: ForwardModel, data: Measurements) -> tuple[Finding, ...]:
-    """Return the units and zeros that the response at the first guesses makes suspect, from one simulation.
-
-    Parameters
-    ----------
-    model : ForwardModel
-    data : Measurements
-    """
+    """Return the units and zeros that the response at the first guesses makes suspect, from one simulation."""
     problem = pose(model, data, None, Journal(len(data.coordinate.values)))
     response = problem.responses(model.parameters.start[None])[0]
     units = suspect_units(problem, response)

@@ -53,13 +53,7 @@ def time_findings(model: ForwardModel, data: Measurements, vector: np.ndarray) -
     The response at the first guesses is computed at other times than those of the data. So models that cannot do
     this have no finding.
 
-    Parameters
-    ----------
-    model : ForwardModel
-        Its channels have those of the data.
-    data : Measurements
-    vector : array, shape (parameters,)
-        First guesses.
+    ``model``: its channels have those of the data. ``vector`` (parameters,): first guesses.
     """
     stamps = data.coordinate.values
     if data.coordinate.unit != "s" or len(stamps) < FEWEST or not stamps[-1] > 0:
@@ -92,11 +86,6 @@ def short_time_findings(data: Measurements, respond: Respond) -> tuple[Finding, 
 
     Within the time of the data, the response has at most a quarter of their turning points. So times in s were
     probably read as ms.
-
-    Parameters
-    ----------
-    data : Measurements
-    respond : callable
 
     Examples
     --------
@@ -143,13 +132,7 @@ def time_unit_findings(data: Measurements, times: np.ndarray, response: np.ndarr
 
     The response swings several times between two samples, or settles within the first of them.
 
-    Parameters
-    ----------
-    data : Measurements
-    times : array, shape (times,)
-        As :func:`first_times` gives them.
-    response : array, shape (times, channels)
-        Of the channels of the data.
+    ``times`` (times,): as :func:`first_times` gives them. ``response`` (times, channels): of the channels of the data.
 
     Examples
     --------

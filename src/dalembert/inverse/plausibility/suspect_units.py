@@ -28,20 +28,11 @@ ROUGH = 1.5
 
 @dataclass(frozen=True)
 class SuspectUnit:
-    """A channel whose data vary by a usual factor more, or less, than the response.
-
-    Parameters
-    ----------
-    channel : str
-    factor : float
-        About what the ratio is: 1000, 57.3, or the inverse of one of them.
-    ratio : float
-        Range of the data over that of the response.
-    """
+    """A channel whose data vary by a usual factor more, or less, than the response."""
 
     channel: str
-    factor: float
-    ratio: float
+    factor: float  # about what the ratio is: 1000, 57.3, or the inverse of one of them
+    ratio: float  # range of the data over that of the response
 
     @property
     def question(self) -> str:

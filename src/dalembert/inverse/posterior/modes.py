@@ -38,17 +38,10 @@ EXPLORED, FEWEST, MOST = 20, 32, 400
 
 @dataclass(frozen=True, eq=False)
 class PosteriorModes:
-    """The modes of a posterior, that of the largest density first.
-
-    Parameters
-    ----------
-    centred : tuple of Centred
-    shares : array, shape (modes,)
-        Of the probability, by the normal approximation of each mode (Laplace).
-    """
+    """The modes of a posterior, that of the largest density first."""
 
     centred: tuple[Centred, ...]
-    shares: np.ndarray
+    shares: np.ndarray  # (modes,): of the probability, by the normal approximation of each mode (Laplace)
 
     @property
     def best(self) -> Centred:

@@ -52,30 +52,17 @@ class MisfitProblem:
     """Misfit g(p) = Σ W (R(p) − data)² over samples and channels, + the squared residuals of priors.
 
     Values that are missing have W = 0; differences of wrapping channels count modulo a turn.
-
-    Parameters
-    ----------
-    model : ForwardModel
-    data : Measurements
-    columns : array of int, shape (channels,)
-        Where the data's channels stand among the model's.
-    weights : array, shape (samples, channels)
-        W.
-    search : SearchCoordinates
-    journal : Journal
-    loss : Loss, optional
-        The square if not given; all that is minimised are squares of residuals that it has transformed.
-    derivative : {"auto", "direct", "adjoint"}
-        How gradients are computed, see :func:`dalembert.forward.pullback`.
     """
 
     model: ForwardModel
     data: Measurements
-    columns: np.ndarray
-    weights: np.ndarray
+    columns: np.ndarray  # (channels,): where the data's channels stand among the model's
+    weights: np.ndarray  # (samples, channels): W
     search: SearchCoordinates
     journal: Journal
+    # loss: the square if not given; all that is minimised are squares of residuals that it has transformed
     loss: Loss | None = None
+    # derivative: {"auto", "direct", "adjoint"}: how gradients are computed, see :func:`dalembert.forward.pullback`
     derivative: str = AUTO
 
     @property

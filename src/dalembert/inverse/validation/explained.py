@@ -15,33 +15,17 @@ GOOD = 0.9
 
 @dataclass(frozen=True)
 class Explained:
-    """Share of the variation of one channel of a held-out record that the response explains.
+    """Share of the variation of one channel of a held-out record that the response explains."""
 
-    Parameters
-    ----------
-    record : str
-        Name of the experiment; empty for a single one.
-    channel : str
-    share : float
-        1 − Σ W (R − data)² / Σ W (data − mean)² over the held-out values; negative where the mean of the data is better
-        than the response, NaN for data that do not vary.
-    variation : float
-        Σ W (data − mean)².
-    ratio : float
-        Root mean square of the weighted residuals over that of the fitted values.
-    white : bool
-        Whether the residuals pass as white noise.
-    covered : float
-        Share of the held-out values inside their 95 % bands; NaN without bands.
-    """
-
-    record: str
+    record: str  # name of the experiment; empty for a single one
     channel: str
+    # share: 1 − Σ W (R − data)² / Σ W (data − mean)² over the held-out values; negative where the mean of the data is
+    # better than the response, NaN for data that do not vary
     share: float
-    variation: float
-    ratio: float
-    white: bool
-    covered: float = np.nan
+    variation: float  # σ W (data − mean)²
+    ratio: float  # root mean square of the weighted residuals over that of the fitted values
+    white: bool  # whether the residuals pass as white noise
+    covered: float = np.nan  # share of the held-out values inside their 95 % bands; NaN without bands
 
     @property
     def poor(self) -> bool:
@@ -58,15 +42,8 @@ def explained(
 ) -> tuple[Explained, ...]:
     """Return the shares of all channels with held-out values.
 
-    Parameters
-    ----------
-    problem : MisfitProblem
-        The whole one.
-    response : array, shape (samples, channels)
-    weights : array, shape (samples, channels)
-        W of the held-out values, 0 for the others.
-    fitted : float
-        Root mean square of the weighted residuals of the fitted values.
+    ``problem``: the whole one. ``response`` (samples, channels). ``weights`` (samples, channels): w of the held-out
+    values, 0 for the others. ``fitted``: root mean square of the weighted residuals of the fitted values.
     """
     data = problem.data
     values, residual = data.continuous.ravel(), (np.sqrt(weights) * problem.unweighted_residual(response)).ravel()

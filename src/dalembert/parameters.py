@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from dalembert.arguments import is_real
 from dalembert.errors import InputError, repeated, shown, unknown
-from dalembert.priors import AnyPrior, CorrelatedNormal, Normal, Prior, Uniform, prior_of
+from dalembert.priors import AnyPrior, CorrelatedNormal, Normal, Prior, SquarePrior, Uniform, prior_of
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ class Parameter:
         elif mistake := self.distribution.mistake_within(self.lower, self.upper):
             yield mistake
 
-    @property
+    @cached_property
     def distribution(self) -> Prior:
         """Prior distribution of it alone: as declared, else uniform within the bounds."""
         if isinstance(self.prior, CorrelatedNormal):
@@ -242,6 +242,13 @@ class Parameters:
         scales = [item.scale for item in self.items]
         return np.array(
             [size if scale is None else scale for scale, size in zip(scales, largest, strict=True)], dtype=float
+        )
+
+    @cached_property
+    def square_priors(self) -> np.ndarray:
+        """Numbers of the parameters whose prior is a square; a uniform one adds nothing to a fit."""
+        return np.array(
+            [k for k, item in enumerate(self.items) if isinstance(item.distribution, SquarePrior)], dtype=int
         )
 
     @cached_property

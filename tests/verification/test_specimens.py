@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import dalembert as da
-from dalembert.inverse.specimens.estimate import Estimates, estimated
+from dalembert.inverse.specimens.estimate_population import Estimates, estimated
 
 TOPIC = "Several specimens"
 TRIALS = np.array(

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Self, TypeVar
 
 import numpy as np
@@ -64,7 +65,7 @@ class Record:
             if not (np.isfinite(deviation) and deviation > 0):
                 raise DataError(f"channel {name!r}: its deviation is {deviation}; expected a positive number")
 
-    @property
+    @cached_property
     def present(self) -> np.ndarray:
         """Mask of the values that were measured, shape (samples, channels)."""
         return np.isfinite(self.values)

@@ -34,7 +34,6 @@ from dalembert.inverse.events import (
     as_record,
 )
 from dalembert.inverse.experiments.experiment import Experiment, ExperimentFit
-from dalembert.inverse.experiments.validation import Validation
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.identify import identify
 from dalembert.inverse.least_squares.estimate import Identifiability
@@ -50,15 +49,16 @@ from dalembert.inverse.posterior.sample import sample
 from dalembert.inverse.posterior.samplers.affine_invariant import AffineInvariant
 from dalembert.inverse.posterior.samplers.delayed_acceptance import DelayedAcceptance
 from dalembert.inverse.posterior.samplers.nuts import NUTS
+from dalembert.inverse.problem.nodes import Nodes
 from dalembert.inverse.regularised.regularise import regularise
 from dalembert.inverse.regularised.regularised_fit import RegularisedFit
 from dalembert.inverse.sets.identify_set import identify_set
 from dalembert.inverse.sets.parameter_set import ParameterSet
-from dalembert.inverse.shooting.nodes import Nodes
 from dalembert.inverse.shooting.segments import ShootingState
 from dalembert.inverse.shooting.shooting import MultipleShooting
-from dalembert.inverse.specimens.estimate import population
+from dalembert.inverse.specimens.estimate_population import population
 from dalembert.inverse.specimens.population import Population
+from dalembert.inverse.validation.validation import Validation
 
 __all__ = [
     "NUTS",

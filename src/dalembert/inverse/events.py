@@ -186,7 +186,7 @@ OnEvent = Callable[[Event], None]
 def as_record(event: Event) -> dict[str, Any]:
     """The event as a mapping that JSON can hold: ``event`` names its kind, a number that is not finite becomes None.
 
-    >>> as_record(Step(0, 1, 3, float("inf"), np.array([0.5]), 41))["best"] is None
+    >>> as_record(SearchIteration(0, 1, 3, float("inf"), np.array([0.5]), 41))["best"] is None
     True
     >>> as_record(Screened(16, 0, 19, 0.5))
     {'event': 'screened', 'points': 16, 'failed': 0, 'simulations': 19, 'best': 0.5}

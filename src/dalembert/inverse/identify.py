@@ -3,57 +3,26 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.arguments import check_whole, takes_checked
+from dalembert.arguments import takes_checked
 from dalembert.data import Measurements
-from dalembert.errors import InputError, SolveError, require_known, shown
-from dalembert.findings import Finding
-from dalembert.forward import Executor, ForwardModel, check_derivatives, findings_at, takes_executor
-from dalembert.forward.adjoint import GRADIENTS
-from dalembert.forward.provenance import provenance
+from dalembert.forward import Executor, ForwardModel, takes_executor
+from dalembert.inverse.assessment.coverage import with_coverage
+from dalembert.inverse.checks.catalogue import CHECKS, OUTCOME
 from dalembert.inverse.events import Finished, OnEvent
-from dalembert.inverse.experiments.coverage import with_coverage
 from dalembert.inverse.experiments.experiment import Experiment
-from dalembert.inverse.experiments.experiments import begun, placed
-from dalembert.inverse.experiments.explained import explained_findings
-from dalembert.inverse.experiments.joined import joined
-from dalembert.inverse.experiments.suspect_times import experiment_time_findings
-from dalembert.inverse.experiments.suspect_units import unit_findings
-from dalembert.inverse.experiments.validation import HeldOut, split, whole_jacobian
 from dalembert.inverse.fit.fit import Fit
-from dalembert.inverse.fit.integration import integration_bias, integration_findings
-from dalembert.inverse.fit.outcome import outcome, too_few_findings
-from dalembert.inverse.fit.settings import settings, weights_source
-from dalembert.inverse.least_squares.descent import End
-from dalembert.inverse.least_squares.estimate import Estimate, estimate, estimate_of, unknown_estimate
-from dalembert.inverse.least_squares.roughness import roughness_findings
-from dalembert.inverse.misfit.misfit import misfit_conclusions
-from dalembert.inverse.mistakes.findings import with_mistakes
-from dalembert.inverse.mistakes.record import FittedRecord
-from dalembert.inverse.noise.correlation.correlated_residuals import CorrelatedResiduals
-from dalembert.inverse.noise.correlation.correlation import correlation
-from dalembert.inverse.noise.correlation.correlation_findings import correlation_findings
+from dalembert.inverse.identification.assess import assess
+from dalembert.inverse.identification.noise import with_noise
+from dalembert.inverse.identification.pose import pose_identification
+from dalembert.inverse.identification.result import fit_of
+from dalembert.inverse.identification.search import find_minimum, search_settings
 from dalembert.inverse.noise.likelihood.placing import Noise
-from dalembert.inverse.noise.noise_floor import noise_floor
-from dalembert.inverse.noise.smoothed import noise_findings, smooth_noise
-from dalembert.inverse.noise.with_noise import check_noise, counted_values, whole_noise, whole_weights, with_noise
-from dalembert.inverse.noise.with_noise import noise_findings as estimated_noise_findings
-from dalembert.inverse.problem.journal import Journal
-from dalembert.inverse.problem.loss import loss_of
-from dalembert.inverse.problem.prior import priors
-from dalembert.inverse.problem.problem import Linearisation, MisfitProblem, pose
-from dalembert.inverse.shooting.growth import growth_findings
-from dalembert.inverse.shooting.restarts import check_restart, check_segments
-from dalembert.inverse.shooting.shooting import MultipleShooting, shots
-from dalembert.inverse.starts.multistart import HORIZONS, multistart
-from dalembert.inverse.starts.repeated import repeated
-from dalembert.inverse.starts.rivals import rival_findings, rivals
-from dalembert.inverse.starts.runs import Method, polished, runs
-from dalembert.inverse.starts.spread import SPREADS
-from dalembert.inverse.starts.unconfirmed import look_white, unconfirmed_findings
-from dalembert.optimize import LeastSquares, Minimiser, Squares
+from dalembert.inverse.shooting.shooting import MultipleShooting
+from dalembert.inverse.starts.runs import Method
+from dalembert.inverse.validation.validation import HeldOut
+from dalembert.optimize import Squares
 
 
 @takes_executor
@@ -182,223 +151,27 @@ def identify(
     >>> round(fit.values[0], 9), fit.success
     (np.float64(6.3), True)
     """
-    method = _method(method)
-    check_whole("identify", "seed", seed, 0)
-    squares = isinstance(method, Squares)
-    if shooting is not None:
-        _check_shooting(method, validation)
-    starts = starts if starts is not None else 3 if shooting is not None else 8 if squares else 1
-    check_whole("identify", "starts", starts, 1)
-    if horizon is not None:
-        require_known("horizon", str(horizon), HORIZONS)
-    require_known("spread", str(spread), SPREADS)
-    require_known("derivative", str(derivative), GRADIENTS)
-    recorded = begun(placed(model, executor), start), data
-    model, data, weights, parts = joined("identify", *recorded, weights)
-    counted, weights = (None, weights) if noise is None else (counted_values(weights, data), None)
-    given = data.deviations is not None and weights is None
-    check_noise(noise, loss=loss, shooting=shooting)
-    smoothing = shooting is not None or (noise is not None and len(priors(model.parameters)) > 0)
-    smooth = smooth_noise(data, parts) if smoothing and not given and weights is None else None
-    journal = Journal(len(data.coordinate.values), on_event)
-    weighed = weights if smooth is None else np.broadcast_to(smooth**-2.0, data.values.shape)
-    posed = replace(
-        pose(model, data, weighed, journal, noise_known=noise is not None),
-        loss=loss_of(loss, loss_scale, known=given),
+    settings = search_settings(method, starts, seed, start, polish, horizon, spread, shooting)
+    posed = pose_identification(
+        model,
+        data,
+        start=start,
+        weights=weights,
+        noise=noise,
+        loss=loss,
+        loss_scale=loss_scale,
+        validation=validation,
+        shooting=shooting,
         derivative=derivative,
+        on_event=on_event,
+        executor=executor,
     )
-    posed = posed if counted is None else replace(posed, weights=posed.weights * counted)
-    parted = split(posed, validation)
-    problem, journal.samples = parted.part, parted.part.samples
-    origin = None if start is None else _origin(problem, start)
-    floor = noise_floor(problem, smooth)
-
-    first = _origin(problem, model.parameters.start) if origin is None else origin
-    suspected = tuple(experiment_time_findings(*recorded, model, problem.search.vectors(first)))
-    if shooting is not None:  # before anything is simulated
-        check_segments(problem, shooting)
-        check_restart(problem, shooting, problem.search.vectors(first))
-    if squares:
-        check_derivatives(problem.model, problem.search.vectors(first))
-    if shooting is not None and isinstance(method, Squares):
-        ends = shots(problem, shooting, method, floor, starts=starts, seed=seed, spread=spread, start=first)
-    elif isinstance(method, Squares):
-        ends = multistart(problem, method, floor, starts=starts, seed=seed, horizon=horizon, spread=spread, start=first)
-    else:
-        ends = runs(problem, method, floor, starts=starts, seed=seed, spread=spread, start=origin)
-    best = min(ends, key=lambda end: end.misfit)
-    if not np.isfinite(best.misfit):
-        raise SolveError(
-            f"none of {len(ends)} starts could be simulated; the first failure: {journal.failures[0]}; "
-            "look at the model there, or change the bounds or the start"
-        )
-    if not best.stationary and (polish or (squares and starts > 1 and shooting is None)):
-        best = polished(problem, method if isinstance(method, Squares) else LeastSquares(), best)
-    searched, settled = (problem, best, floor), None
-    if noise is not None:
-        problem, best, settled = with_noise(problem, noise, best, known=given)
-        floor = noise_floor(problem)
-
-    vector = problem.search.vectors(best.point)
-    at = best.linearisation or problem.linearised(vector)
-    response = problem.responses(vector[None])[0] if at is None else at.response
-    known = given or problem.priors > 0 if settled is None else settled.noise.known
-    reached = best.misfit <= floor.misfit
-    exact = reached and floor.source == "arithmetic"
-    if settled is None:
-        estimated, correlated = _estimated(problem, response, at, best, known=known, exact=exact)
-    else:
-        estimated, correlated = settled.estimate, None
-    rounded = reached and floor.source == "rounded"
-    deviations = estimated.deviations
-    found = integration_bias(problem, at, best.nodes)
-    undetermined = repeated(problem, vector, response) if best.nodes is None else ()
-    one_run = best.nodes is None or best.nodes.segments == 1
-    looked = None if exact or rounded or not one_run else at
-    parts_of_time, followed = misfit_conclusions(problem, looked, known=known)
-    unconfirmed: tuple[Finding, ...] = ()
-    if squares and shooting is None:
-        unconfirmed = tuple(unconfirmed_findings(*searched[:2], ends, floor, white=look_white(problem, response)))
-    if looked is not None and (squares or best.stationary):  # residuals elsewhere show the search, not the record
-        followed = with_mistakes(followed, FittedRecord(problem, looked, known), _seen(journal))
-    others = rivals(*searched, deviations, known=known if settled is None else given)
-    whole = response if problem is posed else posed.responses(vector[None])[0]
-    predicted = parted.validation(whole)
-    unexplained = () if predicted is None else explained_findings(predicted.explained)
-    detected = correlated is not None and len(correlated.detected) > 0
-    doubtful = best.misfit > floor.misfit and (detected or floor.known or not best.success)
-    grown = tuple(growth_findings(problem, vector)) if squares and shooting is None and doubtful else ()
-    fit = Fit(
-        parameters=model.parameters,
-        values=vector,
-        **vars(estimated),
-        misfit=best.misfit,
-        response=whole,
-        data=data,
-        weights=np.where(parted.fitted, posed.weights, 0.0) if settled is None else whole_weights(parted, problem),
-        history=tuple(journal.history),
-        starts=tuple(journal.starts),
-        success=best.success and not undetermined and not unconfirmed,
-        outcome=(
-            *outcome(
-                problem,
-                best,
-                response,
-                floor,
-                correlated=detected or settled is not None,
-                searched=searched[1].misfit,
-            ),
-            *unconfirmed,
-        ),
-        method=method.name if isinstance(method, Minimiser) else type(method).__name__,
-        simulations=journal.simulations,
-        provenance=provenance(
-            model,
-            method,
-            data=data.fingerprint,
-            units=dict(data.source_units),
-            seed=seed,
-            starts=starts,
-            start=None if start is None else model.parameters.vector(start).tolist(),
-            weights=weights_source(weights, smooth, noise),
-            polish=polish,
-            horizon=horizon,
-            spread=spread,
-            **settings(loss, posed, validation, shooting, settled),
-        ),
-        parts=parts,
-        validation=predicted,
-        nodes=best.nodes,
-        findings=(
-            *noise_findings(data, smooth if noise is None else None),
-            *undetermined,
-            *too_few_findings(problem, known=known),
-            *rival_findings(searched[0], searched[1], others, searched[2]),
-            *suspected,
-            *unit_findings(problem, vector, response),
-            *roughness_findings(problem, best, None if exact else at, deviations),
-            *(() if settled is None else estimated_noise_findings(settled)),
-            *correlation_findings(correlated, deviations, explained=rounded),
-            *followed,
-            *integration_findings(
-                None if exact else found,
-                problem,
-                deviations,
-                best.misfit,
-                known=known,
-                white=not detected and settled is None,
-            ),
-            *unexplained,
-            *grown,
-            *findings_at(model, vector),
-        ),
-        integration=found,
-        correlated=correlated,
-        halves=parts_of_time,
-        jacobian=None if at is None or not one_run else whole_jacobian(posed, problem, at),
-        noise=None if settled is None else whole_noise(parted, problem, settled.noise),
-    )
-    fit = with_coverage(fit, posed)
+    search = find_minimum(posed, settings)
+    minimum = with_noise(posed, search)
+    optimum = assess(posed, settings, search, minimum)
+    findings = tuple(finding for check in CHECKS for finding in check(optimum))
+    outcome = tuple(finding for check in OUTCOME for finding in check(optimum))
+    fit = with_coverage(fit_of(optimum, outcome, findings), posed.whole)
     fit = replace(fit, findings=(*fit.findings, *fit.diagnostics().findings))
-    journal.tell(Finished(fit.success, fit.status, fit.misfit, fit.values, fit.simulations))
+    search.problem.journal.tell(Finished(fit.success, fit.status, fit.misfit, fit.values, fit.simulations))
     return fit
-
-
-def _method(given: Squares | Method | str | None) -> Squares | Method:
-    if given is None:
-        return LeastSquares()
-    if isinstance(given, str):
-        return Minimiser(given)
-    if isinstance(given, type) or not hasattr(given, "minimise"):
-        hint = f"; write {given.__name__}(...)" if isinstance(given, type) else ""
-        raise InputError(
-            f"method is {shown(given)}; expected LeastSquares(), ResponseSensitivity(), ParticleSwarm(), "
-            f"ImprovedParticleSwarm(), Firefly(), or a Minimiser or its name{hint}"
-        )
-    return given
-
-
-def _seen(journal: Journal) -> list[np.ndarray]:
-    """Vectors (parameters,) of the first guesses and of the ends of starts, the best first."""
-    ends = sorted((start for start in journal.starts if np.isfinite(start.misfit)), key=lambda start: start.misfit)
-    return [*([] if journal.first is None else [journal.first.vector]), *(start.end for start in ends)]
-
-
-def _origin(problem: MisfitProblem, start: Mapping[str, float] | ArrayLike) -> np.ndarray:
-    """Search point of a first guess."""
-    return problem.search.points(problem.model.parameters.start_vector(start))
-
-
-def _estimated(
-    problem: MisfitProblem, response: np.ndarray, at: Linearisation | None, best: End, *, known: bool, exact: bool
-) -> tuple[Estimate, CorrelatedResiduals | None]:
-    """Deviations and correlations, NaN without a jacobian; the noise is known, or estimated from the residuals.
-
-    Residuals of data that are ``exact`` to rounding are not tested for correlation.
-    """
-    scale, plain = problem.model.parameters.scale, replace(problem, loss=None)
-    freedom = problem.compared - len(scale)
-    variance = 1.0 if known else best.misfit / freedom if freedom > 0 else np.nan
-    residual, slopes = plain.residual(response), None if at is None else plain.slopes(at, scale)
-    if problem.loss is not None:
-        counted = problem.weights.ravel() > 0
-        variance, known = problem.loss.variance(residual[counted], freedom), False
-        residual[counted] = problem.loss.influence(residual[counted])
-    correlated = None if exact else correlation(problem, response, slopes, residual, variance, known=known)
-    if slopes is None:
-        return unknown_estimate(len(scale)), correlated
-    noise = variance if correlated is None else correlated.noise
-    if best.spread is not None:
-        return estimate_of(best.spread, scale, noise), correlated
-    return estimate(slopes, scale, noise), correlated
-
-
-def _check_shooting(method: Squares | Method, validation: object) -> None:
-    if not isinstance(method, Squares):
-        raise InputError(
-            f"shooting: method is {type(method).__name__}; multiple shooting is a way of least squares; leave one out"
-        )
-    if validation is not None:
-        raise InputError(
-            "shooting: validation was given, but a chaotic motion cannot be predicted; leave one of the two out"
-        )

@@ -19,24 +19,35 @@ from report_cases import CASES
 
 SOURCE = Path(dalembert.__file__).parent
 SECTIONS = sorted(path.relative_to(SOURCE).as_posix() for path in (SOURCE / "report" / "sections").rglob("*.py"))
+CHECKS = (
+    "integrator_bias",
+    "model_misfit",
+    "noise_estimate",
+    "parameter_drift",
+    "record_mistakes",
+    "residual_correlation",
+    "search_end",
+    "too_few_values",
+    "unexplained_validation",
+)
 SOURCES = [
     "inverse/least_squares/descent.py",
     "inverse/least_squares/estimate.py",
     "inverse/problem/prior.py",
-    "inverse/noise/correlation/correlation_findings.py",
     "inverse/least_squares/identifiable.py",
     "inverse/diagnostics/findings.py",
-    "inverse/noise/likelihood/noise_model_findings.py",
-    *(f"inverse/fit/{name}.py" for name in ("integration", "outcome")),
-    "inverse/noise/with_noise.py",
-    *(f"inverse/experiments/{name}.py" for name in ("coverage", "explained", "suspect_units", "validation")),
+    "inverse/fit/integration.py",
+    "inverse/problem/search_findings.py",
+    "inverse/plausibility/suspect_units.py",
+    *(f"inverse/checks/{name}.py" for name in CHECKS),
+    *(f"inverse/validation/{name}.py" for name in ("explained", "validation")),
     *(f"inverse/mistakes/{path.name}" for path in sorted((SOURCE / "inverse" / "mistakes").glob("*.py"))),
-    *(f"inverse/misfit/{name}.py" for name in ("delays", "halves", "model_misfit")),
-    *(f"inverse/bands/{name}.py" for name in ("band_fit", "outcome")),
-    *(f"inverse/posterior/{name}.py" for name in ("conclusions", "convergence")),
-    "inverse/sets/outcome.py",
-    "inverse/specimens/estimate.py",
-    *(f"inverse/assessment/{name}.py" for name in ("designs", "prediction", "profiles", "walk")),
+    *(f"inverse/misfit/{name}.py" for name in ("delays", "halves")),
+    *(f"inverse/bands/{name}.py" for name in ("band_findings", "band_fit")),
+    *(f"inverse/posterior/{name}.py" for name in ("convergence", "posterior_findings")),
+    "inverse/sets/set_findings.py",
+    "inverse/specimens/estimate_population.py",
+    *(f"inverse/assessment/{name}.py" for name in ("coverage", "designs", "prediction", "profiles", "walk")),
     *(f"optimize/{name}.py" for name in ("least_squares", "response_sensitivity", "swarm")),
     *(
         f"uncertainty/{name}.py"

@@ -58,7 +58,7 @@ class BandFit(EndedResult):
         no run was made there, or every one failed.
     checked_misfit : float
         The misfit of these; None without them.
-    history : tuple of Step
+    history : tuple of SearchIteration
         Best misfit along each start; its values are the unknowns.
     starts : tuple of StartEnd
     success : bool

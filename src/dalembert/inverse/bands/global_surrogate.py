@@ -7,11 +7,11 @@ import numpy as np
 
 from dalembert.arguments import Checked as CheckedArguments
 from dalembert.arguments import limited
+from dalembert.inverse.bands.band_descent import descend, screened
 from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.candidate import Candidate, candidate
 from dalembert.inverse.bands.check import BandSolution, check, scale
 from dalembert.inverse.bands.correction import corrected
-from dalembert.inverse.bands.descent import descend, screened
 from dalembert.inverse.events import Checked
 from dalembert.inverse.problem.matching import place
 from dalembert.inverse.problem.surrogates import surrogate_of

@@ -12,13 +12,13 @@ from dalembert.errors import InputError, require_known, shown
 from dalembert.forward import Executor, ForwardModel, clock, findings_at, on_cluster, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.intervals import Box
+from dalembert.inverse.bands.band_findings import conclusions, outcome
 from dalembert.inverse.bands.band_fit import BandFit
 from dalembert.inverse.bands.band_problem import BandProblem, pose
 from dalembert.inverse.bands.candidate import slopes
 from dalembert.inverse.bands.check import BandSolution
 from dalembert.inverse.bands.global_surrogate import GlobalSurrogate
 from dalembert.inverse.bands.nested import Nested
-from dalembert.inverse.bands.outcome import conclusions, outcome
 from dalembert.inverse.bands.unknowns import unknowns_of
 from dalembert.inverse.events import Finished, OnEvent
 from dalembert.inverse.least_squares.estimate import Estimate, estimate

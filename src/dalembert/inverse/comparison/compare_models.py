@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from dalembert.errors import InputError, shown
-from dalembert.inverse.comparison.conclusions import comparison_findings
+from dalembert.inverse.comparison.comparison_findings import comparison_findings
 from dalembert.inverse.comparison.cross_validate import fits_of
 from dalembert.inverse.comparison.cross_validation import CrossValidation
 from dalembert.inverse.comparison.draws import Predictive, default_way, is_draws, of_draws

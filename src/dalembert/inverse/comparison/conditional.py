@@ -12,10 +12,10 @@ from dalembert.errors import InputError
 from dalembert.inverse.comparison.predictive import LEAST, log_density
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.least_squares.estimate import UNSEEN
-from dalembert.inverse.misfit.residuals import off_bounds
 from dalembert.inverse.noise.correlation.series import Series, series_of_record
 from dalembert.inverse.noise.likelihood.estimated_noise import EstimatedNoise
 from dalembert.inverse.problem.prior import prior_residual, prior_slopes
+from dalembert.inverse.problem.search_coordinates import off_bounds
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array

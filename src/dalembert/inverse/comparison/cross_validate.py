@@ -17,9 +17,9 @@ from dalembert.inverse.experiments.experiment import Experiment
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.identify import identify
 from dalembert.inverse.least_squares.estimate import UNSEEN
-from dalembert.inverse.misfit.residuals import off_bounds
 from dalembert.inverse.noise.models.noise_model import NoiseModel
 from dalembert.inverse.problem.prior import prior_slopes
+from dalembert.inverse.problem.search_coordinates import off_bounds
 
 UNDETERMINED = (
     "cross_validate: without one group, the other data do not determine all parameters; leave out smaller blocks, or "

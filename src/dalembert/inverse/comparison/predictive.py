@@ -7,8 +7,8 @@ from scipy.special import gammaln
 
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.least_squares.estimate import UNSEEN
-from dalembert.inverse.misfit.residuals import off_bounds
 from dalembert.inverse.problem.prior import prior_slopes
+from dalembert.inverse.problem.search_coordinates import off_bounds
 
 LEAST = 1e-12  # 1 − leverage below which a value is not predicted by the others
 

@@ -18,21 +18,12 @@ COPY = 0.99
 
 @dataclass(frozen=True)
 class ChannelPair:
-    """Two channels of one experiment.
-
-    Parameters
-    ----------
-    first, second : SeriesResiduals
-    correlation : float
-        Of their residuals at the same samples.
-    p_value : float
-        Probability of one at least as large in channels with independent noise.
-    """
+    """Two channels of one experiment."""
 
     first: SeriesResiduals
     second: SeriesResiduals
-    correlation: float
-    p_value: float
+    correlation: float  # of their residuals at the same samples
+    p_value: float  # probability of one at least as large in channels with independent noise
 
     def samples(self, width: int) -> tuple[np.ndarray, np.ndarray]:
         """Return where the common samples stand among the values of the fit, which has ``width`` channels."""
@@ -55,22 +46,12 @@ def correlated_pairs(
 ) -> list[ChannelPair]:
     """Return the pairs of channels whose noise is not independent, most correlated first.
 
-    Parameters
-    ----------
-    series : sequence of SeriesResiduals
-        Those that are tested.
-    residual : array, shape (values,)
-        Weighted residuals.
-    basis : array, shape (values, parameters)
-        Orthonormal basis of the weighted jacobian's columns. A fit takes the part of the noise along them out of the
-        residuals, which correlates the rest; that is allowed for.
-    width : int
-        Number of channels of the data.
-    processes : mapping of str to NoiseProcess
-        Of the series that are correlated in time, by name. Where the model is wrong for both channels, their
-        residuals are correlated anyway, and only copies count.
-    level : float
-        Probability to take independent noise for correlated, over all pairs.
+    ``series``: those that are tested. ``residual`` (values,): weighted residuals. ``basis`` (values, parameters):
+    orthonormal basis of the weighted jacobian's columns. A fit takes the part of the noise along them out of the
+    residuals, which correlates the rest; that is allowed for. ``width``: number of channels of the data. ``processes``:
+    of the series that are correlated in time, by name. Where the model is wrong for both channels, their residuals are
+    correlated anyway, and only copies count. ``level``: probability to take independent noise for correlated, over all
+    pairs.
 
     Notes
     -----
@@ -113,15 +94,8 @@ def _pairs(
 def factors(pairs: Sequence[ChannelPair], slopes: np.ndarray, deviations: np.ndarray, width: int) -> np.ndarray:
     """Return the standard deviations with the correlations of pairs over those without, shape (parameters,).
 
-    Parameters
-    ----------
-    pairs : sequence of ChannelPair
-    slopes : array, shape (values + priors, parameters)
-        W^½ ∂R/∂p, then one row a prior.
-    deviations : array, shape (values,)
-        Of the weighted residuals.
-    width : int
-        Number of channels of the data.
+    ``slopes`` (values + priors, parameters): W^½ ∂R/∂p, then one row a prior. ``deviations`` (values,): of the weighted
+    residuals. ``width``: number of channels of the data.
 
     Notes
     -----

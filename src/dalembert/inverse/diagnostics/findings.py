@@ -75,17 +75,8 @@ def diagnostic_findings(
 ) -> Iterator[Finding]:
     """Yield what the tests conclude, at most one finding for each test.
 
-    Parameters
-    ----------
-    names : sequence of str
-        Of the parameters.
-    series : sequence of SeriesResiduals
-    outliers : sequence of Outlier
-        Largest first.
-    robust : bool
-        Whether the loss makes outliers count less.
-    plain : bool
-        Whether a noise model can be given: there is none yet, and no other loss or segments.
+    ``names``: of the parameters. ``outliers``: largest first. ``robust``: whether the loss makes outliers count less.
+    ``plain``: whether a noise model can be given: there is none yet, and no other loss or segments.
     """
     if outliers:
         yield _of_outliers(outliers, robust=robust)

@@ -36,18 +36,9 @@ def influence(
 ) -> Influence:
     """Return the influence of each value, to first order in the parameters; exact for a linear model.
 
-    Parameters
-    ----------
-    slopes : array, shape (values + priors, parameters)
-        W^½ ∂R/∂p, then one row a prior.
-    residual : array, shape (values,)
-        W^½ (R − data).
-    free : array of bool, shape (parameters,)
-        Parameters that are on no bound.
-    variance : float
-        Of a weighted residual.
-    freedom : float, optional
-        Degrees of freedom that the variance was estimated with; None where it is known.
+    ``slopes`` (values + priors, parameters): W^½ ∂R/∂p, then one row a prior. ``residual`` (values,): W^½ (R − data).
+    ``free`` (parameters,): parameters that are on no bound. ``variance``: of a weighted residual. ``freedom``: degrees
+    of freedom that the variance was estimated with; None where it is known.
 
     Notes
     -----

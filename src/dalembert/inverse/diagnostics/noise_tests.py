@@ -13,10 +13,6 @@ FEW = 10
 def runs(values: np.ndarray) -> tuple[int, float, float]:
     """Return the number of runs of equal signs, the number that independent noise has, and the probability.
 
-    Parameters
-    ----------
-    values : array, shape (values,)
-
     Notes
     -----
     With n₁ positive and n₂ negative values, independent noise has μ = 2 n₁ n₂/n + 1 runs with the variance

@@ -1,5 +1,6 @@
 """Diagnostics of the residuals of a fit: what is standardised, tested and listed."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -7,19 +8,19 @@ import numpy as np
 from scipy.special import ndtr, stdtr
 
 from dalembert.findings import Finding
-from dalembert.inverse.diagnostics.channel_pairs import correlated_pairs, factors
+from dalembert.inverse.diagnostics.channel_pairs import ChannelPair, correlated_pairs, factors
 from dalembert.inverse.diagnostics.findings import LEVEL, Outlier, diagnostic_findings, pair_findings
 from dalembert.inverse.diagnostics.influence import ALONE, Influence, influence
 from dalembert.inverse.diagnostics.noise_tests import normality, runs
 from dalembert.inverse.diagnostics.series_residuals import SeriesResiduals
 from dalembert.inverse.least_squares.estimate import left_vectors
-from dalembert.inverse.misfit.residuals import off_bounds
 from dalembert.inverse.noise.correlation.balanced import balanced
 from dalembert.inverse.noise.correlation.correlated_residuals import NoiseProcess
 from dalembert.inverse.noise.correlation.correlation import SMALL
 from dalembert.inverse.noise.correlation.series import Series, series_of_record
 from dalembert.inverse.noise.correlation.whiteness import LEAST, p_value
 from dalembert.inverse.problem.prior import prior_slopes
+from dalembert.inverse.problem.search_coordinates import off_bounds
 
 if TYPE_CHECKING:
     from dalembert.inverse.fit.fit import Fit
@@ -94,14 +95,21 @@ def residual_diagnostics(fit: "Fit") -> ResidualDiagnostics:
     findings = diagnostic_findings(fit.parameters.names, found, outliers, robust=robust, plain=plain) if tested else ()
     judged = [one for one in found if one.p_values]
     pairs = correlated_pairs(judged, left, basis, fit.weights.shape[1], correlated, LEVEL)
-    grown = np.zeros(0)
-    if pairs and slopes is not None:
-        sizes = np.ones(len(residual))
-        for one in judged:
-            sizes[one.series.rows] = one.deviation
-        grown = factors(pairs, slopes[:, free], sizes, fit.weights.shape[1])
+    grown = _grown(pairs, judged, None if slopes is None else slopes[:, free], fit.weights.shape)
     findings = (*findings, *pair_findings(pairs, grown))
     return ResidualDiagnostics(fit.parameters.names, tuple(found), outliers, findings, tested)
+
+
+def _grown(
+    pairs: Sequence[ChannelPair], judged: Sequence[SeriesResiduals], slopes: np.ndarray | None, shape: tuple[int, ...]
+) -> np.ndarray:
+    """Standard deviations with correlated channels over those without, (parameters,); empty without a Jacobian."""
+    if not pairs or slopes is None:
+        return np.zeros(0)
+    sizes = np.ones(int(np.prod(shape)))
+    for item in judged:
+        sizes[item.series.rows] = item.deviation
+    return factors(pairs, slopes, sizes, shape[1])
 
 
 ROUNDED = ("arithmetic", "rounded")

@@ -13,13 +13,8 @@ USUAL = 10
 def blocks_of_records(fitted: np.ndarray, parts: Sequence[ExperimentPart], count: Callable[[int], int]) -> np.ndarray:
     """Return the number of the block of each value, from 0, shape (samples, channels); −1 where it was not fitted.
 
-    Parameters
-    ----------
-    fitted : array of bool, shape (samples, channels)
-    parts : sequence of Part
-        Where several experiments stand; empty for a single one.
-    count : callable
-        ``count(samples)`` returns the number of blocks of a record with this number of fitted samples.
+    ``fitted`` (samples, channels). ``parts``: where several experiments stand; empty for a single one. ``count``:
+    ``count(samples)`` returns the number of blocks of a record with this number of fitted samples.
 
     Examples
     --------

@@ -68,21 +68,12 @@ class Experiment:
 
 @dataclass(frozen=True, eq=False)
 class ExperimentPart:
-    """Where an experiment stands in the joint response: its samples' rows, its channels' columns.
-
-    Parameters
-    ----------
-    name : str
-    coordinate : Coordinate
-        Its own, shape (samples,).
-    channels : tuple of str
-        By their own names.
-    rows, columns : array of int, shape (samples,) and (channels,)
-    """
+    """Where an experiment stands in the joint response: its samples' rows, its channels' columns."""
 
     name: str
-    coordinate: Coordinate
-    channels: tuple[str, ...]
+    coordinate: Coordinate  # its own, shape (samples,)
+    channels: tuple[str, ...]  # by their own names
+    # rows, columns: (samples,) and (channels,)
     rows: np.ndarray
     columns: np.ndarray
 

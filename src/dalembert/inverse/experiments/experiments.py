@@ -39,30 +39,16 @@ class JointModel:
     Its samples are those of all experiments, ordered by the part of their experiment's time that has passed; samples at
     the same part share a row, so that the first rows are the beginning of every experiment. Its channels are the
     measured ones of all, ``"NAME.channel"``; where an experiment has no sample in a row, the response is 0.
-
-    Parameters
-    ----------
-    models : tuple of ForwardModel
-    parts : tuple of Part
-    picked : tuple of array of int
-        Measured channels among those of each model.
-    wiring : tuple of array of int
-        Where each model's parameters stand among the joint ones.
-    parameters : Parameters
-    channels : tuple of Channel
-    coordinate : Coordinate
-    active : frozenset of str
-        Experiments that are simulated; the others' response is 0.
     """
 
     models: tuple[ForwardModel, ...]
     parts: tuple[ExperimentPart, ...]
-    picked: tuple[np.ndarray, ...]
-    wiring: tuple[np.ndarray, ...]
+    picked: tuple[np.ndarray, ...]  # measured channels among those of each model
+    wiring: tuple[np.ndarray, ...]  # where each model's parameters stand among the joint ones
     parameters: Parameters
     channels: tuple[Channel, ...]
     coordinate: Coordinate
-    active: frozenset[str]
+    active: frozenset[str]  # experiments that are simulated; the others' response is 0
 
     @property
     def scaled(self) -> frozenset[str]:

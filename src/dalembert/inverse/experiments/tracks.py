@@ -13,29 +13,16 @@ from dalembert.inverse.problem.problem import MisfitProblem
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """One experiment of a problem; a problem without experiments is a single one.
+    """One experiment of a problem; a problem without experiments is a single one."""
 
-    Parameters
-    ----------
-    name : str
-        Empty for a single one.
-    model : ForwardModel
-    data : Measurements
-    picked : array of int, shape (channels,)
-        The measured channels among those of the model.
-    rows, columns : array of int, shape (samples,) and (channels,)
-        Where its samples and measured channels stand in the problem's response.
-    wiring : array of int, shape (parameters,)
-        Where its parameters stand among the problem's.
-    """
-
-    name: str
+    name: str  # empty for a single one
     model: ForwardModel
     data: Measurements
-    picked: np.ndarray
+    picked: np.ndarray  # (channels,): the measured channels among those of the model
+    # rows, columns: (samples,) and (channels,): where its samples and measured channels stand in the problem's response
     rows: np.ndarray
     columns: np.ndarray
-    wiring: np.ndarray
+    wiring: np.ndarray  # (parameters,): where its parameters stand among the problem's
 
     @property
     def times(self) -> np.ndarray:

@@ -14,7 +14,6 @@ from dalembert.findings import Finding
 from dalembert.inverse.diagnostics.residual_diagnostics import ResidualDiagnostics, residual_diagnostics
 from dalembert.inverse.events import SearchIteration, StartEnd
 from dalembert.inverse.experiments.experiment import ExperimentFit, ExperimentPart, experiment_fit
-from dalembert.inverse.experiments.validation import Validation
 from dalembert.inverse.fit.integration import IntegrationBias
 from dalembert.inverse.fit.stored_data import StoredData, StoredParts
 from dalembert.inverse.fit.stored_search import History, Starts
@@ -24,8 +23,8 @@ from dalembert.inverse.misfit.halves import Halves
 from dalembert.inverse.noise.correlation.correlated_residuals import CorrelatedResiduals
 from dalembert.inverse.noise.likelihood.estimated_noise import EstimatedNoise
 from dalembert.inverse.problem.combinations import amounts
-from dalembert.inverse.problem.prior import priors
-from dalembert.inverse.shooting.nodes import Nodes
+from dalembert.inverse.problem.nodes import Nodes
+from dalembert.inverse.validation.validation import Validation
 from dalembert.results import EndedResult, fact_lines, fixed_lines, text_table
 from dalembert.stored_fields import Over, StoredParameters, Table
 
@@ -54,7 +53,7 @@ class Fit(EndedResult):
         Those of several experiments in one table, NaN where one has no sample in a row; see :attr:`experiments`.
     weights : array, shape (samples, channels)
         W, 0 where a value was not fitted.
-    history : tuple of Step
+    history : tuple of SearchIteration
         Best misfit along each start, where all samples were compared.
     starts : tuple of StartEnd
     success : bool
@@ -65,7 +64,7 @@ class Fit(EndedResult):
         A response with its sensitivities counts as 1 + parameters.
     provenance : mapping
         Versions, seed, hashes of model and data, method and settings.
-    parts : tuple of Part
+    parts : tuple of ExperimentPart
         Where each of several experiments stands in the response; empty for a model with its data.
     validation : Validation, optional
         How what was not fitted is predicted.
@@ -206,12 +205,12 @@ class Fit(EndedResult):
         if self.noise is not None:
             return self.noise.known
         given = self.data.deviations is not None and self.provenance.get("weights") == "data"
-        return given or len(priors(self.parameters)) > 0
+        return given or len(self.parameters.square_priors) > 0
 
     @property
     def degrees_of_freedom(self) -> int:
         """Return the number of fitted values and priors, less that of parameters."""
-        return int(np.count_nonzero(self.weights)) + len(priors(self.parameters)) - len(self.parameters)
+        return int(np.count_nonzero(self.weights)) + len(self.parameters.square_priors) - len(self.parameters)
 
     @property
     def effective_degrees_of_freedom(self) -> float:

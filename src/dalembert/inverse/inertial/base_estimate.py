@@ -10,9 +10,9 @@ from scipy.special import ndtri
 from dalembert.errors import InputError
 from dalembert.findings import Finding
 from dalembert.inverse.fit.fit import check_level
-from dalembert.inverse.fit.outcome import converged
 from dalembert.inverse.inertial.base_parameters import BaseParameters, base_parameters
 from dalembert.inverse.inertial.stacked import checked_deviations, checked_regressor, checked_torques
+from dalembert.inverse.problem.search_findings import converged
 from dalembert.results import EndedResult, fact_lines, text_table
 from dalembert.stored_fields import Labels, Over
 

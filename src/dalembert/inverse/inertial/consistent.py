@@ -7,7 +7,6 @@ import numpy as np
 
 from dalembert.errors import InputError, listed, unknown
 from dalembert.findings import Finding
-from dalembert.inverse.fit.outcome import converged
 from dalembert.inverse.inertial.base_estimate import identify_base, joint_names, torque_findings
 from dalembert.inverse.inertial.base_parameters import BaseParameters
 from dalembert.inverse.inertial.consistent_estimate import ConsistentInertias
@@ -15,6 +14,7 @@ from dalembert.inverse.inertial.consistent_problem import ConsistentProblem
 from dalembert.inverse.inertial.log_cholesky import log_cholesky, log_cholesky_jacobian
 from dalembert.inverse.inertial.pseudo_inertia import bregman_distances, smallest_eigenvalues
 from dalembert.inverse.inertial.stacked import checked_regressor, checked_torques
+from dalembert.inverse.problem.search_findings import converged
 
 LEAST = 1e-2  # smallest eigenvalue relative to the prior of a projected start
 # Half the squared Newton decrement below which the point is stationary: the objective would fall by no more. Rounding

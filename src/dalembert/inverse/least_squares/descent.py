@@ -7,10 +7,10 @@ import numpy as np
 
 from dalembert.errors import SolveError
 from dalembert.forward import refined
-from dalembert.inverse.noise.noise_floor import random_residuals
 from dalembert.inverse.problem.integration_error import as_residuals, integration_error
+from dalembert.inverse.problem.nodes import Nodes
 from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
-from dalembert.inverse.shooting.nodes import Nodes
+from dalembert.inverse.problem.random_residuals import random_residuals
 from dalembert.optimize import Progress, Squares
 
 MANY = 30
@@ -53,9 +53,16 @@ class Memo:
         self.at = self.accepted = at
         self.systematic: np.ndarray | None = None
         self.simulated = np.inf  # sum of squares where the error of the integrator was simulated
+        self.last: tuple[np.ndarray | None, np.ndarray] = (None, np.zeros(0))  # the last search point and its vector
+
+    def vector(self, point: np.ndarray) -> np.ndarray:
+        """The vector (parameters,) of a search point; that of the last one is kept."""
+        if self.last[0] is None or not np.array_equal(self.last[0], point):
+            self.last = point.copy(), self.problem.search.vectors(point)
+        return self.last[1]
 
     def residual(self, point: np.ndarray) -> np.ndarray:
-        vector, hopeful = self.problem.search.vectors(point), self.hopeful
+        vector, hopeful = self.vector(point), self.hopeful
         if (known := self.known(vector)) is not None:
             return self.problem.residuals(vector, known.response)
         self.hopeful = False
@@ -69,19 +76,19 @@ class Memo:
         return self.problem.residuals(vector, at.response)
 
     def jacobian(self, point: np.ndarray) -> np.ndarray:
-        vector = self.problem.search.vectors(point)
+        vector = self.vector(point)
         self.at = self.known(vector) or self.problem.linearise(vector)
         self.hopeful, self.accepted = True, self.at
         return self.problem.slopes(self.at)
 
     def ahead(self, point: np.ndarray) -> np.ndarray:
         """Return the residual at a point that is no candidate, without sensitivities."""
-        vector = self.problem.search.vectors(point)
+        vector = self.vector(point)
         return self.problem.residuals(vector, self.problem.responses(vector[None])[0])
 
     def white(self, point: np.ndarray) -> bool:
         """Return True if the residuals at a linearised point are many and look like white noise."""
-        at, problem = self.known(self.problem.search.vectors(point)), self.problem
+        at, problem = self.known(self.vector(point)), self.problem
         if at is None or problem.compared < MANY:
             return False
         return random_residuals(problem.residual(at.response), problem.weights.shape, problem.data.present)
@@ -91,7 +98,7 @@ class Memo:
 
         It is simulated again where the sum of squares is less than a tenth of that at the last such point.
         """
-        at, finer = self.known(self.problem.search.vectors(point)), refined(self.problem.model)
+        at, finer = self.known(self.vector(point)), refined(self.problem.model)
         if at is None or finer is None:
             return None
         residual = self.problem.residuals(at.vector, at.response)
@@ -146,7 +153,7 @@ def _local(memo: Memo, method: Squares, point: np.ndarray) -> End:
         nonlocal best, begun
         begun = now.best if now.iteration == 0 else begun
         best = End(now.x, now.best, False, "")
-        journal.step(now.best, search.vectors(now.x), problem.samples, now.regularised)
+        journal.step(now.best, memo.vector(now.x), problem.samples, now.regularised)
 
     try:
         found = method.minimise(
@@ -163,7 +170,7 @@ def _local(memo: Memo, method: Squares, point: np.ndarray) -> End:
         return replace(best, message=f"the sensitivities could not be computed: {error}")
     reasons = [] if np.isfinite(found.misfit) else journal.failures[-1:]
     message = ": ".join([found.message, *reasons])
-    kept = memo.known(search.vectors(found.x))
+    kept = memo.known(memo.vector(found.x))
     return End(
         found.x,
         found.misfit,

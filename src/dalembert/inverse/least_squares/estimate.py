@@ -27,14 +27,10 @@ class Estimate:
 def estimate(slopes: np.ndarray, scale: np.ndarray, variance: float | np.ndarray) -> Estimate:
     """Estimate from the linearised least squares problem, covariance s² (JᵀWJ)⁻¹.
 
-    Parameters
-    ----------
-    slopes : array, shape (values, parameters)
-        W^½ ∂R/∂p · scale, from the singular values of which everything follows.
-    scale : array, shape (parameters,)
-    variance : float or array, shape (parameters, parameters)
-        s², the variance of a weighted residual. With correlated residuals UᵀΣU: their covariance along the left
-        singular vectors of the slopes, from which follows the covariance (JᵀWJ)⁻¹ JᵀWΣWJ (JᵀWJ)⁻¹.
+    ``slopes`` (values, parameters): W^½ ∂R/∂p · scale, from the singular values of which everything follows. ``scale``
+    (parameters,). ``variance`` (parameters, parameters): s², the variance of a weighted residual. With correlated
+    residuals UᵀΣU: their covariance along the left singular vectors of the slopes, from which follows the covariance
+    (JᵀWJ)⁻¹ JᵀWΣWJ (JᵀWJ)⁻¹.
 
     Notes
     -----

@@ -35,18 +35,10 @@ def identifiability_findings(
 ) -> Iterator[Finding]:
     """Yield findings on parameters at a bound, not identifiable, or hardly distinguishable.
 
-    Parameters
-    ----------
-    parameters : Parameters
-    values : array, shape (parameters,)
-        Identified values.
-    known : Estimate
-        Of these values.
-    plain : Estimate, optional
-        For independent residuals; ``known`` if not given. A prior that contradicts the data leaves correlated ones,
-        whose larger standard deviations would hide the conflict.
-    bias : array, shape (parameters,), optional
-        Error of the values that the integrator causes; NaN where it is not known.
+    ``values`` (parameters,): identified values. ``known``: of these values. ``plain``: for independent residuals;
+    ``known`` if not given. A prior that contradicts the data leaves correlated ones, whose larger standard deviations
+    would hide the conflict. ``bias`` (parameters,): error of the values that the integrator causes; NaN where it is not
+    known.
     """
     width = parameters.upper - parameters.lower
     for k, item in enumerate(parameters):
@@ -88,15 +80,8 @@ def unidentifiable(
     Unknowns of a combination are named with it, and not again alone or in pairs. Without sensitivities there is one
     finding, which says so.
 
-    Parameters
-    ----------
-    names : tuple of str
-    widths : array, shape (unknowns,)
-        Distances between the bounds.
-    scale : array, shape (unknowns,)
-    known : Estimate
-    bias : array, shape (unknowns,), optional
-        Error of the values that the integrator causes; NaN where it is not known.
+    ``widths`` (unknowns,): distances between the bounds. ``scale`` (unknowns,). ``bias`` (unknowns,): error of the
+    values that the integrator causes; NaN where it is not known.
     """
     if not np.all(np.isfinite(known.singular_values)):
         message = "Identifiability is not known: the model has no sensitivities at the identified values."

@@ -23,22 +23,13 @@ TIME = "s"
 
 @dataclass(frozen=True)
 class SuspectDelay:
-    """A delay that would explain the residuals of a channel, or of all.
+    """A delay that would explain the residuals of a channel, or of all."""
 
-    Parameters
-    ----------
-    channel : str
-        Its name in every experiment; empty for all channels.
-    delay, deviation : float
-        s; positive where the data are late.
-    explained : float
-        Part of the squares of its residuals that the delay takes away.
-    """
-
-    channel: str
+    channel: str  # its name in every experiment; empty for all channels
+    # delay, deviation: s; positive where the data are late
     delay: float
     deviation: float
-    explained: float
+    explained: float  # part of the squares of its residuals that the delay takes away
 
 
 def suspect_delays(residuals: Residuals) -> tuple[tuple[SuspectDelay, ...], Residuals]:

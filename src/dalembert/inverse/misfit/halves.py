@@ -1,6 +1,5 @@
 """Whether the first and the second half of the records have the same parameters."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Annotated
@@ -8,7 +7,6 @@ from typing import Annotated
 import numpy as np
 from scipy.special import ndtr
 
-from dalembert.findings import Finding
 from dalembert.inverse.least_squares.descent import End, refine
 from dalembert.inverse.least_squares.estimate import UNSEEN
 from dalembert.inverse.misfit.residuals import Residuals
@@ -31,22 +29,17 @@ REFITTED = LeastSquares(trials=30)
 
 @dataclass(frozen=True, eq=False)
 class Halves:
-    """Parameters of the first and of the second half of each record.
+    """Parameters of the first and of the second half of each record."""
 
-    Parameters
-    ----------
-    values, deviations : array, shape (2, parameters)
-        NaN where a half does not determine the parameter, and for parameters on a bound.
-    differences : array, shape (parameters,)
-        Second less first value in standard deviations of that difference; NaN where a half does not determine it.
-    refitted : bool
-        Whether each half was fitted; if not, the values are those of one Gauss–Newton step from the whole fit, as far
-        as the bounds allow.
-    """
-
+    # values, deviations: (2, parameters): naN where a half does not determine the parameter, and for parameters on a
+    # bound
     values: Annotated[np.ndarray, Over("half", "parameter", name="half_values")]
     deviations: Annotated[np.ndarray, Over("half", "parameter", name="half_deviations")]
+    # differences: (parameters,): second less first value in standard deviations of that difference; NaN where a half
+    # does not determine it
     differences: Annotated[np.ndarray, Over("parameter", name="half_differences")]
+    # refitted: whether each half was fitted; if not, the values are those of one Gauss–Newton step from the whole fit,
+    # as far as the bounds allow
     refitted: bool
 
     @property
@@ -91,30 +84,6 @@ def halves(residuals: Residuals) -> Halves | None:
         if all(values is not None for values in again):
             return made(np.array(again)[:, free], refitted=True)
     return made(np.clip(stepped, parameters.lower[free], parameters.upper[free]), refitted=False)
-
-
-def halves_findings(found: Halves | None, problem: MisfitProblem) -> Iterator[Finding]:
-    """Yield a finding where the halves have different parameters."""
-    if found is None or not np.any(found.drifting):
-        return
-    items = problem.model.parameters.items
-    worst = int(np.nanargmax(np.abs(found.differences)))
-    name, size = items[worst].name, abs(float(found.differences[worst]))
-    first, second = (f"{value:.4g} {items[worst].unit}".rstrip() for value in found.values[:, worst])
-    others = [repr(item.name) for k, item in enumerate(items) if found.drifting[k] and k != worst]
-    also = f" Also different: {', '.join(others)}." if others else ""
-    values = {
-        "parameter": name,
-        "first": float(found.values[0, worst]),
-        "second": float(found.values[1, worst]),
-        "deviations": size,
-    }
-    message = (
-        f"The two halves of the record have different parameters: {name!r} is {first} in the first and {second} in the "
-        f"second half, {size:.3g} standard deviations apart.{also}"
-    )
-    advice = "Look for what changes with time or amplitude, such as friction or a nonlinear stiffness."
-    yield Finding("parameters-drift", "warning", values, message, advice)
 
 
 def _masks(residuals: Residuals) -> tuple[np.ndarray, np.ndarray]:

@@ -21,10 +21,7 @@ from dalembert.inverse.noise.correlation.correlation import (
 from dalembert.inverse.noise.correlation.series import Series, series_of
 from dalembert.inverse.noise.noise_floor import quantum
 from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
-from dalembert.parameters import Parameters
-
-BOUND = 1e-6
-"""Distance from a bound, as a part of the width between bounds, up to which a parameter is on it."""
+from dalembert.inverse.problem.search_coordinates import off_bounds
 
 STATIONARY = 0.1
 """Squares of residuals that a last step may still take away, in variances of a residual."""
@@ -32,28 +29,14 @@ STATIONARY = 0.1
 
 @dataclass(frozen=True, eq=False)
 class Residuals:
-    """Weighted residuals at a minimum.
-
-    Parameters
-    ----------
-    problem : Problem
-    at : Linearisation
-    values : array, shape (values,)
-        W^½ (R − data), flat from (samples, channels).
-    basis : array, shape (values, columns)
-        Orthonormal; spans the changes that the fit could have explained.
-    free : array of bool, shape (parameters,)
-        Parameters that are on no bound, which alone the basis is of.
-    known : bool
-        Whether the variance of a weighted residual is known to be 1.
-    """
+    """Weighted residuals at a minimum."""
 
     problem: MisfitProblem
     at: Linearisation
-    values: np.ndarray
-    basis: np.ndarray
-    free: np.ndarray
-    known: bool
+    values: np.ndarray  # (values,): W^½ (R − data), flat from (samples, channels)
+    basis: np.ndarray  # (values, columns): orthonormal; spans the changes that the fit could have explained
+    free: np.ndarray  # (parameters,): parameters that are on no bound, which alone the basis is of
+    known: bool  # whether the variance of a weighted residual is known to be 1
 
     @classmethod
     def of(cls, problem: MisfitProblem, at: Linearisation, *, known: bool) -> Self:
@@ -136,9 +119,3 @@ class Residuals:
         """Return the residuals less ``amount`` of a column (values,) that is orthogonal to the basis."""
         basis = np.column_stack([self.basis, column / np.linalg.norm(column)])
         return replace(self, values=self.values - amount * column, basis=basis)
-
-
-def off_bounds(parameters: Parameters, values: np.ndarray) -> np.ndarray:
-    """Return which parameters are on no bound at values, both of shape (parameters,)."""
-    near = BOUND * (parameters.upper - parameters.lower)
-    return (values - parameters.lower > near) & (parameters.upper - values > near)

@@ -22,20 +22,11 @@ FEWEST = 8
 
 @dataclass(frozen=True, eq=False)
 class Clock:
-    """Series that share a clock.
+    """Series that share a clock."""
 
-    Parameters
-    ----------
-    name : str
-        Of the experiment, or of the channel; empty for all.
-    series : tuple of Series
-    period : float
-        Shortest time in which the response of one of them swings: 2π rms/rms of its rate.
-    """
-
-    name: str
+    name: str  # of the experiment, or of the channel; empty for all
     series: tuple[Series, ...]
-    period: float
+    period: float  # shortest time in which the response of one of them swings: 2π rms/rms of its rate
     last: list[tuple[np.ndarray, "list[CubicSpline]"]] = field(default_factory=list)
     """The last response and its splines: many numbers are tried with one response."""
     placed: dict[str, Any] = field(default_factory=dict)

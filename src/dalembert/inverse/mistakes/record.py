@@ -20,20 +20,11 @@ GOLDEN = (5**0.5 - 1) / 2
 
 @dataclass(frozen=True, eq=False)
 class FittedRecord:
-    """Data, and the response of the model that was fitted to them.
-
-    Parameters
-    ----------
-    problem : Problem
-    at : Linearisation
-        At the identified values.
-    known : bool
-        Whether the variance of a weighted residual is known to be 1.
-    """
+    """Data, and the response of the model that was fitted to them."""
 
     problem: MisfitProblem
-    at: Linearisation
-    known: bool
+    at: Linearisation  # at the identified values
+    known: bool  # whether the variance of a weighted residual is known to be 1
 
     @cached_property
     def series(self) -> tuple[Series, ...]:
@@ -84,17 +75,10 @@ class FittedRecord:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What a mistake explains.
+    """What a mistake explains."""
 
-    Parameters
-    ----------
-    number : float
-        The number that describes the mistake; NaN if it has none.
-    explained : float
-        Part of the squares of all residuals that it takes away, if the parameters are identified with it.
-    """
-
-    number: float
+    number: float  # the number that describes the mistake; NaN if it has none
+    # explained: part of the squares of all residuals that it takes away, if the parameters are identified with it
     explained: float
 
     @property
@@ -105,33 +89,19 @@ class Verdict:
 
 @dataclass(frozen=True, eq=False)
 class Mistake:
-    """A mistake that a record may have.
+    """A mistake that a record may have."""
 
-    Parameters
-    ----------
-    shown : callable
-        From a response flat over (samples × channels, ...) and a number to what a record with this mistake shows of it;
-        NaN where that is not known.
-    shown_at : callable, optional
-        From these and some rows to the same at these rows, where that is faster.
-    finding : callable
-        From the verdict to the finding.
-    numbers : array, shape (numbers,)
-        Numbers to try, evenly spaced; a single NaN if the mistake has none.
-    blamed : array of int
-        Values that it leaves out because they are wrong; other values that it leaves out are only unknown.
-    least : float
-        Smallest size of the number at which the mistake is reported; smaller ones have another finding.
-    visible : bool
-        Whether the data alone show it, so that it is tested though the residuals look like noise.
-    """
-
+    # shown: from a response flat over (samples × channels, ...) and a number to what a record with this mistake shows
+    # of it; NaN where that is not known
     shown: Callable[[np.ndarray, float], np.ndarray]
-    finding: Callable[[Verdict], Finding]
-    numbers: np.ndarray
+    finding: Callable[[Verdict], Finding]  # from the verdict to the finding
+    numbers: np.ndarray  # (numbers,): numbers to try, evenly spaced; a single NaN if the mistake has none
+    # blamed: values that it leaves out because they are wrong; other values that it leaves out are only unknown
     blamed: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=int))
+    # least: smallest size of the number at which the mistake is reported; smaller ones have another finding
     least: float = 0.0
-    visible: bool = False
+    visible: bool = False  # whether the data alone show it, so that it is tested though the residuals look like noise
+    # shown_at: from these and some rows to the same at these rows, where that is faster
     shown_at: Callable[[np.ndarray, float, np.ndarray], np.ndarray] | None = None
 
 

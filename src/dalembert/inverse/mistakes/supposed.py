@@ -30,29 +30,17 @@ STEP = 0.02
 
 @dataclass(frozen=True, eq=False)
 class Supposed:
-    """A supposed mistake and what it leaves.
-
-    Parameters
-    ----------
-    mistake : Mistake
-    at : Linearisation
-        Where the parameters are.
-    number : float
-        That describes the mistake.
-    ratio : float
-        Mean of the squares of weighted residuals over that of the fit; over the values that the mistake leaves, but in
-        the fit over those, too, that it blames.
-    values : int
-        Number of compared values.
-    squares : array, shape (values of all channels,)
-        Of the weighted residuals; 0 where the mistake blames a value, NaN where it leaves a value out.
-    """
+    """A supposed mistake and what it leaves."""
 
     mistake: Mistake
-    at: Linearisation
-    number: float
+    at: Linearisation  # where the parameters are
+    number: float  # that describes the mistake
+    # ratio: mean of the squares of weighted residuals over that of the fit; over the values that the mistake leaves,
+    # but in the fit over those, too, that it blames
     ratio: float
-    values: int
+    values: int  # number of compared values
+    # squares: (values of all channels,): of the weighted residuals; 0 where the mistake blames a value, NaN where it
+    # leaves a value out
     squares: np.ndarray
 
     @property

@@ -13,22 +13,14 @@ SMALL = 1e-6
 
 @dataclass(frozen=True)
 class NoiseFloor:
-    """Misfit that known noise alone explains.
+    """Misfit that known noise alone explains."""
 
-    Parameters
-    ----------
-    misfit : float
-        99.9 % quantile of the misfit at the true parameters.
-    source : {"given", "smoothed", "rounded", "arithmetic"}
-        Where the noise is known from: given standard deviations, local polynomials, rounding of the data, or rounding
-        errors of the arithmetic.
-    conclusive : bool
-        Whether reaching the floor shows that no better minimum need be looked for: the noise is so small against the
-        signal that a false minimum would not get there.
-    """
-
-    misfit: float
+    misfit: float  # 99.9 % quantile of the misfit at the true parameters
+    # source: {"given", "smoothed", "rounded", "arithmetic"}: where the noise is known from: given standard deviations,
+    # local polynomials, rounding of the data, or rounding errors of the arithmetic
     source: str
+    # conclusive: whether reaching the floor shows that no better minimum need be looked for: the noise is so small
+    # against the signal that a false minimum would not get there
     conclusive: bool
 
     @property
@@ -88,34 +80,3 @@ def quantum(column: np.ndarray) -> float:
         if np.all(np.abs(scaled - np.rint(scaled)) < 1e-6):
             return 10.0**-decimals if np.ptp(scaled) > 1000 else 0.0
     return 0.0
-
-
-def autocorrelation(residual: np.ndarray, shape: tuple[int, int], present: np.ndarray | None = None) -> float:
-    """Correlation of neighbouring samples of weighted residuals, flat from (samples, channels), over all channels.
-
-    ``present`` (samples, channels) masks the values that are there, all if not given; neighbours are those.
-
-    >>> autocorrelation(np.array([1.0, -1.0, 1.0, -1.0]), (4, 1))
-    -0.75
-    >>> gaps = np.array([1.0, 0.0, -1.0, 0.0, 1.0, 0.0, -1.0])
-    >>> autocorrelation(gaps, (7, 1), gaps[:, None] != 0)
-    -0.75
-    """
-    table = residual.reshape(shape)
-    if present is None or np.all(present):
-        neighbours = np.sum(table[1:] * table[:-1])
-    else:
-        there = [column[mask] for column, mask in zip(table.T, present.T, strict=True)]
-        neighbours = sum(np.sum(column[1:] * column[:-1]) for column in there)
-    return float(neighbours / max(np.sum(table**2), np.finfo(float).tiny))
-
-
-def random_residuals(
-    residual: np.ndarray, shape: tuple[int, int], present: np.ndarray | None = None, *, deviations: float = 3.0
-) -> bool:
-    """Whether residuals look like noise: their autocorrelation is within ``deviations`` of its own, 1/√values.
-
-    ``present`` (samples, channels) masks the values that are there, all if not given; the others' residuals are 0.
-    """
-    values = residual.size if present is None else np.count_nonzero(present)
-    return abs(autocorrelation(residual, shape, present)) < deviations / np.sqrt(values)

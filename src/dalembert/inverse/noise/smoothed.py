@@ -1,31 +1,24 @@
 """Measurements smoothed by local polynomials: what a segment begins with, and how exact the data are."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from dalembert.data import Measurements, derivative
 from dalembert.errors import DataError
-from dalembert.findings import Finding
 from dalembert.inverse.experiments.experiment import ExperimentPart
 
 
 @dataclass(frozen=True, eq=False)
 class Smoothed:
-    """What was measured of a motion, and how fast it changed.
+    """What was measured of a motion, and how fast it changed."""
 
-    Parameters
-    ----------
-    values, rates : array, shape (samples, channels)
-        Without jumps of wrapping channels; interpolated over missing samples. Rates are NaN where there are too few
-        samples for them.
-    deviations, errors : array, shape (channels,)
-        Standard deviation of the noise of both.
-    """
-
+    # values, rates: (samples, channels): without jumps of wrapping channels; interpolated over missing samples. Rates
+    # are NaN where there are too few samples for them.
     values: np.ndarray
     rates: np.ndarray
+    # deviations, errors: (channels,): standard deviation of the noise of both
     deviations: np.ndarray
     errors: np.ndarray
 
@@ -64,13 +57,3 @@ def smooth_noise(data: Measurements, parts: Sequence[ExperimentPart]) -> np.ndar
         noise = np.where(seen.deviations > 0, np.maximum(seen.deviations, LEAST * spread), spread)
         found[columns] = np.where(noise > 0, noise, 1.0)
     return found
-
-
-def noise_findings(data: Measurements, noise: np.ndarray | None) -> Iterator[Finding]:
-    """Yield the finding that the noise of the data was estimated by local polynomials; none where it was not."""
-    if noise is None:
-        return
-    values = dict(zip(data.channels, map(float, noise), strict=True))
-    listed = ", ".join(f"{name!r} {own:.3g}" for name, own in values.items())
-    message = f"The data have no deviations. Their noise was estimated by local polynomials: {listed}."
-    yield Finding("smoothed-noise", "note", values, message, "Give deviations if you know them.")

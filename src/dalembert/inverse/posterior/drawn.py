@@ -8,12 +8,12 @@ import numpy as np
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.experiments.blocks import blocks_of_records
 from dalembert.inverse.noise.likelihood.likelihood import Likelihood
-from dalembert.inverse.posterior.conclusions import contradictions, draw_findings, separate_modes
 from dalembert.inverse.posterior.convergence import convergence
 from dalembert.inverse.posterior.model_variants import Remembered
 from dalembert.inverse.posterior.modes import PosteriorModes
 from dalembert.inverse.posterior.posed import Length
 from dalembert.inverse.posterior.posterior import Posterior
+from dalembert.inverse.posterior.posterior_findings import contradictions, draw_findings, separate_modes
 from dalembert.inverse.posterior.samplers.delayed_acceptance import DelayedAcceptance
 from dalembert.inverse.posterior.samplers.sampler import Chains, OnDraws, Sampler
 from dalembert.inverse.problem.journal import Journal

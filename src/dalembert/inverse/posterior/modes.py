@@ -38,17 +38,10 @@ EXPLORED, FEWEST, MOST = 20, 32, 400
 
 @dataclass(frozen=True, eq=False)
 class PosteriorModes:
-    """The modes of a posterior, that of the largest density first.
-
-    Parameters
-    ----------
-    centred : tuple of Centred
-    shares : array, shape (modes,)
-        Of the probability, by the normal approximation of each mode (Laplace).
-    """
+    """The modes of a posterior, that of the largest density first."""
 
     centred: tuple[Centred, ...]
-    shares: np.ndarray
+    shares: np.ndarray  # (modes,): of the probability, by the normal approximation of each mode (Laplace)
 
     @property
     def best(self) -> Centred:
@@ -70,7 +63,7 @@ class PosteriorModes:
 
         Examples
         --------
-        >>> Modes((), np.array([0.7, 0.3])).of_chains(4).tolist()
+        >>> PosteriorModes((), np.array([0.7, 0.3])).of_chains(4).tolist()
         [0, 0, 0, 1]
         """
         counts = np.zeros(len(self.shares), dtype=int)

@@ -79,7 +79,7 @@ class Posterior(EndedResult):
     replicated : array of int, shape (replicas,)
         Numbers of their draws.
     data : Measurements
-    parts : tuple of Part
+    parts : tuple of ExperimentPart
         Where each of several experiments stands in the data.
     sampler : str
     warmup, simulations : int

@@ -16,12 +16,12 @@ from dalembert.inverse.experiments.experiments import placed
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.identify import identify
 from dalembert.inverse.noise.likelihood.placing import Noise
-from dalembert.inverse.posterior.conclusions import inherited
 from dalembert.inverse.posterior.drawn import draw, posterior_of
 from dalembert.inverse.posterior.model_variants import without_priors
 from dalembert.inverse.posterior.modes import find_modes
 from dalembert.inverse.posterior.posed import Length, pose_posterior, search_start
 from dalembert.inverse.posterior.posterior import Posterior
+from dalembert.inverse.posterior.posterior_findings import inherited
 from dalembert.inverse.posterior.sampler_choice import choose_sampler, requested_sampler
 from dalembert.inverse.posterior.samplers.sampler import OnDraws, Sampler
 from dalembert.priors import AnyPrior

@@ -20,35 +20,20 @@ class First:
 class Journal:
     """Counts simulations, keeps the steps of the search and the result of each start, and passes on every event.
 
-    Parameters
-    ----------
-    samples : int
-        Samples of the whole data; only steps that compare all of them enter the history.
-    on_event : callable, optional
-        Called as ``on_event(event)`` with each event, see :mod:`dalembert.inverse.events`.
-    simulations : int
-        Simulations so far.
-    failures : list of str
-        Reason of each failed simulation.
-    history : list of Step
-        Steps of all starts.
-    starts : list of StartEnd
-        Start point, end point and misfit of each start that has ended.
-    first : First, optional
-        The first response without NaN.
-
     Notes
     -----
     ``_iteration`` counts the steps of the current start; ``_before`` is the number of simulations before it.
     """
 
-    samples: int
+    samples: int  # samples of the whole data; only steps that compare all of them enter the history
+    # on_event: called as ``on_event(event)`` with each event, see :mod:`dalembert.inverse.events`
     on_event: OnEvent | None = None
-    simulations: int = 0
-    failures: list[str] = field(default_factory=list)
-    history: list[SearchIteration] = field(default_factory=list)
+    simulations: int = 0  # simulations so far
+    failures: list[str] = field(default_factory=list)  # reason of each failed simulation
+    history: list[SearchIteration] = field(default_factory=list)  # steps of all starts
+    # starts: start point, end point and misfit of each start that has ended
     starts: list[StartEnd] = field(default_factory=list)
-    first: First | None = None
+    first: First | None = None  # the first response without NaN
     _iteration: int = 0
     _before: int = 0
 

@@ -49,13 +49,6 @@ NAMES = ("linear", *LOSSES)
 class Loss:
     """Loss scale² ϱ(r/scale) of a weighted residual r: its square where it is small, less where it is large.
 
-    Parameters
-    ----------
-    name : {"huber", "soft-l1", "cauchy"}
-        ϱ(x) is x² up to 1 and 2x − 1 beyond; 2 (√(1 + x²) − 1); ln(1 + x²).
-    scale : float
-        Weighted residual from which one counts as an outlier.
-
     Examples
     --------
     >>> huber = Loss("huber", 2.0)
@@ -63,8 +56,8 @@ class Loss:
     [1.0, 36.0]
     """
 
-    name: str
-    scale: float
+    name: str  # {"huber", "soft-l1", "cauchy"}: ϱ(x) is x² up to 1 and 2x − 1 beyond; 2 (√(1 + x²) − 1); ln(1 + x²)
+    scale: float  # weighted residual from which one counts as an outlier
 
     def residual(self, residual: np.ndarray) -> np.ndarray:
         """Residuals whose squares are the losses, with the signs of the weighted residuals, of the same shape."""

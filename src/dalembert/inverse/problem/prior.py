@@ -17,13 +17,8 @@ MANY = 4
 """Combinations up to which each has its finding."""
 
 
-def priors(parameters: Parameters) -> np.ndarray:
-    """Numbers of the parameters whose prior is a square; a uniform one adds nothing to a fit."""
-    return np.array([k for k, item in enumerate(parameters) if isinstance(item.distribution, SquarePrior)], dtype=int)
-
-
 def prior_deviations(parameters: Parameters) -> np.ndarray:
-    """Standard deviations of the priors, one for each of :func:`priors`."""
+    """Standard deviations of the priors, one for each of ``parameters.square_priors``."""
     known = [item.distribution for item in parameters]
     return np.array([prior.spread for prior in known if isinstance(prior, SquarePrior)], dtype=float)
 
@@ -33,8 +28,10 @@ def prior_residual(parameters: Parameters, vectors: np.ndarray) -> np.ndarray:
 
     Those of correlated parameters are whitened by the Cholesky factor of their covariance.
     """
-    known = priors(parameters)
+    known = parameters.square_priors
     found = np.zeros((*vectors.shape[:-1], len(known)))
+    if not len(known):
+        return found
     for row, k in enumerate(known):
         prior = parameters.items[k].distribution
         if isinstance(prior, SquarePrior):
@@ -46,8 +43,10 @@ def prior_residual(parameters: Parameters, vectors: np.ndarray) -> np.ndarray:
 
 def prior_slopes(parameters: Parameters, vector: np.ndarray, unit: np.ndarray) -> np.ndarray:
     """Jacobian of :func:`prior_residual` with respect to p/unit at a vector (parameters,), (priors, parameters)."""
-    known = priors(parameters)
+    known = parameters.square_priors
     rows = np.zeros((len(known), len(parameters)))
+    if not len(known):
+        return rows
     for row, k in enumerate(known):
         prior = parameters.items[k].distribution
         if isinstance(prior, SquarePrior):
@@ -71,7 +70,7 @@ def check_priors(parameters: Parameters, known: bool) -> None:
     ------
     InputError
     """
-    for k in () if known else priors(parameters)[:1]:
+    for k in () if known else parameters.square_priors[:1]:
         what = "its deviation" if parameters.items[k].prior is None else parameters.items[k].distribution.name
         raise InputError(
             f"parameter {parameters.names[k]!r} has a prior ({what}), but the noise level of the data is not "
@@ -84,7 +83,7 @@ def prior_findings(parameters: Parameters, deviations: np.ndarray, correlation: 
 
     They are the directions, in units of the priors' deviations, in which most of the priors' variance is left.
     """
-    known = priors(parameters)
+    known = parameters.square_priors
     if not len(known) or not np.all(np.isfinite(deviations[known])):
         return
     before = prior_deviations(parameters)

@@ -6,8 +6,8 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from dalembert.findings import Finding
-from dalembert.inverse.misfit.residuals import off_bounds
-from dalembert.inverse.problem.prior import prior_residual, prior_slopes, priors
+from dalembert.inverse.problem.prior import prior_residual, prior_slopes
+from dalembert.inverse.problem.search_coordinates import off_bounds
 from dalembert.parameters import Parameters
 from dalembert.priors import SquarePrior
 
@@ -26,16 +26,8 @@ def prior_conflicts(
 ) -> Iterator[Finding]:
     """Yield findings on priors that contradict the data, by the linearised likelihood.
 
-    Parameters
-    ----------
-    parameters : Parameters
-    values : array, shape (parameters,)
-    unit : array, shape (parameters,)
-        ∂p/∂z of the coordinates z.
-    information : array, shape (parameters, parameters)
-        Of the data alone about z.
-    gradient : array, shape (parameters,)
-        Of the log-likelihood of the data by z.
+    ``values`` (parameters,). ``unit`` (parameters,): ∂p/∂z of the coordinates z. ``information`` (parameters,
+    parameters): of the data alone about z. ``gradient`` (parameters,): of the log-likelihood of the data by z.
 
     Notes
     -----
@@ -75,15 +67,11 @@ def conflicts_of_minimum(
 ) -> Iterator[Finding]:
     """Yield the same at the minimum of a fit, where the gradients of data and priors cancel.
 
-    Parameters
-    ----------
-    parameters : Parameters
-    values, deviations : array, shape (parameters,)
-        Identified values and their standard deviations with the priors.
-    correlation : array, shape (parameters, parameters)
+    ``values``, ``deviations`` (parameters,): identified values and their standard deviations with the priors.
+    ``correlation`` (parameters, parameters).
     """
     free = off_bounds(parameters, values)
-    if not len(priors(parameters)) or not np.all(np.isfinite(deviations)) or not np.all(free):
+    if not len(parameters.square_priors) or not np.all(np.isfinite(deviations)) or not np.all(free):
         return
     slopes = prior_slopes(parameters, values, deviations)
     information = np.linalg.pinv(correlation, hermitian=True) - slopes.T @ slopes

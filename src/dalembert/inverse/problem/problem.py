@@ -26,7 +26,7 @@ from dalembert.inverse.problem.matching import (
     columns_of,
     weights_of,
 )
-from dalembert.inverse.problem.prior import check_priors, prior_residual, prior_slopes, priors
+from dalembert.inverse.problem.prior import check_priors, prior_residual, prior_slopes
 from dalembert.inverse.problem.search_coordinates import SearchCoordinates
 from dalembert.inverse.problem.simulated import failing_at, simulated
 
@@ -52,30 +52,17 @@ class MisfitProblem:
     """Misfit g(p) = Σ W (R(p) − data)² over samples and channels, + the squared residuals of priors.
 
     Values that are missing have W = 0; differences of wrapping channels count modulo a turn.
-
-    Parameters
-    ----------
-    model : ForwardModel
-    data : Measurements
-    columns : array of int, shape (channels,)
-        Where the data's channels stand among the model's.
-    weights : array, shape (samples, channels)
-        W.
-    search : SearchCoordinates
-    journal : Journal
-    loss : Loss, optional
-        The square if not given; all that is minimised are squares of residuals that it has transformed.
-    derivative : {"auto", "direct", "adjoint"}
-        How gradients are computed, see :func:`dalembert.forward.pullback`.
     """
 
     model: ForwardModel
     data: Measurements
-    columns: np.ndarray
-    weights: np.ndarray
+    columns: np.ndarray  # (channels,): where the data's channels stand among the model's
+    weights: np.ndarray  # (samples, channels): W
     search: SearchCoordinates
     journal: Journal
+    # loss: the square if not given; all that is minimised are squares of residuals that it has transformed
     loss: Loss | None = None
+    # derivative: {"auto", "direct", "adjoint"}: how gradients are computed, see :func:`dalembert.forward.pullback`
     derivative: str = AUTO
 
     @property
@@ -90,7 +77,7 @@ class MisfitProblem:
     @property
     def priors(self) -> int:
         """Number of parameters of which something is known before the data."""
-        return len(priors(self.model.parameters))
+        return len(self.model.parameters.square_priors)
 
     def prefetched(self, work: Work[Item], items: Sequence[Item]) -> Generator[Item, None, None]:
         """Yield the items in their order; where the model is on a cluster, answers for work on each come first.
@@ -178,7 +165,8 @@ class MisfitProblem:
             response, jacobian = self.model.linearise(vector)
             if not (np.all(np.isfinite(response)) and np.all(np.isfinite(jacobian))):
                 raise SolveError("the response or its jacobian is not finite")
-        self.journal.computed(vector, response[:, self.columns])
+        if self.journal.first is None:
+            self.journal.computed(vector, response[:, self.columns])
         return Linearisation(vector, response[:, self.columns], jacobian[:, self.columns])
 
     @property
@@ -201,7 +189,8 @@ class MisfitProblem:
             response, pull_whole = pullback(self.model, vector, ADJOINT)
             if not np.all(np.isfinite(response)):
                 raise SolveError("the response is not finite")
-        self.journal.computed(vector, response[:, self.columns])
+        if self.journal.first is None:
+            self.journal.computed(vector, response[:, self.columns])
 
         def pull(cotangent: np.ndarray) -> np.ndarray:
             whole = np.zeros_like(response)
@@ -226,7 +215,8 @@ class MisfitProblem:
 
     def residuals(self, vector: np.ndarray, response: np.ndarray) -> np.ndarray:
         """:meth:`residual`, and the priors' behind it: what the misfit is the sum of squares of."""
-        return np.concatenate([self.residual(response), prior_residual(self.model.parameters, vector)])
+        residual = self.residual(response)
+        return np.concatenate([residual, prior_residual(self.model.parameters, vector)]) if self.priors else residual
 
     def slopes(self, at: Linearisation, unit: np.ndarray | None = None) -> np.ndarray:
         """Jacobian of :meth:`residuals` with respect to p/unit, (samples × channels + priors, parameters).

@@ -7,6 +7,9 @@ import numpy as np
 
 from dalembert.parameters import Parameters
 
+BOUND = 1e-6
+"""Distance from a bound, as a part of the width between bounds, up to which a parameter is on it."""
+
 
 @dataclass(frozen=True)
 class SearchCoordinates:
@@ -47,8 +50,15 @@ class SearchCoordinates:
 
     def vectors(self, points: np.ndarray) -> np.ndarray:
         """Parameter vectors at coordinates, both (..., parameters), inside the bounds."""
-        return self.parameters.clip(self._unit * np.where(self.logarithmic, np.exp(points * self.logarithmic), points))
+        vectors = self._unit * np.where(self.logarithmic, np.exp(points * self.logarithmic), points)
+        return np.clip(vectors, self.parameters.lower, self.parameters.upper)
 
     def slope(self, vector: np.ndarray) -> np.ndarray:
         """dp/dz at a parameter vector, both (parameters,)."""
         return np.where(self.logarithmic, vector, self._unit)
+
+
+def off_bounds(parameters: Parameters, values: np.ndarray) -> np.ndarray:
+    """Return which parameters are on no bound at values, both of shape (parameters,)."""
+    near = BOUND * (parameters.upper - parameters.lower)
+    return (values - parameters.lower > near) & (parameters.upper - values > near)

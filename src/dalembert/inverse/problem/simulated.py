@@ -21,7 +21,7 @@ def simulated(model: ForwardModel, columns: np.ndarray, journal: Journal, vector
     )
     values = responses.values[:, :, columns].astype(float)
     values[~responses.ok] = np.nan
-    if len(vectors):
+    if journal.first is None and len(vectors):
         journal.computed(vectors[0], values[0])
     return values
 

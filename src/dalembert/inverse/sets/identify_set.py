@@ -16,11 +16,10 @@ from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.matching import check_finite, check_kinds, check_samples, check_sizes, columns_of
 from dalembert.inverse.problem.search_coordinates import SearchCoordinates
 from dalembert.inverse.problem.simulated import named, simulated
-from dalembert.inverse.sets.conclusions import conclusions
 from dalembert.inverse.sets.inner_box import inner_box
 from dalembert.inverse.sets.inversion import Inversion
-from dalembert.inverse.sets.outcome import outcome
 from dalembert.inverse.sets.parameter_set import ParameterSet
+from dalembert.inverse.sets.set_findings import conclusions, outcome
 from dalembert.surrogate import Adaptive
 from dalembert.surrogate.scheme import Scheme
 

@@ -73,15 +73,9 @@ class Chain:
     """Parameters and states at the segments' beginnings for which the misfit is least and every gap is zero.
 
     min F(z)ᵀF(z) subject to c(z) = 0, with the weighted residuals F of all segments and the gaps c between them.
-
-    Parameters
-    ----------
-    problem : Problem
-        Of the whole motions.
-    segments : Segments
     """
 
-    problem: MisfitProblem
+    problem: MisfitProblem  # of the whole motions
     segments: Segments
     _kept: list[Tangent] = field(default_factory=list, init=False, repr=False)
 

@@ -18,29 +18,18 @@ TURN = 2 * np.pi
 
 @dataclass(frozen=True, eq=False)
 class SegmentNode:
-    """A sample of one motion at which a segment begins.
-
-    Parameters
-    ----------
-    sample : int
-    names, units : tuple of str, length states
-        Of the numbers that the segment begins at.
-    values : array, shape (states,)
-        First guess.
-    lower, upper, ranges : array, shape (states,)
-        Bounds, and the sizes that gaps are measured by.
-    chart : StateChart, optional
-        What the numbers are in a model that can begin anew at them.
-    """
+    """A sample of one motion at which a segment begins."""
 
     sample: int
+    # names, units: of the numbers that the segment begins at
     names: tuple[str, ...]
     units: tuple[str, ...]
-    values: np.ndarray
+    values: np.ndarray  # (states,): first guess
+    # lower, upper, ranges: (states,): bounds, and the sizes that gaps are measured by
     lower: np.ndarray
     upper: np.ndarray
     ranges: np.ndarray
-    chart: StateChart | None = None
+    chart: StateChart | None = None  # what the numbers are in a model that can begin anew at them
 
     def unknowns(self, track: Track) -> list[Parameter]:
         """The numbers as parameters."""
@@ -58,19 +47,12 @@ class SegmentNode:
 
 @dataclass(frozen=True, eq=False)
 class Cut:
-    """One motion with the nodes at which it is cut.
-
-    Parameters
-    ----------
-    track : Track
-    nodes : tuple of Node
-    states : mapping of str to ShootingState
-        By the model's parameters of the initial state, which the segments' states are. Without any, segments begin at
-        independent coordinates and rates of a model that can begin anew at them.
-    """
+    """One motion with the nodes at which it is cut."""
 
     track: Track
     nodes: tuple[SegmentNode, ...]
+    # states: by the model's parameters of the initial state, which the segments' states are. Without any, segments
+    # begin at independent coordinates and rates of a model that can begin anew at them.
     states: Mapping[str, ShootingState] = field(default_factory=dict)
 
     @property
@@ -85,12 +67,8 @@ class Cut:
     def piece(self, begin: SegmentNode | None, end: SegmentNode | None, own: np.ndarray, after: np.ndarray) -> Piece:
         """Return a segment.
 
-        Parameters
-        ----------
-        begin, end : Node or None
-            None at the first sample and the last one.
-        own, after : array of int, shape (states,)
-            Where the numbers of both nodes stand among all unknowns.
+        ``begin``, ``end``: none at the first sample and the last one. ``own``, ``after`` (states,): where the numbers
+        of both nodes stand among all unknowns.
         """
         track, sample = self.track, 0 if begin is None else begin.sample
         last = len(track.times) - 1 if end is None else end.sample

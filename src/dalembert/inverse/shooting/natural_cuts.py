@@ -45,13 +45,7 @@ def natural_cuts(
 ) -> tuple[list[Cut], np.ndarray]:
     """Return all motions in segments, and the parameters (parameters,) with initial states as measured.
 
-    Parameters
-    ----------
-    problem : Problem
-    tracks : iterable of Track
-    values : array, shape (parameters,)
-    count : int or None
-        Even segments of each motion; if None as many as its growth of errors asks for.
+    ``values`` (parameters,). ``count``: even segments of each motion; if None as many as its growth of errors asks for.
     """
     cuts, lower, upper = [], problem.model.parameters.lower, problem.model.parameters.upper
     for track in tracks:

@@ -38,31 +38,16 @@ class ShootingState:
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """One segment.
+    """One segment."""
 
-    Parameters
-    ----------
-    model : ForwardModel
-        From the beginning of the segment to its end.
-    places : array of int, shape (parameters,)
-        Where its parameters stand among all unknowns.
-    rows, columns : array of int, shape (samples,) and (channels,)
-        The values of the data that it explains.
-    picked : array of int, shape (channels,)
-        Their channels among those of the model, whose last samples they are.
-    ends : array of int, shape (states,)
-        The channels that are the state at the end; none in the last segment of a motion.
-    begins : array of int, shape (states,)
-        Where the same numbers of the next segment's beginning stand among all unknowns.
-    """
-
-    model: ForwardModel
-    places: np.ndarray
+    model: ForwardModel  # from the beginning of the segment to its end
+    places: np.ndarray  # (parameters,): where its parameters stand among all unknowns
+    # rows, columns: (samples,) and (channels,): the values of the data that it explains
     rows: np.ndarray
     columns: np.ndarray
-    picked: np.ndarray
-    ends: np.ndarray
-    begins: np.ndarray
+    picked: np.ndarray  # (channels,): their channels among those of the model, whose last samples they are
+    ends: np.ndarray  # (states,): the channels that are the state at the end; none in the last segment of a motion
+    begins: np.ndarray  # (states,): where the same numbers of the next segment's beginning stand among all unknowns
 
     @property
     def block(self) -> tuple[np.ndarray, ...]:
@@ -72,60 +57,32 @@ class Piece:
 
 @dataclass(frozen=True, eq=False)
 class Response:
-    """What segments answer.
+    """What segments answer."""
 
-    Parameters
-    ----------
-    values : array, shape (samples, channels)
-        In the layout of the data; 0 where no segment has a sample.
-    gaps : array, shape (gaps,)
-        End of each segment less the beginning of the next one, in parts of the states' ranges.
-    """
-
-    values: np.ndarray
-    gaps: np.ndarray
+    values: np.ndarray  # (samples, channels): in the layout of the data; 0 where no segment has a sample
+    gaps: np.ndarray  # (gaps,): end of each segment less the beginning of the next one, in parts of the states' ranges
 
 
 @dataclass(frozen=True, eq=False)
 class Tangent:
-    """A response of segments with its derivatives.
+    """A response of segments with its derivatives."""
 
-    Parameters
-    ----------
-    vector : array, shape (unknowns,)
-    response : Response
-    blocks : tuple of array, each of shape (samples, channels, parameters)
-        Derivative of each segment's values by its own parameters.
-    ends : tuple of array, each of shape (states, parameters)
-        Derivative of the state at its end.
-    """
-
-    vector: np.ndarray
+    vector: np.ndarray  # (unknowns,)
     response: Response
+    # blocks: (samples, channels, parameters): derivative of each segment's values by its own parameters
     blocks: tuple[np.ndarray, ...]
-    ends: tuple[np.ndarray, ...]
+    ends: tuple[np.ndarray, ...]  # (states, parameters): derivative of the state at its end
 
 
 @dataclass(frozen=True, eq=False)
 class Segments:
-    """Segments of one or several motions: their values, and by how much they miss each other.
+    """Segments of one or several motions: their values, and by how much they miss each other."""
 
-    Parameters
-    ----------
-    pieces : tuple of Piece
-        Those of one motion after each other.
-    parameters : Parameters
-        Of the whole motions, then the states at the later beginnings.
-    ranges : array, shape (gaps,)
-        Of the states, in the order of the gaps, which is that of the states among the parameters.
-    shape : (samples, channels)
-        Of the data.
-    """
-
-    pieces: tuple[Piece, ...]
-    parameters: Parameters
+    pieces: tuple[Piece, ...]  # those of one motion after each other
+    parameters: Parameters  # of the whole motions, then the states at the later beginnings
+    # ranges: (gaps,): of the states, in the order of the gaps, which is that of the states among the parameters
     ranges: np.ndarray
-    shape: tuple[int, int]
+    shape: tuple[int, int]  # of the data
 
     def evaluate(self, vector: np.ndarray) -> Response:
         """Response at a vector (unknowns,).

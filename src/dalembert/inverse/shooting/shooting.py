@@ -12,11 +12,11 @@ from dalembert.errors import InputError, SolveError
 from dalembert.inverse.experiments.tracks import tracks
 from dalembert.inverse.least_squares.descent import End, descend, recorded
 from dalembert.inverse.noise.noise_floor import NoiseFloor
+from dalembert.inverse.problem.nodes import Nodes
 from dalembert.inverse.problem.problem import MisfitProblem
 from dalembert.inverse.shooting.continuity import Chain, ChainEnd
 from dalembert.inverse.shooting.cuts import Cut, guess, named_cut, segments
 from dalembert.inverse.shooting.natural_cuts import coarser, natural_cuts
-from dalembert.inverse.shooting.nodes import Nodes
 from dalembert.inverse.shooting.segments import ShootingState
 from dalembert.inverse.starts.spread import spread_points
 from dalembert.optimize import Squares

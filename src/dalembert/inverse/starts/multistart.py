@@ -9,8 +9,9 @@ from typing import TypeAlias
 import numpy as np
 
 from dalembert.inverse.least_squares.descent import End, descend, recorded
-from dalembert.inverse.noise.noise_floor import NoiseFloor, random_residuals
+from dalembert.inverse.noise.noise_floor import NoiseFloor
 from dalembert.inverse.problem.problem import MisfitProblem, Work
+from dalembert.inverse.problem.random_residuals import random_residuals
 from dalembert.inverse.problem.search_coordinates import SearchCoordinates
 from dalembert.inverse.starts.neighbours import neighbours
 from dalembert.inverse.starts.spread import spread_points

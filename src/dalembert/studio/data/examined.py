@@ -171,7 +171,7 @@ def _channels(kept: Kept, study: Path, text: str) -> dict[str, str]:
 
 def _suspect(study: Path, text: str) -> Iterator[Finding]:
     """Findings on suspicious readings, except offsets that the study identifies."""
-    from dalembert.inverse.experiments.suspect_offsets import first_findings
+    from dalembert.inverse.plausibility.suspect_offsets import first_findings
     from dalembert.study.tables.sensor_table import reads
 
     try:

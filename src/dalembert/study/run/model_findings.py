@@ -41,7 +41,7 @@ def time_scale_findings(study: Study) -> Iterator[Finding]:
     """
     if not study.has_system or study.task not in ("identify", "sample", "regularise"):
         return
-    from dalembert.inverse.experiments.suspect_times import time_findings
+    from dalembert.inverse.plausibility.suspect_times import time_findings
 
     records = [(study.variant(table), table) for table in study.file.experiments]
     records += [] if study.file.data is None else [(study, study.file.data)]

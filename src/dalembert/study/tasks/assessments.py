@@ -68,7 +68,7 @@ def foreseen(model: Any, data: Any) -> tuple[str, ...]:
     from dalembert.forward import findings_at
     from dalembert.inverse import identifiability
     from dalembert.inverse.experiments.experiments import joint
-    from dalembert.inverse.experiments.suspect_units import first_unit_findings
+    from dalembert.inverse.plausibility.suspect_units import first_unit_findings
 
     if data is None:
         model, data = joint(model)

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from dalembert.forward import PythonModel
+from dalembert.inverse.bands.band_descent import jacobian_of, screened
 from dalembert.inverse.bands.band_problem import pose
 from dalembert.inverse.bands.candidate import candidate
 from dalembert.inverse.bands.check import LOSS, check, scale
 from dalembert.inverse.bands.correction import corrected
-from dalembert.inverse.bands.descent import jacobian_of, screened
 from dalembert.inverse.bands.unknowns import unknowns_of
 from dalembert.inverse.problem.journal import Journal
 from dalembert.surrogate import Tensor, fit

@@ -196,7 +196,7 @@ def test_few_groups_are_noted():
 
 def test_a_criterion_that_prefers_a_worse_prediction_is_a_doubt():
     found = compare_models(fitted(recorded(0.5)))
-    from dalembert.inverse.comparison.conclusions import comparison_findings
+    from dalembert.inverse.comparison.comparison_findings import comparison_findings
 
     made = comparison_findings(replace(found, bic=found.bic[::-1]), (), {})
     (finding,) = (item for item in made.findings if item.code == "criteria-disagree")

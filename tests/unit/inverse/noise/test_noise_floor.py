@@ -5,9 +5,10 @@ import pytest
 
 from dalembert.data import Measurements
 from dalembert.forward import PythonModel
-from dalembert.inverse.noise.noise_floor import autocorrelation, noise_floor, quantum, random_residuals
+from dalembert.inverse.noise.noise_floor import noise_floor, quantum
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import pose
+from dalembert.inverse.problem.random_residuals import autocorrelation, random_residuals
 
 TIMES = np.linspace(0, 3, 200)
 TRUE = np.sin(TIMES)

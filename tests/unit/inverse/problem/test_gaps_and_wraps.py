@@ -8,9 +8,10 @@ from dalembert.data import Measurements
 from dalembert.errors import DataError
 from dalembert.forward import PythonModel
 from dalembert.inverse import Fit, identify
-from dalembert.inverse.noise.noise_floor import noise_floor, random_residuals
+from dalembert.inverse.noise.noise_floor import noise_floor
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import pose
+from dalembert.inverse.problem.random_residuals import random_residuals
 from dalembert.inverse.starts.multistart import horizons
 from dalembert.optimize import ParticleSwarm
 from dalembert.report import Table

@@ -7,10 +7,10 @@ import dalembert as da
 from conclusions import only
 from dalembert.errors import InputError
 from dalembert.inverse import MultipleShooting, identify
+from dalembert.inverse.checks.error_growth import error_growth
 from dalembert.inverse.experiments.tracks import tracks
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import pose
-from dalembert.inverse.shooting.growth import error_growth
 from dalembert.inverse.shooting.natural_cuts import natural_cuts
 
 RNG = np.random.default_rng(7)

@@ -17,18 +17,10 @@ TINY = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Autoregression:
-    """Stationary noise e_t = Σ_j φ_j e_{t−j} + white noise.
+    """Stationary noise e_t = Σ_j φ_j e_{t−j} + white noise."""
 
-    Parameters
-    ----------
-    coefficients : array, shape (order,)
-        φ.
-    covariances : array, shape (places,)
-        Autocovariances at lags of 0 and more places of the grid.
-    """
-
-    coefficients: np.ndarray
-    covariances: np.ndarray
+    coefficients: np.ndarray  # (order,): φ
+    covariances: np.ndarray  # (places,): autocovariances at lags of 0 and more places of the grid
 
     @property
     def order(self) -> int:
@@ -67,19 +59,14 @@ class Autoregression:
 
 @dataclass(frozen=True, eq=False)
 class Moments:
-    """Sums of products of residuals at each lag, and the estimate of the noise's autocovariances so far.
-
-    Parameters
-    ----------
-    series : Series
-    basis : array, shape (places, parameters)
-        On the grid, 0 in gaps (see :func:`~dalembert.inverse.noise.correlation.whiteness.p_value`).
-    count, sums, covariances : array, shape (lags + 1,)
-        Number of pairs, sum of their products, and estimated autocovariance of the noise.
-    """
+    """Sums of products of residuals at each lag, and the estimate of the noise's autocovariances so far."""
 
     series: Series
+    # basis: (places, parameters): on the grid, 0 in gaps (see
+    # :func:`~dalembert.inverse.noise.correlation.whiteness.p_value`)
     basis: np.ndarray
+    # count, sums, covariances: (lags + 1,): number of pairs, sum of their products, and estimated autocovariance of the
+    # noise
     count: np.ndarray
     sums: np.ndarray
     covariances: np.ndarray

@@ -16,13 +16,8 @@ LEAST = 1e-6
 def balanced(series: Sequence[Series], residual: np.ndarray, basis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return weighted residuals and the basis of what was fitted, if each series had counted by its own noise.
 
-    Parameters
-    ----------
-    series : sequence of Series
-    residual : array, shape (values,)
-        Weighted residuals r of a fit that takes the noise of all series for equal.
-    basis : array, shape (values, parameters)
-        Orthonormal basis U of the weighted jacobian's columns.
+    ``residual`` (values,): weighted residuals r of a fit that takes the noise of all series for equal. ``basis``
+    (values, parameters): orthonormal basis U of the weighted jacobian's columns.
 
     Notes
     -----

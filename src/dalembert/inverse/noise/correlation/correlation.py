@@ -42,7 +42,7 @@ def correlation(
 
     Parameters
     ----------
-    problem : Problem
+    problem : MisfitProblem
     response : array, shape (samples, channels)
     slopes : array, shape (values + priors, parameters)
         W^½ ∂R/∂p · scale, one row a value of (samples, channels), then one a prior. None without a jacobian.

@@ -10,21 +10,11 @@ from dalembert.inverse.noise.correlation.series import Series
 
 @dataclass(frozen=True, eq=False)
 class OrnsteinUhlenbeck:
-    """Stationary noise with the covariance σ² exp(−|Δt|/τ).
+    """Stationary noise with the covariance σ² exp(−|Δt|/τ)."""
 
-    Parameters
-    ----------
-    variance : float
-        σ².
-    time : float
-        τ, in units of the coordinate.
-    first : float
-        Correlation at the median interval.
-    """
-
-    variance: float
-    time: float
-    first: float
+    variance: float  # σ²
+    time: float  # τ, in units of the coordinate
+    first: float  # correlation at the median interval
     order: int = 1
 
     def decay(self, step: float) -> float:

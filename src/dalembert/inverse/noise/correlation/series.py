@@ -19,36 +19,17 @@ SPARSE = 20
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """Places of one channel's fitted values.
+    """Places of one channel's fitted values."""
 
-    Parameters
-    ----------
-    name : str
-        The channel; with several experiments ``"NAME.channel"``.
-    rows : array of int, shape (values,)
-        Places among the weighted residuals, which are flat from (samples, channels).
-    along : array, shape (values,)
-        Coordinate, usually time.
-    grid : array of int, shape (values,), optional
-        Place of each value on an even grid, gaps left out. None where the samples are uneven.
-    step : float
-        Interval of the grid, or the median interval of uneven samples.
-    unit : str
-        Of the coordinate.
-    experiment : str
-        Empty for a single one.
-    channel : str
-        Its name within the experiment.
-    """
-
-    name: str
-    rows: np.ndarray
-    along: np.ndarray
+    name: str  # the channel; with several experiments ``"NAME.channel"``
+    rows: np.ndarray  # (values,): places among the weighted residuals, which are flat from (samples, channels)
+    along: np.ndarray  # (values,): coordinate, usually time
+    # grid: (values,): place of each value on an even grid, gaps left out. None where the samples are uneven.
     grid: np.ndarray | None
-    step: float
-    unit: str
-    experiment: str = ""
-    channel: str = ""
+    step: float  # interval of the grid, or the median interval of uneven samples
+    unit: str  # of the coordinate
+    experiment: str = ""  # empty for a single one
+    channel: str = ""  # its name within the experiment
 
     @property
     def length(self) -> float:

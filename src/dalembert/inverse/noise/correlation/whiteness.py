@@ -20,14 +20,9 @@ LAGS = 10
 def p_value(series: Series, values: np.ndarray, basis: np.ndarray) -> float:
     """Return the probability of correlations at least as large in white noise; 1 for fewer than ten values.
 
-    Parameters
-    ----------
-    series : Series
-    values : array, shape (values,)
-        Weighted residuals.
-    basis : array, shape (values, parameters)
-        These rows of an orthonormal basis of the weighted jacobian's columns. A fit takes the part of the noise along
-        them out of the residuals, which correlates the rest; that is allowed for.
+    ``values`` (values,): weighted residuals. ``basis`` (values, parameters): these rows of an orthonormal basis of the
+    weighted jacobian's columns. A fit takes the part of the noise along them out of the residuals, which correlates the
+    rest; that is allowed for.
 
     Notes
     -----

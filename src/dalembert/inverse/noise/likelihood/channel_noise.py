@@ -20,23 +20,12 @@ STEP = 1e-30
 
 @dataclass(frozen=True, eq=False)
 class ChannelNoise:
-    """Noise of one series of residuals.
-
-    Parameters
-    ----------
-    series : Series
-    model : NoiseModel
-    given : array, shape (values,)
-        Known deviations of the data, W^-½.
-    names : mapping of str to str
-        Full name of each noise parameter by its name within the model.
-    whitening : Whitening or None
-    """
+    """Noise of one series of residuals."""
 
     series: Series
     model: NoiseModel
-    given: np.ndarray
-    names: Mapping[str, str]
+    given: np.ndarray  # (values,): known deviations of the data, W^-½
+    names: Mapping[str, str]  # full name of each noise parameter by its name within the model
     whitening: Whitening | None
 
     def values(self, known: Mapping[str, Any]) -> dict[str, np.ndarray]:
@@ -81,12 +70,8 @@ class ChannelNoise:
     ) -> list[np.ndarray]:
         """Return the log density of each group of values after all others, for each grouping (batch, groups).
 
-        Parameters
-        ----------
-        residual, response : array, shape (batch, values)
-        values : mapping of str to array, shape (batch, 1)
-        groupings : sequence of array of int, shape (values,)
-            Number of the group of each value, from 0.
+        ``residual``, ``response`` (batch, values). ``values`` (batch, 1). ``groupings`` (values,): number of the group
+        of each value, from 0.
 
         Notes
         -----

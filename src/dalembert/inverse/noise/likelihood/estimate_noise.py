@@ -18,7 +18,7 @@ from dalembert.inverse.noise.likelihood.placing import Noise, base_of, picked_mo
 from dalembert.inverse.noise.models.correlated_noise import CorrelatedNoise
 from dalembert.inverse.noise.models.independent_noise import ProportionalNoise
 from dalembert.inverse.noise.models.noise_model import NoiseModel
-from dalembert.inverse.problem.prior import prior_slopes, priors
+from dalembert.inverse.problem.prior import prior_slopes
 from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
 
 STEP = 1e-4
@@ -31,26 +31,15 @@ ZERO = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class NoiseFit:
-    """Model and noise at the maximum of their restricted likelihood.
-
-    Parameters
-    ----------
-    likelihood : Likelihood
-    maximum : Maximum
-    noise : EstimatedNoise
-    estimate : Estimate
-        Of the model's parameters, at unit variance.
-    weights : array, shape (samples, channels)
-        1/σ² with the deviation σ of each fitted value, else 0.
-    slopes : array, shape (values + priors, parameters)
-        Whitened jacobian times the parameters' scale; one row each of (samples, channels), then one a prior.
-    """
+    """Model and noise at the maximum of their restricted likelihood."""
 
     likelihood: Likelihood
     maximum: Maximum
     noise: EstimatedNoise
-    estimate: Estimate
-    weights: np.ndarray
+    estimate: Estimate  # of the model's parameters, at unit variance
+    weights: np.ndarray  # (samples, channels): 1/σ² with the deviation σ of each fitted value, else 0
+    # slopes: (values + priors, parameters): whitened jacobian times the parameters' scale; one row each of (samples,
+    # channels), then one a prior
     slopes: np.ndarray
 
     @property
@@ -66,14 +55,7 @@ class NoiseFit:
 def estimate_noise(problem: MisfitProblem, noise: Noise, at: Linearisation, *, known: bool) -> NoiseFit:
     """Return model and noise at the maximum of the restricted likelihood, from a plain minimum.
 
-    Parameters
-    ----------
-    problem : Problem
-    noise : NoiseModel, its name, or mapping of channel to NoiseModel
-    at : Linearisation
-        At the plain minimum.
-    known : bool
-        Whether the weights of the problem are 1/variance.
+    ``at``: at the plain minimum. ``known``: whether the weights of the problem are 1/variance.
 
     Raises
     ------
@@ -91,7 +73,7 @@ def estimate_noise(problem: MisfitProblem, noise: Noise, at: Linearisation, *, k
         picked = again
         likelihood, found = _largest(problem, picked, found.expansion.at, known=known)
     model = problem.model.parameters
-    few = problem.compared + len(priors(model)) <= len(model)  # no residual is left to estimate the noise from
+    few = problem.compared + len(model.square_priors) <= len(model)  # no residual is left to estimate the noise from
     variance = np.nan if few and len(likelihood.noise_parameters) else 1.0
     return NoiseFit(
         likelihood,

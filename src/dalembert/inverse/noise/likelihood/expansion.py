@@ -14,17 +14,6 @@ from dalembert.parameters import Parameters
 class Expansion:
     """Log-likelihood, gradient and information at a vector.
 
-    Parameters
-    ----------
-    at : Linearisation
-        Of the response.
-    vector : array, shape (parameters,)
-        Of the model, then of the noise.
-    white, logs : array, shape (values,)
-        Whitened residuals w, and log s, with the deviation s of each value after those before it.
-    means, spreads : array, shape (values, parameters)
-        ∂m/s, with the mean m of each value after those before it, and ∂ log s.
-
     Notes
     -----
     With w = (m − y)/s, M = ``means`` and S = ``spreads``, ∂w = M − w S, the gradient is −Mᵀ w + Sᵀ (w² − 1) and the
@@ -32,10 +21,12 @@ class Expansion:
     depend on it, it is Jᵀ Σ⁻¹ J.
     """
 
-    at: Linearisation
-    vector: np.ndarray
+    at: Linearisation  # of the response
+    vector: np.ndarray  # (parameters,): of the model, then of the noise
+    # white, logs: (values,): whitened residuals w, and log s, with the deviation s of each value after those before it
     white: np.ndarray
     logs: np.ndarray
+    # means, spreads: (values, parameters): ∂m/s, with the mean m of each value after those before it, and ∂ log s
     means: np.ndarray
     spreads: np.ndarray
 

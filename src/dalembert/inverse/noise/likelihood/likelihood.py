@@ -40,7 +40,7 @@ class Likelihood:
 
     Parameters
     ----------
-    problem : Problem
+    problem : MisfitProblem
         Model or joint experiments, and data; values of weight 0 do not count.
     noise : NoiseModel or mapping of str to NoiseModel
         As it was given.

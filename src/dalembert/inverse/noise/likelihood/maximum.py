@@ -44,22 +44,10 @@ HALVINGS = 10
 
 @dataclass(frozen=True, eq=False)
 class Maximum:
-    """Where a likelihood is largest.
+    """Where a likelihood is largest."""
 
-    Parameters
-    ----------
-    vector : array, shape (parameters,)
-        Of the model, then of the noise.
-    value : float
-        Log-likelihood with priors and restriction.
-    expansion : Expansion
-    restriction : Restriction
-    success : bool
-    message : str
-    """
-
-    vector: np.ndarray
-    value: float
+    vector: np.ndarray  # (parameters,): of the model, then of the noise
+    value: float  # log-likelihood with priors and restriction
     expansion: Expansion
     restriction: Restriction
     success: bool
@@ -116,16 +104,8 @@ def maximum(
 ) -> Maximum:
     """Return the maximum of the restricted likelihood near a vector (parameters,) of model and noise.
 
-    Parameters
-    ----------
-    likelihood : Likelihood
-    start : array, shape (parameters,)
-    held : frozenset of int
-        Places of parameters that keep their values.
-    at : Linearisation, optional
-        Of the response at the start, if it is known.
-    restriction : Restriction, optional
-        A fixed one; if not given, that of each linearised response in turn.
+    ``start`` (parameters,). ``held``: places of parameters that keep their values. ``at``: of the response at the
+    start, if it is known. ``restriction``: a fixed one; if not given, that of each linearised response in turn.
 
     Raises
     ------

@@ -29,14 +29,7 @@ def ordered(
 ) -> dict[Series, NoiseModel]:
     """Return the noise models with the order of each autoregressive one that leaves it open.
 
-    Parameters
-    ----------
-    problem : Problem
-    picked : mapping of Series to NoiseModel
-    at : Linearisation
-        Whose residuals are compared.
-    known : bool
-        Whether the weights of the problem are 1/variance.
+    ``at``: whose residuals are compared. ``known``: whether the weights of the problem are 1/variance.
 
     Notes
     -----

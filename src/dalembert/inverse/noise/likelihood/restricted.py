@@ -22,15 +22,6 @@ class Restriction:
 
     Added to the log-likelihood it removes the bias of noise parameters that estimating the others causes.
 
-    Parameters
-    ----------
-    problem : Problem
-    channels : sequence of ChannelNoise
-    parameters : Parameters
-        Of the model, then of the noise.
-    at : Linearisation
-        Where the response and its jacobian are taken.
-
     Notes
     -----
     For a linear model and noise that does not depend on its response the sum is the restricted likelihood; otherwise
@@ -42,8 +33,8 @@ class Restriction:
 
     problem: MisfitProblem
     channels: Sequence[ChannelNoise]
-    parameters: Parameters
-    at: Linearisation
+    parameters: Parameters  # of the model, then of the noise
+    at: Linearisation  # where the response and its jacobian are taken
 
     def value(self, vector: np.ndarray) -> float:
         """Return it at a vector (parameters,)."""

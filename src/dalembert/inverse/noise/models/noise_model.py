@@ -18,24 +18,14 @@ Known = float | tuple[float, float] | None
 
 @dataclass(frozen=True)
 class Extent:
-    """Sizes of a channel's data, from which the bounds of noise parameters follow.
+    """Sizes of a channel's data, from which the bounds of noise parameters follow."""
 
-    Parameters
-    ----------
-    size : float
-        Standard deviation of the data, in their unit.
-    unit : str
-    step, length : float
-        Smallest interval of the samples and duration of the record, in units of the coordinate.
-    along : str
-        Unit of the coordinate.
-    """
-
-    size: float
+    size: float  # standard deviation of the data, in their unit
     unit: str
+    # step, length: smallest interval of the samples and duration of the record, in units of the coordinate
     step: float
     length: float
-    along: str
+    along: str  # unit of the coordinate
 
 
 @dataclass(frozen=True)

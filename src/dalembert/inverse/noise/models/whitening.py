@@ -28,15 +28,9 @@ class Whitening(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class DecayWhitening:
-    """Whitening of noise with the correlation exp(−Δt/τ): each value is predicted from the one before.
+    """Whitening of noise with the correlation exp(−Δt/τ): each value is predicted from the one before."""
 
-    Parameters
-    ----------
-    intervals : array, shape (values − 1,)
-        Δt.
-    """
-
-    intervals: np.ndarray
+    intervals: np.ndarray  # (values − 1,): Δt
 
     def matrix(self, values: Mapping[str, np.ndarray]) -> "csr_array":
         from scipy.sparse import csr_array, diags_array
@@ -52,22 +46,16 @@ class DecayWhitening:
 class GridWhitening:
     """Whitening of an autoregressive process of order m on an even grid, with gaps.
 
-    Parameters
-    ----------
-    grid : array of int, shape (values,)
-        Place of each value.
-    order : int
-    correlations : callable
-        ``correlations(values, number)`` returns the autocorrelations at lags of 0 and more places, shape (number,).
-
     Notes
     -----
     A value is predicted from those back to the last m places without a gap: what lies before adds nothing. Rows with
     the same lags to these values share one solution of the Yule–Walker equations.
     """
 
-    grid: np.ndarray
+    grid: np.ndarray  # (values,): place of each value
     order: int
+    # correlations: ``correlations(values, number)`` returns the autocorrelations at lags of 0 and more places, shape
+    # (number,)
     correlations: Callable[[Mapping[str, np.ndarray], int], np.ndarray]
 
     @cached_property

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from dalembert.inverse import CrossValidation, ModelComparison
-from dalembert.inverse.comparison.conclusions import alike
+from dalembert.inverse.comparison.comparison_findings import alike
 from dalembert.inverse.comparison.left_out import WAYS
 from dalembert.report import charts
 from dalembert.report.headline import Headline

@@ -1,0 +1,1 @@
+"""Checks of an identification: each is a function of its optimum that yields findings."""

@@ -1,0 +1,1 @@
+"""The steps of an identification, each from one record to the next."""

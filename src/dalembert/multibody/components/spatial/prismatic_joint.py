@@ -4,13 +4,9 @@ __all__ = ["PrismaticJoint"]
 
 from dataclasses import dataclass, field
 
-from dalembert.multibody.components.base_joint import Smoothing
 from dalembert.multibody.components.spatial.conditions import level, perpendicular
-from dalembert.multibody.components.spatial.friction import Friction, friction_kind
-from dalembert.multibody.components.spatial.joint import Joint, joint_kind
-from dalembert.multibody.components.spatial.orientation import Vector
-from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
-from dalembert.multibody.kernels.kind import Kind
+from dalembert.multibody.components.spatial.friction import Friction, RubbingJoint, friction_kind
+from dalembert.multibody.components.spatial.joint import joint_kind
 
 KIND = joint_kind(
     "prismatic_in_space",
@@ -27,7 +23,7 @@ FRICTION = friction_kind("prismatic_friction_in_space", __name__, 5, (0, 1), Fal
 
 
 @dataclass(frozen=True)
-class PrismaticJoint(Joint):
+class PrismaticJoint(RubbingJoint):
     """A slide: b moves along the axis and does not turn relative to a.
 
     Parameters
@@ -39,24 +35,9 @@ class PrismaticJoint(Joint):
     friction : Friction, optional
     """
 
-    axis: Vector = (0.0, 0.0, 1.0)
     friction: Friction | None = field(default=None, metadata={"table": "FrictionAlong"})
 
     kind = KIND
+    friction_kind = FRICTION
+    rate = "speed"
     aligned = (1, 2, 3)
-
-    @property
-    def smoothing(self) -> Smoothing | None:
-        return self.friction.smoothing("speed", "m/s") if self.friction else None
-
-    @property
-    def parts(self) -> dict[str, Kind]:
-        return {"friction": FRICTION} if self.friction else {}
-
-    def lower(self, lowering: SpatialRows) -> None:
-        self._oriented()
-        pair = self.pair(lowering)
-        index = self._add(lowering, pair)
-        if self.friction:
-            law = self.friction.law(f"prismatic joint {self.name!r}", turns=False)
-            lowering.add(FRICTION, index, [*pair.data, *law], pair.integers, f"{self.name}.friction")

@@ -154,10 +154,7 @@ def _trajectories(parameters: int, count: int, levels: int, seed: int) -> np.nda
 
 
 def _effects(parts: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Effects (trajectories, samples, channels, parameters) from values (trajectories, points, samples, channels).
-
-    Each step of a trajectory changes one parameter.
-    """
+    """Effects (trajectories, samples, channels, parameters) from values (trajectories, points, samples, channels)."""
     steps = np.diff(parts, axis=1)
     changed = np.abs(steps).argmax(axis=2)
     sizes = np.take_along_axis(steps, changed[..., None], axis=2)[..., 0]

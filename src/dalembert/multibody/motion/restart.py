@@ -124,10 +124,7 @@ class Completion:
 
     @classmethod
     def at(cls, lowered: Lowered, chart: StateChart, numbers: np.ndarray) -> "Completion":
-        """Solve the joints' constraints for the dependent coordinates near the chart's state, by Newton's method.
-
-        Raises SolveError: where the joints do not close there.
-        """
+        """Solve the joints' constraints for the dependent coordinates near the chart's state, by Newton's method."""
         n, size = lowered.structure.n, lowered.structure.size
         own, half = LocalCoordinates.of(lowered), len(chart.places) // 2
         near = chart.near[:n]

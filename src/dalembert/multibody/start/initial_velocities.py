@@ -23,11 +23,7 @@ _ROUNDING = 1e-9  # of the largest velocity: what stated velocities may leave of
 def initial_velocities(
     bodies: Sequence[BaseBody], rates: np.ndarray, lowered: Lowered, model: BlockModel
 ) -> np.ndarray:
-    """Velocities of rigid motions that satisfy the joints, (N + 1,); ``rates`` are the rates that the bodies have.
-
-    Raises ModelError: where the stated velocities contradict a joint, with the velocities that are stated and the
-    nearest possible ones; where no velocities satisfy the joints.
-    """
+    """Velocities of rigid motions that satisfy the joints, (N + 1,); ``rates`` are the rates that the bodies have."""
     motion = _RigidMotion(bodies, lowered, model)
     given = np.where(lowered.stated, lowered.rates, 0.0)
     _, v, left, (wrong, wrong_slope), (speed, slope) = motion.completed(given, rates & ~lowered.stated)

@@ -247,9 +247,7 @@ def _body(group: Group, motion: Motion, driven: bool) -> RigidBody:
 def _connect(
     system: SpatialSystem, tree: Tree, joint: TreeJoint, name: str, a: Side, body: RigidBody, slip: Number
 ) -> Joint:
-    """Add a joint of this name, which is returned, its friction and its armature inertia.
-
-    Zero numbers that are parameters stay in the model."""
+    """Add a joint of this name, which is returned, its friction and its armature inertia."""
     has = {name: getattr(joint, name) != 0.0 or f"{joint.name}.{name}" in tree.changed for name in JOINT_NUMBERS}
     friction = None
     if has["damping"] or has["friction"]:

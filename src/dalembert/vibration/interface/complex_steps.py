@@ -30,10 +30,7 @@ Part = tuple[np.ndarray, Callable[[int], str]]
 def check_numbers(
     builder: Callable[..., VibrationSystem], parameters: Parameters, vector: np.ndarray, thorough: bool = True
 ) -> None:
-    """Raise where a number of a system loses the complex step of a parameter.
-
-    Raises InputError, which names the parameter, the component and its number.
-    """
+    """Raise where a number of a system loses the complex step of a parameter."""
     _check(builder, parameters, vector, lambda system: _parts(lower(system)), thorough)
 
 

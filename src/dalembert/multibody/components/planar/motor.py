@@ -20,7 +20,7 @@ MOTOR = drive_kind("motor", _command, integers=("command",))
 
 @parameters_of(MotorNumbers)
 @dataclass(frozen=True)
-class Motor(MotorNumbers, Drive):
+class Motor(Drive, MotorNumbers):
     """A direct-current motor with a gear between two bodies: it turns b against a.
 
     With the gear ratio N, the rate w of b against a, and the voltage U within its limit, the current is

@@ -91,10 +91,7 @@ def coordinates_of(joint: Joint) -> list[str]:
 
 
 def chosen_coordinate(owner: str, joint: Any, coordinate: str | None) -> str:
-    """The coordinate of a joint that is asked for; the angle, or else the displacement, where none is.
-
-    Raises InputError: for what is no joint with such a coordinate.
-    """
+    """The coordinate of a joint that is asked for; the angle, or else the displacement, where none is."""
     known = coordinates_of(joint) if isinstance(joint, Joint) else []
     if not known or coordinate not in (None, *known):
         given = f"{type(joint).__name__} {getattr(joint, 'name', joint)!r}"

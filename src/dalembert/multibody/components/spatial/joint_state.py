@@ -112,8 +112,6 @@ def stated(joint: Joint, coordinate: str, course: Signal) -> JointState:
 def kept(joint: Joint, coordinate: str, course: Signal, now: tuple[np.ndarray, np.ndarray, np.ndarray]) -> JointState:
     """Return the constraint that makes a coordinate follow a signal, a rotation or direction from the present pose on.
 
-    So these have no singular pose near the present one, and the rates of rotations are angular velocities.
-
     ``now`` (array, array, array): the axes of the joint at a and at b, as columns, and the position of b relative to a,
     in the fixed axes.
     """

@@ -1,6 +1,8 @@
 """Which parameters cause the variance of a response: Sobol indices from a surrogate."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -103,42 +105,17 @@ def global_sensitivity(
     runs = Runs(model, inputs.box, "global sensitivity", on_event)
     runs.tell(Began(runs.method, None))
     surrogate = _surrogate(runs, inputs, scheme, checks, seed)
-    samples, channels = runs.shape
+    # Without groups indices of each output; with the channels as groups the ratios of sums over the samples.
     each, overall = (
         sobol_indices(surrogate.surrogate, rules=inputs.rules, groups=groups, checks=surrogate.checks)
         for groups in (None, surrogate.groups)
     )
+    # The error of the surrogate and the tails are independent causes; their bounds add.
     names = tuple(channel.name for channel in model.channels)
     uncertainty = overall.uncertainty + _of_tails(inputs, overall, names, tolerance)
     _demand(uncertainty, names, tolerance, surrogate.surrogate.improvement)
-    shape = samples, channels, len(inputs.box)
-    result = SensitivityIndices(
-        coordinate=model.coordinate,
-        channels=names,
-        units=tuple(channel.unit for channel in model.channels),
-        box=inputs.box,
-        distributions=inputs.texts,
-        parameter_units=model.parameters.units(inputs.box.names),
-        mean=each.mean.reshape(samples, channels),
-        deviations=np.sqrt(each.variance).reshape(samples, channels),
-        first=each.first.T.reshape(shape),
-        total=each.total.T.reshape(shape),
-        aggregated_first=overall.first.T,
-        aggregated_total=overall.total.T,
-        uncertainty=uncertainty,
-        runs=runs.count,
-        checks=0 if surrogate.checks is None else len(surrogate.checks.eta),
-        failures=tuple(runs.failures),
-        provenance=provenance(model, scheme, seed=seed, tolerance=tolerance, intervals=dict(described(inputs))),
-        findings=(
-            *failed_runs(runs),
-            *_constant(names, overall),
-            *_without_indices(names, overall, each.variance.reshape(samples, channels)),
-            *_negligible(inputs, overall),
-            unseen(surrogate.surrogate, inputs.box.names),
-            *findings_at(model, inputs.box.middle),
-        ),
-    )
+    made_by = provenance(model, scheme, seed=seed, tolerance=tolerance, intervals=dict(described(inputs)))
+    result = _indices(model, inputs, runs, surrogate, (each, overall), uncertainty, made_by)
     runs.tell(Ended(runs.method, result.success, result.status, runs.count, 0.0))
     return result
 
@@ -162,6 +139,8 @@ def _surrogate(runs: Runs, inputs: Inputs, scheme: Scheme, count: int | None, se
     surrogate = fit(function, box.lower, box.upper, scheme, seed=seed, groups=groups)
     if not len(runs.free):
         return _Accumulated(surrogate, groups, None)
+    # Checks are drawn from the distributions, so that their errors count as the variance does.
+    # The part of the seed keeps them apart from the held-out runs of the surrogate.
     number = int(np.clip(SHARE * surrogate.runs, FEWEST, MOST)) if count is None else count
     points = inputs.random(number, np.random.default_rng((seed, 5)))
     errors = function(points) - surrogate(points)
@@ -170,16 +149,55 @@ def _surrogate(runs: Runs, inputs: Inputs, scheme: Scheme, count: int | None, se
     return _Accumulated(surrogate, groups, checks)
 
 
-def _of_tails(inputs: Inputs, overall: SobolIndices, names: tuple[str, ...], tolerance: float) -> np.ndarray:
-    """Return how much the tails that are cut off can change an index of each channel, (channels,).
+def _indices(
+    model: ForwardModel,
+    inputs: Inputs,
+    runs: Runs,
+    surrogate: _Accumulated,
+    indices: tuple[SobolIndices, SobolIndices],
+    uncertainty: np.ndarray,
+    made_by: Mapping[str, Any],
+) -> SensitivityIndices:
+    """Return the result, from the indices of each output, in order (samples, channels), and of whole channels."""
+    each, overall = indices
+    samples, channels = runs.shape
+    names, shape = tuple(channel.name for channel in model.channels), (samples, channels, len(inputs.box))
+    return SensitivityIndices(
+        coordinate=model.coordinate,
+        channels=names,
+        units=tuple(channel.unit for channel in model.channels),
+        box=inputs.box,
+        distributions=inputs.texts,
+        parameter_units=model.parameters.units(inputs.box.names),
+        mean=each.mean.reshape(samples, channels),
+        deviations=np.sqrt(each.variance).reshape(samples, channels),
+        first=each.first.T.reshape(shape),
+        total=each.total.T.reshape(shape),
+        aggregated_first=overall.first.T,
+        aggregated_total=overall.total.T,
+        uncertainty=uncertainty,
+        runs=runs.count,
+        checks=0 if surrogate.checks is None else len(surrogate.checks.eta),
+        failures=tuple(runs.failures),
+        provenance=made_by,
+        findings=(
+            *failed_runs(runs),
+            *_constant(names, overall),
+            *_without_indices(names, overall, each.variance.reshape(samples, channels)),
+            *_negligible(inputs, overall),
+            unseen(surrogate.surrogate, inputs.box.names),
+            *findings_at(model, inputs.box.middle),
+        ),
+    )
 
-    Notes
-    -----
-    The part m of the variance of an input, to whose share S it is proportional, changes an index by at most
-    S (1 − S) m / (1 − m (1 − S)), as that of a linear model.
-    """
+
+def _of_tails(inputs: Inputs, overall: SobolIndices, names: tuple[str, ...], tolerance: float) -> np.ndarray:
+    """Return how much the tails that are cut off can change an index of each channel, (channels,)."""
+    # The cut removes the part m of the variance of an input. In a linear model with the share S = V_i/V the whole
+    # distribution has V_i/(1 - m), and so the share S/(1 - m (1 - S)). The change is S (1 - S) m/(1 - m (1 - S)).
     lost, share = np.array(inputs.lost)[:, None], np.nan_to_num(np.clip(overall.total, 0.0, 1.0))
     each = share * (1 - share) * lost / np.maximum(1 - lost * (1 - share), np.finfo(float).tiny)
+    # Tails of several inputs add, as bounds of first order do.
     total = each.sum(axis=0)
     if np.max(total) > tolerance:
         channel = int(np.argmax(total))
@@ -236,6 +254,7 @@ def _negligible(inputs: Inputs, overall: SobolIndices) -> list[Finding]:
     varying = overall.variance > 0
     if not varying.any():
         return []
+    # By the upper end, so that the error of the surrogate cannot hide an influence.
     most = overall.total_ends[1][:, varying].max(axis=1)
     values = {
         name: float(index)

@@ -87,6 +87,14 @@ def screen(
     model = on_cluster(model, executor)
     inputs = inputs_of(model, intervals, NAME)
     runs = Runs(model, inputs.box, "screening", on_event)
+    settings = {"seed": seed, "trajectories": trajectories, "levels": levels}
+    result = _screening(runs, inputs, _runs_of_effects(runs, inputs, **settings), settings)
+    runs.tell(Ended(runs.method, result.success, result.status, runs.count, 0.0))
+    return result
+
+
+def _runs_of_effects(runs: Runs, inputs: Inputs, seed: int, trajectories: int, levels: int) -> np.ndarray:
+    """Run the trajectories; effects (trajectories without failed runs, samples, channels, parameters)."""
     free = runs.free
     parts = _trajectories(len(free), trajectories, levels, seed)
     steps = len(free) + 1
@@ -105,16 +113,12 @@ def screen(
         )
     effects = np.zeros((int(known.sum()), *runs.shape, len(inputs.box)))
     effects[..., free] = _effects(parts[known], values[known])
-    settings = {"seed": seed, "trajectories": trajectories, "levels": levels}
-    result = _screening(model, inputs, runs, effects, settings)
-    runs.tell(Ended(runs.method, result.success, result.status, runs.count, 0.0))
-    return result
+    return effects
 
 
-def _screening(
-    model: ForwardModel, inputs: Inputs, runs: Runs, effects: np.ndarray, settings: dict[str, int]
-) -> Screening:
+def _screening(runs: Runs, inputs: Inputs, effects: np.ndarray, settings: dict[str, int]) -> Screening:
     """Return the statistics of effects (trajectories, samples, channels, parameters)."""
+    model = runs.model
     # Squares of large effects would overflow. Powers of two for each channel scale them without rounding.
     powers = powers_of_two(np.moveaxis(effects, -2, -1).reshape(-1, effects.shape[-2]))[:, None]
     effects = np.ldexp(effects, -powers)

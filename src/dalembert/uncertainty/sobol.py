@@ -104,18 +104,8 @@ def global_sensitivity(
     inputs, scheme = inputs_of(model, intervals, NAME), scheme or Adaptive(USUAL * tolerance)
     runs = Runs(model, inputs.box, "global sensitivity", on_event)
     runs.tell(Began(runs.method, None))
-    surrogate = _surrogate(runs, inputs, scheme, checks, seed)
-    # Without groups indices of each output; with the channels as groups the ratios of sums over the samples.
-    each, overall = (
-        sobol_indices(surrogate.surrogate, rules=inputs.rules, groups=groups, checks=surrogate.checks)
-        for groups in (None, surrogate.groups)
-    )
-    # The error of the surrogate and the tails are independent causes; their bounds add.
-    names = tuple(channel.name for channel in model.channels)
-    uncertainty = overall.uncertainty + _of_tails(inputs, overall, names, tolerance)
-    _demand(uncertainty, names, tolerance, surrogate.surrogate.improvement)
     made_by = provenance(model, scheme, seed=seed, tolerance=tolerance, intervals=dict(described(inputs)))
-    result = _indices(model, inputs, runs, surrogate, (each, overall), uncertainty, made_by)
+    result = _indices(runs, inputs, _surrogate(runs, inputs, scheme, checks, seed), tolerance, made_by)
     runs.tell(Ended(runs.method, result.success, result.status, runs.count, 0.0))
     return result
 
@@ -150,18 +140,20 @@ def _surrogate(runs: Runs, inputs: Inputs, scheme: Scheme, count: int | None, se
 
 
 def _indices(
-    model: ForwardModel,
-    inputs: Inputs,
-    runs: Runs,
-    surrogate: _Accumulated,
-    indices: tuple[SobolIndices, SobolIndices],
-    uncertainty: np.ndarray,
-    made_by: Mapping[str, Any],
+    runs: Runs, inputs: Inputs, surrogate: _Accumulated, tolerance: float, made_by: Mapping[str, Any]
 ) -> SensitivityIndices:
-    """Return the result, from the indices of each output, in order (samples, channels), and of whole channels."""
-    each, overall = indices
-    samples, channels = runs.shape
-    names, shape = tuple(channel.name for channel in model.channels), (samples, channels, len(inputs.box))
+    """Return the indices of each output, and of whole channels, if these are certain enough."""
+    model, (samples, channels) = runs.model, runs.shape
+    # Without groups indices of each output; with the channels as groups the ratios of sums over the samples.
+    each, overall = (
+        sobol_indices(surrogate.surrogate, rules=inputs.rules, groups=groups, checks=surrogate.checks)
+        for groups in (None, surrogate.groups)
+    )
+    # The error of the surrogate and the tails are independent causes; their bounds add.
+    names = tuple(channel.name for channel in model.channels)
+    uncertainty = overall.uncertainty + _of_tails(inputs, overall, names, tolerance)
+    _demand(uncertainty, names, tolerance, surrogate.surrogate.improvement)
+    shape = samples, channels, len(inputs.box)
     return SensitivityIndices(
         coordinate=model.coordinate,
         channels=names,

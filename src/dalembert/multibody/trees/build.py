@@ -15,17 +15,17 @@ from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.signals import Course
 from dalembert.multibody.components.spatial.armature import Armature
 from dalembert.multibody.components.spatial.coupling_joint import CouplingJoint
-from dalembert.multibody.components.spatial.force import Force, Torque
 from dalembert.multibody.components.spatial.friction import Friction
 from dalembert.multibody.components.spatial.ground_points import Side
 from dalembert.multibody.components.spatial.inertia import Inertia
-from dalembert.multibody.components.spatial.joint import Joint
 from dalembert.multibody.components.spatial.joint_limit import AngleLimit, DisplacementLimit
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose, Vector
-from dalembert.multibody.components.spatial.prismatic_joint import PrismaticJoint
-from dalembert.multibody.components.spatial.revolute_joint import RevoluteJoint
-from dalembert.multibody.components.spatial.rigid_body import RigidBody
 from dalembert.multibody.components.spatial.shapes import Shape
+from dalembert.multibody.components.spatial.spatial_force import Force, Torque
+from dalembert.multibody.components.spatial.spatial_joint import Joint
+from dalembert.multibody.components.spatial.spatial_prismatic_joint import PrismaticJoint
+from dalembert.multibody.components.spatial.spatial_revolute_joint import RevoluteJoint
+from dalembert.multibody.components.spatial.spatial_rigid_body import RigidBody
 from dalembert.multibody.model.spatial_system import SpatialSystem
 from dalembert.multibody.trees.idle_limits import import_findings
 from dalembert.multibody.trees.kinematics import Motion, coordinate, joint_pose, motions, values

@@ -9,7 +9,7 @@ import numpy as np
 from dalembert.errors import listed
 from dalembert.findings import Finding
 from dalembert.multibody.components.spatial.joint_limit import Limit
-from dalembert.multibody.components.spatial.load import Load
+from dalembert.multibody.components.spatial.spatial_load import Load
 from dalembert.multibody.trees.omissions import Omission, omission_findings
 from dalembert.multibody.trees.tree import Tree, TreeJoint
 

@@ -11,10 +11,10 @@ from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.base_joint import Smoothing
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.laws import friction_law as friction
-from dalembert.multibody.components.spatial.joint import Joint, joint_rate, joint_speed
 from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.orientation import Vector
-from dalembert.multibody.components.spatial.pairs import COORDINATES, e3, push_pair, twist_pair
+from dalembert.multibody.components.spatial.spatial_joint import Joint, joint_rate, joint_speed
+from dalembert.multibody.components.spatial.spatial_pairs import COORDINATES, e3, push_pair, twist_pair
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import times
 from dalembert.multibody.kernels.elementary import root

@@ -8,8 +8,8 @@ from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import parameters_of
 from dalembert.multibody.components.laws.distance_law import Rod, distance_gap
 from dalembert.multibody.components.spatial.conditions import Condition
-from dalembert.multibody.components.spatial.joint import Joint, joint_kind
-from dalembert.multibody.components.spatial.pairs import push_pair, separation
+from dalembert.multibody.components.spatial.spatial_joint import Joint, joint_kind
+from dalembert.multibody.components.spatial.spatial_pairs import push_pair, separation
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import dot, times
 

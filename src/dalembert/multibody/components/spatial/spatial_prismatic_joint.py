@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from dalembert.multibody.components.spatial.conditions import level, perpendicular
 from dalembert.multibody.components.spatial.friction import Friction, RubbingJoint, friction_kind
-from dalembert.multibody.components.spatial.joint import joint_kind
+from dalembert.multibody.components.spatial.spatial_joint import joint_kind
 
 KIND = joint_kind(
     "prismatic_in_space",

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import stack
 from dalembert.multibody.components.laws.prescribed_law import DrivenCoordinate, power_of_motion
-from dalembert.multibody.components.spatial.joint import (
+from dalembert.multibody.components.spatial.kinds import pair_kind
+from dalembert.multibody.components.spatial.orientation import Vector
+from dalembert.multibody.components.spatial.spatial_joint import (
     ANGLE,
     DISPLACEMENT,
     REACTIONS,
@@ -19,9 +21,7 @@ from dalembert.multibody.components.spatial.joint import (
     observe_reactions,
     observe_turn,
 )  # fmt: skip
-from dalembert.multibody.components.spatial.kinds import pair_kind
-from dalembert.multibody.components.spatial.orientation import Vector
-from dalembert.multibody.components.spatial.pairs import COORDINATES, LENGTHS, e1, e2, f1
+from dalembert.multibody.components.spatial.spatial_pairs import COORDINATES, LENGTHS, e1, e2, f1
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import dot
 from dalembert.multibody.kernels.constraints import forces_of

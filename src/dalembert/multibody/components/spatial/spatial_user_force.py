@@ -13,9 +13,9 @@ from dalembert.kernels.views import call_with, stack
 from dalembert.multibody.components.laws.user_force_law import TIME, CalledForce
 from dalembert.multibody.components.spatial.ground_points import Side
 from dalembert.multibody.components.spatial.kinds import pair_kind
-from dalembert.multibody.components.spatial.load import Load
-from dalembert.multibody.components.spatial.markers import SLOTS, position, position_rate, spin
-from dalembert.multibody.components.spatial.pairs import (
+from dalembert.multibody.components.spatial.spatial_load import Load
+from dalembert.multibody.components.spatial.spatial_markers import SLOTS, position, position_rate, spin
+from dalembert.multibody.components.spatial.spatial_pairs import (
     a_point,
     b_point,
     e1,

@@ -10,10 +10,10 @@ from dalembert.multibody.components.fields import number, parameters_of
 from dalembert.multibody.components.laws.spring_law import TwistSpring, counted_spring
 from dalembert.multibody.components.points import require_direction
 from dalembert.multibody.components.spatial.ground_points import Side
-from dalembert.multibody.components.spatial.joint import turned_to
 from dalembert.multibody.components.spatial.joint_coordinate import JointCoordinate
-from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.orientation import Vector
+from dalembert.multibody.components.spatial.spatial_joint import turned_to
+from dalembert.multibody.components.spatial.spatial_load import Load
 from dalembert.multibody.components.spatial.spatial_rows import Pair, SpatialRows
 
 TORSION_SPRING = counted_spring("torsion_spring_in_space", __name__, (("twist", "rad"), ("torque", "N*m")))

@@ -10,8 +10,8 @@ from dalembert.multibody.components.points import require_direction
 from dalembert.multibody.components.signals import Course
 from dalembert.multibody.components.spatial.ground_points import Side
 from dalembert.multibody.components.spatial.kinds import pair_kind
-from dalembert.multibody.components.spatial.load import Load
-from dalembert.multibody.components.spatial.pairs import (
+from dalembert.multibody.components.spatial.spatial_load import Load
+from dalembert.multibody.components.spatial.spatial_pairs import (
     e1,
     e2,
     e3,

@@ -8,11 +8,11 @@ import numpy as np
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.points import Point
 from dalembert.multibody.components.signals import Signal
-from dalembert.multibody.components.spatial.joint import Joint, joint_angle, joint_displacement
 from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.orientation import Orientation
-from dalembert.multibody.components.spatial.pairs import LENGTHS, along_axes, f1, f2, f3, separation
 from dalembert.multibody.components.spatial.rotations import rotation_vector
+from dalembert.multibody.components.spatial.spatial_joint import Joint, joint_angle, joint_displacement
+from dalembert.multibody.components.spatial.spatial_pairs import LENGTHS, along_axes, f1, f2, f3, separation
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.kernels.elementary import angle_of, root, wrapped
 from dalembert.multibody.kernels.kind import Kind

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from dalembert.multibody.components.spatial.conditions import MEETS, perpendicular
 from dalembert.multibody.components.spatial.friction import RubbingJoint, friction_kind
-from dalembert.multibody.components.spatial.joint import joint_kind
+from dalembert.multibody.components.spatial.spatial_joint import joint_kind
 
 KIND = joint_kind("revolute_in_space", __name__, MEETS, perpendicular(1, 3), perpendicular(2, 3), angle=True)
 

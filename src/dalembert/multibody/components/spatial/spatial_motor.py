@@ -9,12 +9,12 @@ from dalembert.multibody.components.fields import parameters_of
 from dalembert.multibody.components.laws.motor_law import INTEGERS, NUMBERS, MotorNumbers, Turning, drive_properties
 from dalembert.multibody.components.points import require_direction
 from dalembert.multibody.components.spatial.ground_points import Side
-from dalembert.multibody.components.spatial.joint import joint_angle, joint_rate, observe_turn, turned_to
 from dalembert.multibody.components.spatial.kinds import pair_kind
-from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.orientation import Vector
-from dalembert.multibody.components.spatial.pairs import e3, relative_spin, twist_pair
 from dalembert.multibody.components.spatial.rotor import TURNING_ROTOR
+from dalembert.multibody.components.spatial.spatial_joint import joint_angle, joint_rate, observe_turn, turned_to
+from dalembert.multibody.components.spatial.spatial_load import Load
+from dalembert.multibody.components.spatial.spatial_pairs import e3, relative_spin, twist_pair
 from dalembert.multibody.components.spatial.spatial_rows import Pair, SpatialRows
 from dalembert.multibody.components.spatial.vectors import dot, times
 

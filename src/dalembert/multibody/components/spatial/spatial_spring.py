@@ -9,8 +9,8 @@ from dalembert.multibody.components.fields import parameters_of
 from dalembert.multibody.components.laws.spring_law import NUMBERS, LineSpring, law_functions, tension
 from dalembert.multibody.components.spatial.ground_points import Side
 from dalembert.multibody.components.spatial.kinds import pair_kind
-from dalembert.multibody.components.spatial.load import Load
-from dalembert.multibody.components.spatial.pairs import push_pair, separation, separation_rate
+from dalembert.multibody.components.spatial.spatial_load import Load
+from dalembert.multibody.components.spatial.spatial_pairs import push_pair, separation, separation_rate
 from dalembert.multibody.components.spatial.vectors import dot, times
 from dalembert.multibody.kernels.elementary import reciprocal, root
 

@@ -111,7 +111,7 @@ def global_sensitivity(
 
 
 @dataclass(frozen=True, eq=False)
-class _Accumulated:
+class _CheckedSurrogate:
     """A surrogate of all samples and channels, the channel of each of its outputs, and its checks."""
 
     surrogate: Surrogate
@@ -119,7 +119,7 @@ class _Accumulated:
     checks: Checks | None
 
 
-def _surrogate(runs: Runs, inputs: Inputs, scheme: Scheme, count: int | None, seed: int) -> _Accumulated:
+def _surrogate(runs: Runs, inputs: Inputs, scheme: Scheme, count: int | None, seed: int) -> _CheckedSurrogate:
     samples, channels = runs.shape
     groups, box = np.tile(np.arange(channels), samples), inputs.box
 
@@ -128,7 +128,7 @@ def _surrogate(runs: Runs, inputs: Inputs, scheme: Scheme, count: int | None, se
 
     surrogate = fit(function, box.lower, box.upper, scheme, seed=seed, groups=groups)
     if not len(runs.free):
-        return _Accumulated(surrogate, groups, None)
+        return _CheckedSurrogate(surrogate, groups, None)
     # Checks are drawn from the distributions, so that their errors count as the variance does.
     # The part of the seed keeps them apart from the held-out runs of the surrogate.
     number = int(np.clip(SHARE * surrogate.runs, FEWEST, MOST)) if count is None else count
@@ -136,11 +136,11 @@ def _surrogate(runs: Runs, inputs: Inputs, scheme: Scheme, count: int | None, se
     errors = function(points) - surrogate(points)
     known = np.isfinite(errors).all(axis=1)
     checks = Checks(inputs.eta(points[known]), errors[known]) if known.sum() > 1 else None
-    return _Accumulated(surrogate, groups, checks)
+    return _CheckedSurrogate(surrogate, groups, checks)
 
 
 def _indices(
-    runs: Runs, inputs: Inputs, surrogate: _Accumulated, tolerance: float, made_by: Mapping[str, Any]
+    runs: Runs, inputs: Inputs, surrogate: _CheckedSurrogate, tolerance: float, made_by: Mapping[str, Any]
 ) -> SensitivityIndices:
     """Return the indices of each output, and of whole channels, if these are certain enough."""
     model, (samples, channels) = runs.model, runs.shape

@@ -152,7 +152,14 @@ def _indices(
     # The error of the surrogate and the tails are independent causes; their bounds add.
     names = tuple(channel.name for channel in model.channels)
     uncertainty = overall.uncertainty + _of_tails(inputs, overall, names, tolerance)
-    _demand(uncertainty, names, tolerance, surrogate.surrogate.improvement)
+    worst = int(np.argmax(np.nan_to_num(uncertainty)))
+    if uncertainty[worst] > tolerance:
+        raise SolveError(
+            f"{NAME}: the error of the surrogate leaves the indices of channel {names[worst]!r} uncertain by "
+            f"{uncertainty[worst]:.2g}, more than the tolerance of {tolerance:g}. Improve the surrogate "
+            f"({surrogate.surrogate.improvement}), increase checks, narrow the intervals, or raise the tolerance. For "
+            "a response with kinks or jumps, estimate the indices by Monte Carlo: scipy.stats.sobol_indices."
+        )
     shape = samples, channels, len(inputs.box)
     return SensitivityIndices(
         coordinate=model.coordinate,
@@ -202,18 +209,6 @@ def _of_tails(inputs: Inputs, overall: SobolIndices, names: tuple[str, ...], tol
             "parameter narrower bounds, or a distribution with lighter tails."
         )
     return total
-
-
-def _demand(uncertainty: np.ndarray, names: tuple[str, ...], tolerance: float, more: str) -> None:
-    """Refuse indices that are too uncertain."""
-    worst = int(np.argmax(np.nan_to_num(uncertainty)))
-    if uncertainty[worst] > tolerance:
-        raise SolveError(
-            f"{NAME}: the error of the surrogate leaves the indices of channel {names[worst]!r} uncertain by "
-            f"{uncertainty[worst]:.2g}, more than the tolerance of {tolerance:g}. Improve the surrogate "
-            f"({more}), increase checks, narrow the intervals, or raise the tolerance. For a response with "
-            "kinks or jumps, estimate the indices by Monte Carlo: scipy.stats.sobol_indices."
-        )
 
 
 def _constant(names: tuple[str, ...], overall: SobolIndices) -> list[Finding]:

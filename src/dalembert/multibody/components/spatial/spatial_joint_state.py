@@ -96,7 +96,7 @@ def stated(joint: Joint, coordinate: str, course: Signal) -> JointState:
     if coordinate in STATED_DIRECTIONS:
         return JointState(name, a, b, (e, f), STATED_DIRECTIONS[coordinate], course)
     if what == "rotation":
-        number = _axis_number(axis)
+        number = "xyz".index(axis) + 1 if axis in "xyz" else int(axis)
         e, f = (np.eye(3), np.eye(3)) if axis in "xyz" else (e, f)  # in the axes of the marker, or of the joint
         return JointState(name, a, b, (e[:, _LAST[number]], f[:, _LAST[number]]), STATED_ROTATION, course)
     if what == "displacement":
@@ -132,8 +132,3 @@ def kept(joint: Joint, coordinate: str, course: Signal, now: tuple[np.ndarray, n
 def turns(side: Any) -> bool:
     """Whether a side of a joint has axes: the ground and rigid bodies have them, point masses have none."""
     return not isinstance(side, Point) or side.body.turns
-
-
-def _axis_number(axis: str) -> int:
-    """Number of an axis by its name."""
-    return "xyz".index(axis) + 1 if axis in "xyz" else int(axis)

@@ -180,19 +180,10 @@ def _inverse(matrix: np.ndarray) -> np.ndarray:
 class MotionSegment(MotionModel):
     """A segment of a mechanism's motion as a forward model.
 
-    Parameters
-    ----------
-    model : TimeResponse
-        Of the motion.
-    begin : float
-        Time of the signals at the beginning of the segment, s.
-    times : array, shape (samples,)
-        s, from the beginning of the segment.
-    chart : StateChart or None
-        Numbers of the state that it begins at, which are parameters behind those of the model; the initial state that
-        the model's builder makes if None.
-    ends : StateChart or None
-        Numbers of the state that are channels behind those of the model.
+    ``model``: of the motion; ``begin``: time of the signals at the beginning of the segment, s; ``times`` (samples,):
+    s, from that beginning. Parameters behind those of the model are the numbers of the state by the ``chart``; without
+    one the segment begins as the model's builder says. Channels behind those of the model are the numbers by the chart
+    ``ends``.
     """
 
     model: BuiltModel

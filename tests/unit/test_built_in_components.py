@@ -43,9 +43,9 @@ from dataclasses import dataclass
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.spatial.kinds import pair_kind
-from dalembert.multibody.components.spatial.load import Load
+from dalembert.multibody.components.spatial.spatial_load import Load
 from dalembert.multibody.components.spatial.orientation import Orientation
-from dalembert.multibody.components.spatial.pairs import push_pair, separation
+from dalembert.multibody.components.spatial.spatial_pairs import push_pair, separation
 from dalembert.multibody.components.spatial.ground_points import Side
 from dalembert.multibody.components.spatial.vectors import times
 

@@ -22,19 +22,7 @@ _GROWS = 1e-6
 
 
 class SpeedModes(NamedTuple):
-    """Modes at one speed.
-
-    Parameters
-    ----------
-    speed : float
-        rad/s.
-    roots : complex array, shape (modes,)
-    shapes : complex array, shape (coordinates, modes)
-        In the same coordinates at all speeds.
-    whirl : array, shape (modes,)
-    growth : float
-        1/s.
-    """
+    """Modes at one ``speed``, rad/s: ``roots`` (modes,), ``shapes`` (coordinates, modes), ``growth`` 1/s."""
 
     speed: float
     roots: np.ndarray

@@ -12,13 +12,8 @@ _NEUTRAL = 1e-7
 class ComplexModes(NamedTuple):
     """Roots and shapes of M z'' + C z' + K z = 0, with z = phi exp(lambda t).
 
-    Parameters
-    ----------
-    roots : complex array, shape (modes,)
-        1/s, with positive imaginary parts, in ascending order of these.
-    shapes : complex array, shape (freedoms, modes)
-    growth : float
-        Largest real part of all roots, also of those that do not oscillate, 1/s; 0 if it is rounding.
+    ``roots`` (modes,): 1/s, with positive imaginary parts, in ascending order of these; ``shapes`` (freedoms, modes);
+    ``growth``: largest real part of all roots, also of those that do not oscillate, 1/s; 0 if it is rounding.
     """
 
     roots: np.ndarray

@@ -1,7 +1,6 @@
 """Meshes of solids from files of other programs."""
 
 import io
-from collections.abc import Mapping
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import replace
 from pathlib import Path
@@ -59,6 +58,7 @@ def _read(path: Path) -> Any:
 
 def _mesh(read: Any) -> Any:
     """Mesh of scikit-fem; one of second order keeps its curved edges, and has the sets of its corners."""
+    import meshio
     import skfem
     from skfem.io.meshio import from_meshio
 
@@ -71,17 +71,11 @@ def _mesh(read: Any) -> Any:
     points = read.points
     if kind == "hexahedron20":
         points, cells, kind = _with_27_nodes(points, cells)
-    curved = from_meshio(_without_sets(points, {kind: cells}))
+    curved = from_meshio(meshio.Mesh(points, [(kind, cells)]))
     corners = from_meshio(_of_corners(read))
     assert isinstance(curved, skfem.MeshTet1 | skfem.MeshHex1)
     # Both number their corners in the order of the file, so that their facets have the same numbers.
     return replace(curved, _boundaries=corners.boundaries, _subdomains=corners.subdomains)
-
-
-def _without_sets(points: np.ndarray, cells: Mapping[str, np.ndarray]) -> Any:
-    import meshio
-
-    return meshio.Mesh(points, list(cells.items()))
 
 
 def _of_corners(read: Any) -> Any:

@@ -148,10 +148,7 @@ def node_motion(structure: Structure, motion: np.ndarray) -> np.ndarray:
 def drawn_nodes(motion: np.ndarray, faces: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
     """Return the rows of the nodes to draw, corners of faces or all that move if there are none, and the faces.
 
-    Parameters
-    ----------
-    motion : array, shape (nodes, 3, ...)
-    faces : array of int, shape (faces, 3 or 4), optional
+    ``motion`` (nodes, 3, ...); ``faces`` (faces, 3 or 4).
     """
     if faces is not None and len(faces):
         kept, corners = np.unique(faces, return_inverse=True)

@@ -15,19 +15,11 @@ CONVERGED = 1e-15  # a step that promises less than this part of the sum of |coe
 class ExtremesWorkspace(NamedTuple):
     """Workspace for a box, in d directions, and for starts in it.
 
-    Parameters
-    ----------
-    eta, gradient, step, trial, trial_gradient : array, shape (d,)
-        A point and the gradient there, a step, where it leads and the gradient there.
-    free : array, shape (d,)
-        Whether a direction is not held by a side of the box, 0 or 1.
-    hessian, factor : array, shape (d, d)
-    tables : array, shape (3, d, largest degree + 1, at least 2)
-        Chebyshev polynomials and their derivatives at a point.
-    signed : array, shape (rows, longest)
-        Coefficients of an output, of its negative for the largest value.
-    best, places : array, shape (starts,)
-        Lowest values of a scan, and where they are.
+    ``eta``, ``gradient``, ``step``, ``trial``, ``trial_gradient`` (d,): a point and the gradient there, a step, where
+    it leads and the gradient there; ``free`` (d,): 0 where a side of the box holds the direction, else 1; ``hessian``,
+    ``factor`` (d, d); ``tables`` (3, d, largest degree + 1, at least 2): Chebyshev polynomials and their derivatives at
+    a point; ``signed`` (rows, longest): coefficients of an output, or of its negative for the largest value; ``best``,
+    ``places`` (starts,): lowest values of a scan, and where they are.
     """
 
     eta: Reals
@@ -263,25 +255,13 @@ def extremes(
     values: Reals3, grid: Reals2, sides: Integers, low: Reals2, high: Reals2, rows: Rows, bounds: Reals3,
     at: Reals4, scratch: ExtremesWorkspace,
 ) -> None:  # fmt: skip
-    """Refine the extremes of a scan; all in coordinates η of the polynomial.
+    """Refine the extremes of a scan; all in coordinates η of the polynomial, with terms ``rows``.
 
-    Parameters
-    ----------
-    values : array, shape (boxes, outputs, points)
-        Of the polynomial at the scan's points.
-    grid : array, shape (points, d)
-        The scan's points relative to each box, in [0, 1].
-    sides : array of int, shape (d,) or (0,)
-        Points of the scan in each direction, the last one fastest; none if they form no grid.
-    low, high : array, shape (boxes, d)
-    rows : Rows
-        Of the polynomial.
-    bounds : array, shape (2, boxes, outputs)
-        Filled with the smallest and the largest values.
-    at : array, shape (2, boxes, outputs, d)
-        Filled with where they are.
-    workspace : Room
-        Work space. Its number of starts limits how many points of the scan are refined for each extreme.
+    ``values`` (boxes, outputs, points): at the points of the scan; ``grid`` (points, d): these points relative to each
+    box, in [0, 1]; ``sides`` (d,): points of the scan in each direction, the last one fastest, (0,) if they form no
+    grid; ``low``, ``high`` (boxes, d). ``bounds`` (2, boxes, outputs) and ``at`` (2, boxes, outputs, d): filled with
+    the smallest and the largest values, and where they are. The starts of the ``workspace`` are the most points that
+    are refined.
     """
     eta, size = scratch.eta, low.shape[1]
     for b in range(len(low)):

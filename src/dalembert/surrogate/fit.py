@@ -69,8 +69,11 @@ def fit(
     test = held_out_runs(runs, held_out, seed)
     fitted = scheme.fitted(runs, seed, test, lambda: _scale(runs, groups)) if runs.directions else _constant(runs)
     ok = ~failed(runs.values)
+    # Constant in directions without a width.
+    exponents = np.zeros((len(fitted.exponents), len(runs.lower)), dtype=int)
+    exponents[:, runs.free] = fitted.exponents
     return Surrogate(
-        _embedded(runs, fitted),
+        ChebyshevPolynomial(runs.lower, runs.upper, exponents, fitted.coefficients),
         scheme,
         fitted.tail,
         test.difference(fitted.exponents, fitted.coefficients),
@@ -104,10 +107,3 @@ def _constant(runs: Runs) -> Fitted:
     """The polynomial of a box without any width, from one run."""
     values = runs(np.empty((1, 0)))
     return Fitted(np.zeros((1, 0), dtype=int), values, np.zeros(values.shape[1]))
-
-
-def _embedded(runs: Runs, fitted: Fitted) -> ChebyshevPolynomial:
-    """The polynomial in all directions, constant in those without width."""
-    exponents = np.zeros((len(fitted.exponents), len(runs.lower)), dtype=int)
-    exponents[:, runs.free] = fitted.exponents
-    return ChebyshevPolynomial(runs.lower, runs.upper, exponents, fitted.coefficients)

@@ -12,13 +12,7 @@ TOGETHER = 0.2  # terms whose expected size is at least this part of the largest
 
 
 class Growth:
-    """Terms, their surpluses, and the candidates to be next.
-
-    Parameters
-    ----------
-    basis : str
-        As in :class:`dalembert.surrogate.Adaptive`.
-    """
+    """Terms, their surpluses, and the candidates to be next; ``basis`` as in :class:`dalembert.surrogate.Adaptive`."""
 
     def __init__(self, directions: int, basis: str) -> None:
         self.directions, self.basis = directions, basis

@@ -16,18 +16,10 @@ from dalembert.surrogate.basis import chebyshev, products
 class Rows(NamedTuple):
     """Terms that differ only in their degree in one direction, the inner one, side by side.
 
-    Parameters
-    ----------
-    degrees : array of int, shape (d,)
-        Of the polynomial.
-    inner : int
-        The direction of highest degree.
-    exponents, active : array of int, shape (rows, d)
-        Degrees above zero in the other directions, and these directions; the first ``counts`` (rows,) entries count.
-    lengths : array of int, shape (rows,)
-        Number of terms of each row, of degrees 0, 1, 2 … in the inner direction.
-    coefficients : array, shape (outputs, rows, longest)
-        Zero where a term is absent.
+    ``degrees`` (d,): of the polynomial; ``inner``: the direction of highest degree; ``exponents``, ``active`` (rows,
+    d): degrees above zero in the other directions, and these directions, of which the first ``counts`` (rows,) entries
+    count; ``lengths`` (rows,): numbers of terms, of degrees 0, 1, 2 … in the inner direction; ``coefficients``
+    (outputs, rows, longest): zero where a term is absent.
     """
 
     degrees: Integers

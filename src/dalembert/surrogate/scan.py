@@ -60,7 +60,8 @@ def values(polynomial: ChebyshevPolynomial, scan: Scan, low: np.ndarray, high: n
     """Values (boxes, outputs, points) at the points of a scan, of boxes (boxes, d) given in coordinates η."""
     degrees, outputs = polynomial.degrees, polynomial.coefficients.shape[1]
     if not len(scan.sides) or outputs * np.prod(degrees + 1.0) > DENSE:
-        return np.stack([_at(polynomial, a + scan.grid * (b - a)) for a, b in zip(low, high, strict=True)])
+        boxes = (chebyshev(a + scan.grid * (b - a), degrees) for a, b in zip(low, high, strict=True))
+        return np.stack([(products(bases, polynomial.exponents) @ polynomial.coefficients).T for bases in boxes])
     grid = scan.grid.reshape(*scan.sides, -1)
     bases = []
     for k, number in enumerate(scan.sides):
@@ -86,7 +87,3 @@ def transformed(polynomial: ChebyshevPolynomial, bases: list[np.ndarray]) -> np.
         result = bases[k][:, None] @ result.reshape(boxes, -1, size[k], done)
         done *= bases[k].shape[1]
     return result.reshape(boxes, -1, outputs, done).swapaxes(1, 2).reshape(boxes, outputs, -1)
-
-
-def _at(polynomial: ChebyshevPolynomial, eta: np.ndarray) -> np.ndarray:
-    return (products(chebyshev(eta, polynomial.degrees), polynomial.exponents) @ polynomial.coefficients).T

@@ -30,9 +30,6 @@ class Gaps:
 def unseen(surrogate: Surrogate, names: Sequence[str]) -> Finding:
     """Return the finding "unseen-features": the width below which a feature can lie between the runs.
 
-    A note, and a warning where the runs are farther apart than the response varies, or where no run tested the
-    surrogate.
-
     ``names`` sequence of str, of length d: of the directions.
     """
     polynomial = surrogate.polynomial

@@ -74,6 +74,7 @@ class Chebyshev(Checked):
 
     def bound(self, runs: Runs, seed: int) -> MethodBounds:
         box, shape = runs.box, runs.shape
+        # One fit serves all samples and channels: outputs are counted sample by sample, and grouped by their channel.
         samples, channels = shape
         surrogate = fit(
             lambda points: runs.values(points).reshape(len(points), -1),
@@ -84,12 +85,16 @@ class Chebyshev(Checked):
             held_out=self.held_out,
             groups=np.tile(np.arange(channels), samples),
         )
+        # Bounds of a polynomial that misses its tolerance would look as exact as others, so that this raises an error.
         surrogate.demand(self.tolerance * surrogate.scale, runs.place, box.names, "optimise")
+        # The extremes of the polynomial are needed with Bernstein's enclosure too: they show its overestimation.
         method, points = ("scan", None) if self.bounds == "scan" else ("optimise", _scanned(surrogate))
         bounded = bounds(surrogate.polynomial, box.lower, box.upper, method, points=points, starts=STARTS)
         kind, error, findings = "estimate", surrogate.error, [unseen(surrogate, box.names)]
         if self.bounds == "bernstein":
             enclosed = bounds(surrogate.polynomial, box.lower, box.upper, "bernstein")
+            # If |f - p| <= error, the enclosure of p widened by the error encloses f.
+            # The extremes of f lie within the error of those of p, so a bound is off by the excess and twice the error.
             excess = np.maximum(bounded.lower - enclosed.lower, enclosed.upper - bounded.upper)
             bounded = PolynomialBounds(enclosed.lower - error, enclosed.upper + error)
             kind, error = "enclosure of the surrogate", 2 * error + np.maximum(excess, 0.0)
@@ -107,6 +112,7 @@ class Chebyshev(Checked):
 
 def _overestimation(excess: np.ndarray, scale: np.ndarray, tolerance: float) -> list[Finding]:
     """Return a warning if the enclosure is much wider than the polynomial."""
+    # A channel without a variation over the box has no scale, and an enclosure without excess.
     parts = np.divide(excess, scale, out=np.zeros_like(excess), where=scale > 0)
     if np.all(parts <= tolerance):
         return []
@@ -121,6 +127,7 @@ def _overestimation(excess: np.ndarray, scale: np.ndarray, tolerance: float) -> 
 
 def _scanned(surrogate: Surrogate) -> int:
     """Points of a scan in each direction: a single box can afford more than a batch of boxes can."""
+    # A polynomial of degree n has up to n - 1 extremes along a direction, so a scan needs more points than that.
     degrees = surrogate.polynomial.degrees
     fine = int(SCANNED ** (1 / max(1, np.count_nonzero(degrees))))
     return max(int(degrees.max(initial=0)) + 2, min(fine, MOST_EACH))

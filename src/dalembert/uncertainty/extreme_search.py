@@ -34,6 +34,7 @@ class Tried:
 
     def __init__(self, points: np.ndarray, failed: np.ndarray) -> None:
         self.points, self.failed = points, failed
+        # Runs that failed stay in the tree: a point next to one of them is not worth another run.
         self._tree = KDTree(points)
         self._number = np.where(failed, -1, np.cumsum(~failed) - 1)
 
@@ -49,6 +50,7 @@ class Tried:
             blocked = np.flatnonzero(self.nearest(points + steps)[0] < 0)
             if len(blocked) == 0:
                 break
+            # Twenty halvings shorten a step to a millionth, so the loop ends near the run where it began.
             steps[blocked] /= 2
         return points + steps
 
@@ -81,11 +83,13 @@ class ExtremeSearch:
             self.failed.append(at is None)
             if at is not None:
                 self.values.append(at[0].ravel())
+                # By the chain rule d/dη = radius d/dx, and only of intervals with a width.
                 self.slopes.append((at[1] * box.radius)[..., free].reshape(at[0].size, len(free)))
                 self.extremes = self.extremes.with_runs(point[None], at[0][None])
 
     def proposals(self) -> tuple[np.ndarray, np.ndarray]:
         """Largest gain expected at each output, (samples, channels), and points (n, f) to run next."""
+        # Gains that remain when the search ends are its finding on the error.
         gains = np.zeros(self.runs.shape)
         if not len(self.runs.free):
             return gains, np.empty((0, 0))
@@ -95,33 +99,42 @@ class ExtremeSearch:
         np.maximum.at(gains.reshape(-1), wanted.outputs, wanted.gains)
         if len(wanted.gains) == 0:
             return gains, wanted.points
+        # Gains relative to the least one compare outputs of different units.
         order = np.argsort(-wanted.gains / self._least[wanted.outputs], kind="stable")[:MOST]
         return gains, self._covering(known, tried.nearest(wanted.points)[0][order], wanted[order])
 
     @property
     def _least(self) -> np.ndarray:
         """Smallest gain that is looked for, (outputs,)."""
+        # Relative to the widest band of a channel: samples at which it hardly varies need no exact bounds.
         width = np.max(self.extremes.upper - self.extremes.lower, axis=0)
         return np.broadcast_to(self.tolerance * width, self.runs.shape).ravel()
 
     def _wanted(self, known: Expansions, tried: "Tried") -> Wanted:
         """The best place of each output and side, where more than the least is expected there."""
         parts = []
+        # An expansion is followed as far as the first points lie apart, and no farther than the box.
         lower, upper = np.maximum(-1 - known.points, -self.radius), np.minimum(1 - known.points, self.radius)
         for outputs in known.chunks():
             curvatures = known.curvatures(outputs)
             doubts = known.doubts(outputs, curvatures)
             for side, best in ((-1, self.extremes.lower), (1, self.extremes.upper)):
+                # With the sign of the side both bounds are maxima.
                 values, slopes = side * known.values[:, outputs], side * known.slopes[:, outputs]
                 hessians, least = side * curvatures, side * best.ravel()[outputs] + self._least[outputs]
+                # The bound by absolute values is cheap. It leaves few expansions to maximise.
                 run, output = np.nonzero(values + _reach(slopes, hessians, lower, upper) > least)
                 steps = maxima(slopes[run, output], hessians[run, output], lower[run], upper[run])
                 points = np.clip(tried.short_of_failures(known.points[run], steps), -1, 1)
+                # The run nearest to the end of a step knows more about it than the one where the step began.
                 near, apart = tried.nearest(points)
                 steps = points - known.points[near]
                 expected = values[near, output] + expand(slopes[near, output], hessians[near, output], steps)
+                # The error of the expansion counts in favour of a point, so that unknown parts of the box are run too.
                 expected += doubts[near, output] * apart**3
+                # A point that was run before, or next to a failed run, brings nothing.
                 expected[(near < 0) | (apart < SAME)] = -np.inf
+                # One point for each output and side is enough for a round: its run changes all expansions.
                 first = _first(output, expected)
                 first = first[expected[first] > least[output[first]]]
                 gain = expected[first] - (least - self._least[outputs])[output[first]]
@@ -140,10 +153,12 @@ class ExtremeSearch:
         best = np.where(
             wanted.sides < 0, self.extremes.lower.ravel()[wanted.outputs], self.extremes.upper.ravel()[wanted.outputs]
         )
+        # Does the point in a row serve the output in a column? It does if most of the expected gain is reached there.
         serves = wanted.sides * (expected - best) >= COVERED * wanted.gains
         np.fill_diagonal(serves, True)
         chosen, open_ = [], np.ones(len(near), dtype=bool)
         while open_.any():
+            # Greedy set cover: next the point that serves most outputs of those left. The smallest set is not needed.
             chosen.append(int(np.argmax(np.sum(serves & open_, axis=1))))
             open_ &= ~serves[chosen[-1]]
         return wanted.points[chosen]
@@ -152,11 +167,13 @@ class ExtremeSearch:
 def _reach(slopes: np.ndarray, hessians: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
     """What expansions (runs, outputs) cannot exceed within their boxes (runs, f)."""
     far = np.maximum(-lower, upper)
+    # |g·u + u·H u/2| is at most Σ |g_i| far_i + Σ |H_ij| far_i far_j/2 for |u_i| <= far_i.
     rise = np.einsum("nmf,nf->nm", np.abs(slopes), far)
     return rise + np.einsum("nmfg,nf,ng->nm", np.abs(hessians), far, far) / 2
 
 
 def _first(groups: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Place of the largest value of each group."""
+    # Sorted by groups, and in each by falling values, the first row of a group has its largest value.
     order = np.lexsort((-values, groups))
     return order[np.unique(groups[order], return_index=True)[1]]

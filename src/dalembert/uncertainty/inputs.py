@@ -47,6 +47,7 @@ class Inputs:
 
     def points(self, parts: np.ndarray) -> np.ndarray:
         """Points (n, d) at which the distribution functions have values ``parts`` (n, d) in [0, 1]."""
+        # The quantile function maps uniform probabilities to the distribution, truncated by the interval.
         points = self.box.points(2 * parts - 1)
         for k, prior in enumerate(self.priors):
             if prior is not None:
@@ -118,6 +119,7 @@ def _ends(prior: Prior, item: Parameter, method: str) -> tuple[float, float]:
             f"{method}: the distribution of {item.name!r}, {shown(prior)}, has the probability {inside:.1g} between "
             f"the bounds of the parameter ({item.lower:g}, {item.upper:g}). Correct the distribution or the bounds."
         )
+    # An end in the tails keeps the interval finite. `lost_variance` measures what is cut off.
     lower, upper = (_end(prior, part) for part in (0.0, 1.0))
     return max(item.lower, lower), min(item.upper, upper)
 
@@ -132,13 +134,16 @@ def _end(prior: Prior, part: float) -> float:
 
 def _rule(prior: Prior, lower: float, upper: float) -> Rule:
     """Gauss and Legendre's rule in each of several parts of equal probability, with the density as a weight."""
+    # Panels of equal probability are narrow where the density varies most.
     knots = np.unique([lower, *prior.within(np.arange(1, PANELS) / PANELS, lower, upper), upper])
     half, middle = np.diff(knots) / 2, (knots[1:] + knots[:-1]) / 2
 
     def rule(degree: int) -> tuple[np.ndarray, np.ndarray]:
+        # n nodes are exact up to the degree 2 n - 1: that of the polynomial, and at least 46 more for the density.
         nodes, weights = leggauss(degree // 2 + NODES)
         points = middle[:, None] + half[:, None] * nodes
         density = half[:, None] * weights * np.exp(prior.log_density(points))
+        # The sum of the weights is one, which also norms the truncated density.
         return ((2 * points - lower - upper) / (upper - lower)).ravel(), density.ravel() / density.sum()
 
     return rule

@@ -9,7 +9,7 @@ from dalembert.forward import Executor, ForwardModel, findings_at, on_cluster, t
 from dalembert.forward.provenance import provenance
 from dalembert.surrogate.basis import powers_of_two
 from dalembert.uncertainty.events import Began, Ended, OnEvent
-from dalembert.uncertainty.inputs import Distributions, described, inputs_of
+from dalembert.uncertainty.inputs import Distributions, Inputs, described, inputs_of
 from dalembert.uncertainty.runs import Runs
 from dalembert.uncertainty.screening import Screening
 from dalembert.uncertainty.sobol import failed_runs
@@ -87,14 +87,24 @@ def screen(
     model = on_cluster(model, executor)
     inputs = inputs_of(model, intervals, NAME)
     runs = Runs(model, inputs.box, "screening", on_event)
+    settings = {"seed": seed, "trajectories": trajectories, "levels": levels}
+    result = _screening(runs, inputs, _runs_of_effects(runs, inputs, **settings), settings)
+    runs.tell(Ended(runs.method, result.success, result.status, runs.count, 0.0))
+    return result
+
+
+def _runs_of_effects(runs: Runs, inputs: Inputs, seed: int, trajectories: int, levels: int) -> np.ndarray:
+    """Run the trajectories; effects (trajectories without failed runs, samples, channels, parameters)."""
     free = runs.free
     parts = _trajectories(len(free), trajectories, levels, seed)
     steps = len(free) + 1
     runs.most = trajectories * steps
+    # Rows are probabilities of the distributions. Inputs without a width stay at the middle.
     every = np.full((runs.most, len(inputs.box)), 0.5)
     every[:, free] = parts.reshape(runs.most, -1)
     runs.tell(Began(runs.method, runs.most))
     values = runs.values(inputs.points(every)).reshape(trajectories, steps, *runs.shape)
+    # A failed run spoils two effects of its trajectory, so that the trajectory is left out.
     known = np.isfinite(values.reshape(trajectories, -1)).all(axis=1)
     if known.sum() < 2:
         raise SolveError(
@@ -103,12 +113,22 @@ def screen(
         )
     effects = np.zeros((int(known.sum()), *runs.shape, len(inputs.box)))
     effects[..., free] = _effects(parts[known], values[known])
-    powers = powers_of_two(np.moveaxis(effects, -2, -1).reshape(-1, effects.shape[-2]))[:, None]  # of each channel
-    effects = np.ldexp(effects, -powers)  # the squares of large effects would overflow
+    return effects
+
+
+def _screening(runs: Runs, inputs: Inputs, effects: np.ndarray, settings: dict[str, int]) -> Screening:
+    """Return the statistics of effects (trajectories, samples, channels, parameters)."""
+    model = runs.model
+    # Squares of large effects would overflow. Powers of two for each channel scale them without rounding.
+    powers = powers_of_two(np.moveaxis(effects, -2, -1).reshape(-1, effects.shape[-2]))[:, None]
+    effects = np.ldexp(effects, -powers)
+    # Effect on a whole channel along one trajectory: the root mean square over its samples.
     size = np.sqrt((effects**2).mean(axis=1))
+    # Morris's sigma. Together with the mean of absolute effects (mu* of Campolongo et al. 2007) it is the result.
     spread = effects.std(axis=0, ddof=1)
+    # Trajectories are independent, so the standard error of a mean follows from their spread.
     mean_size, errors = size.mean(axis=0), size.std(axis=0, ddof=1) / np.sqrt(len(size))
-    result = Screening(
+    return Screening(
         coordinate=model.coordinate,
         channels=tuple(channel.name for channel in model.channels),
         units=tuple(channel.unit for channel in model.channels),
@@ -124,17 +144,13 @@ def screen(
         trajectories=len(effects),
         runs=runs.count,
         failures=tuple(runs.failures),
-        provenance=provenance(
-            model, seed=seed, trajectories=trajectories, levels=levels, intervals=dict(described(inputs))
-        ),
+        provenance=provenance(model, **settings, intervals=dict(described(inputs))),
         findings=(
             *failed_runs(runs),
-            *_small(inputs.box.names, mean_size + 2 * errors, mean_size, free),
+            *_small(inputs.box.names, mean_size + 2 * errors, mean_size, runs.free),
             *findings_at(model, inputs.box.middle),
         ),
     )
-    runs.tell(Ended(runs.method, result.success, result.status, runs.count, 0.0))
-    return result
 
 
 def _trajectories(parameters: int, count: int, levels: int, seed: int) -> np.ndarray:
@@ -149,25 +165,27 @@ def _trajectories(parameters: int, count: int, levels: int, seed: int) -> np.nda
         ) from None
     names = [f"x{k}" for k in range(parameters)]
     problem = {"num_vars": parameters, "names": names, "bounds": [[0.0, 1.0]] * parameters}
+    # SALib draws points of a grid of levels; one step is levels/(2 (levels - 1)), as Morris proposes for even levels.
     points = sample(problem, count, num_levels=levels, seed=seed)
     return np.clip(points.reshape(count, parameters + 1, parameters), 0.0, 1.0)
 
 
 def _effects(parts: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Effects (trajectories, samples, channels, parameters) from values (trajectories, points, samples, channels).
-
-    Each step of a trajectory changes one parameter.
-    """
+    """Effects (trajectories, samples, channels, parameters) from values (trajectories, points, samples, channels)."""
+    # Elementary effect of Morris (1991): d_i(x) = (y(x + step e_i) - y(x))/step, where the step has a sign.
+    # Each step of a trajectory changes one parameter: the one with the largest difference.
     steps = np.diff(parts, axis=1)
     changed = np.abs(steps).argmax(axis=2)
     sizes = np.take_along_axis(steps, changed[..., None], axis=2)[..., 0]
     slopes = np.diff(values, axis=1) / sizes[:, :, None, None]
+    # Trajectories change the parameters in random order. Sorting puts effects in the order of the parameters.
     order = np.argsort(changed, axis=1)
     return np.moveaxis(np.take_along_axis(slopes, order[:, :, None, None], axis=1), 1, -1)
 
 
 def _small(names: tuple[str, ...], most: np.ndarray, mean_size: np.ndarray, free: np.ndarray) -> list[Finding]:
     """Finding on parameters whose effects are small in all channels, shape (channels, parameters)."""
+    # A parameter counts as small by the upper end of its effect, two standard errors above the mean.
     largest = mean_size.max(axis=1, keepdims=True)
     shares = np.divide(most, largest, out=np.zeros_like(most), where=largest > 0).max(axis=0)
     values = {names[k]: float(shares[k]) for k in free if shares[k] < SMALL}

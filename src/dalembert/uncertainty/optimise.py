@@ -50,11 +50,13 @@ class Optimise(Checked):
 
     def bound(self, runs: Runs, seed: int) -> MethodBounds:
         design = self._design(runs, seed)
+        # n points in a cube of side 2 lie about 2 n^(-1/f) apart: so far the expansion of a run is followed.
         search = ExtremeSearch(runs, self.tolerance, radius=2 * len(design) ** (-1 / max(1, len(runs.free))))
         search.run(design)
         if not search.extremes:
             raise runs.none_succeeded()
         gains, points = search.proposals()
+        # A linearised run counts as 1 + parameters, since its gradient takes about as long as so many runs.
         while len(points) and (affordable := (self.most_runs - runs.count) // (1 + len(runs.box))) > 0:
             search.run(points[:affordable])
             gains, points = search.proposals()
@@ -85,10 +87,12 @@ class Optimise(Checked):
         f = len(runs.free)
         parts = [np.zeros((1, f))]
         if 0 < f <= 4:
+            # Extremes of monotone responses are at corners; up to four intervals they are at most 16 runs.
             parts.append(np.array(list(product([-1.0, 1.0], repeat=f))))
         if f > 1:
             parts += [np.eye(f), -np.eye(f)]
         number = 8 * f if self.start is None else self.start
         if f and number:
+            # Random permutations lower the discrepancy, so that no part of the box stays empty by chance.
             parts.append(2 * scipy.stats.qmc.LatinHypercube(f, optimization="random-cd", rng=seed).random(number) - 1)
         return np.concatenate(parts)

@@ -42,6 +42,7 @@ class Sampling(Checked, ABC):
 
     def bound(self, runs: Runs, seed: int) -> MethodBounds:
         first, rest = self.points(runs.box, seed)
+        # The extremes of the first part are a coarser answer. What the rest widened hints at the error.
         halfway = _extremes(runs, first, Extremes.none(runs))
         extremes = _extremes(runs, rest, halfway)
         if not extremes:
@@ -63,6 +64,7 @@ def _extremes(runs: Runs, points: np.ndarray, extremes: Extremes) -> Extremes:
     fold = Fold(runs.model, runs.method, points, extremes.arrays)
     for number, first in enumerate(range(0, len(points), BATCH)):
         batch = points[first : first + BATCH]
+        # These runs are in a checkpoint: they count, but are not made again.
         if number < fold.done:
             runs.repeat(len(batch), fold.notes[number])
             continue
@@ -97,6 +99,7 @@ class Grid(Sampling):
         steps = [range(self.points_each) if wide else (0,) for wide in box.lower < box.upper]
         places = np.array(list(product(*steps)), dtype=float).reshape(-1, len(box))
         grid = box.points(2 * places / (self.points_each - 1) - 1)
+        # Even places are a grid of twice the spacing, with both ends if there is an odd number of points.
         coarse = np.all(places % 2 == 0, axis=1) & (self.points_each % 2 == 1)
         return grid[coarse], grid[~coarse]
 

@@ -1,6 +1,8 @@
 """Which parameters cause the variance of a response: Sobol indices from a surrogate."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -102,17 +104,64 @@ def global_sensitivity(
     inputs, scheme = inputs_of(model, intervals, NAME), scheme or Adaptive(USUAL * tolerance)
     runs = Runs(model, inputs.box, "global sensitivity", on_event)
     runs.tell(Began(runs.method, None))
-    surrogate = _surrogate(runs, inputs, scheme, checks, seed)
+    made_by = provenance(model, scheme, seed=seed, tolerance=tolerance, intervals=dict(described(inputs)))
+    result = _indices(runs, inputs, _surrogate(runs, inputs, scheme, checks, seed), tolerance, made_by)
+    runs.tell(Ended(runs.method, result.success, result.status, runs.count, 0.0))
+    return result
+
+
+@dataclass(frozen=True, eq=False)
+class _CheckedSurrogate:
+    """A surrogate of all samples and channels, the channel of each of its outputs, and its checks."""
+
+    surrogate: Surrogate
+    groups: np.ndarray
+    checks: Checks | None
+
+
+def _surrogate(runs: Runs, inputs: Inputs, scheme: Scheme, count: int | None, seed: int) -> _CheckedSurrogate:
     samples, channels = runs.shape
+    groups, box = np.tile(np.arange(channels), samples), inputs.box
+
+    def function(points: np.ndarray) -> np.ndarray:
+        return runs.values(points).reshape(len(points), -1)
+
+    surrogate = fit(function, box.lower, box.upper, scheme, seed=seed, groups=groups)
+    if not len(runs.free):
+        return _CheckedSurrogate(surrogate, groups, None)
+    # Checks are drawn from the distributions, so that their errors count as the variance does.
+    # The part of the seed keeps them apart from the held-out runs of the surrogate.
+    number = int(np.clip(SHARE * surrogate.runs, FEWEST, MOST)) if count is None else count
+    points = inputs.random(number, np.random.default_rng((seed, 5)))
+    errors = function(points) - surrogate(points)
+    known = np.isfinite(errors).all(axis=1)
+    checks = Checks(inputs.eta(points[known]), errors[known]) if known.sum() > 1 else None
+    return _CheckedSurrogate(surrogate, groups, checks)
+
+
+def _indices(
+    runs: Runs, inputs: Inputs, surrogate: _CheckedSurrogate, tolerance: float, made_by: Mapping[str, Any]
+) -> SensitivityIndices:
+    """Return the indices of each output, and of whole channels, if these are certain enough."""
+    model, (samples, channels) = runs.model, runs.shape
+    # Without groups indices of each output; with the channels as groups the ratios of sums over the samples.
     each, overall = (
         sobol_indices(surrogate.surrogate, rules=inputs.rules, groups=groups, checks=surrogate.checks)
         for groups in (None, surrogate.groups)
     )
+    # The error of the surrogate and the tails are independent causes; their bounds add.
     names = tuple(channel.name for channel in model.channels)
     uncertainty = overall.uncertainty + _of_tails(inputs, overall, names, tolerance)
-    _demand(uncertainty, names, tolerance, surrogate.surrogate.improvement)
+    worst = int(np.argmax(np.nan_to_num(uncertainty)))
+    if uncertainty[worst] > tolerance:
+        raise SolveError(
+            f"{NAME}: the error of the surrogate leaves the indices of channel {names[worst]!r} uncertain by "
+            f"{uncertainty[worst]:.2g}, more than the tolerance of {tolerance:g}. Improve the surrogate "
+            f"({surrogate.surrogate.improvement}), increase checks, narrow the intervals, or raise the tolerance. For "
+            "a response with kinks or jumps, estimate the indices by Monte Carlo: scipy.stats.sobol_indices."
+        )
     shape = samples, channels, len(inputs.box)
-    result = SensitivityIndices(
+    return SensitivityIndices(
         coordinate=model.coordinate,
         channels=names,
         units=tuple(channel.unit for channel in model.channels),
@@ -129,7 +178,7 @@ def global_sensitivity(
         runs=runs.count,
         checks=0 if surrogate.checks is None else len(surrogate.checks.eta),
         failures=tuple(runs.failures),
-        provenance=provenance(model, scheme, seed=seed, tolerance=tolerance, intervals=dict(described(inputs))),
+        provenance=made_by,
         findings=(
             *failed_runs(runs),
             *_constant(names, overall),
@@ -139,47 +188,15 @@ def global_sensitivity(
             *findings_at(model, inputs.box.middle),
         ),
     )
-    runs.tell(Ended(runs.method, result.success, result.status, runs.count, 0.0))
-    return result
-
-
-@dataclass(frozen=True, eq=False)
-class _Accumulated:
-    """A surrogate of all samples and channels, the channel of each of its outputs, and its checks."""
-
-    surrogate: Surrogate
-    groups: np.ndarray
-    checks: Checks | None
-
-
-def _surrogate(runs: Runs, inputs: Inputs, scheme: Scheme, count: int | None, seed: int) -> _Accumulated:
-    samples, channels = runs.shape
-    groups, box = np.tile(np.arange(channels), samples), inputs.box
-
-    def function(points: np.ndarray) -> np.ndarray:
-        return runs.values(points).reshape(len(points), -1)
-
-    surrogate = fit(function, box.lower, box.upper, scheme, seed=seed, groups=groups)
-    if not len(runs.free):
-        return _Accumulated(surrogate, groups, None)
-    number = int(np.clip(SHARE * surrogate.runs, FEWEST, MOST)) if count is None else count
-    points = inputs.random(number, np.random.default_rng((seed, 5)))
-    errors = function(points) - surrogate(points)
-    known = np.isfinite(errors).all(axis=1)
-    checks = Checks(inputs.eta(points[known]), errors[known]) if known.sum() > 1 else None
-    return _Accumulated(surrogate, groups, checks)
 
 
 def _of_tails(inputs: Inputs, overall: SobolIndices, names: tuple[str, ...], tolerance: float) -> np.ndarray:
-    """Return how much the tails that are cut off can change an index of each channel, (channels,).
-
-    Notes
-    -----
-    The part m of the variance of an input, to whose share S it is proportional, changes an index by at most
-    S (1 − S) m / (1 − m (1 − S)), as that of a linear model.
-    """
+    """Return how much the tails that are cut off can change an index of each channel, (channels,)."""
+    # The cut removes the part m of the variance of an input. In a linear model with the share S = V_i/V the whole
+    # distribution has V_i/(1 - m), and so the share S/(1 - m (1 - S)). The change is S (1 - S) m/(1 - m (1 - S)).
     lost, share = np.array(inputs.lost)[:, None], np.nan_to_num(np.clip(overall.total, 0.0, 1.0))
     each = share * (1 - share) * lost / np.maximum(1 - lost * (1 - share), np.finfo(float).tiny)
+    # Tails of several inputs add, as bounds of first order do.
     total = each.sum(axis=0)
     if np.max(total) > tolerance:
         channel = int(np.argmax(total))
@@ -192,18 +209,6 @@ def _of_tails(inputs: Inputs, overall: SobolIndices, names: tuple[str, ...], tol
             "parameter narrower bounds, or a distribution with lighter tails."
         )
     return total
-
-
-def _demand(uncertainty: np.ndarray, names: tuple[str, ...], tolerance: float, more: str) -> None:
-    """Refuse indices that are too uncertain."""
-    worst = int(np.argmax(np.nan_to_num(uncertainty)))
-    if uncertainty[worst] > tolerance:
-        raise SolveError(
-            f"{NAME}: the error of the surrogate leaves the indices of channel {names[worst]!r} uncertain by "
-            f"{uncertainty[worst]:.2g}, more than the tolerance of {tolerance:g}. Improve the surrogate "
-            f"({more}), increase checks, narrow the intervals, or raise the tolerance. For a response with "
-            "kinks or jumps, estimate the indices by Monte Carlo: scipy.stats.sobol_indices."
-        )
 
 
 def _constant(names: tuple[str, ...], overall: SobolIndices) -> list[Finding]:
@@ -236,6 +241,7 @@ def _negligible(inputs: Inputs, overall: SobolIndices) -> list[Finding]:
     varying = overall.variance > 0
     if not varying.any():
         return []
+    # By the upper end, so that the error of the surrogate cannot hide an influence.
     most = overall.total_ends[1][:, varying].max(axis=1)
     values = {
         name: float(index)

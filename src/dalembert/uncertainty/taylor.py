@@ -38,6 +38,7 @@ class Taylor(Checked):
         at = runs.linearised(box.middle)
         if at is None:
             raise runs.none_succeeded()
+        # Derivatives by η = (x - x_c)/x_w: the linear response is largest where each η has the sign of its slope.
         response, slopes = at[0], at[1] * box.radius
         reach = np.sum(np.abs(slopes), axis=2)
         up = np.sign(slopes)
@@ -63,7 +64,9 @@ class Taylor(Checked):
     def _apart(self, runs: Runs, seed: int, response: np.ndarray, slopes: np.ndarray) -> np.ndarray | None:
         if not (self.held_out and len(runs.free)):
             return None
+        # At corners the linear response is farthest from the middle, so curvature shows most.
         eta = np.random.default_rng(seed).choice([-1.0, 1.0], (self.held_out, len(runs.box)))
         apart = np.abs(runs.values(runs.box.points(eta)) - response - np.einsum("scd,nd->nsc", slopes, eta))
+        # A run that failed is NaN throughout, so that its first number shows it.
         apart = apart[~np.isnan(apart[:, 0, 0])]
         return apart.max(axis=0) if len(apart) else None

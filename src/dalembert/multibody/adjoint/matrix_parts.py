@@ -56,11 +56,7 @@ def matrices_of(lowered: Lowered, model: BlockModel, work: int, state: MotionSta
 
 
 def _of_velocities(lowered: Lowered) -> Iterable[Kind]:
-    """Kinds whose residuals may depend on velocities.
-
-    Constraints, and quadratic residuals, do not. Neither does what the formula of a kind's tangent holds for; where it
-    does not hold for all components, as with damping, the derivative at an arbitrary state shows it.
-    """
+    """Kinds whose residuals may depend on velocities."""
     for kind in lowered.data:
         if kind.constraint is None and not kind.quadratic and (kind.tangent is None or _depends(lowered, kind)):
             yield kind

@@ -15,11 +15,7 @@ from dalembert.multibody.model.observe import Observer
 
 
 def numbers_of(lowered: Lowered, observer: Observer) -> np.ndarray:
-    """All numbers that a motion and its channels follow from, real or complex, (numbers,).
-
-    The initial unknowns, the initial velocities, the data of signals, the numbers of components, and those of points
-    that channels read.
-    """
+    """All numbers that a motion and its channels follow from, real or complex, (numbers,)."""
     points = [np.asarray(row.numbers(lowered)) for row in observer.rows if isinstance(row.source, tuple)]
     return np.concatenate([lowered.x, lowered.v, lowered.signal_data, *map(np.ravel, lowered.data.values()), *points])
 

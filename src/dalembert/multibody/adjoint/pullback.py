@@ -37,10 +37,7 @@ DIRECT = "take derivative='direct'"
 
 
 def refuse(lowered: Lowered, solver: Integrator, observer: Observer) -> GeneralizedAlpha:
-    """Return the integrator if a motion by it has an adjoint.
-
-    Raises InputError: with what has no adjoint.
-    """
+    """Return the integrator if a motion by it has an adjoint."""
     if not isinstance(solver, GeneralizedAlpha):
         raise InputError(f"{type(solver).__name__} has no adjoint. Use GeneralizedAlpha, or {DIRECT}")
     if lowered.structure.reduction.nodes:

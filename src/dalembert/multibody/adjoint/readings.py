@@ -12,10 +12,7 @@ from dalembert.multibody.model.observe import Observer, OutputBlock, beside, col
 
 
 def refuse_energies(observer: Observer) -> None:
-    """Raise for channels of the whole system, which have no adjoint.
-
-    Raises InputError: with the channel.
-    """
+    """Raise for channels of the whole system, which have no adjoint."""
     for channel, row in zip(observer.channels, observer.rows, strict=True):
         if row.kind is None:
             raise InputError(

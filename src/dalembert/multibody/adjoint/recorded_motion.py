@@ -68,12 +68,7 @@ def stored_motion(
     times: np.ndarray,
     counted: Sequence[CountedAngle] = (),
 ) -> StoredMotion:
-    """Integrate until the last of the times, s, and keep the state of each step, or checkpoints beyond `ROOM`.
-
-    Steps that were halved, or chosen by the method, are only known afterwards: then the motion is integrated twice.
-
-    Raises SolveError: where the solver could not go on. Raises InputError: for more steps than the log of a run holds.
-    """
+    """Integrate until the last of the times, s, and keep the state of each step, or checkpoints beyond `ROOM`."""
     end, width = float(times[-1]), len(lowered.x)
     expected = solver.step_ends(end, lowered.jumps)
     if expected is not None and 4 * width * len(expected) > ROOM:

@@ -14,16 +14,8 @@ from dalembert.multibody.kernels.kind import Kind
 class Smoothing(NamedTuple):
     """How a joint smooths its Coulomb friction, as tanh(rate / slip).
 
-    Parameters
-    ----------
-    channel : str
-        Output of the joint that has the rate.
-    setting : str
-        Name of the field that has the slip.
-    slip : float
-        In the unit.
-    unit : str
-        Of the rate.
+    ``channel``: output of the joint that has the rate; ``setting``: name of the field that has the ``slip``, which is
+    in the ``unit`` of the rate.
     """
 
     channel: str

@@ -309,10 +309,7 @@ def _natural_spline(x: np.ndarray, y: np.ndarray) -> Any:
 
 @lru_cache(maxsize=32)
 def _pieces(times: bytes, values: bytes, char: str, kind: str, integrals: int) -> np.ndarray:
-    """Coefficients of a table's polynomials, from each knot on, rising powers first, shape (points - 1, order).
-
-    Kept for tables that a builder makes of the same samples again and again.
-    """
+    """Coefficients of a table's polynomials, from each knot on, rising powers first, shape (points - 1, order)."""
     x, y = np.frombuffer(times), np.frombuffer(values, dtype=char)
     if kind == "cubic":
         pieces = _natural_spline(x, y).c[::-1].T
@@ -363,10 +360,7 @@ def as_signal(value: Course) -> Signal:
 
 
 def refuse_jumps(owner: str, motion: Any) -> None:
-    """Refuse a prescribed motion whose velocity jumps.
-
-    Raises InputError: with the kind of the function of time.
-    """
+    """Refuse a prescribed motion whose velocity jumps."""
     if isinstance(motion, Step) or (isinstance(motion, Table) and not motion.is_smooth):
         raise InputError(
             f"{owner}: the velocity of its {type(motion).__name__} jumps, which no mechanism can follow; expected a "

@@ -156,10 +156,7 @@ def _either(kind: Declaration, full: _System) -> _System:
 
 
 def residual(kind: Declaration, dtype: type) -> BlockKernel:
-    """Add the residuals, in the reduced system N^T r; in complex numbers, by the call's mode, the tangent instead.
-
-    That of a quadratic kind has a kernel for itself.
-    """
+    """Add the residuals, in the reduced system N^T r; in complex numbers, by the call's mode, the tangent instead."""
     plain = dtype is float or kind.quadratic
     return _plain(kind, dtype, system_of(kind)) if plain else _complex(kind, system_of(kind))
 

@@ -29,10 +29,7 @@ class Reduction(NamedTuple):
 
 
 def reduction(index: Mapping[Kind, np.ndarray], n: int, size: int) -> Reduction:
-    """The reduced system of components with unknowns ``index``, for ``n`` coordinates and ``size`` unknowns.
-
-    Raises ModelError: for a kind that does not declare the charts of coordinates that it depends on.
-    """
+    """The reduced system of components with unknowns ``index``, for ``n`` coordinates and ``size`` unknowns."""
     nodal = [kind for kind in index if kind.chart is not None]
     rows = np.arange(size + 1, dtype=np.int64)
     if not nodal:

@@ -13,8 +13,6 @@ def carried_rates(
 ) -> np.ndarray:
     """Rates of the frames (bodies, rates, k) from chosen ones (bodies, rates, k), in the order of the bodies.
 
-    The chosen velocity of a body that states none is relative to the point that the body is placed at.
-
     ``coordinates`` (size,): of each undeformed body; ``modes`` (size, rates): their derivatives by the frames;
     ``chosen`` (bodies, rates, k).
     """

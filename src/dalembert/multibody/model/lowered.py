@@ -107,10 +107,7 @@ class Lowered:
         return self._unperturbed.model(complex, "tangent")
 
     def moved(self, **changes: Any) -> "Lowered":
-        """The system in another state: ``frames``, ``rates``, ``x`` or ``v``, or in an equal structure.
-
-        Its models do not depend on these, so those that exist are kept.
-        """
+        """The system in another state: ``frames``, ``rates``, ``x`` or ``v``, or in an equal structure."""
         kept = {name: vars(self)[name] for name in _MODELS if name in vars(self)}
         other = replace(self, **changes)
         vars(other).update(kept)

@@ -229,10 +229,7 @@ class MechanismLowering(ABC):
 
 
 def lower(system: BaseSystem, begin: float = 0.0) -> Lowered:
-    """Arrays of a system, with its bodies as placed; its motion starts at the time ``begin`` (s) of its signals.
-
-    Raises InputError: for what is no System.
-    """
+    """Arrays of a system, with its bodies as placed; its motion starts at the time ``begin`` (s) of its signals."""
     if not isinstance(system, BaseSystem):
         advice = f": {system.INSTEAD}" if hasattr(system, "INSTEAD") else ""
         raise InputError(f"{shown(system)} was given as the mechanism; expected a System{advice}")

@@ -157,10 +157,7 @@ def beside(times: np.ndarray, side: int) -> np.ndarray:
 
 
 def observer(system: BaseSystem, lowered: Lowered, names: Sequence[str]) -> Observer:
-    """Channels by name.
-
-    Raises InputError: for an unknown name, with the nearest ones.
-    """
+    """Channels by name."""
     rows = tuple(_row(system, lowered, name) for name in names)
     return Observer(tuple(Channel(name, row.unit) for name, row in zip(names, rows, strict=True)), rows)
 

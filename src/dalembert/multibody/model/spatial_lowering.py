@@ -6,9 +6,9 @@ import numpy as np
 
 from dalembert.multibody.components.base_body import BaseBody
 from dalembert.multibody.components.points import Point
-from dalembert.multibody.components.spatial import markers
-from dalembert.multibody.components.spatial.body import Marker
+from dalembert.multibody.components.spatial import spatial_markers as markers
 from dalembert.multibody.components.spatial.ground_points import Ground, GroundPoint, Side
+from dalembert.multibody.components.spatial.spatial_body import Marker
 from dalembert.multibody.components.spatial.spatial_rows import Pair
 from dalembert.multibody.model.lowering import MechanismLowering
 

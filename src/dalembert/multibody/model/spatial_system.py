@@ -4,11 +4,11 @@ from collections.abc import Callable, Sequence
 
 from dalembert.findings import Finding
 from dalembert.multibody.components.fields import Number
-from dalembert.multibody.components.spatial.body import Body
 from dalembert.multibody.components.spatial.ground_points import Ground
-from dalembert.multibody.components.spatial.joint import Joint
-from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.shapes import Shape, Surface, surface_of
+from dalembert.multibody.components.spatial.spatial_body import Body
+from dalembert.multibody.components.spatial.spatial_joint import Joint
+from dalembert.multibody.components.spatial.spatial_load import Load
 from dalembert.multibody.model.system import PLACED, BaseSystem
 
 

@@ -45,11 +45,7 @@ NONE = JointStates({}, {})
 
 
 def joint_values(owner: str, joints: list[Any], given: Mapping[str, Number] | None) -> Stated:
-    """Values by joint and coordinate, from those by ``"pin"`` or ``"bearing.displacement"``.
-
-    Raises InputError: for another joint or coordinate, a joint with several coordinates of which none is named, and
-    what is no number.
-    """
+    """Values by joint and coordinate, from those by ``"pin"`` or ``"bearing.displacement"``."""
     known: dict[str, list[str]] = {joint.name: list(joint.stated_coordinates) for joint in joints}
     movable = [name for name, own in known.items() if own]
     found: dict[tuple[str, str], Number] = {}
@@ -88,10 +84,7 @@ def closing(system: Any, kept: Stated, placed: Lowered) -> tuple[Any, list[str]]
 
 
 def moving(system: Any, closed: Lowered) -> Any:
-    """Return a copy of the mechanism, ``closed`` in its pose, whose joints move at the stated rates.
-
-    Other joints that close no loop are at rest, unless a body states its velocity.
-    """
+    """Return a copy of the mechanism, ``closed`` in its pose, whose joints move at the stated rates."""
     stated, free = system.stated.rates, any(value is not None for body in system.bodies for value in body.motion)
     rates = {**dict.fromkeys([] if free else _alone(system, stated), 0.0), **stated}
     directed = {joint for joint, name in stated if _stem(name) == DIRECTION}

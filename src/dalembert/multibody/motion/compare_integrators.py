@@ -257,7 +257,9 @@ class _Comparison:
             return IntegratorRun(method, str(solver), failure=str(error))
         worst: Any = {level: float(np.max(values)) for level, values in motion.violations.items()}
         error, steps = _distance(motion.channels(self.channels), known), int(motion.run.counts[0])
-        return IntegratorRun(method, str(solver), error, seconds, steps, **worst, energy=_imbalance(motion))
+        kinetic = float(np.ptp(motion.energies["kinetic"]))
+        imbalance = float(np.max(np.abs(motion.energies["balance"]))) / kinetic if kinetic > 0 else np.nan
+        return IntegratorRun(method, str(solver), error, seconds, steps, **worst, energy=imbalance)
 
     def _once(self, compute: Callable[[], np.ndarray], *what: object) -> np.ndarray:
         """What the checkpoint holds of this, or what is computed now."""
@@ -289,8 +291,3 @@ def _distance(values: np.ndarray, known: np.ndarray) -> float:
     """Largest distance of any channel, relative to its range; 1 is taken where a channel does not move."""
     span = np.ptp(known, axis=0)
     return float(np.max(np.abs(values - known) / np.where(span > 0, span, 1.0)))
-
-
-def _imbalance(motion: Trajectory) -> float:
-    kinetic = float(np.ptp(motion.energies["kinetic"]))
-    return float(np.max(np.abs(motion.energies["balance"]))) / kinetic if kinetic > 0 else np.nan

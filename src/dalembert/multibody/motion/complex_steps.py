@@ -58,10 +58,7 @@ class Along:
 def check_numbers(
     builder: Callable[..., BaseSystem], parameters: Parameters, vector: np.ndarray, thorough: bool = True
 ) -> None:
-    """Raise where a number of the model, or a function of time, loses the complex step of a parameter.
-
-    Raises InputError: it names the parameter, the component and its number.
-    """
+    """Raise where a number of the model, or a function of time, loses the complex step of a parameter."""
 
     def lowered(vector: np.ndarray) -> Lowered:
         return lower(_built(builder, parameters, vector))
@@ -74,10 +71,7 @@ def check_numbers(
 
 
 def check_numbers_together(builder: Callable[..., BaseSystem], parameters: Parameters, vector: np.ndarray) -> None:
-    """Compare as :func:`check_numbers`, along one direction of all parameters at once; they are few builds.
-
-    Raises InputError: it names the parameter, the component and its number.
-    """
+    """Compare as :func:`check_numbers`, along one direction of all parameters at once; they are few builds."""
     with in_complex_numbers(strict=True):
         check_together(
             parameters, vector, lambda at: _numbers(lower(_built(builder, parameters, at))),
@@ -116,10 +110,7 @@ def _place(lowered: Lowered, entry: int) -> str:
 def check_closures(
     builder: Callable[..., BaseSystem], parameters: Parameters, vector: np.ndarray, along: Along
 ) -> None:
-    """Raise where a function of the user's, or a kind of another package, loses the complex step of a parameter.
-
-    Raises InputError: it names the parameter and the component.
-    """
+    """Raise where a function of the user's, or a kind of another package, loses the complex step of a parameter."""
 
     def answers(vector: np.ndarray) -> list[tuple[str, np.ndarray]]:
         """What functions return along the motion, each with its name."""

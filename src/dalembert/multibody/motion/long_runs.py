@@ -19,10 +19,7 @@ TRIAL = 2_000  # steps
 
 
 def check_steps(owner: str, solver: Integrator, end: float, most: float = MOST_STEPS, advice: str = "") -> None:
-    """Refuse more fixed steps than ``most``.
-
-    Raises InputError.
-    """
+    """Refuse more fixed steps than ``most``."""
     if not (is_real(most) and most > 0):
         raise InputError(f"{owner}: most_steps is {shown(most)}; expected a positive number")
     steps = 0.0 if solver.fixed_step is None else end / solver.fixed_step
@@ -39,12 +36,7 @@ def works(lowered: Lowered) -> bool:
 
 
 def check_pace(lowered: Lowered, solver: Integrator, end: float) -> None:
-    """Refuse a long motion that an adaptive method would end at its limit of steps, after a trial of few steps.
-
-    Where loads or losses do work, steps may grow as the motion decays. There only the limit ends the run.
-
-    Raises SolveError.
-    """
+    """Refuse a long motion that an adaptive method would end at its limit of steps, after a trial of few steps."""
     most = getattr(solver, "most_steps", 0)
     if end < LONG or most <= TRIAL or solver.fixed_step is not None or works(lowered):
         return

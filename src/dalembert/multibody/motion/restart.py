@@ -124,10 +124,7 @@ class Completion:
 
     @classmethod
     def at(cls, lowered: Lowered, chart: StateChart, numbers: np.ndarray) -> "Completion":
-        """Solve the joints' constraints for the dependent coordinates near the chart's state, by Newton's method.
-
-        Raises SolveError: where the joints do not close there.
-        """
+        """Solve the joints' constraints for the dependent coordinates near the chart's state, by Newton's method."""
         n, size = lowered.structure.n, lowered.structure.size
         own, half = LocalCoordinates.of(lowered), len(chart.places) // 2
         near = chart.near[:n]
@@ -183,19 +180,10 @@ def _inverse(matrix: np.ndarray) -> np.ndarray:
 class MotionSegment(MotionModel):
     """A segment of a mechanism's motion as a forward model.
 
-    Parameters
-    ----------
-    model : TimeResponse
-        Of the motion.
-    begin : float
-        Time of the signals at the beginning of the segment, s.
-    times : array, shape (samples,)
-        s, from the beginning of the segment.
-    chart : StateChart or None
-        Numbers of the state that it begins at, which are parameters behind those of the model; the initial state that
-        the model's builder makes if None.
-    ends : StateChart or None
-        Numbers of the state that are channels behind those of the model.
+    ``model``: of the motion; ``begin``: time of the signals at the beginning of the segment, s; ``times`` (samples,):
+    s, from that beginning. Parameters behind those of the model are the numbers of the state by the ``chart``; without
+    one the segment begins as the model's builder says. Channels behind those of the model are the numbers by the chart
+    ``ends``.
     """
 
     model: BuiltModel

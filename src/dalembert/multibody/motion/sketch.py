@@ -78,7 +78,10 @@ def size_of(course: Any) -> float:
 
 def _ends(system: BaseSystem, lowered: Lowered, x: np.ndarray) -> dict[str, np.ndarray]:
     """Positions of the points that joints and loads act on; of a joint that they act on, the middle of its points."""
-    parts = {part.name: _sides(part) for part in (*system.joints, *system.loads)}
+    parts = {
+        part.name: [side for name in SIDES if (side := getattr(part, name, None)) is not None]
+        for part in (*system.joints, *system.loads)
+    }
     held = list(dict.fromkeys(str(side) for sides in parts.values() for side in sides if isinstance(side, Point)))
     known = dict(zip(held, _positions(system, lowered, x, held), strict=True))
     found: dict[str, np.ndarray] = {}
@@ -94,10 +97,6 @@ def _end(side: Any, points: Mapping[str, np.ndarray], joints: Mapping[str, np.nd
     if isinstance(side, BaseJoint):
         return joints[side.name].mean(axis=0) if side.name in joints else None
     return points[str(side)] if isinstance(side, Point) else _fixed(side)
-
-
-def _sides(component: Any) -> list[Any]:
-    return [side for name in SIDES if (side := getattr(component, name, None)) is not None]
 
 
 def _forces(system: BaseSystem, lowered: Lowered, x: np.ndarray, drawing: Drawing) -> dict[str, np.ndarray]:

@@ -27,20 +27,10 @@ def slip_findings(
 ) -> Iterator[Finding]:
     """Yield whether a joint creeps or chatters where friction should hold it, or crosses its zone in too few steps.
 
-    Parameters
-    ----------
-    name : str
-    smoothing : Smoothing
-    times, rates : array, shape (samples,)
-        s and rad/s or m/s, samples farther apart than a ``step`` do not show how it crosses the zone.
-    step : float or None
-        s; None for a solver that chooses its steps, which is only judged by the creep.
-
-    Notes
-    -----
-    The zone is -slip to slip. The joint creeps during intervals in which its rate stays within twice the zone for ten
-    times as long as a crossing takes at the root mean square of the acceleration. The
-    rate of creep is about the slip rate; the number of steps in a crossing is proportional to it.
+    ``times``, ``rates`` (samples,): s and rad/s or m/s; ``step``: s, None for a solver that chooses its steps. The zone
+    is -slip to slip. The joint creeps while its rate stays within twice the zone for ten times as long as a crossing
+    takes at the root mean square of the acceleration. Samples farther apart than a step do not show how it crosses the
+    zone.
     """
     slip, setting, unit = float(np.real(smoothing.slip)), smoothing.setting, smoothing.unit
     largest = float(np.max(np.abs(rates)))

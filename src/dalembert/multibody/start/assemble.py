@@ -49,13 +49,8 @@ def assembled(
 ) -> Lowered:
     """Arrays of a system whose joints are closed and whose velocities are consistent, at the time ``begin`` (s).
 
-    A system that starts at its equilibrium is moved there once its joints are closed.
-
     A ``perturbed`` system is treated in complex numbers even if only functions of the user's hold the imaginary step;
     ``placed`` are the arrays of the system as `lower` makes them, where they are there already.
-
-    Raises ModelError: where the mechanism cannot be assembled, its driving coordinates contradict its joints, or stated
-    velocities do. Raises SolveError: where a system that starts at its equilibrium has none near its first placement.
     """
     lowered = placed or lower(system, begin)
     rests = system.start == EQUILIBRIUM
@@ -172,10 +167,7 @@ def _model(lowered: Lowered) -> BlockModel:
 
 
 def refuse_kinks(lowered: Lowered, end: float) -> None:
-    """Raise where the velocity of a prescribed motion jumps within the motion.
-
-    Raises ModelError: with the joint and the time.
-    """
+    """Raise where the velocity of a prescribed motion jumps within the motion."""
     for time, joint in lowered.kinks:
         if 0 < time < end * (1 - 1e-9):
             raise ModelError(
@@ -186,10 +178,7 @@ def refuse_kinks(lowered: Lowered, end: float) -> None:
 
 
 def refuse_unstable_start(system: BaseSystem, lowered: Lowered) -> None:
-    """Raise where a system that starts at its equilibrium would fall away from it.
-
-    Raises ModelError: with the body that moves most.
-    """
+    """Raise where a system that starts at its equilibrium would fall away from it."""
     body = unstable_body(lowered) if system.start == EQUILIBRIUM else None
     if body is not None:
         raise ModelError(
@@ -244,10 +233,7 @@ def _is_regular(jacobian: csr_matrix) -> bool:
 
 
 def refuse_redundancy(lowered: Lowered) -> None:
-    """Raise where a constraint follows from the others.
-
-    Raises ModelError: with the joints whose constraints are redundant, or that leave no freedom.
-    """
+    """Raise where a constraint follows from the others."""
     count, rank, names = redundancy(lowered)
     if rank < count:
         refuse_locked(lowered)

@@ -25,9 +25,6 @@ def begin_at_rest(lowered: Lowered) -> Lowered:
     """The same mechanism at rest in its equilibrium; in complex numbers with the derivative along the complex step.
 
     With the residual r(x, p) = 0 of the equilibrium, its derivative is dx/dp = -(dr/dx)^-1 dr/dp.
-
-    Raises ModelError: where a body states a velocity. Raises SolveError: where there is no equilibrium near the first
-    placement.
     """
     _refuse_velocities(lowered)
     place, _ = resting_place(lowered)
@@ -64,10 +61,7 @@ def unstable_body(lowered: Lowered) -> str | None:
 
 
 def resting_place(lowered: Lowered) -> tuple[np.ndarray, int]:
-    """Coordinates and multipliers (N + 1,) of the equilibrium nearest to the first placement, and Newton iterations.
-
-    Raises SolveError: where there is none near it, or the system can move without any stiffness.
-    """
+    """Coordinates and multipliers (N + 1,) of the equilibrium nearest to the first placement, and Newton iterations."""
     still = np.zeros_like(np.real(lowered.x))
 
     def forces(x: np.ndarray) -> np.ndarray:

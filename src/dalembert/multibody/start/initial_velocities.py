@@ -23,11 +23,7 @@ _ROUNDING = 1e-9  # of the largest velocity: what stated velocities may leave of
 def initial_velocities(
     bodies: Sequence[BaseBody], rates: np.ndarray, lowered: Lowered, model: BlockModel
 ) -> np.ndarray:
-    """Velocities of rigid motions that satisfy the joints, (N + 1,); ``rates`` are the rates that the bodies have.
-
-    Raises ModelError: where the stated velocities contradict a joint, with the velocities that are stated and the
-    nearest possible ones; where no velocities satisfy the joints.
-    """
+    """Velocities of rigid motions that satisfy the joints, (N + 1,); ``rates`` are the rates that the bodies have."""
     motion = _RigidMotion(bodies, lowered, model)
     given = np.where(lowered.stated, lowered.rates, 0.0)
     _, v, left, (wrong, wrong_slope), (speed, slope) = motion.completed(given, rates & ~lowered.stated)
@@ -112,21 +108,14 @@ def _contradiction(motion: _RigidMotion, rates: np.ndarray, left: np.ndarray) ->
     for body, own, near, mask in zip(motion.bodies, np.real(given), np.real(possible), lowered.stated, strict=True):
         near = np.where(np.abs(near) < 1e-12 * np.abs(near).max(), 0.0, near)
         changed = mask & (np.abs(near - own) > 1e-9 * max(1.0, np.abs(own).max()))
-        for what, unit, part in _velocities_of(body):
+        linear, angular = slice(body.dimension), slice(body.dimension, None)
+        for what, unit, part in (("velocity", "m/s", linear), ("angular_velocity", "rad/s", angular)):
             if changed[part].any():
                 ours, theirs = _numbers(own[part]), _numbers(near[part])
                 parts.append(f"{body.name}.{what} is {ours} {unit} (nearest possible: {theirs})")
     return ModelError(
         f"the stated initial velocities contradict joint {', '.join(map(repr, joints))} by {wide.max():.3g} (m/s or "
         f"rad/s): {', '.join(parts)}. Correct them, or leave out those that follow from the joints"
-    )
-
-
-def _velocities_of(body: BaseBody) -> tuple[tuple[str, str, slice], ...]:
-    """Names, units and rates of the stated velocities of a body."""
-    return (
-        ("velocity", "m/s", slice(body.dimension)),
-        ("angular_velocity", "rad/s", slice(body.dimension, None)),
     )
 
 

@@ -80,10 +80,7 @@ def no_freedom(lowered: Lowered) -> tuple[Finding, ...]:
 
 
 def refuse_locked(lowered: Lowered) -> None:
-    """Raise where the joints leave no freedom.
-
-    Raises ModelError: with the joints.
-    """
+    """Raise where the joints leave no freedom."""
     found = locked(lowered)
     if found is not None:
         raise ModelError(f"{found.sentence[0].lower()}{found.sentence[1:]} {found.advice}")

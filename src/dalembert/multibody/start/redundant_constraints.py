@@ -6,10 +6,7 @@ from dalembert.multibody.start.assemble import inner_constraints, redundancy
 
 
 def redundant_constraints(lowered: Lowered) -> tuple[Finding, ...]:
-    """Return a finding on joints whose constraints follow from those of others at the start; none if all are needed.
-
-    Constraints inside of bodies, such as those between the axes of a rigid body in space, do not count.
-    """
+    """Return a finding on joints whose constraints follow from those of others at the start; none if all are needed."""
     count, rank, joints = redundancy(lowered)
     if not joints:
         return ()

@@ -8,11 +8,11 @@ import numpy as np
 from dalembert.findings import Finding
 from dalembert.multibody.components.base_body import ANGLE, DISPLACEMENT
 from dalembert.multibody.components.spatial.armature import Armature
-from dalembert.multibody.components.spatial.joint import Joint
 from dalembert.multibody.components.spatial.joint_coordinate import CHANNELS, TIES, coordinates_of
 from dalembert.multibody.components.spatial.joint_limit import Limit
-from dalembert.multibody.components.spatial.motor import Motor
-from dalembert.multibody.components.spatial.torsion_spring import TorsionSpring
+from dalembert.multibody.components.spatial.spatial_joint import Joint
+from dalembert.multibody.components.spatial.spatial_motor import Motor
+from dalembert.multibody.components.spatial.spatial_torsion_spring import TorsionSpring
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.system import BaseSystem
 

@@ -128,9 +128,12 @@ def modes(state: BaseSystem | Equilibrium, count: int | None = None, *, frame: s
     mass = tangent(lowered, x, still, (0.0, 0.0, 1.0)).toarray()[:n, :n]
     free = null_space(stiffness[n:, :n] / scales(lowered)[n:-1, None]) if lowered.structure.size > n else np.eye(n)
     k, c, m = (free.T @ matrix @ free for matrix in (stiffness[:n, :n], damping, mass))
-    roots, vectors = (
-        _undamped(k, m) if not c.any() and np.allclose(k, k.T, 0, 1e-9 * abs(k).max()) else _damped(k, c, m)
-    )
+    if not c.any() and np.allclose(k, k.T, 0, 1e-9 * abs(k).max()):
+        # M x'' + K x = 0 with symmetric matrices: many times faster than the general problem.
+        squares, vectors = eigh((k + k.T) / 2, (m + m.T) / 2)
+        roots = np.emath.sqrt(-squares)
+    else:
+        roots, vectors = _damped(k, c, m)
     largest = np.abs(roots).max(initial=0.0)
     growth = float(np.real(roots).max(initial=0.0))
     kept = np.flatnonzero(np.imag(roots) > _FREE * largest)
@@ -169,12 +172,6 @@ def _modes(
 ) -> Modes:
     frequencies, ratios = np.imag(roots) / (2 * np.pi), -np.real(roots) / np.abs(roots)
     return Modes(frequencies, ratios, shapes, roots, growth, speed, frame, frame_speed, whirl)
-
-
-def _undamped(k: np.ndarray, m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Roots and shapes of M x'' + K x = 0 with symmetric matrices, many times faster than the general problem."""
-    squares, vectors = eigh((k + k.T) / 2, (m + m.T) / 2)
-    return np.emath.sqrt(-squares), vectors
 
 
 def _damped(k: np.ndarray, c: np.ndarray, m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

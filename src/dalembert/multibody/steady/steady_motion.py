@@ -28,18 +28,10 @@ _NEUTRAL = 1e-8  # of the largest stiffness
 class SteadyEquations:
     """M z'' + C z' + K z = 0 of small vibrations about a steady motion, in a frame in which they are constant.
 
-    Parameters
-    ----------
-    frame : {"fixed", "rotating"}
-    frame_rate, rate : array, shape (1,) or (3,)
-        Angular velocities of the frame and of the fastest body, rad/s, in the fixed axes.
-    x : array, shape (N + 1,)
-        Coordinates and multipliers of the motion at the time 0.
-    mass, damping, stiffness : array, shape (freedoms, freedoms)
-    shapes : array, shape (N + 1, freedoms)
-        Derivatives of coordinates and multipliers by z.
-    turn : array, shape (freedoms, freedoms)
-        M J, where J turns a shape about the axis of the rate.
+    ``frame``: "fixed" or "rotating"; ``frame_rate``, ``rate`` (1 or 3,): angular velocities of the frame and of the
+    fastest body, rad/s, in the fixed axes; ``x`` (N + 1,): coordinates and multipliers at the time 0; ``mass``,
+    ``damping``, ``stiffness`` (freedoms, freedoms); ``shapes`` (N + 1, freedoms): derivatives of coordinates and
+    multipliers by z; ``turn`` (freedoms, freedoms): M J, where J turns a shape about the axis of the rate.
     """
 
     frame: str

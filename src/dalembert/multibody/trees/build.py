@@ -15,17 +15,17 @@ from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.signals import Course
 from dalembert.multibody.components.spatial.armature import Armature
 from dalembert.multibody.components.spatial.coupling_joint import CouplingJoint
-from dalembert.multibody.components.spatial.force import Force, Torque
 from dalembert.multibody.components.spatial.friction import Friction
 from dalembert.multibody.components.spatial.ground_points import Side
 from dalembert.multibody.components.spatial.inertia import Inertia
-from dalembert.multibody.components.spatial.joint import Joint
 from dalembert.multibody.components.spatial.joint_limit import AngleLimit, DisplacementLimit
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose, Vector
-from dalembert.multibody.components.spatial.prismatic_joint import PrismaticJoint
-from dalembert.multibody.components.spatial.revolute_joint import RevoluteJoint
-from dalembert.multibody.components.spatial.rigid_body import RigidBody
 from dalembert.multibody.components.spatial.shapes import Shape
+from dalembert.multibody.components.spatial.spatial_force import Force, Torque
+from dalembert.multibody.components.spatial.spatial_joint import Joint
+from dalembert.multibody.components.spatial.spatial_prismatic_joint import PrismaticJoint
+from dalembert.multibody.components.spatial.spatial_revolute_joint import RevoluteJoint
+from dalembert.multibody.components.spatial.spatial_rigid_body import RigidBody
 from dalembert.multibody.model.spatial_system import SpatialSystem
 from dalembert.multibody.trees.idle_limits import import_findings
 from dalembert.multibody.trees.kinematics import Motion, coordinate, joint_pose, motions, values
@@ -247,9 +247,7 @@ def _body(group: Group, motion: Motion, driven: bool) -> RigidBody:
 def _connect(
     system: SpatialSystem, tree: Tree, joint: TreeJoint, name: str, a: Side, body: RigidBody, slip: Number
 ) -> Joint:
-    """Add a joint of this name, which is returned, its friction and its armature inertia.
-
-    Zero numbers that are parameters stay in the model."""
+    """Add a joint of this name, which is returned, its friction and its armature inertia."""
     has = {name: getattr(joint, name) != 0.0 or f"{joint.name}.{name}" in tree.changed for name in JOINT_NUMBERS}
     friction = None
     if has["damping"] or has["friction"]:

@@ -9,9 +9,9 @@ import numpy as np
 from dalembert.errors import listed
 from dalembert.findings import Finding
 from dalembert.multibody.components.spatial.joint_limit import Limit
-from dalembert.multibody.components.spatial.load import Load
+from dalembert.multibody.components.spatial.spatial_load import Load
 from dalembert.multibody.trees.omissions import Omission, omission_findings
-from dalembert.multibody.trees.tree import Tree, TreeJoint
+from dalembert.multibody.trees.tree import Tree
 
 NAMED = 6
 """Joints that a sentence names; the others are counted."""
@@ -34,9 +34,7 @@ def _idle_limits(tree: Tree, free: set[str]) -> Iterator[Omission]:
     }
     for what, joints in limited.items():
         if joints:
-            yield Omission(f"the limits of the {what} of {_named(joints)} have no effect")
-
-
-def _named(joints: Sequence[TreeJoint]) -> str:
-    words = [repr(own.name) for own in joints]
-    return listed(words if len(words) <= NAMED else [*words[:NAMED], f"{len(words) - NAMED} more joints"])
+            names = [repr(joint.name) for joint in joints]
+            if len(names) > NAMED:
+                names[NAMED:] = [f"{len(names) - NAMED} more joints"]
+            yield Omission(f"the limits of the {what} of {listed(names)} have no effect")

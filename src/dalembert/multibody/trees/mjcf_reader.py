@@ -80,10 +80,7 @@ def read_mjcf(path: str | os.PathLike[str], impossible: str = REFUSE) -> Tree:
 
 
 def _replace_impossible(parsed: Any, path: Path, impossible: str, notes: list[Omission]) -> None:
-    """Refuse the impossible inertias of a parsed file, or replace them, before MuJoCo compiles and refuses them.
-
-    Those of shapes are possible. Where the file lets MuJoCo balance inertias, or compute all from shapes, it does.
-    """
+    """Refuse the impossible inertias of a parsed file, or replace them, before MuJoCo compiles and refuses them."""
     if parsed.compiler.balanceinertia or parsed.compiler.inertiafromgeom == _ALWAYS:
         return
     for body in parsed.bodies:

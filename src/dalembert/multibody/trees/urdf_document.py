@@ -65,10 +65,7 @@ class Element:
         return None
 
     def required(self, tag: str) -> "Element":
-        """The first child with a tag.
-
-        Raises InputError: if there is none.
-        """
+        """The first child with a tag."""
         found = self.child(tag)
         if found is None:
             raise InputError(f"{self.place} has no element <{tag}>. Add it")
@@ -80,20 +77,14 @@ class Element:
         return self.attributes.get(name)
 
     def required_word(self, name: str) -> str:
-        """The value of an attribute.
-
-        Raises InputError: if it is missing.
-        """
+        """The value of an attribute."""
         found = self.word(name)
         if found is None:
             raise InputError(f"{self.place} has no attribute {name!r}. Add it")
         return found
 
     def numbers(self, name: str, count: int, default: tuple[float, ...] | None = None) -> tuple[float, ...]:
-        """Finite numbers of an attribute; the default where it is missing.
-
-        Raises InputError: for a missing attribute without a default, and for anything else than so many finite numbers.
-        """
+        """Finite numbers of an attribute; the default where it is missing."""
         given = self.word(name) if default is not None else self.required_word(name)
         if given is None:
             assert default is not None
@@ -147,10 +138,7 @@ class Element:
 
 
 def parsed(path: Path, tag: str, what: str) -> Element:
-    """The outermost element of a file.
-
-    Raises InputError: if there is no such file, if it is no XML, or if its outermost element has another tag.
-    """
+    """The outermost element of a file."""
     try:
         content = path.read_bytes()
     except FileNotFoundError:

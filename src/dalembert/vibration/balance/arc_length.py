@@ -78,10 +78,7 @@ class Progress:
 def along(
     equations: PathProblem, begin: float, end: float, start: Solution | None, behind: float = 0.0
 ) -> Iterator[PathPoint]:
-    """Points along the curve from one frequency to another, by arc length, with its folds.
-
-    It may turn back behind its beginning, by a part of the way.
-    """
+    """Points along the curve from one frequency to another, by arc length, with its folds."""
     known = start if start is not None else equations.first(begin)
     yield PathPoint(known)
     if not known.converged:

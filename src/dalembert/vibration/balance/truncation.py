@@ -45,10 +45,7 @@ class Truncation:
 
 
 def truncation_findings(problem: Equations, solution: Solution) -> Iterator[Finding]:
-    """Yield a finding where twice the harmonics change the motion of the retained coordinates at a solution.
-
-    Rigid contacts on coordinates with mass need the most harmonics, because their forces jump where motion stops.
-    """
+    """Yield a finding where twice the harmonics change the motion of the retained coordinates at a solution."""
     yield from large_findings(truncation(problem, solution), problem.method)
 
 

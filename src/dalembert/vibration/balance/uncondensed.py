@@ -67,10 +67,7 @@ class Uncondensed:
 
     @cached_property
     def matrices(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """K, M and C in these coordinates, (n, n) each.
-
-        Raises InputError for a structure so large that its interior is kept sparse, and for hysteretic damping.
-        """
+        """K, M and C in these coordinates, (n, n) each."""
         condensation = self.condensation
         require_viscous(self.lowered.structure, "stability and nonlinear modes")
         if any(map(issparse, condensation.inner)):

@@ -16,7 +16,6 @@ from dalembert.parameters import Parameters
 from dalembert.structure.craig_bampton import CachedBases
 from dalembert.structure.structure import MATRICES, Structure
 from dalembert.vibration.interface.lowering import Lowered, lower
-from dalembert.vibration.laws.law_block import LawBlock
 from dalembert.vibration.laws.user_element import UserElement
 from dalembert.vibration.system.system import VibrationSystem
 
@@ -30,10 +29,7 @@ Part = tuple[np.ndarray, Callable[[int], str]]
 def check_numbers(
     builder: Callable[..., VibrationSystem], parameters: Parameters, vector: np.ndarray, thorough: bool = True
 ) -> None:
-    """Raise where a number of a system loses the complex step of a parameter.
-
-    Raises InputError, which names the parameter, the component and its number.
-    """
+    """Raise where a number of a system loses the complex step of a parameter."""
     _check(builder, parameters, vector, lambda system: _parts(lower(system)), thorough)
 
 
@@ -106,14 +102,8 @@ def _parts(lowered: Lowered) -> Iterator[Part]:
             lambda entry, names=names: f"{NUMBERS[entry % len(NUMBERS)]!r} of {names[entry // len(NUMBERS)]!r}",
         )
     for block in lowered.laws:
-        yield (
-            block.numbers.ravel(),
-            lambda entry, law_block=block: _number(law_block, *divmod(entry, law_block.numbers.shape[1])),
-        )
-
-
-def _number(block: LawBlock, element: int, number: int) -> str:
-    return f"{list(block.element.numbers)[number]!r} of {block.names[element]!r}"
+        owners = [f"{number!r} of {name!r}" for name in block.names for number in list(block.element.numbers)]
+        yield block.numbers.ravel(), lambda entry, owners=owners: owners[entry]
 
 
 def _entries(matrix: Any) -> np.ndarray:

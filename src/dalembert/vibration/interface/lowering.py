@@ -107,10 +107,7 @@ class Lowered:
         return replace(self, blocks=tuple(map(_real, self.blocks)), laws=tuple(map(_real, self.laws)))
 
     def fingerprint(self, method: object, *more: object) -> str:
-        """Hash of a system's matrices, forces and elements, of the method, and of what else there is.
-
-        Laws of the user's are told by some of their values.
-        """
+        """Hash of a system's matrices, forces and elements, of the method, and of what else there is."""
         structure = self.structure
         digest = hashlib.sha256(repr((*more, method)).encode())
         digest.update(repr((structure.dofs.names, self.row_names, self.contacts, self.forces)).encode())
@@ -128,11 +125,7 @@ class Lowered:
 
 
 def lower(system: VibrationSystem) -> Lowered:
-    """Arrays of a system.
-
-    Raises InputError for an element or a force on a degree of freedom that is not there; ModelError for a rigid contact
-    on a degree of freedom without stiffness and no penalty.
-    """
+    """Arrays of a system."""
     rows, names = _Rows(system.structure), []
     cells: dict[tuple[str, int, bool], list[tuple[list[int], int, list]]] = {}
     laws: dict[tuple, list[tuple[LawElement, list[int]]]] = {}

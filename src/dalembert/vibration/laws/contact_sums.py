@@ -38,10 +38,7 @@ def contact_sums(numbers: np.ndarray, shape: Shape, series: Fourier, events: boo
 
 
 def sums_for(numbers: np.ndarray, shape: Shape, events: bool) -> "type[PlainSums | EventSums]":
-    """Return the class of the sums for contacts; its ``kernels`` are what they call.
-
-    These are for Jacobians, for forces alone, and for derivatives with respect to parameters.
-    """
+    """Return the class of the sums for contacts; its ``kernels`` are what they call."""
     if not events or shape.tangents < 2:
         return EventSums if events else PlainSums
     # In two directions the force's direction comes from the motion of sliders, which must have a place and a limit.

@@ -166,10 +166,7 @@ _compared: set[str] = set()
 
 
 def require_complex_steps(block: LawBlock, series: Fourier, displacements: np.ndarray, omega: float) -> None:
-    """Refuse a law of the user's that drops the imaginary part of displacements or of its state.
-
-    Raises InputError.
-    """
+    """Refuse a law of the user's that drops the imaginary part of displacements or of its state."""
     law = block.law
     if law.packaged or law.digest in _compared or not np.any(displacements):
         return

@@ -41,11 +41,7 @@ def first_motion(mode: ModeEquations, linear: Linear, size: float) -> FreeMotion
 
 
 def from_linear_mode(mode: ModeEquations, linear: Linear, size: float) -> FreeMotion | None:
-    """Return the motion at an amplitude by increasing the nonlinearity from none to all.
-
-    The way of a mode whose stiffness changes at rest, as where a stop just touches: smaller motions are no nearer to
-    the linear mode.
-    """
+    """Return the motion at an amplitude by increasing the nonlinearity from none to all."""
     harmonics = linear.rest.copy()
     harmonics[:, int(mode.problem.method.orders[0] == 0)] += size * linear.moved
     known = FreeMotion(harmonics, linear.omega, linear.growth, size, samples=mode.problem.method.first_samples)
@@ -112,10 +108,7 @@ def motion_towards(mode: ModeEquations, known: FreeMotion, size: float, rest: np
 def motions_along(
     mode: ModeEquations, first: FreeMotion, begin: float, end: float, behind: float = 1.0
 ) -> Iterator[FreeMotion]:
-    """Yield motions along the path from the first amplitude to another, by arc length.
-
-    It may turn back behind its beginning, by a ratio.
-    """
+    """Yield motions along the path from the first amplitude to another, by arc length."""
     low, high = sorted((begin / behind if end > begin else begin * behind, end))
     known, onward = first, np.zeros(first.harmonics.size + 3)
     onward[-1] = np.sign(end - begin)

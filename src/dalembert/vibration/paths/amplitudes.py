@@ -80,21 +80,13 @@ def _order(kind: str) -> int:
 
 
 def coordinate_row(coordinates: Sequence[str], name: str) -> int:
-    """Return the row of a coordinate that elements see.
-
-    Raises InputError for an unknown one.
-    """
+    """Return the row of a coordinate that elements see."""
     require_known("coordinate", name, coordinates)
     return coordinates.index(name)
 
 
 def observed_column(dofs: Sequence[str], dof: str) -> int:
-    """Return the column of an observed degree of freedom.
-
-    If only one degree of freedom of a node was observed, the name of the node is enough.
-
-    Raises InputError for a degree of freedom that was not observed.
-    """
+    """Return the column of an observed degree of freedom."""
     of_node = [name for name in dofs if name.rpartition(".")[0] == dof]
     name = of_node[0] if len(of_node) == 1 else dof
     if name not in dofs:

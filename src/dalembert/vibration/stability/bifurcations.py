@@ -49,8 +49,10 @@ def judged(problem: Equations, path: Iterable[PathPoint], located: bool) -> Iter
             kind = ""
             if before is not None and before[1].unstable != current.unstable and not folded:
                 kind = _kind(before[1], current)
-                if kind == BRANCH and not _branches(problem, before[0], point.solution):
-                    kind = ""
+                # Without a fold the balance changes its sign where an exponent passes zero. The steps of a time map
+                # shift a fold a little, so that its exponents may pass zero next to it.
+                if kind == BRANCH and remembers(problem):
+                    kind = kind if before[0].tangent.sign * point.solution.tangent.sign < 0 else ""
                 place = _located(problem, before, (point.solution, current)) if located and adjacent and kind else None
                 if place is not None:
                     # Where an exponent is zero, rounding decides whether it grows.
@@ -101,16 +103,6 @@ def _kind(before: Exponents, after: Exponents, rank: int | None = None) -> str:
     if min(turn, 1 - turn) < none:
         return BRANCH
     return DOUBLING if abs(turn - 0.5) < none else TORUS
-
-
-def _branches(problem: Equations, before: Solution, after: Solution) -> bool:
-    """Whether an exponent passes zero between two points without a fold, in the balance itself.
-
-    The steps of a time map shift a fold a little, so that its exponents may pass zero beside it.
-    """
-    if not remembers(problem):
-        return True
-    return before.tangent.sign * after.tangent.sign < 0
 
 
 def _located(

@@ -31,10 +31,7 @@ COPY = 1e-3
 
 
 def hill(problem: Equations, solution: Solution) -> np.ndarray:
-    """Floquet exponents in parts of ω, (exponents,): as many as the system has states, the fastest growing first.
-
-    Raises InputError for a structure that is too large for dense matrices.
-    """
+    """Floquet exponents in parts of ω, (exponents,): as many as the system has states, the fastest growing first."""
     orders = problem.method.orders
     # The motion may have odd harmonics only; its disturbances may have any.
     every = Fourier(tuple(range(orders[-1] + 1)), solution.samples)

@@ -139,7 +139,10 @@ def compare_in_time(
     (('m.x',), [[6.841]], [[6.842]])
     """
     method, chosen = method or Newmark(), _chosen(curve, points, frequencies, kind)
-    known = "" if checkpoint is None else _fingerprint(system, curve, method, way, kind)
+    known = ""
+    if checkpoint is not None:
+        balance = HarmonicBalance(**curve.provenance["method"])
+        known = lower(system).real.fingerprint(balance, method, way, kind, curve.dofs)
 
     def run(point: int) -> tuple[np.ndarray, np.ndarray]:
         motion = steady_state(
@@ -151,7 +154,8 @@ def compare_in_time(
     def once(point: int) -> Sequence[np.ndarray]:
         if checkpoint is None:
             return run(point)
-        return checkpoint.once(_key(known, curve, point), lambda: run(point))
+        start = b"".join(array[point].tobytes() for array in (curve.unknowns, curve.frequencies, curve.samples))
+        return checkpoint.once(hashlib.sha256(b"in time" + known.encode() + start).digest(), lambda: run(point))
 
     sizes, how = zip(*ensemble(once, chosen.tolist()), strict=True)
     periods, residuals, converged = np.array(how).T
@@ -167,16 +171,6 @@ def compare_in_time(
         converged=converged.astype(bool),
         provenance={"method": asdict(method), "way": way},
     )
-
-
-def _fingerprint(system: VibrationSystem, curve: FrequencyCurve, method: Newmark, way: str, kind: str) -> str:
-    balance = HarmonicBalance(**curve.provenance["method"])
-    return lower(system).real.fingerprint(balance, method, way, kind, curve.dofs)
-
-
-def _key(fingerprint: str, curve: FrequencyCurve, point: int) -> bytes:
-    start = b"".join(array[point].tobytes() for array in (curve.unknowns, curve.frequencies, curve.samples))
-    return hashlib.sha256(b"in time" + fingerprint.encode() + start).digest()
 
 
 def _chosen(

@@ -51,11 +51,7 @@ class Spectral:
 
 
 def spectral(structure: Any, omega: float) -> Spectral:
-    """Modes of a structure, normalised to 1 in mass and stiffness/ω².
-
-    Raises InputError for hysteretic damping; ModelError for a structure too large, or with degrees of freedom that have
-    neither mass nor stiffness.
-    """
+    """Modes of a structure, normalised to 1 in mass and stiffness/ω²."""
     if structure.size > DENSE:
         raise ModelError(
             f"the structure has {structure.size} degrees of freedom, too many to be integrated in time (at most "

@@ -1,5 +1,6 @@
 """What motors share, in the plane and in space: current from voltage, torque through a gear, the armature's inertia."""
 
+from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -114,11 +115,7 @@ def drive_properties(command: Callable[..., Any], turning: Turning) -> dict[str,
 
 @dataclass(frozen=True)
 class DriveNumbers(BaseLoad):
-    """What motors are made of.
-
-    ``torque_constant``, ``resistance``, ``back_emf``, ``voltage_limit``, ``gear_ratio``, ``efficiency``, ``slip_rate``,
-    ``armature_inertia``, ``enabled``: see `Motor`.
-    """
+    """Fields of motors and servos, described in `MotorNumbers`."""
 
     a: Any
     b: Any
@@ -133,23 +130,58 @@ class DriveNumbers(BaseLoad):
     enabled: Course = number("", 1.0)
 
     def _check(self, owner: str) -> None:
-        """Refuse numbers that no motor has."""
+        """Raise for numbers that no motor has."""
         if np.real(self.gear_ratio) == 0:
             raise InputError(f"{owner}: gear_ratio is 0; expected a number other than zero")
+
+    @abstractmethod
+    def _pair(self, lowering: Any, owner: str) -> Any:
+        """Markers of both sides, which have a direction."""
 
     def _law(self, lowering: Rows, *, by_current: bool = False) -> tuple[list[Number], list[int]]:
         """Numbers and integers of the motor."""
         back_emf = self.torque_constant if self.back_emf is None else self.back_emf
         inertia = self.gear_ratio * self.gear_ratio * self.armature_inertia
         limit = 1.0 if self.voltage_limit is None else self.voltage_limit
-        own = [self.torque_constant, self.resistance or 0.0, back_emf, limit, self.gear_ratio]
-        own += [np.log(self.efficiency), self.slip_rate, inertia]
-        return own, [int(self.voltage_limit is not None), int(by_current), lowering.signal(self.enabled)]
+        numbers = [self.torque_constant, self.resistance or 0.0, back_emf, limit, self.gear_ratio]
+        numbers += [np.log(self.efficiency), self.slip_rate, inertia]
+        return numbers, [int(self.voltage_limit is not None), int(by_current), lowering.signal(self.enabled)]
 
 
 @dataclass(frozen=True)
 class MotorNumbers(DriveNumbers):
-    """What motors are made of that a voltage or a current drives."""
+    """Fields and row of motors that a voltage or a current drives.
+
+    Parameters
+    ----------
+    torque_constant : float
+        N m/A.
+    resistance : float
+        Ohm; needed with a ``voltage``.
+    back_emf : float
+        Back-EMF constant, V s/rad; that of the torque if not given.
+    voltage_limit : float, optional
+        V. Larger voltages are reduced to it. The corners are rounded over 2 % of the limit, so that the torque has a
+        derivative; the voltage differs by at most 0.7 % of the limit.
+    gear_ratio : float
+        Turns of the armature per turn of b against a; negative if they turn in opposite directions.
+    efficiency : float
+        Of the gear, in (0, 1]. The torque behind the gear is N k i e where the motor drives and N k i / e where it is
+        driven, with the efficiency e; in between it is N k i e^s, s = tanh(w / slip_rate) sign(N i). So the friction
+        of the gear grows with the motor's torque, and acts against the rate.
+    slip_rate : float
+        Rate of b against a, rad/s, over which the losses of the gear turn their sign.
+    armature_inertia : float
+        kg m^2, about the armature's axis. N^2 times it resists the angular acceleration of b against a. Where a turns
+        as well, terms of the relative size 1/N are missing.
+    enabled : float or Signal
+        Factor of the current: 1, or 0 where the motor is switched off (no current, so no torque and no braking). A
+        ``Step(1.0, 0.0, 2.0)`` switches off at 2 s.
+    voltage : float or Signal, optional
+        V. Give this or a ``current``.
+    current : float or Signal, optional
+        A. The amplifier then controls the current, and resistance and back-EMF have no influence.
+    """
 
     voltage: Course | None = number("V", None)
     current: Course | None = number("A", None)
@@ -163,8 +195,10 @@ class MotorNumbers(DriveNumbers):
             raise InputError(f"{owner}: a voltage was given without a resistance; give the resistance in ohm")
         self._check(owner)
 
-    def _command(self, lowering: Rows) -> int:
-        """Number of the signal of the voltage, or of the current."""
+    def lower(self, lowering: Any) -> None:
         command = self.current if self.voltage is None else self.voltage
         assert command is not None
-        return lowering.signal(command)
+        signal = lowering.signal(command)
+        pair = self._pair(lowering, f"motor {self.name!r}")
+        numbers, integers = self._law(lowering, by_current=self.voltage is None)
+        lowering.add(self.kind, pair.slots, [*pair.data, *numbers], [*pair.integers, *integers, signal], self.name)

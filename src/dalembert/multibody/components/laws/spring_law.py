@@ -62,7 +62,19 @@ def counted_spring(name: str, home: str, outputs: tuple[tuple[str, str], ...]) -
 
 @dataclass(frozen=True)
 class LineSpring(BaseLoad):
-    """Fields and row of a spring along the connection of two points."""
+    """Fields and row of a spring along the connection of two points.
+
+    Parameters
+    ----------
+    stiffness : float
+        N/m.
+    damping : float
+        N s/m.
+    free_length : float, optional
+        m; the initial distance of the points if not given.
+    cubic : float
+        N/m^3.
+    """
 
     a: Any
     b: Any
@@ -80,7 +92,19 @@ class LineSpring(BaseLoad):
 
 @dataclass(frozen=True)
 class TwistSpring(BaseLoad):
-    """Fields of a torsional spring."""
+    """Fields of a torsional spring.
+
+    Parameters
+    ----------
+    stiffness : float
+        N m/rad.
+    damping : float
+        N m s/rad.
+    free_angle : float, optional
+        Angle of b relative to a without torque, rad; the initial one if not given.
+    cubic : float
+        N m/rad^3.
+    """
 
     a: Any
     b: Any

@@ -4,11 +4,9 @@ __all__ = ["DistanceJoint"]
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from dalembert.errors import ModelError
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.fields import Number, number
+from dalembert.multibody.components.fields import parameters_of
+from dalembert.multibody.components.laws.distance_law import Rod, distance_gap
 from dalembert.multibody.components.planar.joint import Joint, joint_kind, observe_joint
 from dalembert.multibody.components.planar.pairs import push_pair, separation
 from dalembert.multibody.components.rows import Lowering
@@ -18,7 +16,7 @@ from dalembert.multibody.kernels.elementary import root
 @inlined
 def _constraint(x, p, m, inputs, g):
     dx, dy = separation(x, p, m)
-    g[0] = 0.5 * ((dx * dx + dy * dy) / p.length - p.length)
+    g[0] = distance_gap(dx * dx + dy * dy, p.length)
 
 
 @inlined
@@ -39,22 +37,20 @@ DISTANCE = joint_kind(
 )
 
 
+@parameters_of(Rod)
 @dataclass(frozen=True)
-class DistanceJoint(Joint):
+class DistanceJoint(Joint, Rod):
     """A massless rod between two points.
 
     Parameters
     ----------
     name : str
     a, b : Point or ground
-    length : float, optional
-        m; the first distance of the points if not given.
+    {law}
 
     An initial state may state ``direction``, the angle of the line from a to b in the axes of a, and ``angle``, that of
     b against a.
     """
-
-    length: Number | None = number("m", None, above=0)
 
     kind = DISTANCE
 
@@ -64,10 +60,4 @@ class DistanceJoint(Joint):
 
     def lower(self, lowering: Lowering) -> None:
         pair = lowering.pair(self.a, self.b, self.name)
-        length = pair.distance if self.length is None else self.length
-        if not np.real(length) > 0:
-            raise ModelError(
-                f"distance joint {self.name!r}: its points {self.a} and {self.b} coincide and no length is given; "
-                "give a length, or use a revolute joint"
-            )
-        self._add(lowering, pair, [length])
+        self._add(lowering, pair, [self._length(pair, "revolute")])

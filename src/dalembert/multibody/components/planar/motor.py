@@ -5,9 +5,9 @@ __all__ = ["Motor"]
 from dataclasses import dataclass
 
 from dalembert.kernels.kernel import inlined
+from dalembert.multibody.components.fields import parameters_of
 from dalembert.multibody.components.laws.motor_law import MotorNumbers
-from dalembert.multibody.components.planar.motor_law import Drive, drive_kind
-from dalembert.multibody.components.rows import Lowering
+from dalembert.multibody.components.planar.drive import Drive, drive_kind
 
 
 @inlined
@@ -18,8 +18,9 @@ def _command(x, v, p, m, inputs):
 MOTOR = drive_kind("motor", _command, integers=("command",))
 
 
+@parameters_of(MotorNumbers)
 @dataclass(frozen=True)
-class Motor(MotorNumbers, Drive):
+class Motor(Drive, MotorNumbers):
     """A direct-current motor with a gear between two bodies: it turns b against a.
 
     With the gear ratio N, the rate w of b against a, and the voltage U within its limit, the current is
@@ -31,33 +32,7 @@ class Motor(MotorNumbers, Drive):
     name : str
     a, b : Point or ground
         Stator and output, which a revolute joint should connect.
-    torque_constant : float
-        N m/A.
-    resistance : float
-        Ohm; needed with a ``voltage``.
-    back_emf : float
-        Back-EMF constant, V s/rad; that of the torque if not given.
-    voltage_limit : float, optional
-        V. Larger voltages are reduced to it. The corners are rounded over 2 % of the limit, so that the torque has a
-        derivative; the voltage differs by at most 0.7 % of the limit.
-    gear_ratio : float
-        Turns of the armature per turn of b against a; negative if they turn in opposite directions.
-    efficiency : float
-        Of the gear, in (0, 1]. The torque behind the gear is N k i e where the motor drives and N k i / e where it is
-        driven, with the efficiency e; in between it is N k i e^s, s = tanh(w / slip_rate) sign(N i). So the friction
-        of the gear grows with the motor's torque, and acts against the rate.
-    slip_rate : float
-        Rate of b against a, rad/s, over which the losses of the gear turn their sign.
-    armature_inertia : float
-        kg m^2, about the armature's axis. N^2 times it resists the angular acceleration of b against a. Where a turns
-        as well, terms of the relative size 1/N are missing.
-    enabled : float or Signal
-        Factor of the current: 1, or 0 where the motor is switched off (no current, so no torque and no braking). A
-        ``Step(1.0, 0.0, 2.0)`` switches off at 2 s.
-    voltage : float or Signal, optional
-        V. Give this or a ``current``.
-    current : float or Signal, optional
-        A. The amplifier then controls the current, and resistance and back-EMF have no influence.
+    {law}
 
     Raises
     ------
@@ -84,9 +59,3 @@ class Motor(MotorNumbers, Drive):
     """
 
     kind = MOTOR
-
-    def lower(self, lowering: Lowering) -> None:
-        number = self._command(lowering)
-        pair = self._pair(lowering, f"motor {self.name!r}")
-        numbers, integers = self._law(lowering, by_current=self.voltage is None)
-        lowering.add(self.kind, pair.slots, [*pair.data, *numbers], [*pair.integers, *integers, number], self.name)

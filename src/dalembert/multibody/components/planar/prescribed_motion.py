@@ -4,17 +4,15 @@ __all__ = ["PrescribedMotion"]
 
 from dataclasses import dataclass
 
-from dalembert.errors import require_known
 from dalembert.kernels.kernel import inlined
+from dalembert.multibody.components.laws.prescribed_law import DrivenCoordinate, power_of_motion
 from dalembert.multibody.components.planar.joint import Joint, joint_kind, observe_joint
 from dalembert.multibody.components.planar.pairs import push_pair, relative_angle, separation, twist_pair
 from dalembert.multibody.components.rows import Lowering
-from dalembert.multibody.components.signals import Course, as_signal, refuse_jumps
 from dalembert.multibody.kernels.elementary import wrapped
 from dalembert.multibody.kernels.time_inputs import signal
 
 _X, _Y, _ANGLE = range(3)
-_COORDINATES = {"x": _X, "y": _Y, "angle": _ANGLE}
 
 
 @inlined
@@ -40,13 +38,6 @@ def _forces(x, p, m, r):
 
 
 @inlined
-def _energy(x, v, p, m, inputs):
-    """No energy; the power that the motion feeds in."""
-    nothing = 0.0 * x[8]
-    return nothing, nothing, -x[8] * inputs.signals[m.motion, 1]
-
-
-@inlined
 def _observe(x, v, a, p, m, inputs, out):
     nothing = 0.0 * x[8]
     fx = -x[8] if m.coordinate == _X else nothing
@@ -56,12 +47,12 @@ def _observe(x, v, a, p, m, inputs, out):
 
 MOTION = joint_kind(
     "prescribed_motion", 1, (), ("coordinate", "motion"),
-    constraint=_constraint, forces=_forces, energy=_energy, observe=_observe, driven=True,
+    constraint=_constraint, forces=_forces, energy=power_of_motion(8), observe=_observe, driven=True,
 )  # fmt: skip
 
 
 @dataclass(frozen=True)
-class PrescribedMotion(Joint):
+class PrescribedMotion(Joint, DrivenCoordinate):
     """A coordinate of point b against point a that follows a function of time.
 
     Parameters
@@ -73,18 +64,11 @@ class PrescribedMotion(Joint):
     motion : float or Signal
     """
 
-    coordinate: str = "angle"
-    motion: Course = 0.0
-
+    NUMBERS = {"x": _X, "y": _Y, "angle": _ANGLE}
     kind = MOTION
-
-    def __post_init__(self) -> None:
-        require_known("coordinate", self.coordinate, _COORDINATES, f"prescribed motion {self.name!r}")
-        refuse_jumps(f"prescribed motion {self.name!r}", self.motion)
 
     def lower(self, lowering: Lowering) -> None:
         pair = lowering.pair(self.a, self.b, self.name)
         if self.coordinate == "angle":
             self._oriented()
-        lowering.kinks += [(time, self.name) for time in as_signal(self.motion).kinks]
-        self._add(lowering, pair, integers=[_COORDINATES[self.coordinate], lowering.signal(self.motion)])
+        self._add(lowering, pair, integers=self._driven(lowering))

@@ -10,7 +10,7 @@ from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.laws.motor_law import INTEGERS, NUMBERS, Turning, clipped, drive_properties
 from dalembert.multibody.components.planar.angle_coordinate import AngleCoordinate, counted_angle
-from dalembert.multibody.components.planar.motor_law import Drive, drive_kind
+from dalembert.multibody.components.planar.drive import Drive, drive_kind
 from dalembert.multibody.components.planar.pairs import relative_angle, relative_spin
 from dalembert.multibody.components.rows import Lowering
 from dalembert.multibody.components.signals import Course

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from dalembert.kernels.kernel import inlined
+from dalembert.multibody.components.fields import parameters_of
 from dalembert.multibody.components.laws.spring_law import NUMBERS, LineSpring, law_functions, tension
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.pairs import pair_kind, push_pair, separation, separation_rate
@@ -47,6 +48,7 @@ def spring_kind(name: str, stretch: Callable[..., Any], residual: Callable[..., 
 SPRING = spring_kind("spring", _stretch, _residual, holds_frame=False)
 
 
+@parameters_of(LineSpring)
 @dataclass(frozen=True)
 class Spring(LineSpring, Load):
     """A spring with damper along the connection of two points.
@@ -57,14 +59,7 @@ class Spring(LineSpring, Load):
     ----------
     name : str
     a, b : Point or ground
-    stiffness : float
-        N/m.
-    damping : float
-        N s/m.
-    free_length : float, optional
-        m; the first distance of the points if not given.
-    cubic : float
-        N/m^3.
+    {law}
     """
 
     a: Side

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.fields import Number, number
+from dalembert.multibody.components.fields import Number, number, parameters_of
 from dalembert.multibody.components.laws.spring_law import TwistSpring, counted_spring, tension
 from dalembert.multibody.components.planar.angle_coordinate import AngleCoordinate, counted_angle
 from dalembert.multibody.components.planar.load import Load
@@ -37,6 +37,7 @@ TORSION_SPRING = spring_kind("torsion_spring", _stretch, _residual, outputs=_OUT
 COUNTED_TORSION_SPRING = counted_spring("counted_torsion_spring", __name__, _OUTPUTS)
 
 
+@parameters_of(TwistSpring)
 @dataclass(frozen=True)
 class TorsionSpring(TwistSpring, Load):
     """A torsional spring with damper between the directions of two points.
@@ -48,14 +49,7 @@ class TorsionSpring(TwistSpring, Load):
     ----------
     name : str
     a, b : Point or ground
-    stiffness : float
-        N m/rad.
-    damping : float
-        N m s/rad.
-    free_angle : float, optional
-        Angle of b relative to a without torque, rad; the initial one if not given.
-    cubic : float
-        N m/rad^3.
+    {law}
     near : float, optional
         The angle at the start is the one nearest to this, rad; so a spring can start with whole turns. If not given,
         the angle of rigid bodies is the one that they state, and the twist of nodes of beams starts within half a turn.

@@ -6,20 +6,17 @@ the force (fx, fy) and the torque on a.
 
 __all__ = ["UserForce"]
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass
 
 from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import call_with, stack
+from dalembert.multibody.components.laws.user_force_law import TIME, CalledForce
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.markers import angle, position, spin, velocity
 from dalembert.multibody.components.planar.pairs import pair_kind, push_pair, twist_pair
 from dalembert.multibody.components.points import Side
-from dalembert.multibody.components.rows import Lowering
 from dalembert.multibody.kernels.callbacks import Sizes
 
-_TIME = 0  # signal that holds the time
 _SIZES = Sizes(state=6, answer=3, words="three finite numbers (fx, fy, torque)")
 GIVEN, ANSWER = _SIZES.given, _SIZES.answer
 
@@ -37,7 +34,7 @@ def _fill(side, kind, k, x, v, sx, sy, phi, given):
 @inlined
 def _ask(x, v, p, m, inputs, given, answer):
     """Call the function."""
-    given[0] = inputs.signals[_TIME, 0]
+    given[0] = inputs.signals[TIME, 0]
     _fill(0, m.a_kind, 0, x, v, p.a_x, p.a_y, p.a_angle, given)
     _fill(1, m.b_kind, 4, x, v, p.b_x, p.b_y, p.b_angle, given)
     call_with(inputs.callbacks[m.function], given, answer)
@@ -65,7 +62,7 @@ USER_FORCE = pair_kind("user_force", integers=("function",), residual=_residual,
 
 
 @dataclass(frozen=True)
-class UserForce(Load):
+class UserForce(CalledForce, Load):
     """A force and torque at a point, from a function of the user's, and their opposites on ``against``.
 
     Parameters
@@ -81,12 +78,7 @@ class UserForce(Load):
     """
 
     at: Side
-    function: Callable[..., Any] = field()
     against: Side | None = None
 
+    SIZES = _SIZES
     kind = USER_FORCE
-
-    def lower(self, lowering: Lowering) -> None:
-        pair = lowering.pair(self.at, self.against, self.name)
-        integers = [*pair.integers, lowering.callback(self.function, self.name, _SIZES)]
-        lowering.add(USER_FORCE, pair.slots, pair.data, integers)

@@ -12,12 +12,13 @@ from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.points import require_direction
 from dalembert.multibody.components.spatial.ground_points import Side
-from dalembert.multibody.components.spatial.joint import joint_rate
 from dalembert.multibody.components.spatial.kinds import pair_kind
-from dalembert.multibody.components.spatial.load import Load
-from dalembert.multibody.components.spatial.markers import axis_rate
 from dalembert.multibody.components.spatial.orientation import Orientation, Vector
-from dalembert.multibody.components.spatial.pairs import (
+from dalembert.multibody.components.spatial.rotor import SLIDING_ROTOR, TURNING_ROTOR
+from dalembert.multibody.components.spatial.spatial_joint import joint_rate
+from dalembert.multibody.components.spatial.spatial_load import Load
+from dalembert.multibody.components.spatial.spatial_markers import axis_rate
+from dalembert.multibody.components.spatial.spatial_pairs import (
     A_AXES,
     e3,
     push_a_axis,
@@ -27,7 +28,6 @@ from dalembert.multibody.components.spatial.pairs import (
     separation_rate,
     twist_pair,
 )  # fmt: skip
-from dalembert.multibody.components.spatial.rotor import SLIDING_ROTOR, TURNING_ROTOR
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import dot, times
 

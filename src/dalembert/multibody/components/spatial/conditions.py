@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.spatial.pairs import E, F, push_a_axis, push_b_axis, push_pair, separation
+from dalembert.multibody.components.spatial.spatial_pairs import E, F, push_a_axis, push_b_axis, push_pair, separation
 from dalembert.multibody.components.spatial.vectors import at, dot, times
 
 Function = Callable[..., Any]

@@ -5,8 +5,8 @@ __all__ = ["CylindricalJoint"]
 from dataclasses import dataclass
 
 from dalembert.multibody.components.spatial.conditions import level, perpendicular
-from dalembert.multibody.components.spatial.joint import Joint, joint_kind
 from dalembert.multibody.components.spatial.orientation import Vector
+from dalembert.multibody.components.spatial.spatial_joint import Joint, joint_kind
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 
 KIND = joint_kind(

@@ -3,7 +3,7 @@
 __all__ = ["Friction"]
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from dalembert.arguments import Checked
 from dalembert.errors import InputError
@@ -11,9 +11,11 @@ from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.base_joint import Smoothing
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.laws import friction_law as friction
-from dalembert.multibody.components.spatial.joint import joint_rate, joint_speed
 from dalembert.multibody.components.spatial.kinds import pair_kind
-from dalembert.multibody.components.spatial.pairs import COORDINATES, e3, push_pair, twist_pair
+from dalembert.multibody.components.spatial.orientation import Vector
+from dalembert.multibody.components.spatial.spatial_joint import Joint, joint_rate, joint_speed
+from dalembert.multibody.components.spatial.spatial_pairs import COORDINATES, e3, push_pair, twist_pair
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import times
 from dalembert.multibody.kernels.elementary import root
 from dalembert.multibody.kernels.kind import Kind
@@ -88,6 +90,34 @@ class Friction(Checked):
     def smoothing(self, channel: str, unit: str) -> Smoothing | None:
         """How it smooths its Coulomb friction."""
         return Smoothing(channel, "slip", self.slip, unit) if friction.rubs(self) else None
+
+
+@dataclass(frozen=True)
+class RubbingJoint(Joint):
+    """Base of joints with friction about their axis or along it; ``rate`` names the output of the rate."""
+
+    axis: Vector = (0.0, 0.0, 1.0)
+    friction: Friction | None = None
+
+    friction_kind: ClassVar[Kind]
+    rate: ClassVar[str] = "rate"
+
+    @property
+    def smoothing(self) -> Smoothing | None:
+        return self.friction.smoothing(self.rate, dict(self.kind.outputs)[self.rate]) if self.friction else None
+
+    @property
+    def parts(self) -> dict[str, Kind]:
+        return {"friction": self.friction_kind} if self.friction else {}
+
+    def lower(self, lowering: SpatialRows) -> None:
+        self._oriented()
+        pair = self.pair(lowering)
+        index = self._add(lowering, pair)
+        if self.friction:
+            turns = self.rate == "rate"
+            law = self.friction.law(f"{'revolute' if turns else 'prismatic'} joint {self.name!r}", turns)
+            lowering.add(self.friction_kind, index, [*pair.data, *law], pair.integers, f"{self.name}.friction")
 
 
 def friction_kind(name: str, home: str, multipliers: int, load: tuple[int, ...], turns: bool) -> Kind:

@@ -88,7 +88,7 @@ class Inertia(Checked):
     def of(cls, mass: Number, tensor: np.ndarray, centre: Any = (0.0, 0.0, 0.0)) -> "Inertia":
         """From a tensor about the centre of mass, (3, 3), kg m^2."""
         t = array_of(tensor)
-        if t.shape != (3, 3) or not _is_symmetric(t):
+        if t.shape != (3, 3) or not np.abs(t - t.T).max() <= 1e-9 * np.abs(t).max():
             raise InputError(f"Inertia: the tensor is {shown(tensor)}; expected a symmetric matrix (3, 3) in kg m^2")
         products = (t[0, 1], t[0, 2], t[1, 2])
         return cls(mass, *(tuple(np.asarray(own).tolist()) for own in (np.diagonal(t), products, centre)))
@@ -149,10 +149,6 @@ def _require(owner: str, **values: Any) -> None:
         if not (is_number(value) and np.real(value) > 0):
             unit = "kg" if name == "mass" else "m"
             raise InputError(f"{owner}: {name} is {shown(value)}; expected a positive number in {unit}")
-
-
-def _is_symmetric(matrix: np.ndarray) -> bool:
-    return bool(np.abs(matrix - matrix.T).max() <= 1e-9 * np.abs(matrix).max())
 
 
 def _direction(axis: np.ndarray) -> str:

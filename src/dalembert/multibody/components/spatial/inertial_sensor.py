@@ -14,10 +14,10 @@ from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.points import Point, require_direction
 from dalembert.multibody.components.spatial.kinds import sensor_kind
-from dalembert.multibody.components.spatial.load import Load
-from dalembert.multibody.components.spatial.markers import position_rate, spin
 from dalembert.multibody.components.spatial.orientation import Vector
-from dalembert.multibody.components.spatial.pairs import a_point, along_axes
+from dalembert.multibody.components.spatial.spatial_load import Load
+from dalembert.multibody.components.spatial.spatial_markers import position_rate, spin
+from dalembert.multibody.components.spatial.spatial_pairs import a_point, along_axes
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import combined, minus, plus
 

@@ -14,10 +14,19 @@ from dalembert.errors import InputError, listed
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.base_body import ANGLE, DISPLACEMENT
 from dalembert.multibody.components.fields import Number
-from dalembert.multibody.components.spatial import pairs
-from dalembert.multibody.components.spatial.body import FREE, Body
-from dalembert.multibody.components.spatial.joint import Joint, joint_displacement
-from dalembert.multibody.components.spatial.pairs import e1, e2, e3, f1, push_a_axis, push_b_axis, push_pair, separation
+from dalembert.multibody.components.spatial import spatial_pairs as pairs
+from dalembert.multibody.components.spatial.spatial_body import FREE, Body
+from dalembert.multibody.components.spatial.spatial_joint import Joint, joint_displacement
+from dalembert.multibody.components.spatial.spatial_pairs import (
+    e1,
+    e2,
+    e3,
+    f1,
+    push_a_axis,
+    push_b_axis,
+    push_pair,
+    separation,
+)
 from dalembert.multibody.components.spatial.spatial_rows import Pair, SpatialRows
 from dalembert.multibody.components.spatial.vectors import dot, minus, times
 from dalembert.multibody.kernels.charts import flat
@@ -91,10 +100,7 @@ def coordinates_of(joint: Joint) -> list[str]:
 
 
 def chosen_coordinate(owner: str, joint: Any, coordinate: str | None) -> str:
-    """The coordinate of a joint that is asked for; the angle, or else the displacement, where none is.
-
-    Raises InputError: for what is no joint with such a coordinate.
-    """
+    """The coordinate of a joint that is asked for; the angle, or else the displacement, where none is."""
     known = coordinates_of(joint) if isinstance(joint, Joint) else []
     if not known or coordinate not in (None, *known):
         given = f"{type(joint).__name__} {getattr(joint, 'name', joint)!r}"

@@ -17,9 +17,9 @@ from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.base_body import ANGLE, DISPLACEMENT
 from dalembert.multibody.components.fields import Number, number
-from dalembert.multibody.components.spatial.joint import Joint
 from dalembert.multibody.components.spatial.joint_coordinate import CHANNELS, JointCoordinate, chosen_coordinate
-from dalembert.multibody.components.spatial.load import Load
+from dalembert.multibody.components.spatial.spatial_joint import Joint
+from dalembert.multibody.components.spatial.spatial_load import Load
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.kernels.elementary import root
 from dalembert.multibody.kernels.kind import Kind

@@ -3,7 +3,7 @@
 from typing import Any
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.spatial import pairs
+from dalembert.multibody.components.spatial import spatial_pairs as pairs
 from dalembert.multibody.kernels.kind import Kind
 
 

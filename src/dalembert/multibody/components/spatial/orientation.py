@@ -206,10 +206,7 @@ def turned(directors: np.ndarray, turn: np.ndarray) -> np.ndarray:
 
 
 def direction(vector: Any, owner: str) -> np.ndarray:
-    """A direction, made one of length one, (3,).
-
-    Raises InputError: for what is not three finite numbers, or has the length zero.
-    """
+    """A direction, made one of length one, (3,)."""
     given = _three(vector, owner)
     square = given @ given
     if not np.real(square) > 1e-24:

@@ -5,8 +5,8 @@ __all__ = ["PointOnLineJoint"]
 from dataclasses import dataclass
 
 from dalembert.multibody.components.spatial.conditions import level
-from dalembert.multibody.components.spatial.joint import Joint, joint_kind
 from dalembert.multibody.components.spatial.orientation import Vector
+from dalembert.multibody.components.spatial.spatial_joint import Joint, joint_kind
 
 KIND = joint_kind("point_on_line", __name__, level(1), level(2), displacement=True, holds_frame=True)
 

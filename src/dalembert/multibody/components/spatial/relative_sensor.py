@@ -10,9 +10,10 @@ from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.points import require_direction
 from dalembert.multibody.components.spatial.ground_points import Side
 from dalembert.multibody.components.spatial.kinds import sensor_kind
-from dalembert.multibody.components.spatial.load import Load
-from dalembert.multibody.components.spatial.markers import spin
-from dalembert.multibody.components.spatial.pairs import (
+from dalembert.multibody.components.spatial.rotations import euler_angles, quaternion, rotation_vector
+from dalembert.multibody.components.spatial.spatial_load import Load
+from dalembert.multibody.components.spatial.spatial_markers import spin
+from dalembert.multibody.components.spatial.spatial_pairs import (
     along_axes,
     f1,
     f2,
@@ -21,7 +22,6 @@ from dalembert.multibody.components.spatial.pairs import (
     separation,
     separation_rate,
 )
-from dalembert.multibody.components.spatial.rotations import euler_angles, quaternion, rotation_vector
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import cross, dot, minus
 from dalembert.multibody.kernels.elementary import reciprocal, root

@@ -7,8 +7,8 @@ that of the same inertia by the rates of the bodies changes with their orientati
 from typing import Any
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.spatial import pairs
-from dalembert.multibody.components.spatial.joint import joint_angle, joint_displacement
+from dalembert.multibody.components.spatial import spatial_pairs as pairs
+from dalembert.multibody.components.spatial.spatial_joint import joint_angle, joint_displacement
 from dalembert.multibody.kernels.charts import flat
 from dalembert.multibody.kernels.elementary import wrapped
 from dalembert.multibody.kernels.kind import Kind

@@ -11,11 +11,20 @@ import numpy as np
 from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
-from dalembert.multibody.components.spatial import pairs
+from dalembert.multibody.components.spatial import spatial_pairs as pairs
 from dalembert.multibody.components.spatial.conditions import Condition, forces_of, level, perpendicular
-from dalembert.multibody.components.spatial.joint import Joint, joint_displacement, joint_kind, observed
 from dalembert.multibody.components.spatial.orientation import Vector
-from dalembert.multibody.components.spatial.pairs import e1, e2, e3, f1, push_a_axis, push_b_axis, push_pair, separation
+from dalembert.multibody.components.spatial.spatial_joint import Joint, joint_displacement, joint_kind, observed
+from dalembert.multibody.components.spatial.spatial_pairs import (
+    e1,
+    e2,
+    e3,
+    f1,
+    push_a_axis,
+    push_b_axis,
+    push_pair,
+    separation,
+)
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import dot, minus, times
 from dalembert.multibody.kernels.elementary import angle_of, reciprocal, sin_cos

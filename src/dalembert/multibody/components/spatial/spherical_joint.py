@@ -5,7 +5,7 @@ __all__ = ["SphericalJoint"]
 from dataclasses import dataclass
 
 from dalembert.multibody.components.spatial.conditions import MEETS
-from dalembert.multibody.components.spatial.joint import Joint, joint_kind
+from dalembert.multibody.components.spatial.spatial_joint import Joint, joint_kind
 
 KIND = joint_kind("spherical", __name__, MEETS, holds_frame=False)
 

@@ -8,9 +8,9 @@ import numpy as np
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.spatial.conditions import MEETS, Condition, forces_of, perpendicular
-from dalembert.multibody.components.spatial.joint import REACTIONS, Joint, joint_kind, observed
 from dalembert.multibody.components.spatial.orientation import Orientation, Vector
-from dalembert.multibody.components.spatial.pairs import (
+from dalembert.multibody.components.spatial.spatial_joint import REACTIONS, Joint, joint_kind, observed
+from dalembert.multibody.components.spatial.spatial_pairs import (
     COORDINATES,
     e1,
     e2,

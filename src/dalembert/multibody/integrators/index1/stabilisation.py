@@ -133,10 +133,7 @@ class Partitioning(Stabilisation):
 def posed(
     stabilisation: Stabilisation, samples: Sequence[Lowered], problem: IntegrationProblem, step: float | None
 ) -> tuple[IntegrationProblem, Terms]:
-    """The problem with the matrices that the index-1 methods need, and what they need to know.
-
-    Partitions and least squares need dense matrices.
-    """
+    """The problem with the matrices that the index-1 methods need, and what they need to know."""
     redundant = any(redundancy(lowered).rank < redundancy(lowered).count for lowered in samples)
     if redundant:
         problem = problem._replace(scale=_weighed(problem, samples[0]))

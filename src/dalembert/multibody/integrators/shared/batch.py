@@ -73,10 +73,7 @@ class Batch:
         return resting(len(self.perturbed), *self.shape)
 
     def log(self, steps: np.ndarray | None) -> Log:
-        """Return an empty log of one run, of these fixed ``steps`` if there are any; it keeps no step if not logged.
-
-        Steps that are cut down need more workspace.
-        """
+        """Return an empty log of one run, of these fixed ``steps`` if there are any; it keeps no step if not logged."""
         scratch = max(_ROOM, 0 if steps is None else 2 * len(steps)) if self.logged else 0
         return Log(np.zeros(4, dtype=np.int64), np.zeros(scratch, dtype=np.int64), np.zeros(scratch))
 

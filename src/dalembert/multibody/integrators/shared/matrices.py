@@ -121,10 +121,7 @@ def renew(
     problem: IntegrationProblem, matrices: Matrices, complex_model: Address, damped: bool, t: float, within: float,
     state: MotionState, complex_work: Address,
 ) -> bool:  # fmt: skip
-    """Evaluate stiffness (and damping, if ``damped``), and factorise [M, J^T; J, 0]; whether it is regular.
-
-    Masses are evaluated where they may change.
-    """
+    """Evaluate stiffness (and damping, if ``damped``), and factorise [M, J^T; J, 0]; whether it is regular."""
     n = problem.n
     set_signals(complex_model, t, within, complex_work)
     if matrices.pattern.varies:

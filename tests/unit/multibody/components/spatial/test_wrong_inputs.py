@@ -188,7 +188,10 @@ def test_a_rod_of_no_length() -> None:
     system.add(DistanceJoint("rod", system.ground.point((0.0, 0.0, 0.0)), body.point("origin")))
     with refused(
         ModelError,
-        snapshot("distance joint 'rod': its points coincide at the start. Give a length, or use a spherical joint"),
+        snapshot(
+            "distance joint 'rod': its points ground(0.0, 0.0, 0.0) and body.origin coincide and no length is given; "
+            "give a length, or use a spherical joint"
+        ),
     ):
         simulate(system, 0.1)
 

@@ -10,8 +10,8 @@ from dalembert.multibody.components.points import require_direction
 from dalembert.multibody.components.signals import Course
 from dalembert.multibody.components.spatial.ground_points import Side
 from dalembert.multibody.components.spatial.kinds import pair_kind
-from dalembert.multibody.components.spatial.load import Load
-from dalembert.multibody.components.spatial.pairs import (
+from dalembert.multibody.components.spatial.spatial_load import Load
+from dalembert.multibody.components.spatial.spatial_pairs import (
     e1,
     e2,
     e3,
@@ -22,7 +22,6 @@ from dalembert.multibody.components.spatial.pairs import (
 )
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import combined, dot
-from dalembert.multibody.kernels.kind import Kind
 
 
 @inlined
@@ -36,7 +35,7 @@ def _vector(x, p, m, inputs):
 
 @inlined
 def _force_residual(x, v, a, p, m, inputs, r):
-    """The force on a and its opposite on b; it stands on the left, with its sign turned."""
+    """Add the force on a and its opposite on b to the left side, with the sign turned."""
     push_pair(p, m, _vector(x, p, m, inputs), r)
 
 
@@ -67,7 +66,24 @@ TORQUE = pair_kind(
 
 
 @dataclass(frozen=True)
-class Force(Load):
+class _Vector(Load):
+    """Row of a force or a torque."""
+
+    at: Side
+    x: Course = 0.0
+    y: Course = 0.0
+    z: Course = 0.0
+    follower: bool = False
+    against: Side | None = None
+
+    def lower(self, lowering: SpatialRows) -> None:
+        pair = lowering.pair(self.at, self.against, self.name)
+        signals = [lowering.signal(course) for course in (self.x, self.y, self.z)]
+        lowering.add(self.kind, pair.slots, pair.data, [*pair.integers, int(self.follower), *signals])
+
+
+@dataclass(frozen=True)
+class Force(_Vector):
     """A force at a point, and its opposite at the point ``against``, if there is one.
 
     Parameters
@@ -81,23 +97,20 @@ class Force(Load):
     against : Point, optional
     """
 
-    at: Side
     x: Course = number("N", 0.0)
     y: Course = number("N", 0.0)
     z: Course = number("N", 0.0)
-    follower: bool = False
-    against: Side | None = None
 
     kind = FORCE
 
     def lower(self, lowering: SpatialRows) -> None:
         if self.follower:
             require_direction(f"follower force {self.name!r}", "a force that does not follow, or a rigid body", self.at)
-        _lower(self, lowering, FORCE)
+        super().lower(lowering)
 
 
 @dataclass(frozen=True)
-class Torque(Load):
+class Torque(_Vector):
     """A torque on the body of a marker, and its opposite on that of ``against``, if there is one.
 
     Parameters
@@ -111,21 +124,12 @@ class Torque(Load):
     against : Point, optional
     """
 
-    at: Side
     x: Course = number("N*m", 0.0)
     y: Course = number("N*m", 0.0)
     z: Course = number("N*m", 0.0)
-    follower: bool = False
-    against: Side | None = None
 
     kind = TORQUE
 
     def lower(self, lowering: SpatialRows) -> None:
         require_direction(f"torque {self.name!r}", "a force, or a rigid body", self.at, self.against)
-        _lower(self, lowering, TORQUE)
-
-
-def _lower(load: Force | Torque, lowering: SpatialRows, kind: Kind) -> None:
-    pair = lowering.pair(load.at, load.against, load.name)
-    signals = [lowering.signal(course) for course in (load.x, load.y, load.z)]
-    lowering.add(kind, pair.slots, pair.data, [*pair.integers, int(load.follower), *signals])
+        super().lower(lowering)

@@ -8,11 +8,11 @@ import numpy as np
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.points import Point
 from dalembert.multibody.components.signals import Signal
-from dalembert.multibody.components.spatial.joint import Joint, joint_angle, joint_displacement
 from dalembert.multibody.components.spatial.kinds import pair_kind
 from dalembert.multibody.components.spatial.orientation import Orientation
-from dalembert.multibody.components.spatial.pairs import LENGTHS, along_axes, f1, f2, f3, separation
 from dalembert.multibody.components.spatial.rotations import rotation_vector
+from dalembert.multibody.components.spatial.spatial_joint import Joint, joint_angle, joint_displacement
+from dalembert.multibody.components.spatial.spatial_pairs import LENGTHS, along_axes, f1, f2, f3, separation
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.kernels.elementary import angle_of, root, wrapped
 from dalembert.multibody.kernels.kind import Kind
@@ -96,7 +96,7 @@ def stated(joint: Joint, coordinate: str, course: Signal) -> JointState:
     if coordinate in STATED_DIRECTIONS:
         return JointState(name, a, b, (e, f), STATED_DIRECTIONS[coordinate], course)
     if what == "rotation":
-        number = _axis_number(axis)
+        number = "xyz".index(axis) + 1 if axis in "xyz" else int(axis)
         e, f = (np.eye(3), np.eye(3)) if axis in "xyz" else (e, f)  # in the axes of the marker, or of the joint
         return JointState(name, a, b, (e[:, _LAST[number]], f[:, _LAST[number]]), STATED_ROTATION, course)
     if what == "displacement":
@@ -111,8 +111,6 @@ def stated(joint: Joint, coordinate: str, course: Signal) -> JointState:
 
 def kept(joint: Joint, coordinate: str, course: Signal, now: tuple[np.ndarray, np.ndarray, np.ndarray]) -> JointState:
     """Return the constraint that makes a coordinate follow a signal, a rotation or direction from the present pose on.
-
-    So these have no singular pose near the present one, and the rates of rotations are angular velocities.
 
     ``now`` (array, array, array): the axes of the joint at a and at b, as columns, and the position of b relative to a,
     in the fixed axes.
@@ -134,8 +132,3 @@ def kept(joint: Joint, coordinate: str, course: Signal, now: tuple[np.ndarray, n
 def turns(side: Any) -> bool:
     """Whether a side of a joint has axes: the ground and rigid bodies have them, point masses have none."""
     return not isinstance(side, Point) or side.body.turns
-
-
-def _axis_number(axis: str) -> int:
-    """Number of an axis by its name."""
-    return "xyz".index(axis) + 1 if axis in "xyz" else int(axis)

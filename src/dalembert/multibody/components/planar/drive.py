@@ -1,4 +1,4 @@
-"""Motors in the plane: kinds of the law of all motors between two markers."""
+"""Drives in the plane: what motors and servos share."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -57,7 +57,6 @@ class Drive(DriveNumbers, Load):
     b: Side
 
     def _pair(self, lowering: Lowering, owner: str) -> Pair:
-        """The markers of both sides."""
         require_direction(owner, "a force, or a rigid body", self.a, self.b)
         pair = lowering.pair(self.a, self.b, self.name)
         if pair.integers[2] and self.armature_inertia != 0:

@@ -6,7 +6,7 @@ from slot 12. A side on the ground has no coordinates, and its slots are empty.
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.spatial.directors import POSE
-from dalembert.multibody.components.spatial.markers import (
+from dalembert.multibody.components.spatial.spatial_markers import (
     SLOTS,
     axis,
     position,

@@ -4,23 +4,20 @@ __all__ = ["DistanceJoint"]
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from dalembert.errors import ModelError
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.fields import Number, number
+from dalembert.multibody.components.fields import parameters_of
+from dalembert.multibody.components.laws.distance_law import Rod, distance_gap
 from dalembert.multibody.components.spatial.conditions import Condition
-from dalembert.multibody.components.spatial.joint import Joint, joint_kind
-from dalembert.multibody.components.spatial.pairs import push_pair, separation
+from dalembert.multibody.components.spatial.spatial_joint import Joint, joint_kind
+from dalembert.multibody.components.spatial.spatial_pairs import push_pair, separation
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import dot, times
 
 
 @inlined
 def _residual(x, p, m, row, g):
-    """(Delta . Delta / L - L) / 2."""
     delta = separation(x, p, m)
-    g[row] = 0.5 * (dot(delta, delta) / p.length - p.length)
+    g[row] = distance_gap(dot(delta, delta), p.length)
 
 
 @inlined
@@ -37,16 +34,16 @@ KIND = joint_kind(
 )
 
 
+@parameters_of(Rod)
 @dataclass(frozen=True)
-class DistanceJoint(Joint):
+class DistanceJoint(Joint, Rod):
     """A massless rod with ball joints at both ends: the points keep their distance.
 
     Parameters
     ----------
     name : str
     a, b : Point or ground
-    length : float, optional
-        m; the initial distance of the points if not given.
+    {law}
 
     Notes
     -----
@@ -54,8 +51,6 @@ class DistanceJoint(Joint):
     third axis from the first one, and ``elevation``, the angle above the plane of these two axes; and
     ``rotation_x``, ``rotation_y`` and ``rotation_z`` as those of a spherical joint.
     """
-
-    length: Number | None = number("m", None, above=0)
 
     kind = KIND
 
@@ -65,10 +60,4 @@ class DistanceJoint(Joint):
 
     def lower(self, lowering: SpatialRows) -> None:
         pair = self.pair(lowering)
-        length = pair.distance if self.length is None else self.length
-        if not np.real(length) > 0.0:
-            raise ModelError(
-                f"distance joint {self.name!r}: its points coincide at the start. Give a length, or use a spherical "
-                "joint"
-            )
-        self._add(lowering, pair, [length])
+        self._add(lowering, pair, [self._length(pair, "spherical")])

@@ -5,7 +5,7 @@ __all__ = ["FixedJoint"]
 from dataclasses import dataclass
 
 from dalembert.multibody.components.spatial.conditions import MEETS, perpendicular
-from dalembert.multibody.components.spatial.joint import Joint, joint_kind
+from dalembert.multibody.components.spatial.spatial_joint import Joint, joint_kind
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 
 KIND = joint_kind("fixed_in_space", __name__, MEETS, perpendicular(1, 2), perpendicular(2, 3), perpendicular(3, 1))

@@ -11,13 +11,13 @@ from dalembert.errors import InputError, require_known
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.base_body import POSITION, with_points
 from dalembert.multibody.components.fields import number
-from dalembert.multibody.components.spatial import markers
-from dalembert.multibody.components.spatial.body import DIRECTOR, Body, Marker
+from dalembert.multibody.components.spatial import spatial_markers as markers
 from dalembert.multibody.components.spatial.directors import DIRECTORS, POSE
 from dalembert.multibody.components.spatial.ground_points import Place
 from dalembert.multibody.components.spatial.inertia import Inertia
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose, Vector
 from dalembert.multibody.components.spatial.shapes import Shape, Surface, surface_of
+from dalembert.multibody.components.spatial.spatial_body import DIRECTOR, Body, Marker
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import add_at, at, dot, minus, plus, times
 from dalembert.multibody.kernels.kind import Kind

@@ -4,11 +4,12 @@ __all__ = ["PrescribedMotion"]
 
 from dataclasses import dataclass
 
-from dalembert.errors import require_known
 from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import stack
-from dalembert.multibody.components.signals import Course, as_signal, refuse_jumps
-from dalembert.multibody.components.spatial.joint import (
+from dalembert.multibody.components.laws.prescribed_law import DrivenCoordinate, power_of_motion
+from dalembert.multibody.components.spatial.kinds import pair_kind
+from dalembert.multibody.components.spatial.orientation import Vector
+from dalembert.multibody.components.spatial.spatial_joint import (
     ANGLE,
     DISPLACEMENT,
     REACTIONS,
@@ -20,9 +21,7 @@ from dalembert.multibody.components.spatial.joint import (
     observe_reactions,
     observe_turn,
 )  # fmt: skip
-from dalembert.multibody.components.spatial.kinds import pair_kind
-from dalembert.multibody.components.spatial.orientation import Vector
-from dalembert.multibody.components.spatial.pairs import COORDINATES, LENGTHS, e1, e2, f1
+from dalembert.multibody.components.spatial.spatial_pairs import COORDINATES, LENGTHS, e1, e2, f1
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import dot
 from dalembert.multibody.kernels.constraints import forces_of
@@ -30,7 +29,6 @@ from dalembert.multibody.kernels.elementary import angle_of, sin_cos
 from dalembert.multibody.kernels.time_inputs import signal
 
 _ANGLE, _DISPLACEMENT = range(2)
-_COORDINATES = {"angle": _ANGLE, "displacement": _DISPLACEMENT}
 
 
 @inlined
@@ -51,13 +49,6 @@ _forces = forces_of(_constraint, COORDINATES, 1)
 
 
 @inlined
-def _energy(x, v, p, m, inputs):
-    """No energy; the power that the motion feeds in, lambda dg/dt at a fixed position."""
-    nothing = 0.0 * x[0]
-    return nothing, nothing, -x[COORDINATES] * inputs.signals[m.motion, 1]
-
-
-@inlined
 def _observe(x, v, a, p, m, inputs, out):
     r = stack(x, _WIDTH)
     for i in range(_WIDTH):
@@ -74,7 +65,7 @@ MOTION = pair_kind(
     integers=("coordinate", "motion"),
     multipliers=1,
     constraint=_constraint,
-    energy=_energy,
+    energy=power_of_motion(COORDINATES),
     outputs=(*REACTIONS, *ANGLE, *DISPLACEMENT),
     angles=("angle",),
     turn=observe_turn,
@@ -87,7 +78,7 @@ MOTION = pair_kind(
 
 
 @dataclass(frozen=True)
-class PrescribedMotion(Joint):
+class PrescribedMotion(Joint, DrivenCoordinate):
     """The angle of b relative to a about an axis, or its displacement along it, that follows a function of time.
 
     It acts beside the joint that guides the motion, such as a revolute or a prismatic joint with the same axis.
@@ -103,19 +94,12 @@ class PrescribedMotion(Joint):
         Direction of the axis, the same in the axes of both markers.
     """
 
-    coordinate: str = "angle"
-    motion: Course = 0.0
     axis: Vector = (0.0, 0.0, 1.0)
 
+    NUMBERS = {"angle": _ANGLE, "displacement": _DISPLACEMENT}
     kind = MOTION
-
-    def __post_init__(self) -> None:
-        owner = f"prescribed motion {self.name!r}"
-        require_known("coordinate", self.coordinate, _COORDINATES, owner)
-        refuse_jumps(owner, self.motion)
 
     def lower(self, lowering: SpatialRows) -> None:
         self._oriented()
-        lowering.kinks += [(time, self.name) for time in as_signal(self.motion).kinks]
-        integers = [_COORDINATES[self.coordinate], lowering.signal(self.motion)]
+        integers = self._driven(lowering)
         self._add(lowering, self.pair(lowering), integers=integers)

@@ -6,17 +6,16 @@ it returns the force and the torque on a.
 
 __all__ = ["UserForce"]
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass
 
 from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import call_with, stack
+from dalembert.multibody.components.laws.user_force_law import TIME, CalledForce
 from dalembert.multibody.components.spatial.ground_points import Side
 from dalembert.multibody.components.spatial.kinds import pair_kind
-from dalembert.multibody.components.spatial.load import Load
-from dalembert.multibody.components.spatial.markers import SLOTS, position, position_rate, spin
-from dalembert.multibody.components.spatial.pairs import (
+from dalembert.multibody.components.spatial.spatial_load import Load
+from dalembert.multibody.components.spatial.spatial_markers import SLOTS, position, position_rate, spin
+from dalembert.multibody.components.spatial.spatial_pairs import (
     a_point,
     b_point,
     e1,
@@ -30,11 +29,9 @@ from dalembert.multibody.components.spatial.pairs import (
     separation_rate,
     twist_pair,
 )
-from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import at, dot
 from dalembert.multibody.kernels.callbacks import Sizes
 
-_TIME = 0  # signal that holds the time
 _SIZES = Sizes(state=18, answer=6, words="six finite numbers (fx, fy, fz, tx, ty, tz)")
 _GIVEN, _ANSWER = _SIZES.given, _SIZES.answer
 
@@ -50,7 +47,7 @@ def _fill(out, place, velocity, first, second, third, turning, given):
 @inlined
 def _ask(x, v, p, m, inputs, given, answer):
     """Call the function."""
-    given[0] = inputs.signals[_TIME, 0]
+    given[0] = inputs.signals[TIME, 0]
     s, u = position(m.a_kind, 0, x, a_point(p)), position_rate(m.a_kind, 0, v, a_point(p))
     _fill(1, s, u, e1(x, p, m), e2(x, p, m), e3(x, p, m), spin(m.a_kind, 0, x, v), given)
     s, u = position(m.b_kind, SLOTS, x, b_point(p)), position_rate(m.b_kind, SLOTS, v, b_point(p))
@@ -82,7 +79,7 @@ USER_FORCE = pair_kind(
 
 
 @dataclass(frozen=True)
-class UserForce(Load):
+class UserForce(CalledForce, Load):
     """A force and a torque at a point, from a function of the user's, and their opposites on ``against``.
 
     Parameters
@@ -113,12 +110,7 @@ class UserForce(Load):
     """
 
     at: Side
-    function: Callable[..., Any] = field()
     against: Side | None = None
 
+    SIZES = _SIZES
     kind = USER_FORCE
-
-    def lower(self, lowering: SpatialRows) -> None:
-        pair = lowering.pair(self.at, self.against, self.name)
-        integers = [*pair.integers, lowering.callback(self.function, self.name, _SIZES)]
-        lowering.add(USER_FORCE, pair.slots, pair.data, integers)

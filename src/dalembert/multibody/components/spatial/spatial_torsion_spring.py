@@ -6,19 +6,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dalembert.multibody.components.fields import number
+from dalembert.multibody.components.fields import number, parameters_of
 from dalembert.multibody.components.laws.spring_law import TwistSpring, counted_spring
 from dalembert.multibody.components.points import require_direction
 from dalembert.multibody.components.spatial.ground_points import Side
-from dalembert.multibody.components.spatial.joint import turned_to
 from dalembert.multibody.components.spatial.joint_coordinate import JointCoordinate
-from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.orientation import Vector
+from dalembert.multibody.components.spatial.spatial_joint import turned_to
+from dalembert.multibody.components.spatial.spatial_load import Load
 from dalembert.multibody.components.spatial.spatial_rows import Pair, SpatialRows
 
 TORSION_SPRING = counted_spring("torsion_spring_in_space", __name__, (("twist", "rad"), ("torque", "N*m")))
 
 
+@parameters_of(TwistSpring)
 @dataclass(frozen=True)
 class TorsionSpring(TwistSpring, Load):
     """A torsion spring with damper about the axis of a joint.
@@ -30,14 +31,7 @@ class TorsionSpring(TwistSpring, Load):
     ----------
     name : str
     a, b : Point or ground
-    stiffness : float
-        N m/rad.
-    damping : float
-        N m s/rad.
-    free_angle : float, optional
-        Angle of b relative to a without torque, rad; the initial one if not given.
-    cubic : float
-        N m/rad^3.
+    {law}
     axis : (float, float, float)
         Direction of the axis, the same in the axes of both markers.
     near : float, optional

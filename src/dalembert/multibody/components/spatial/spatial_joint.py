@@ -15,13 +15,14 @@ from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import stack
 from dalembert.multibody.components.base_joint import BaseJoint
 from dalembert.multibody.components.points import Point, require_direction
-from dalembert.multibody.components.spatial import markers, pairs
+from dalembert.multibody.components.spatial import spatial_markers as markers
+from dalembert.multibody.components.spatial import spatial_pairs as pairs
 from dalembert.multibody.components.spatial.conditions import Condition, constraint_of, forces_of
 from dalembert.multibody.components.spatial.ground_points import Side
 from dalembert.multibody.components.spatial.kinds import pair_kind
-from dalembert.multibody.components.spatial.markers import BODY, GROUND, SLOTS, position
 from dalembert.multibody.components.spatial.orientation import Orientation, Vector, direction
-from dalembert.multibody.components.spatial.pairs import (
+from dalembert.multibody.components.spatial.spatial_markers import BODY, GROUND, SLOTS, position
+from dalembert.multibody.components.spatial.spatial_pairs import (
     b_point,
     e1,
     e2,
@@ -188,14 +189,14 @@ class Joint(BaseJoint):
         return ("rotation_x", "rotation_y", "rotation_z") if turns else ()
 
     def stating(self, coordinate: str, course: Any) -> BaseJoint:
-        from dalembert.multibody.components.spatial.joint_state import stated
+        from dalembert.multibody.components.spatial.spatial_joint_state import stated
 
         return stated(self, coordinate, course)
 
     def keeping(
         self, coordinate: str, course: Any, numbers: np.ndarray, integers: np.ndarray, x: np.ndarray
     ) -> BaseJoint:
-        from dalembert.multibody.components.spatial.joint_state import kept
+        from dalembert.multibody.components.spatial.spatial_joint_state import kept
 
         e, f = (
             np.column_stack([_direction(side, number, numbers, integers, x) for number in (1, 2, 3)]) for side in (0, 1)

@@ -16,9 +16,10 @@ from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.points import require_direction
 from dalembert.multibody.components.spatial.ground_points import Side
 from dalembert.multibody.components.spatial.kinds import pair_kind
-from dalembert.multibody.components.spatial.load import Load
-from dalembert.multibody.components.spatial.markers import axis_rate
-from dalembert.multibody.components.spatial.pairs import (
+from dalembert.multibody.components.spatial.rotations import rotation_vector, vector_rate, vector_torque
+from dalembert.multibody.components.spatial.spatial_load import Load
+from dalembert.multibody.components.spatial.spatial_markers import axis_rate
+from dalembert.multibody.components.spatial.spatial_pairs import (
     A_AXES,
     E,
     along_axes,
@@ -35,7 +36,6 @@ from dalembert.multibody.components.spatial.pairs import (
     separation_rate,
     twist_pair,
 )  # fmt: skip
-from dalembert.multibody.components.spatial.rotations import rotation_vector, vector_rate, vector_torque
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import at, combined, dot, times
 

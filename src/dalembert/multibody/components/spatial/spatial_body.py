@@ -10,10 +10,10 @@ import numpy as np
 
 from dalembert.multibody.components.base_body import BaseBody
 from dalembert.multibody.components.fields import Number
-from dalembert.multibody.components.spatial import markers
+from dalembert.multibody.components.spatial import spatial_markers as markers
 from dalembert.multibody.components.spatial.orientation import Orientation, turned
-from dalembert.multibody.components.spatial.sensor import AXIAL, SENSOR
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
+from dalembert.multibody.components.spatial.spatial_sensor import AXIAL, SENSOR
 
 DIRECTOR = "director"
 FREE = None, None, None

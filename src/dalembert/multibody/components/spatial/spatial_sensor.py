@@ -1,9 +1,9 @@
 """What is read at a marker, in the fixed axes."""
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.spatial.markers import SLOTS, axis, position, position_rate, spin
-from dalembert.multibody.components.spatial.pairs import A_AXES
 from dalembert.multibody.components.spatial.rotations import euler_angles, quaternion, rotation_vector
+from dalembert.multibody.components.spatial.spatial_markers import SLOTS, axis, position, position_rate, spin
+from dalembert.multibody.components.spatial.spatial_pairs import A_AXES
 from dalembert.multibody.kernels.kind import Kind
 
 _SIDE = ("a_x", "a_y", "a_z", "a_11", "a_12", "a_13", "a_21", "a_22", "a_23", "a_31", "a_32", "a_33")

@@ -4,13 +4,9 @@ __all__ = ["RevoluteJoint"]
 
 from dataclasses import dataclass
 
-from dalembert.multibody.components.base_joint import Smoothing
 from dalembert.multibody.components.spatial.conditions import MEETS, perpendicular
-from dalembert.multibody.components.spatial.friction import Friction, friction_kind
-from dalembert.multibody.components.spatial.joint import Joint, joint_kind
-from dalembert.multibody.components.spatial.orientation import Vector
-from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
-from dalembert.multibody.kernels.kind import Kind
+from dalembert.multibody.components.spatial.friction import RubbingJoint, friction_kind
+from dalembert.multibody.components.spatial.spatial_joint import joint_kind
 
 KIND = joint_kind("revolute_in_space", __name__, MEETS, perpendicular(1, 3), perpendicular(2, 3), angle=True)
 
@@ -18,7 +14,7 @@ FRICTION = friction_kind("revolute_friction_in_space", __name__, 5, (0, 1, 2), T
 
 
 @dataclass(frozen=True)
-class RevoluteJoint(Joint):
+class RevoluteJoint(RubbingJoint):
     """A hinge: both points coincide, and b turns about the axis.
 
     Parameters
@@ -42,24 +38,6 @@ class RevoluteJoint(Joint):
     array([2.])
     """
 
-    axis: Vector = (0.0, 0.0, 1.0)
-    friction: Friction | None = None
-
     kind = KIND
+    friction_kind = FRICTION
     aligned = (3,)
-
-    @property
-    def smoothing(self) -> Smoothing | None:
-        return self.friction.smoothing("rate", "rad/s") if self.friction else None
-
-    @property
-    def parts(self) -> dict[str, Kind]:
-        return {"friction": FRICTION} if self.friction else {}
-
-    def lower(self, lowering: SpatialRows) -> None:
-        self._oriented()
-        pair = self.pair(lowering)
-        index = self._add(lowering, pair)
-        if self.friction:
-            law = self.friction.law(f"revolute joint {self.name!r}", turns=True)
-            lowering.add(FRICTION, index, [*pair.data, *law], pair.integers, f"{self.name}.friction")

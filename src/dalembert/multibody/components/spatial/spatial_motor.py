@@ -5,16 +5,17 @@ __all__ = ["Motor"]
 from dataclasses import dataclass
 
 from dalembert.kernels.kernel import inlined
+from dalembert.multibody.components.fields import parameters_of
 from dalembert.multibody.components.laws.motor_law import INTEGERS, NUMBERS, MotorNumbers, Turning, drive_properties
 from dalembert.multibody.components.points import require_direction
 from dalembert.multibody.components.spatial.ground_points import Side
-from dalembert.multibody.components.spatial.joint import joint_angle, joint_rate, observe_turn, turned_to
 from dalembert.multibody.components.spatial.kinds import pair_kind
-from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.orientation import Vector
-from dalembert.multibody.components.spatial.pairs import e3, relative_spin, twist_pair
 from dalembert.multibody.components.spatial.rotor import TURNING_ROTOR
-from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
+from dalembert.multibody.components.spatial.spatial_joint import joint_angle, joint_rate, observe_turn, turned_to
+from dalembert.multibody.components.spatial.spatial_load import Load
+from dalembert.multibody.components.spatial.spatial_pairs import e3, relative_spin, twist_pair
+from dalembert.multibody.components.spatial.spatial_rows import Pair, SpatialRows
 from dalembert.multibody.components.spatial.vectors import dot, times
 
 
@@ -41,6 +42,7 @@ MOTOR = pair_kind(
 )  # fmt: skip
 
 
+@parameters_of(MotorNumbers)
 @dataclass(frozen=True)
 class Motor(MotorNumbers, Load):
     """A direct-current motor with a gear about the axis of a joint: it turns b against a.
@@ -53,33 +55,7 @@ class Motor(MotorNumbers, Load):
     name : str
     a, b : Point or ground
         Stator and output, which a joint with this axis should connect.
-    torque_constant : float
-        N m/A.
-    resistance : float
-        Ohm; needed with a ``voltage``.
-    back_emf : float
-        Back-EMF constant, V s/rad; that of the torque if not given.
-    voltage_limit : float, optional
-        V. Larger voltages are reduced to it. The corners are rounded over 2 % of the limit, so that the torque has a
-        derivative; the voltage differs by at most 0.7 % of the limit.
-    gear_ratio : float
-        Turns of the armature per turn of b against a; negative if they turn in opposite directions.
-    efficiency : float
-        Of the gear, in (0, 1]. The torque behind the gear is N k i e where the motor drives and N k i / e where it is
-        driven, with the efficiency e; in between it is N k i e^s, s = tanh(w / slip_rate) sign(N i). So the friction
-        of the gear grows with the motor's torque, and acts against the rate.
-    slip_rate : float
-        Rate of b against a, rad/s, over which the losses of the gear turn their sign.
-    armature_inertia : float
-        kg m^2, about the armature's axis. N^2 times it resists the angular acceleration of b against a. Where a turns
-        as well, terms of the relative size 1/N are missing.
-    enabled : float or Signal
-        Factor of the current: 1, or 0 where the motor is switched off (no current, so no torque and no braking). A
-        ``Step(1.0, 0.0, 2.0)`` switches off at 2 s.
-    voltage : float or Signal, optional
-        V. Give this or a ``current``.
-    current : float or Signal, optional
-        A. The amplifier then controls the current, and resistance and back-EMF have no influence.
+    {law}
     axis : (float, float, float)
         Direction of the axis, the same in the axes of both markers.
 
@@ -104,11 +80,6 @@ class Motor(MotorNumbers, Load):
 
     kind = MOTOR
 
-    def lower(self, lowering: SpatialRows) -> None:
-        owner = f"motor {self.name!r}"
+    def _pair(self, lowering: SpatialRows, owner: str) -> Pair:
         require_direction(owner, "a force, or a rigid body", self.a, self.b)
-        pair = lowering.pair(self.a, self.b, self.name, turned_to(self.axis, owner))
-        number = self._command(lowering)
-        own, marks = self._law(lowering, by_current=self.voltage is None)
-        row = [*pair.data, *own], [*pair.integers, *marks, number]
-        lowering.add(MOTOR, pair.slots, *row, self.name)
+        return lowering.pair(self.a, self.b, self.name, turned_to(self.axis, owner))

@@ -5,11 +5,12 @@ __all__ = ["Spring"]
 from dataclasses import dataclass
 
 from dalembert.kernels.kernel import inlined
+from dalembert.multibody.components.fields import parameters_of
 from dalembert.multibody.components.laws.spring_law import NUMBERS, LineSpring, law_functions, tension
 from dalembert.multibody.components.spatial.ground_points import Side
 from dalembert.multibody.components.spatial.kinds import pair_kind
-from dalembert.multibody.components.spatial.load import Load
-from dalembert.multibody.components.spatial.pairs import push_pair, separation, separation_rate
+from dalembert.multibody.components.spatial.spatial_load import Load
+from dalembert.multibody.components.spatial.spatial_pairs import push_pair, separation, separation_rate
 from dalembert.multibody.components.spatial.vectors import dot, times
 from dalembert.multibody.kernels.elementary import reciprocal, root
 
@@ -40,6 +41,7 @@ SPRING = pair_kind(
 )  # fmt: skip
 
 
+@parameters_of(LineSpring)
 @dataclass(frozen=True)
 class Spring(LineSpring, Load):
     """A spring with damper along the connection of two points.
@@ -50,14 +52,7 @@ class Spring(LineSpring, Load):
     ----------
     name : str
     a, b : Point or ground
-    stiffness : float
-        N/m.
-    damping : float
-        N s/m.
-    free_length : float, optional
-        m; the initial distance of the points if not given.
-    cubic : float
-        N/m^3.
+    {law}
     """
 
     a: Side

@@ -9,10 +9,10 @@ import numpy as np
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.base_body import POSITION, with_points
 from dalembert.multibody.components.fields import Number, number
-from dalembert.multibody.components.spatial import markers
-from dalembert.multibody.components.spatial.body import Body, Marker
+from dalembert.multibody.components.spatial import spatial_markers as markers
 from dalembert.multibody.components.spatial.ground_points import Place
 from dalembert.multibody.components.spatial.orientation import Vector
+from dalembert.multibody.components.spatial.spatial_body import Body, Marker
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import add_at, at, dot, minus, times
 from dalembert.multibody.kernels.kind import Kind

@@ -139,7 +139,7 @@ def test_a_mechanism_in_space_has_a_scene(draw):
 def test_a_robot_belongs_to_its_table(draw):
     picture = draw(templates()["robot"].text, "robot")
     assert place_of(picture.places, "body upper") == ("model", "robot")
-    assert any(shape["kind"] == "mesh" for shape in picture.scene["shapes"])
+    assert any(shape["kind"] == "surface" for shape in picture.scene["shapes"])
 
 
 def test_the_parts_of_a_robot_are_chosen_by_its_table(draw):
@@ -152,7 +152,7 @@ def test_the_parts_of_a_robot_are_chosen_by_its_table(draw):
 
 
 def test_drives_of_a_robot_do_not_crowd_its_joints(draw):
-    names = draw(templates()["robot"].text, "robot").scene["names"]
+    names = draw(templates()["robot"].text, "robot").scene["labels"]
     places = [tuple(np.round(name["at"], 6)) for name in names if not name["part"].startswith("channel ")]
     assert len(set(places)) == len(places)
 

@@ -2,20 +2,18 @@
 
 from base64 import b64encode
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dalembert.report.charts.motion.film import Playback
-from dalembert.report.charts.motion.outlines import bodies_of
+from dalembert.report.scene.motion import motion_scene
 
 if TYPE_CHECKING:
     from dalembert.multibody import Drawing
 
 FINE = 6001
-STILL = 1e-6
-"""Way of a joint, as a part of the size of the picture, up to which it stays where it is."""
 
 
 def frames(end: float) -> np.ndarray:
@@ -57,25 +55,25 @@ class Film:
     positions: str
 
 
-def film_of(drawing: "Drawing", measured: Mapping[str, np.ndarray]) -> Film:
-    """Return a drawing at the times of :func:`frames` as a film, with measured positions (samples, 2 or 3)."""
-    playback = Playback.of(np.asarray(drawing.times, dtype=float))
-    lines = bodies_of(drawing.lines)
-    joints = {name: np.asarray(at, dtype=np.float32)[:, None] for name, at in drawing.joints.items()}
-    block = np.ascontiguousarray(np.concatenate([*lines.values(), *joints.values()], axis=1), dtype="<f4")
-    size = float((np.nanmax(block, axis=(0, 1)) - np.nanmin(block, axis=(0, 1))).max())
+def film_of(drawing: "Drawing", measured: Mapping[str, np.ndarray], rows: np.ndarray | None = None) -> Film:
+    """Return a drawing at the times of :func:`frames` as a film, with measured positions (samples, 2 or 3).
+
+    ``rows`` are the numbers of these times among those of the drawing; all if not given.
+    """
+    rows = np.arange(len(drawing.times)) if rows is None else rows
+    scene = motion_scene(replace(drawing, surfaces={}, ground=None), rows, paths={}, measured=measured)
+    bodies = {shape.name: shape.points for shape in scene.primitives if shape.role == "body"}
+    joints = [shape for shape in scene.primitives if shape.role == "joint"]
+    at = (np.repeat(shape.points, 1 if len(shape.points) == len(rows) else len(rows), axis=0) for shape in joints)
+    block = np.ascontiguousarray(np.concatenate([*bodies.values(), *at], axis=1), dtype="<f4")
+    playback = Playback.of(scene.times)
     return Film(
-        times=[round(time, 9) for time in drawing.times.tolist()],
+        times=[round(time, 9) for time in scene.times.tolist()],
         seconds=playback.seconds,
         pace=playback.pace,
-        bodies={name: line.shape[1] for name, line in lines.items()},
-        joints={name: bool(np.ptp(at, axis=0).max() <= STILL * size) for name, at in joints.items()},
-        measured={name: _few(points).tolist() for name, points in measured.items()},
-        across=block.shape[2],
+        bodies={name: line.shape[1] for name, line in bodies.items()},
+        joints={shape.name: shape.kind == "ground" for shape in joints},
+        measured={shape.name: shape.points[0].tolist() for shape in scene.primitives if shape.role == "measured"},
+        across=scene.dimensions,
         positions=b64encode(block.tobytes()).decode(),
     )
-
-
-def _few(points: np.ndarray) -> Any:
-    there = points[np.all(np.isfinite(points), axis=1)]
-    return there[:: max(1, len(there) // 150)]

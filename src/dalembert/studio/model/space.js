@@ -85,7 +85,7 @@ export default {
       this.size = Math.max(this.high.distanceTo(this.low), 1e-6);
       this.taken = new Map();
       for (const shape of this.scene.shapes) for (const object of this.objects(shape)) this.add(object, shape.part);
-      for (const name of this.scene.names) this.label(name);
+      for (const label of this.scene.labels) this.label(label);
       this.surround();
       if (!this.looked) this.fit();
       this.mark();
@@ -102,13 +102,14 @@ export default {
       object.userData.part = part;
       this.group.add(object);
     },
-    objects({ kind, points, colour, triangles, along, pulls }) {
+    objects({ kind, part, points, colour, triangles, along }) {
       const solid = () => new THREE.MeshStandardMaterial({ color: colour, roughness: 0.7, metalness: 0.05, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }); // behind lines on it
       const unit = 0.009 * this.size;
       const solids = (geometries) => geometries.map((geometry) => new THREE.Mesh(geometry, solid()));
       const at = (geometry, point) => geometry.translate(...point);
       const first = points[0];
       switch (kind) {
+        case "surface":
         case "mesh": {
           const geometry = new THREE.BufferGeometry();
           geometry.setAttribute("position", new THREE.Float32BufferAttribute(points.flat(), 3));
@@ -126,18 +127,21 @@ export default {
           const line = new THREE.LineSegments(geometry, kind === "dashes" ? dashed : new THREE.LineBasicMaterial({ color: colour }));
           return [line.computeLineDistances()];
         }
+        case "crosses":
         case "points": {
           const geometry = new THREE.BufferGeometry().setFromPoints(points.map(vector));
           return [new THREE.Points(geometry, new THREE.PointsMaterial({ color: colour, size: unit }))];
         }
         case "spring":
+          if (vector(first).distanceTo(vector(points[1])) < 1e-9 * this.size) return solids([at(new THREE.SphereGeometry(1.4 * unit, 20, 14), first)]);
           return solids(helix(vector(first), vector(points[1]), 2 * unit));
+        case "turn":
         case "ring":
           return solids([at(new THREE.TorusGeometry(2.6 * unit, 0.4 * unit, 8, 32).rotateX(Math.PI / 2), first), at(new THREE.TorusGeometry(2.6 * unit, 0.4 * unit, 8, 32), first)]);
         case "ground":
           return solids([at(new THREE.SphereGeometry(1.4 * unit, 20, 14), first), at(new THREE.ConeGeometry(2.6 * unit, 4 * unit, 4).rotateX(Math.PI / 2).translate(0, 0, -2 * unit), first)]);
         case "arrow":
-          return this.arrow(vector(first).addScaledVector(vector(along), pulls ? 0 : -14 * unit), vector(along), 14 * unit, colour); // above the face that is pulled
+          return this.arrow(vector(first).addScaledVector(vector(along), part.startsWith("force ") ? 0 : -14 * unit), vector(along), 14 * unit, colour); // a force on a structure is above the face that it pulls
         default:
           return solids([at(new THREE.SphereGeometry((kind === "point" ? 0.8 : 1.4) * unit, 20, 14), first)]);
       }
@@ -183,18 +187,18 @@ export default {
       for (const [k, axis] of ["x", "y", "z"].entries()) {
         const along = new THREE.Vector3().setComponent(k, 1);
         for (const object of this.arrow(corner, along, 0.12 * this.size, colours[axis])) this.group.add(object);
-        this.label({ at: corner.clone().addScaledVector(along, 0.14 * this.size).toArray(), words: axis, colour: colours[axis] });
+        this.label({ at: corner.clone().addScaledVector(along, 0.14 * this.size).toArray(), text: axis, colour: colours[axis] });
       }
-      this.label({ at: [grid.position.x + 0.3 * count * cell, grid.position.y - (count * cell) / 2, corner.z], words: `grid ${+cell.toPrecision(3)} m`, colour: "#76818f" });
+      this.label({ at: [grid.position.x + 0.3 * count * cell, grid.position.y - (count * cell) / 2, corner.z], text: `grid ${+cell.toPrecision(3)} m`, colour: "#76818f" });
       if (this.scene.gravity) {
         const tail = new THREE.Vector3(this.high.x + 0.12 * this.size, middle.y, this.high.z);
         for (const object of this.arrow(tail, vector(this.scene.gravity), 0.12 * this.size, 0x76818f)) this.add(object, "gravity gravity");
-        this.label({ at: tail.toArray(), words: "g", part: "gravity gravity", colour: "#76818f" });
+        this.label({ at: tail.toArray(), text: "g", part: "gravity gravity", colour: "#76818f" });
       }
     },
-    label({ at, words, part, colour }) {
+    label({ at, text, part, colour }) {
       const element = document.createElement(part ? "button" : "span");
-      element.textContent = words;
+      element.textContent = text;
       Object.assign(element.style, { color: colour, font: "12px system-ui, sans-serif", pointerEvents: part ? "auto" : "none", padding: part ? "4px 6px" : "1px 4px", minWidth: "24px", minHeight: part ? "24px" : "" });
       if (part) {
         element.dataset.part = part;

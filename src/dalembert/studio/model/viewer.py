@@ -66,7 +66,7 @@ class ModelSpace(ModelView, component="space.js"):
         self.on("unable", on_unable, args=[])
 
     def draw(self, scene: dict[str, Any]) -> None:
-        """Show a scene, as :mod:`dalembert.studio.model.scene` makes it."""
+        """Show a scene, as :func:`~dalembert.report.player.encoded.encoded` gives it."""
         self._props["scene"] = scene
 
 

@@ -17,7 +17,7 @@ from dalembert.studio.simulation.parts import OVER_FREQUENCY, NothingToSimulateE
 from dalembert.studio.worker import Kept
 
 if TYPE_CHECKING:
-    from dalembert.multibody import Drawing, Trajectory
+    from dalembert.multibody import Trajectory
     from dalembert.studio.editor.outline import Outline
     from dalembert.study import Study
     from dalembert.vibration import FrequencyCurve
@@ -199,15 +199,9 @@ def _motion(own: StudyMotion, values: Mapping[str, float]) -> "tuple[np.ndarray 
 def _film(own: StudyMotion, trajectory: "Trajectory", rows: np.ndarray) -> Film:
     from dalembert.report.sections.motion.trajectory import measured
 
-    whole = trajectory.drawing()
-    drawing: Drawing = replace(
-        whole,
-        times=whole.times[rows],
-        lines={name: line[rows] for name, line in whole.lines.items()},
-        joints={name: joint[rows] for name, joint in whole.joints.items()},
-    )
     axes = "xyz"[: len(trajectory.system.AXES)]
-    return film_of(drawing, {} if own.data is None else measured(own.data.channels, own.data.values, axes))
+    positions = {} if own.data is None else measured(own.data.channels, own.data.values, axes)
+    return film_of(trajectory.drawing(), positions, rows)
 
 
 def _misfit(own: StudyMotion, response: np.ndarray) -> tuple[float, dict[str, float]]:

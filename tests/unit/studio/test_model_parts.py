@@ -9,7 +9,7 @@ import pytest
 import dalembert.multibody.spatial as sp
 from dalembert.multibody.motion.sketch import sketch
 from dalembert.report.pictures.svg import scene_picture
-from dalembert.report.player.encoded import encoded
+from dalembert.report.player import encoded
 from dalembert.report.scene.mechanism import mechanism_scene
 from dalembert.report.scene.scene import MOST_LABELS, Label, readable
 from dalembert.report.scene.structure import sides, structure_scene
@@ -55,7 +55,7 @@ def missing(system) -> set[str]:
     scene = mechanism_scene(sketch(system, assemble=False))
     shown = drawn(scene_picture(scene, "Drawing", choosable=True))
     if scene.dimensions == 3:
-        shown &= {shape["part"] for shape in encoded(scene)["shapes"]}
+        shown &= {f"{shape['role']} {shape['name']}" for shape in encoded(scene)["shapes"]}
     return {f"{role} {part.name}" for role, parts in LISTS.items() for part in getattr(system, parts)} - shown
 
 

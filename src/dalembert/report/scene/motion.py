@@ -31,12 +31,12 @@ Lines = Mapping[str, np.ndarray]
 def motion_scene(drawing: Drawing, frames: np.ndarray, *, paths: Lines, measured: Lines) -> Scene:
     """Return bodies, their axes and joints of a drawing at some of its frames, paths, and measured positions.
 
-    More than seven bodies become one line with gaps, and one surface; so do their poses along the motion.
+    The lines of more than seven bodies become one with gaps; so do a few poses along the motion.
     """
     lines = {name: np.asarray(line)[frames] for name, line in drawing.lines.items()}
     joints = {name: np.asarray(at)[frames] for name, at in drawing.joints.items()}
     in_space = next(iter([*lines.values(), *joints.values()])).shape[-1] == 3
-    surfaces = _surfaces(drawing, frames) if in_space else {}
+    surfaces = _surfaces(drawing) if in_space else {}
     poses = np.unique(np.linspace(0, len(frames) - 1, POSES).round().astype(int))
     outline = joined({name: line[poses] for name, line in thinned(lines).items()})
     shapes = [Primitive("line", "outline", "", outline.reshape(1, -1, outline.shape[2]))]
@@ -54,10 +54,9 @@ def motion_scene(drawing: Drawing, frames: np.ndarray, *, paths: Lines, measured
     if len(drawn) > FEW_BODIES:
         drawn = {f"{len(drawn)} bodies": joined(drawn)}
     shapes += [Primitive("line", "body", name, line, numbers.get(name, 0)) for name, line in drawn.items()]
-    if len(surfaces) > FEW_BODIES:
-        surfaces = {f"{len(surfaces)} bodies with shapes": _joined_surfaces(surfaces)}
-    for name, (corners, triangles) in surfaces.items():
-        shapes.append(Primitive("surface", "body", name, corners, numbers.get(name, len(drawn)), triangles))
+    for name, surface in surfaces.items():
+        corners, poses = surface.corners[None], drawing.axes[name][frames]
+        shapes.append(Primitive("surface", "body", name, corners, numbers[name], surface.triangles, poses=poses))
     size = max(float(np.ptp(Scene(tuple(shapes)).positions, axis=0).max()), 1e-9)
     for name, at in joints.items():
         is_still = float(np.ptp(at, axis=0).max()) <= STILL * size
@@ -84,8 +83,8 @@ def joined(lines: Lines) -> np.ndarray:
     return np.concatenate([part for line in lines.values() for part in (line, gap)], axis=1)
 
 
-def _surfaces(drawing: Drawing, frames: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Corners (frames, corners, 3) and triangles of bodies, simplified; none where there are too many corners."""
+def _surfaces(drawing: Drawing) -> dict[str, Surface]:
+    """Surfaces of bodies, simplified; none where there are too many corners."""
     surfaces = dict(drawing.surfaces)
     if sum(len(surface.corners) for surface in surfaces.values()) > CORNERS_A_FRAME:
         most = CORNERS_A_FRAME // len(surfaces)
@@ -94,18 +93,7 @@ def _surfaces(drawing: Drawing, frames: np.ndarray) -> dict[str, tuple[np.ndarra
         for name, surface in surfaces.items():
             if len(surface.corners) > most:
                 surfaces[name] = Surface(*simplified(surface.corners, surface.triangles, most))
-    axes = {name: drawing.axes[name][frames] for name in surfaces}
-    return {
-        name: (own[:, :1] + surfaces[name].corners @ own[:, 1:], surfaces[name].triangles) for name, own in axes.items()
-    }
-
-
-def _joined_surfaces(surfaces: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
-    """Corners and triangles of several surfaces as one."""
-    parts = list(surfaces.values())
-    first = np.cumsum([0, *(corners.shape[1] for corners, _ in parts)])
-    triangles = [own + number for (_, own), number in zip(parts, first, strict=False)]
-    return np.concatenate([corners for corners, _ in parts], axis=1), np.concatenate(triangles)
+    return surfaces
 
 
 def _axes(axes: Lines, length: float) -> list[Primitive]:

@@ -23,13 +23,15 @@ class Primitive:
         The part: ``body``, ``joint``, ``load``, ``channel``, ``point``, ``measured``, ``path``, ``spring``,
         ``contact``, ``force`` or ``ground``, and its name.
     points : array, shape (frames, points, 2 or 3)
-        m. One frame if it does not move.
+        m. One frame if it does not move, or has poses.
     colour : int
         Number in the series of a palette, or ``INK``.
     faces : array of int, shape (faces, 3 or 4), optional
         Corners of the faces among the points.
     along : array, shape (2 or 3,), optional
         Direction of an arrow.
+    poses : array, shape (frames, 4, 3), optional
+        Origin in m and axes of a rigid body over time. The points, of one frame, are then in these axes.
     """
 
     kind: str
@@ -39,6 +41,12 @@ class Primitive:
     colour: int = INK
     faces: np.ndarray | None = None
     along: np.ndarray | None = None
+    poses: np.ndarray | None = None
+
+    @property
+    def positions(self) -> np.ndarray:
+        """Points in the fixed axes, (frames or 1, points, 2 or 3), m."""
+        return self.points if self.poses is None else self.poses[:, :1] + self.points @ self.poses[:, 1:]
 
     @property
     def part(self) -> str:
@@ -98,7 +106,7 @@ class Scene:
     @property
     def positions(self) -> np.ndarray:
         """All known points of all frames, (points, 2 or 3), m."""
-        points = np.concatenate([shape.points.reshape(-1, self.dimensions) for shape in self.primitives])
+        points = np.concatenate([shape.positions.reshape(-1, self.dimensions) for shape in self.primitives])
         return points[np.isfinite(points).all(axis=1)]
 
     @property

@@ -74,7 +74,7 @@ class Picture:
     svg : str
         Empty if there is nothing to draw.
     scene : dict, optional
-        The same in three dimensions, of a model in space, as :func:`~dalembert.report.player.encoded.encoded` gives it.
+        The same in three dimensions, of a model in space, as :func:`~dalembert.report.player.film.encoded` gives it.
     parts : tuple of str
         Roles and names of the parts that are drawn.
     places : dict of str to tuple
@@ -178,7 +178,7 @@ def _structure(study: "Study", system: Any, places: dict[str, Place]) -> Picture
 def _drawn(scene: "Scene", label: str, places: dict[str, Place], channels: Iterable[str], **state: Any) -> Picture:
     """Picture of a scene; ``channels`` have a mark, which they may share."""
     from dalembert.report.pictures.svg import scene_picture
-    from dalembert.report.player.encoded import encoded
+    from dalembert.report.player import encoded
 
     svg = scene_picture(scene, label, SIZE, box=state.get("box"), choosable=True, labels=True)
     absent = absent_parts(places, scene.parts | {f"channel {name}" for name in channels})

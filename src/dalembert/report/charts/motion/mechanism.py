@@ -12,6 +12,7 @@ from dalembert.report.charts.drawing import colour_of
 from dalembert.report.charts.frequency.shapes import space
 from dalembert.report.charts.motion.film import Playback
 from dalembert.report.look import LIGHT, plain, themed
+from dalembert.report.scene.mechanism import FEW_BODIES
 from dalembert.report.scene.motion import motion_scene, unfolded
 from dalembert.report.scene.scene import Primitive, Scene
 
@@ -65,7 +66,7 @@ def mechanism(
     scene = motion_scene(drawing, playback.frames, paths=paths or {}, measured=measured or {})
     in_space = scene.dimensions == 3
     by_role: dict[str, list[Primitive]] = {}
-    for shape in scene.primitives:
+    for shape in _few_surfaces(scene.primitives):
         is_folded = in_space and shape.kind == "line"  # which WebGL cannot draw
         by_role.setdefault(shape.role, []).append(replace(shape, points=unfolded(shape.points)) if is_folded else shape)
     joints, bodies, axes = (by_role.pop(role, []) for role in ("joint", "body", "axis"))
@@ -102,6 +103,21 @@ def mechanism(
     across = {"title": "x (m)", "range": box[0].tolist()}
     up = {"title": "y (m)", "range": box[1].tolist(), "scaleanchor": "x", "scaleratio": 1}
     return themed(figure, title, 520, x=across, y=up, **playback.film.controls())
+
+
+def _few_surfaces(shapes: Sequence[Primitive]) -> list[Primitive]:
+    """Shapes with the surfaces of many bodies as one."""
+    own = [shape for shape in shapes if shape.kind == "surface" and shape.role == "body"]
+    if len(own) <= FEW_BODIES:
+        return [replace(shape, points=shape.positions, poses=None) for shape in shapes]
+    first = np.cumsum([0, *(shape.points.shape[1] for shape in own)])
+    faces = np.concatenate([shape.faces + number for shape, number in zip(own, first, strict=False)])
+    points = np.concatenate([shape.positions for shape in own], axis=1)
+    lines = sum(shape.role == "body" for shape in shapes) - len(own)
+    joined = Primitive("surface", "body", f"{len(own)} bodies with shapes", points, lines, faces)
+    place = next(k for k, shape in enumerate(shapes) if shape is own[0])
+    kept = [shape for shape in shapes if not any(shape is one for one in own)]
+    return [*kept[:place], joined, *kept[place:]]
 
 
 def _trace(shape: Primitive) -> go.Scatter | go.Scatter3d | go.Mesh3d:

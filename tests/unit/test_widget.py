@@ -28,27 +28,29 @@ def made(*arguments, **options):
     return sliders(*arguments, **options)
 
 
-def positions(film):
+def rod(film):
+    """Positions (frames, 2, 2) of the rod, the first of the shapes."""
     numbers = np.frombuffer(base64.b64decode(film["positions"]), dtype="<f4")
-    points = sum(film["bodies"].values()) + len(film["joints"])
-    return numbers.reshape(len(film["times"]), points, film["across"])
+    return numbers[: 4 * len(film["times"])].reshape(-1, 2, 2)
 
 
 def test_a_function_is_simulated_at_the_values_of_its_sliders():
     widget = made(pendulum, LENGTH, end=1.0, channels=["rod.end.x"])
     assert widget.parameters == [{"name": "length", "unit": "m", "value": 1.25, "lower": 0.5, "upper": 2.0}]
-    assert (widget.answered, widget.film["bodies"], widget.film["joints"]) == (0, {"rod": 2}, {"pin": True})
+    assert widget.answered == 0
+    drawn = [(shape["kind"], shape["name"], shape["count"], shape["moves"]) for shape in widget.film["shapes"]]
+    assert drawn == [("line", "rod", 2, True), ("ground", "pin", 1, False)]
     widget.asked = {"number": 3, "values": {"length": 2.0}}
     assert widget.answered == 3
     assert widget.values == {"length": 2.0}
-    assert np.allclose(np.linalg.norm(positions(widget.film)[:, 1], axis=1), 2.0, atol=1e-6)
+    assert np.allclose(np.linalg.norm(rod(widget.film)[:, 1], axis=1), 2.0, atol=1e-6)
     assert len(widget.curves["series"]["rod.end.x"]) == len(widget.film["times"])
 
 
 def test_values_outside_their_bounds_and_unknown_names_are_not_taken():
     widget = made(pendulum, LENGTH, end=1.0)
     widget.asked = {"number": 1, "values": {"length": 99.0, "other": 1.0}}
-    assert np.allclose(np.linalg.norm(positions(widget.film)[:, 1], axis=1), 2.0, atol=1e-6)
+    assert np.allclose(np.linalg.norm(rod(widget.film)[:, 1], axis=1), 2.0, atol=1e-6)
     assert set(widget.values) == {"length"}
 
 
@@ -74,7 +76,7 @@ def test_a_study_has_its_parameters_its_end_and_its_data(tmp_path):
 
 
 def test_a_mechanism_in_space_is_sent_in_three_dimensions(tmp_path):
-    assert made(begin("spatial", tmp_path / "mine")).film["across"] == 3
+    assert made(begin("spatial", tmp_path / "mine")).film["dimensions"] == 3
 
 
 def test_what_no_widget_can_show_is_refused(tmp_path):

@@ -1,6 +1,5 @@
 """The widget: its state, which the browser shares, and the answers to its sliders."""
 
-from dataclasses import asdict
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -12,14 +11,17 @@ import traitlets
 from dalembert.errors import DalembertError
 from dalembert.multibody import Trajectory
 from dalembert.parameters import Parameter
-from dalembert.report.player import BROWSER, LOOK, Film, film_of
+from dalembert.report.player import BROWSER, LOOK, film_of
 from dalembert.report.sections.motion.trajectory import measured
 from dalembert.tables import shown
 from dalembert.widget.sliders import Source
 
 MOST = 200
 """Measured points of a channel that are drawn."""
-SCRIPTS = (BROWSER / "scene.js", BROWSER / "index.js", Path(__file__).with_name("sliders.js"))
+SCRIPTS = (
+    *(BROWSER / name for name in ("solids.js", "space.js", "plane.js", "index.js")),
+    Path(__file__).with_name("sliders.js"),
+)
 
 
 def script() -> str:
@@ -67,14 +69,14 @@ class MechanismSliders(anywidget.AnyWidget):
         number = int(request["number"])
         try:
             motion = self._source.at(self.values)
-            answer: dict[str, Any] = {"film": asdict(self._film(motion)), "curves": self._lines(motion), "message": ""}
+            answer: dict[str, Any] = {"film": self._film(motion), "curves": self._lines(motion), "message": ""}
         except DalembertError as error:
             answer = {"message": str(error)}
         with self.hold_sync():
             for name, value in {**answer, "answered": number}.items():
                 setattr(self, name, value)
 
-    def _film(self, motion: Trajectory) -> Film:
+    def _film(self, motion: Trajectory) -> dict[str, Any]:
         """The motion, with measured positions of points."""
         data, axes = self._source.data, "xyz"[: len(motion.system.AXES)]
         return film_of(motion.drawing(), {} if data is None else measured(data.channels, data.values, axes))

@@ -8,13 +8,14 @@ import pytest
 
 import dalembert.multibody.spatial as sp
 from dalembert.multibody.motion.sketch import sketch
-from dalembert.report.pictures.canvas import Canvas
-from dalembert.report.pictures.mechanism import draw_mechanism
-from dalembert.report.pictures.projection import Projection
+from dalembert.report.pictures.svg import scene_picture
+from dalembert.report.player import encoded
+from dalembert.report.scene.mechanism import mechanism_scene
+from dalembert.report.scene.scene import MOST_LABELS, Label, readable
+from dalembert.report.scene.structure import sides, structure_scene
 from dalembert.structure import Material, box, solid
 from dalembert.studio.model.parts import absent_parts, place_of
 from dalembert.studio.model.picture import model_picture
-from dalembert.studio.model.scene import MOST_NAMES, mechanism_scene, readable, structure_scene
 from dalembert.studio.worker import Kept
 from dalembert.study.loader import load
 from dalembert.study.tables.catalogue import kinds_of, structure_parts
@@ -51,13 +52,10 @@ def drawn(svg: str) -> set[str]:
 
 def missing(system) -> set[str]:
     """Components that the drawing, or the scene, does not show."""
-    own = sketch(system, assemble=False)
-    view = Projection.of(len(system.AXES))
-    canvas = Canvas.around(view(own.positions), choosable=True)
-    draw_mechanism(canvas, view, own)
-    shown = drawn(canvas.svg("Drawing"))
-    if not view.flat:
-        shown &= {shape["part"] for shape in mechanism_scene(own, {}, {})["shapes"]}
+    scene = mechanism_scene(sketch(system, assemble=False))
+    shown = drawn(scene_picture(scene, "Drawing", choosable=True))
+    if scene.dimensions == 3:
+        shown &= {f"{shape['role']} {shape['name']}" for shape in encoded(scene)["shapes"]}
     return {f"{role} {part.name}" for role, parts in LISTS.items() for part in getattr(system, parts)} - shown
 
 
@@ -98,8 +96,8 @@ def test_a_follower_force_in_space_turns_with_its_marker():
     size = np.array([getattr(one, "amplitude", one) for one in size], dtype=float)
     assert own.forces[load.name] == pytest.approx(axes @ size)
     assert own.forces[load.name] != pytest.approx(size)
-    arrow = next(shape for shape in mechanism_scene(own, {}, {})["shapes"] if shape["kind"] == "arrow")
-    assert arrow["along"] == pytest.approx(own.forces[load.name] / np.linalg.norm(size))
+    arrow = next(shape for shape in mechanism_scene(own).primitives if shape.kind == "arrow")
+    assert arrow.along == pytest.approx(own.forces[load.name] / np.linalg.norm(size))
 
 
 STRUCTURE = """
@@ -152,22 +150,20 @@ def test_what_is_not_drawn_is_listed_once_a_table():
     assert absent_parts(places, {"channel e"}) == ["body a", "channel f"]
 
 
-def test_channels_and_forces_keep_their_names_where_contacts_have_too_many():
-    names = [
-        {"part": f"{role} {k}"} for role, count in (("contact", 32), ("channel", 3), ("force", 2)) for k in range(count)
-    ]
-    assert [name["part"] for name in readable(names)] == ["channel 0", "channel 1", "channel 2", "force 0", "force 1"]
-    few = [{"part": f"contact {k}"} for k in range(MOST_NAMES)]
-    assert readable(few) == few
+def test_channels_and_forces_keep_their_labels_where_contacts_have_too_many():
+    counts = (("contact", 32), ("channel", 3), ("force", 2))
+    labels = [Label(role, str(k), np.zeros(3), "") for role, count in counts for k in range(count)]
+    parts = [label.part for label in readable(labels)]
+    assert parts == ["channel 0", "channel 1", "channel 2", "force 0", "force 1"]
+    few = labels[:MOST_LABELS]
+    assert readable(few) == tuple(few)
 
 
 def test_a_structure_shows_its_mesh_and_pulls_at_its_faces():
     plate = solid(box((0.2, 0.1, 0.02), (2, 2, 1)), Material(210e9, 0.3, 7800.0))
     system = VibrationSystem(plate)
     system.add(HarmonicForce(f"{plate.nodes.names[0]}.z", 1.0))
-    shapes = structure_scene(system)["shapes"]
-    outline, mesh = (shape for shape in shapes if shape["kind"] == "edges")
-    assert len(mesh["points"]) == 2 * 32  # the 16 faces of a closed surface with 18 corners have 16 + 18 - 2 sides
-    assert len(outline["points"]) == 2 * 20  # twelve edges of the box, eight of them of two elements
-    (arrow,) = (shape for shape in shapes if shape["kind"] == "arrow")
-    assert (arrow["along"], arrow["pulls"]) == ((0.0, 0.0, 1.0), True)
+    mesh, outline, arrow = structure_scene(system).primitives
+    assert len(sides(mesh.faces)) == 32  # the 16 faces of a closed surface with 18 corners have 16 + 18 - 2 sides
+    assert outline.points.shape == (1, 2 * 20, 3)  # twelve edges of the box, eight of them of two elements
+    assert (arrow.kind, arrow.role, arrow.along.tolist()) == ("arrow", "force", [0.0, 0.0, 1.0])

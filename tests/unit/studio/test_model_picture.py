@@ -1,6 +1,7 @@
 """The drawing of a study's model: its parts, their tables, the pose at the values of parameters, and what is wrong."""
 
 import re
+from base64 import b64decode
 
 import numpy as np
 import pytest
@@ -120,26 +121,31 @@ def test_parts_of_structures_have_their_tables(draw):
     }
 
 
+def shapes_of(scene) -> dict[tuple[str, str], np.ndarray]:
+    """Points by kind and part of an encoded scene."""
+    numbers, first, points = np.frombuffer(b64decode(scene["positions"]), "<f4"), 0, {}
+    for shape in scene["shapes"]:
+        size = 3 * shape["count"]
+        part = f"{shape['role']} {shape['name']}"
+        points[shape["kind"], part] = numbers[first : first + size].reshape(-1, 3)
+        first += size
+    return points
+
+
 def test_a_mechanism_in_space_has_a_scene(draw):
     scene = draw(templates()["spatial"].text, "spatial").scene
-    assert {shape["part"] for shape in scene["shapes"]} >= {
-        "body plate",
-        "joint wire1",
-        "load air",
-        "channel plate.first.x",
-    }
-    wire = next(shape for shape in scene["shapes"] if (shape["kind"], shape["part"]) == ("dashes", "joint wire1"))
-    first, second = np.array(wire["points"])
+    points = shapes_of(scene)
+    assert {part for _, part in points} >= {"body plate", "joint wire1", "load air", "channel plate.first.x"}
+    first, second = points["dashes", "joint wire1"]
     assert np.linalg.norm(second - first) == pytest.approx(1.2, abs=1e-6)
     assert scene["gravity"] == [0.0, 0.0, -1.0]
-    held = next(shape for shape in scene["shapes"] if (shape["kind"], shape["part"]) == ("ground", "joint wire1"))
-    assert held["points"] == [[0.15, 0.0, 0.0]]
+    assert points["ground", "joint wire1"] == pytest.approx(np.array([[0.15, 0.0, 0.0]]))
 
 
 def test_a_robot_belongs_to_its_table(draw):
     picture = draw(templates()["robot"].text, "robot")
     assert place_of(picture.places, "body upper") == ("model", "robot")
-    assert any(shape["kind"] == "mesh" for shape in picture.scene["shapes"])
+    assert any(shape["kind"] == "surface" for shape in picture.scene["shapes"])
 
 
 def test_the_parts_of_a_robot_are_chosen_by_its_table(draw):
@@ -152,8 +158,8 @@ def test_the_parts_of_a_robot_are_chosen_by_its_table(draw):
 
 
 def test_drives_of_a_robot_do_not_crowd_its_joints(draw):
-    names = draw(templates()["robot"].text, "robot").scene["names"]
-    places = [tuple(np.round(name["at"], 6)) for name in names if not name["part"].startswith("channel ")]
+    names = draw(templates()["robot"].text, "robot").scene["labels"]
+    places = [tuple(np.round(name["at"], 6)) for name in names if name["role"] != "channel"]
     assert len(set(places)) == len(places)
 
 

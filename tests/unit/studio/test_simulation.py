@@ -68,11 +68,16 @@ def test_a_film_holds_the_positions_of_bodies_and_joints(identification):
     film, study = found.film, load(identification)
     assert film is not None
     assert found.curves[0].figure == {}
-    positions = np.frombuffer(b64decode(film.positions), "<f4").reshape(len(film.times), -1, film.across)
-    drawing = study.motion(film.times[-1], times=np.array(film.times)).drawing()
-    expected = [*drawing.lines.values(), *(at[:, None] for at in drawing.joints.values())]
-    assert positions == pytest.approx(np.concatenate(expected, axis=1), abs=1e-5)
-    assert sum(film.bodies.values()) + len(film.joints) == positions.shape[1]
+    motion = study.motion(film["times"][-1], times=np.array(film["times"])).drawing()
+    expected = motion.lines | {name: at[:, None] for name, at in motion.joints.items()}
+    numbers, first = np.frombuffer(b64decode(film["positions"]), "<f4"), 0
+    for shape in film["shapes"]:
+        size = 2 * shape["count"] * (len(film["times"]) if shape["moves"] else 1)
+        if shape["role"] != "measured":
+            drawn = numbers[first : first + size].reshape(-1, shape["count"], 2)
+            assert drawn == pytest.approx(expected.pop(shape["name"])[: len(drawn)], abs=1e-5)
+        first += size
+    assert (first, expected) == (len(numbers), {})
 
 
 def test_effects_are_the_changes_of_the_channels_between_the_bounds(identification):
@@ -165,7 +170,9 @@ def test_values_of_experiments_and_sensors_act(tmp_path):
         name: np.sqrt(np.mean(expected[:, column] ** 2)) for column, name in enumerate(experiment.data.channels)
     })  # fmt: skip
     assert set(influences(Kept(), source(path), "trial", values).effects) == {"drag", "trial.angle", "rod delay"}
-    start = np.frombuffer(b64decode(found.film.positions), "<f4").reshape(len(found.film.times), -1, 2)[0, 1]
+    shapes = found.film["shapes"]
+    before = sum(2 * shape["count"] for shape in shapes[: next(k for k, one in enumerate(shapes) if one["moves"])])
+    start = np.frombuffer(b64decode(found.film["positions"]), "<f4")[before + 2 : before + 4]  # the end of the rod
     assert start == pytest.approx([0.8 * np.cos(0.7), -0.8 * np.sin(0.7)], abs=1e-6)
 
 

@@ -4,10 +4,11 @@ from functools import singledispatch
 from typing import Any
 
 from dalembert.multibody.model.system import BaseSystem
-from dalembert.multibody.motion.sketch import Sketch, sketch
+from dalembert.multibody.motion.sketch import sketch
 from dalembert.report.pictures.canvas import SIZE
-from dalembert.report.pictures.mechanism import mechanism_picture
-from dalembert.report.pictures.structure import structure_picture
+from dalembert.report.pictures.svg import scene_picture
+from dalembert.report.scene.mechanism import mechanism_scene
+from dalembert.report.scene.structure import structure_scene
 from dalembert.vibration import VibrationSystem
 
 
@@ -45,14 +46,10 @@ def picture(model: Any, label: str = "Drawing of the model", size: tuple[int, in
 
 @picture.register
 def _(model: BaseSystem, label: str = "Drawing of the mechanism", size: tuple[int, int] = SIZE) -> str | None:
-    return mechanism_picture(sketch(model), label, size) if model.bodies else None
-
-
-@picture.register
-def _(model: Sketch, label: str = "Drawing of the mechanism", size: tuple[int, int] = SIZE) -> str | None:
-    return mechanism_picture(model, label, size)
+    return scene_picture(mechanism_scene(sketch(model)), label, size) if model.bodies else None
 
 
 @picture.register
 def _(model: VibrationSystem, label: str = "Drawing of the structure", size: tuple[int, int] = SIZE) -> str | None:
-    return structure_picture(model, label, size)
+    scene = structure_scene(model)
+    return None if scene is None else scene_picture(scene, label, size)

@@ -1,21 +1,21 @@
-"""The motion of a mechanism as a browser plays it: few frames, all positions in one block of numbers."""
+"""Scenes as a browser draws them: texts, and their positions as one block of numbers."""
 
 from base64 import b64encode
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from dalembert.report.charts.motion.film import Playback
-from dalembert.report.charts.motion.outlines import bodies_of
+from dalembert.report.scene.motion import motion_scene
+from dalembert.report.scene.scene import Scene
 
 if TYPE_CHECKING:
     from dalembert.multibody import Drawing
 
 FINE = 6001
-STILL = 1e-6
-"""Way of a joint, as a part of the size of the picture, up to which it stays where it is."""
+PRINT_ONLY = ("outline", "axis")
+"""Roles that only figures of reports show."""
 
 
 def frames(end: float) -> np.ndarray:
@@ -23,59 +23,47 @@ def frames(end: float) -> np.ndarray:
     return Playback.of(np.linspace(0.0, end, FINE)).times
 
 
-@dataclass(frozen=True)
-class Film:
-    """A motion.
+def film_of(drawing: "Drawing", measured: Mapping[str, np.ndarray], rows: np.ndarray | None = None) -> dict[str, Any]:
+    """Return a drawing at the times of :func:`frames`, with measured positions (samples, 2 or 3), encoded.
 
-    Parameters
-    ----------
-    times : list of float
-        s.
-    seconds : float
-        Duration of one pass.
-    pace : str
-        Its speed, in words.
-    bodies : dict of str to int
-        Points of the line of each body.
-    joints : dict of str to bool
-        Whether each stays where it is.
-    measured : dict of str to list
-        Measured positions of points, m.
-    across : int
-        2 in the plane, 3 in space.
-    positions : str
-        Single precision numbers (frames, points of bodies and joints, across), m, in base64.
+    ``rows`` are the numbers of these times among those of the drawing; all if not given.
     """
-
-    times: list[float]
-    seconds: float
-    pace: str
-    bodies: dict[str, int]
-    joints: dict[str, bool]
-    measured: dict[str, list[list[float]]]
-    across: int
-    positions: str
+    rows = np.arange(len(drawing.times)) if rows is None else rows
+    return encoded(motion_scene(drawing, rows, paths={}, measured=measured))
 
 
-def film_of(drawing: "Drawing", measured: Mapping[str, np.ndarray]) -> Film:
-    """Return a drawing at the times of :func:`frames` as a film, with measured positions (samples, 2 or 3)."""
-    playback = Playback.of(np.asarray(drawing.times, dtype=float))
-    lines = bodies_of(drawing.lines)
-    joints = {name: np.asarray(at, dtype=np.float32)[:, None] for name, at in drawing.joints.items()}
-    block = np.ascontiguousarray(np.concatenate([*lines.values(), *joints.values()], axis=1), dtype="<f4")
-    size = float((np.nanmax(block, axis=(0, 1)) - np.nanmin(block, axis=(0, 1))).max())
-    return Film(
-        times=[round(time, 9) for time in drawing.times.tolist()],
-        seconds=playback.seconds,
-        pace=playback.pace,
-        bodies={name: line.shape[1] for name, line in lines.items()},
-        joints={name: bool(np.ptp(at, axis=0).max() <= STILL * size) for name, at in joints.items()},
-        measured={name: _few(points).tolist() for name, points in measured.items()},
-        across=block.shape[2],
-        positions=b64encode(block.tobytes()).decode(),
-    )
+def encoded(scene: Scene) -> dict[str, Any]:
+    """Return a scene as ``space.js`` and ``plane.js`` take it.
 
-
-def _few(points: np.ndarray) -> Any:
-    there = points[np.all(np.isfinite(points), axis=1)]
-    return there[:: max(1, len(there) // 150)]
+    ``positions`` are single precision numbers in base64: of each shape in turn (frames or 1, count, 2 or 3), m, and
+    of one with poses (frames, 4, 3). Bodies with a surface come without their lines.
+    """
+    surfaces = {shape.part for shape in scene.primitives if shape.kind == "surface"}
+    drawn = [
+        shape
+        for shape in scene.primitives
+        if shape.role not in PRINT_ONLY and (shape.kind != "line" or shape.part not in surfaces)
+    ]
+    shapes: list[dict[str, Any]] = []
+    for shape in drawn:
+        item = {"kind": shape.kind, "role": shape.role, "name": shape.name, "colour": shape.colour}
+        item |= {"count": shape.points.shape[1], "moves": len(shape.points) > 1}
+        item |= {} if shape.poses is None else {"posed": True}
+        item |= {} if shape.faces is None else {"faces": shape.faces.tolist()}
+        item |= {} if shape.along is None else {"along": shape.along.tolist()}
+        shapes.append(item)
+    labels = [
+        {"role": label.role, "name": label.name, "at": label.at.tolist(), "text": label.text, "colour": label.colour}
+        for label in scene.labels
+    ]
+    numbers = [part for shape in drawn for part in (shape.points, shape.poses) if part is not None]
+    positions = np.concatenate([part.astype("<f4").ravel() for part in numbers])
+    return {
+        "dimensions": scene.dimensions,
+        "times": [round(time, 9) for time in scene.times.tolist()],
+        "seconds": Playback.of(scene.times).seconds,
+        "shapes": shapes,
+        "labels": labels,
+        "gravity": None if scene.gravity is None else scene.gravity.tolist(),
+        "positions": b64encode(positions.tobytes()).decode(),
+    }

@@ -1,9 +1,7 @@
 """The drawing of a study's model, with measured positions, computed in the process of the study's page."""
 
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from html import unescape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +15,7 @@ from dalembert.studio.worker import Kept
 
 if TYPE_CHECKING:
     from dalembert.multibody.motion.sketch import Sketch
+    from dalembert.report.scene.scene import Scene
     from dalembert.study import Study
 
 MOST = 150
@@ -74,8 +73,10 @@ class Picture:
     ----------
     svg : str
         Empty if there is nothing to draw.
-    scene : Scene, optional
-        The same in three dimensions, of a model in space.
+    scene : dict, optional
+        The same in three dimensions, of a model in space, as :func:`~dalembert.report.player.film.encoded` gives it.
+    parts : tuple of str
+        Roles and names of the parts that are drawn.
     places : dict of str to tuple
         Places in the text by the parts of the drawing, as :func:`~dalembert.studio.model.parts.places_of` gives them.
     box : array, shape (2, 2), optional
@@ -90,16 +91,12 @@ class Picture:
 
     svg: str = ""
     scene: dict[str, Any] | None = None
+    parts: tuple[str, ...] = ()
     places: dict[str, Place] = field(default_factory=dict)
     box: np.ndarray | None = None
     absent: tuple[str, ...] = ()
     message: str = ""
     mistake: str = ""
-
-    @property
-    def parts(self) -> tuple[str, ...]:
-        """Parts that are drawn."""
-        return tuple(_parts(self.svg) | {shape["part"] for shape in (self.scene or {}).get("shapes", ())})
 
 
 def model_picture(
@@ -148,11 +145,8 @@ def _mechanism(
     study: "Study", system: Any, places: dict[str, Place], measured: Positions, box: np.ndarray | None
 ) -> Picture:
     from dalembert.multibody.motion.sketch import sketch
-    from dalembert.report.pictures.canvas import Canvas
-    from dalembert.report.pictures.mechanism import draw_measured, draw_mechanism
-    from dalembert.report.pictures.names import draw_names
     from dalembert.report.pictures.projection import Projection
-    from dalembert.studio.model.scene import mechanism_scene
+    from dalembert.report.scene.mechanism import mechanism_scene
 
     marks, message, mistake = _marks(study, system), "", ""
     try:
@@ -160,48 +154,36 @@ def _mechanism(
     except (ModelError, SolveError) as error:
         drawn = sketch(system, marks=marks, assemble=False)
         message, mistake = "Drawn as placed: the mechanism cannot be assembled.", str(error)
-    near, far = near_positions(measured, drawn.positions)
+    channels = _channels(study, drawn)
+    scene = mechanism_scene(drawn, channels, places)
+    near, far = near_positions(measured, scene.positions)
     if far and not message:
         message = f"Measured positions of {', '.join(far)} are far from the model and not drawn. Check their unit."
-    view = Projection.of(len(system.AXES))
-    corners = _box(view(np.concatenate([drawn.positions, *near.values()])), box)
-    canvas = Canvas(corners[0], corners[1], SIZE, choosable=True)
-    draw_measured(canvas, view, near)
-    draw_mechanism(canvas, view, drawn)
-    channels = _channels(study, drawn)
-    draw_names(canvas, view, drawn, channels)
-    svg, scene = (
-        canvas.svg("Drawing of the mechanism"),
-        None if view.flat else mechanism_scene(drawn, channels, near, places),
-    )
+    scene = scene.with_measured(near)
+    corners = _box(Projection.of(scene.dimensions)(scene.positions), box)
     seen = [name for _, channel_names in channels.values() for name in channel_names]
-    return Picture(svg, scene, places, corners, _absent(places, svg, scene, seen), message, mistake)
+    return _drawn(scene, "Drawing of the mechanism", places, seen, box=corners, message=message, mistake=mistake)
 
 
 def _structure(study: "Study", system: Any, places: dict[str, Place]) -> Picture:
-    from dalembert.report.pictures.structure import structure_picture
-    from dalembert.studio.model.scene import structure_scene
+    from dalembert.report.scene.structure import structure_scene
 
-    channels = shown_channels(study)
-    svg = structure_picture(system, "Drawing of the structure", SIZE, choosable=True, channels=channels) or ""
-    scene = structure_scene(system, channels)
-    message = "" if svg else "The structure has no nodes with positions to draw."
-    return Picture(svg, scene, places, absent=_absent(places, svg, scene), message=message)
-
-
-def _absent(
-    places: Mapping[str, Place], svg: str, scene: Mapping[str, Any] | None, channels: Iterable[str] = ()
-) -> tuple[str, ...]:
-    """Parts that have tables and no shape in one of the drawings; channels that share a mark are there."""
-    drawn = _parts(svg)
-    if scene is not None:
-        drawn &= {shape["part"] for shape in scene["shapes"]}
-    return tuple(absent_parts(places, drawn | {f"channel {name}" for name in channels}))
+    scene = structure_scene(system, shown_channels(study))
+    if scene is None:
+        message = "The structure has no nodes with positions to draw."
+        return Picture(places=places, absent=tuple(absent_parts(places, ())), message=message)
+    return _drawn(scene, "Drawing of the structure", places, ())
 
 
-def _parts(svg: str) -> set[str]:
-    """Parts of a drawing by their roles and names."""
-    return {f"{role} {unescape(name)}" for role, name in re.findall(r'<g class="(\w+)" data-part="([^"]*)"', svg)}
+def _drawn(scene: "Scene", label: str, places: dict[str, Place], channels: Iterable[str], **state: Any) -> Picture:
+    """Picture of a scene; ``channels`` have a mark, which they may share."""
+    from dalembert.report.pictures.svg import scene_picture
+    from dalembert.report.player import encoded
+
+    svg = scene_picture(scene, label, SIZE, box=state.get("box"), choosable=True, labels=True)
+    absent = absent_parts(places, scene.parts | {f"channel {name}" for name in channels})
+    in_space = encoded(scene) if scene.dimensions == 3 else None
+    return Picture(svg, in_space, tuple(scene.parts), places, absent=tuple(absent), **state)
 
 
 def _marks(study: "Study", system: Any) -> list[str]:

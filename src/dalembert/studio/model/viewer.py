@@ -3,10 +3,10 @@
 from collections.abc import Callable, Sequence
 from typing import Any
 
-import nicegui.elements.scene  # noqa: F401  its library draws in three dimensions
 from nicegui import events, ui
 from nicegui.element import Element
 
+from dalembert.report.player import BROWSER, LOOK
 from dalembert.studio.model.picture import Picture
 
 Choose = Callable[[str | None], object]
@@ -51,7 +51,7 @@ class ModelDrawing(ModelView, component="drawing.js"):
         self._props["svg"] = svg
 
 
-class ModelSpace(ModelView, component="space.js"):
+class ModelSpace(ModelView, component="space.js", esm={"dalembert-player": str(BROWSER)}):
     """A view in three dimensions, which the pointer turns.
 
     Parameters
@@ -63,10 +63,11 @@ class ModelSpace(ModelView, component="space.js"):
 
     def __init__(self, on_choose: Choose, on_unable: Callable[[], object]) -> None:
         super().__init__(on_choose)
+        self._props["look"] = LOOK
         self.on("unable", on_unable, args=[])
 
     def draw(self, scene: dict[str, Any]) -> None:
-        """Show a scene, as :mod:`dalembert.studio.model.scene` makes it."""
+        """Show a scene, as :func:`~dalembert.report.player.film.encoded` gives it."""
         self._props["scene"] = scene
 
 

@@ -10,14 +10,14 @@ import numpy as np
 
 from dalembert.errors import SolveError
 from dalembert.report.look import plain
-from dalembert.report.player import Film, film_of, frames
+from dalembert.report.player import film_of, frames
 from dalembert.studio.editor.reading import study_of
 from dalembert.studio.simulation.curves import Curves, curves, on_page
 from dalembert.studio.simulation.parts import OVER_FREQUENCY, NothingToSimulateError, StudyMotion, part
 from dalembert.studio.worker import Kept
 
 if TYPE_CHECKING:
-    from dalembert.multibody import Drawing, Trajectory
+    from dalembert.multibody import Trajectory
     from dalembert.studio.editor.outline import Outline
     from dalembert.study import Study
     from dalembert.vibration import FrequencyCurve
@@ -60,8 +60,8 @@ class Simulated:
 
     Parameters
     ----------
-    film : Film, optional
-        Of a mechanism.
+    film : dict, optional
+        Of a mechanism, as :func:`~dalembert.report.player.film.film_of` gives it.
     curves : tuple of Curves
     misfit : float, optional
         Weighted sum of squares of the residuals; None without data.
@@ -75,7 +75,7 @@ class Simulated:
         Why nothing is simulated, though the study is in order.
     """
 
-    film: Film | None = None
+    film: dict[str, Any] | None = None
     curves: tuple[Curves, ...] = ()
     misfit: float | None = None
     residuals: dict[str, float] = field(default_factory=dict)
@@ -196,18 +196,12 @@ def _motion(own: StudyMotion, values: Mapping[str, float]) -> "tuple[np.ndarray 
     return channels[np.searchsorted(times, model.times)], (trajectory, np.searchsorted(times, shown))
 
 
-def _film(own: StudyMotion, trajectory: "Trajectory", rows: np.ndarray) -> Film:
+def _film(own: StudyMotion, trajectory: "Trajectory", rows: np.ndarray) -> dict[str, Any]:
     from dalembert.report.sections.motion.trajectory import measured
 
-    whole = trajectory.drawing()
-    drawing: Drawing = replace(
-        whole,
-        times=whole.times[rows],
-        lines={name: line[rows] for name, line in whole.lines.items()},
-        joints={name: joint[rows] for name, joint in whole.joints.items()},
-    )
     axes = "xyz"[: len(trajectory.system.AXES)]
-    return film_of(drawing, {} if own.data is None else measured(own.data.channels, own.data.values, axes))
+    positions = {} if own.data is None else measured(own.data.channels, own.data.values, axes)
+    return film_of(trajectory.drawing(), positions, rows)
 
 
 def _misfit(own: StudyMotion, response: np.ndarray) -> tuple[float, dict[str, float]]:

@@ -1,5 +1,6 @@
 // The player of motions as an element of a page.
 import { Player } from "dalembert-player";
+import { toRaw } from "vue";
 
 export default {
   template: `<div class="player"></div>`,
@@ -30,7 +31,7 @@ export default {
     take() {
       if (!this.film?.positions) return;
       const taken = performance.timeOrigin + performance.now(), { facts } = this.film;
-      this.player.show(this.film);
+      this.player.show(toRaw(this.film));
       requestAnimationFrame(() => Object.assign(this.$el.dataset, { taken, ...facts }));
     },
   },

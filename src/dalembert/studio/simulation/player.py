@@ -1,10 +1,10 @@
 """The player of motions on a page."""
 
-from dataclasses import asdict
+from typing import Any
 
 from nicegui import ui
 
-from dalembert.report.player import BROWSER, LOOK, Film
+from dalembert.report.player import BROWSER, LOOK
 
 
 class Player(ui.element, component="player.js", esm={"dalembert-player": str(BROWSER)}):
@@ -25,8 +25,8 @@ class Player(ui.element, component="player.js", esm={"dalembert-player": str(BRO
         self._props.update({"label": label, "look": LOOK})
         self.number = 0
 
-    def show(self, film: Film, **times: float) -> None:
-        """Show a newer film; ``times`` tell a benchmark in the browser when it was asked for and computed."""
+    def show(self, film: dict[str, Any], **times: float) -> None:
+        """Show a newer film. ``times`` say when it was requested and computed, for a benchmark in the browser."""
         self.number += 1
-        self._props["film"] = {**asdict(film), "facts": {"number": self.number, **times}}
+        self._props["film"] = {**film, "facts": {"number": self.number, **times}}
         self.update()

@@ -14,7 +14,7 @@ from dalembert.multibody.motion.sketch import sketch
 from dalembert.multibody.spatial import Orientation, Pose
 from dalembert.multibody.trees import read_urdf
 from dalembert.report.charts import mechanism
-from dalembert.studio.model.scene import mechanism_scene
+from dalembert.report.scene.mechanism import mechanism_scene
 
 ROBOT = """<robot name="pendulum"><link name="base"/>
 <link name="arm"><inertial><origin xyz="0 0 -0.5"/><mass value="2"/>
@@ -48,8 +48,7 @@ def test_shapes_of_the_base_are_drawn_in_the_ground(robot):
     np.testing.assert_allclose(corners, np.tile([0.2, 0.1, 0.3], (8, 1)), atol=1e-12)
     drawing = simulate(system, 0.02, RungeKutta4(step=1e-2)).drawing()
     assert [trace.name for trace in mechanism(drawing).data if isinstance(trace, go.Mesh3d)] == ["ground"]
-    shapes = mechanism_scene(sketch(system), {}, {})["shapes"]
-    assert [shape["part"] for shape in shapes if shape["kind"] == "mesh"] == ["ground"]
+    assert [shape.part for shape in mechanism_scene(sketch(system)).primitives if shape.kind == "surface"] == ["ground"]
 
 
 @pytest.mark.parametrize("suffix", ["stl", "obj", "dae", "ply", "STL"])

@@ -7,14 +7,13 @@ import plotly.graph_objects as go
 
 from dalembert.report.charts.motion.film import Film, slowness
 from dalembert.report.look import LIGHT, themed
+from dalembert.report.scene.structure import edges, triangles
 from dalembert.structure import ModeShapes
 from dalembert.tables import labelled, prefixed, shown
 
 if TYPE_CHECKING:
     from dalembert.vibration import Deformation
 
-SHARP = 0.8
-"""Cosine of the angle between the normals of two faces below which their common edge is drawn."""
 MAGNIFIED = 0.1
 """Size that the largest displacement is drawn with, as part of the structure's."""
 
@@ -44,39 +43,6 @@ def outline(places: np.ndarray, faces: np.ndarray) -> go.Scatter3d:
     x, y, z = lines.reshape(-1, 3).T
     line = {"color": LIGHT.muted, "width": 2}
     return go.Scatter3d(x=x, y=y, z=z, mode="lines", line=line, hoverinfo="skip", showlegend=False, name="at rest")
-
-
-def triangles(faces: np.ndarray) -> np.ndarray:
-    """Triangles (count, 3) of faces of three or four corners.
-
-    >>> triangles(np.array([[0, 1, 2, 3]])).tolist()
-    [[0, 1, 2], [0, 2, 3]]
-    """
-    return np.concatenate([faces[:, [0, second, second + 1]] for second in range(1, faces.shape[1] - 1)])
-
-
-def edges(places: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """Ends (edges, 2) of the edges of one face alone, and of those where two faces meet at an angle.
-
-    >>> corners = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [2, 1, 0]])
-    >>> len(edges(corners, np.array([[0, 1, 2, 3], [1, 4, 5, 2]])))  # not the one between them
-    6
-    """
-    if not len(faces):
-        return np.zeros((0, 2), dtype=int)
-    sides = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2)
-    first, second, third = (places[faces[:, corner]] for corner in (0, 1, 2))
-    normals = np.cross(second - first, third - first)
-    normals = np.repeat(normals / np.linalg.norm(normals, axis=1, keepdims=True), faces.shape[1], axis=0)
-    ends, own, counts = np.unique(np.sort(sides, axis=1), axis=0, return_inverse=True, return_counts=True)
-    order = np.argsort(own.ravel(), kind="stable")
-    begins = np.cumsum(counts) - counts
-    drawn = counts != 2
-    pairs = np.flatnonzero(counts == 2)
-    one, other = (normals[order[begins[pairs] + place]] for place in (0, 1))
-    # Neighbouring faces may be numbered in opposite senses, so only the axes of their normals count.
-    drawn[pairs] = np.abs(np.einsum("ij,ij->i", one, other)) < SHARP
-    return ends[drawn]
 
 
 def space(figure: go.Figure, positions: np.ndarray) -> None:

@@ -1,16 +1,27 @@
 """The mechanism in motion: drawn to scale, with play button, slider and the paths of chosen points."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.multibody import Drawing
+from dalembert.report.charts.drawing import colour_of
+from dalembert.report.charts.frequency.shapes import space
 from dalembert.report.charts.motion.film import Playback
-from dalembert.report.charts.motion.mechanism_in_space import mechanism_in_space
-from dalembert.report.charts.motion.outlines import bodies_of, outlines, path_of
 from dalembert.report.look import LIGHT, plain, themed
+from dalembert.report.scene.mechanism import FEW_BODIES
+from dalembert.report.scene.motion import motion_scene, unfolded
+from dalembert.report.scene.scene import Primitive, Scene
+
+WIDTHS = {"outline": (3, 2), "path": (1.5, 3), "body": (5, 7), "axis": (0, 4)}
+"""Widths in pixels of lines in the plane and in space, by their role."""
+FLAT = 0.3
+"""Smallest side of the drawn box as part of its largest one."""
+EYE = {"x": 0.85, "y": -1.35, "z": 0.6}
+"""Where the drawing is seen from, in its own size."""
 
 
 def mechanism(
@@ -51,84 +62,121 @@ def mechanism(
     >>> len(mechanism(swing).frames)
     50
     """
-    places = next(iter([*drawing.lines.values(), *drawing.joints.values()]))
-    if places.shape[-1] == 3:
-        return mechanism_in_space(drawing, paths or {}, measured or {}, title)
     playback = Playback.of(np.asarray(drawing.times, dtype=float))
-    bodies = bodies_of(drawing.lines)
-    grounded = {name: at for name, at in drawing.joints.items() if np.ptp(at, axis=0).max() == 0.0}
-    moving = {name: at for name, at in drawing.joints.items() if name not in grounded}
-    still = [
-        _line(outlines(drawing.lines, playback.frames), 3, LIGHT.grid, hoverinfo="skip", showlegend=False),
-        *(_path(name, path) for name, path in (paths or {}).items()),
-        *(_crosses(name, points) for name, points in (measured or {}).items()),
-        _markers("fixed to ground", grounded, 0, "triangle-up", LIGHT.muted),
+    scene = motion_scene(drawing, playback.frames, paths=paths or {}, measured=measured or {})
+    in_space = scene.dimensions == 3
+    by_role: dict[str, list[Primitive]] = {}
+    for shape in _few_surfaces(scene.primitives):
+        is_folded = in_space and shape.kind == "line"  # which WebGL cannot draw
+        by_role.setdefault(shape.role, []).append(replace(shape, points=unfolded(shape.points)) if is_folded else shape)
+    joints, bodies, axes = (by_role.pop(role, []) for role in ("joint", "body", "axis"))
+    fixed = [shape for shape in joints if shape.kind == "ground"]
+    moving = [shape for shape in joints if shape.kind == "joint"]
+    still = [shape for shapes in by_role.values() for shape in shapes]
+    ground = _joints("fixed to ground", fixed, "square" if in_space else "triangle-up", LIGHT.muted, in_space)
+    traces = [
+        *(_trace(shape) for shape in still),
+        ground,
+        *(_trace(shape) for shape in bodies),
+        _joints("joints", moving, "circle", LIGHT.ink, in_space),
+        *(_trace(shape) for shape in axes),
     ]
-    first = int(playback.frames[0])
-    figure = go.Figure([*still, *_pose(bodies, first), _markers("joints", moving, first, "circle", LIGHT.ink)])
-    number = list(range(len(still), len(still) + len(bodies) + 1))
+    figure = go.Figure(traces)
+    first = len(still) + 1
     figure.frames = [
         go.Frame(
-            name=str(frame),
-            traces=number,
+            name=str(name),
+            traces=list(range(first, len(traces))),
             data=[
-                *({"x": motion[frame, :, 0], "y": motion[frame, :, 1]} for motion in bodies.values()),
-                _positions(moving, int(frame)),
+                *({"type": _kind(shape), **_coordinates(shape, frame)} for shape in bodies),
+                {"type": "scatter3d" if in_space else "scatter", **_positions(moving, frame, scene.dimensions)},
+                *({"type": _kind(shape), **_coordinates(shape, frame)} for shape in axes),
             ],
         )
-        for frame in playback.frames
+        for frame, name in enumerate(playback.frames)
     ]
-    box = _box([*drawing.lines.values(), *drawing.joints.values(), *(paths or {}).values(), *(measured or {}).values()])
+    box = _box(scene)
+    if in_space:
+        space(figure, box.T)
+        figure.update_layout(scene_camera={"eye": EYE, "center": {"x": 0, "y": 0, "z": -0.06}})
+        return themed(figure, title, 560, **replace(playback.film, redraw=True, y=0).controls())
     across = {"title": "x (m)", "range": box[0].tolist()}
     up = {"title": "y (m)", "range": box[1].tolist(), "scaleanchor": "x", "scaleratio": 1}
     return themed(figure, title, 520, x=across, y=up, **playback.film.controls())
 
 
-def _pose(bodies: dict[str, np.ndarray], frame: int) -> list[go.Scatter]:
-    return [
-        _line(motion[frame], 5, colour, name=plain(name), hoverinfo="name")
-        for (name, motion), colour in zip(bodies.items(), LIGHT.series, strict=False)
-    ]
+def _few_surfaces(shapes: Sequence[Primitive]) -> list[Primitive]:
+    """Shapes with the surfaces of many bodies as one."""
+    own = [shape for shape in shapes if shape.kind == "surface" and shape.role == "body"]
+    if len(own) <= FEW_BODIES:
+        return [replace(shape, points=shape.positions, poses=None) for shape in shapes]
+    first = np.cumsum([0, *(shape.points.shape[1] for shape in own)])
+    faces = np.concatenate([shape.faces + number for shape, number in zip(own, first, strict=False)])
+    points = np.concatenate([shape.positions for shape in own], axis=1)
+    lines = sum(shape.role == "body" for shape in shapes) - len(own)
+    joined = Primitive("surface", "body", f"{len(own)} bodies with shapes", points, lines, faces)
+    place = next(k for k, shape in enumerate(shapes) if shape is own[0])
+    kept = [shape for shape in shapes if not any(shape is one for one in own)]
+    return [*kept[:place], joined, *kept[place:]]
 
 
-def _path(name: str, path: np.ndarray) -> go.Scatter:
-    return _line(path_of(path), 1.5, LIGHT.muted, name=f"path of {plain(name)}", line_dash="dot")
+def _trace(shape: Primitive) -> go.Scatter | go.Scatter3d | go.Mesh3d:
+    """A line, a surface or crosses in the first frame."""
+    in_space, name = shape.points.shape[2] == 3, plain(shape.name)
+    kind = go.Scatter3d if in_space else go.Scatter
+    at = _coordinates(shape, 0)
+    if shape.kind == "surface":
+        assert shape.faces is not None
+        i, j, k = shape.faces.T
+        light = {"ambient": 0.65, "diffuse": 0.6, "specular": 0.1}
+        return go.Mesh3d(
+            **at, i=i, j=j, k=k, color=LIGHT.muted if shape.role == "ground" else colour_of(shape.colour),
+            flatshading=True, lighting=light, name=name or "ground", showlegend=True, hoverinfo="name",
+        )  # fmt: skip
+    if shape.kind == "crosses":
+        thin = {"symbol": "x-thin", "size": 6, "line": {"width": 1.25, "color": LIGHT.ink}}
+        marker = {"symbol": "x", "size": 2.5, "color": LIGHT.ink} if in_space else thin
+        return kind(**at, name=f"{name} measured", mode="markers", marker=marker)
+    line: dict[str, Any] = {"width": WIDTHS[shape.role][in_space]}
+    if shape.role == "outline":
+        return kind(**at, mode="lines", line={**line, "color": LIGHT.grid}, hoverinfo="skip", showlegend=False)
+    if shape.role == "path":
+        dots = {} if in_space else {"dash": "dot"}
+        return kind(**at, mode="lines", line={**line, **dots, "color": LIGHT.muted}, name=f"path of {name}")
+    line["color"] = colour_of(shape.colour)
+    if shape.role == "axis":
+        return kind(**at, mode="lines", line=line, name=f"{name} axis", hoverinfo="skip")
+    return kind(**at, mode="lines", line=line, name=name, hoverinfo="name")
 
 
-def _line(points: np.ndarray, width: float, colour: str, **style: Any) -> go.Scatter:
-    """A line through points (points, 2)."""
-    return go.Scatter(x=points[:, 0], y=points[:, 1], mode="lines", line_width=width, line_color=colour, **style)
+def _joints(name: str, joints: Sequence[Primitive], symbol: str, colour: str, in_space: bool) -> Any:
+    """All joints that move, or all that do not, as one trace."""
+    ring = {"size": 10, "color": LIGHT.surface, "line": {"width": 2, "color": colour}}
+    marker = {"symbol": symbol, **({"size": 5, "color": colour} if in_space else ring)}
+    kind = go.Scatter3d if in_space else go.Scatter
+    return kind(
+        **_positions(joints, 0, 3 if in_space else 2), name=name, mode="markers", marker=marker,
+        text=[plain(joint.name) for joint in joints], hoverinfo="text", showlegend=bool(joints),
+    )  # fmt: skip
 
 
-def _crosses(name: str, points: np.ndarray) -> go.Scatter:
-    points = np.asarray(points)[:: max(1, len(points) // 150)]
-    marker = {"symbol": "x-thin", "size": 6, "line": {"width": 1.25, "color": LIGHT.ink}}
-    return go.Scatter(x=points[:, 0], y=points[:, 1], name=f"{plain(name)} measured", mode="markers", marker=marker)
+def _kind(shape: Primitive) -> str:
+    return "mesh3d" if shape.kind == "surface" else "scatter3d" if shape.points.shape[2] == 3 else "scatter"
 
 
-def _markers(name: str, joints: Mapping[str, np.ndarray], frame: int, symbol: str, colour: str) -> go.Scatter:
-    marker = {"symbol": symbol, "size": 10, "color": LIGHT.surface, "line": {"width": 2, "color": colour}}
-    return go.Scatter(
-        **_positions(joints, frame),
-        name=name,
-        mode="markers",
-        marker=marker,
-        text=[plain(joint) for joint in joints],
-        hoverinfo="text",
-        showlegend=bool(joints),
-    )
+def _coordinates(shape: Primitive, frame: int) -> dict[str, np.ndarray]:
+    return dict(zip("xyz", shape.points[frame].astype(np.float32).T, strict=False))
 
 
-def _positions(joints: Mapping[str, np.ndarray], frame: int) -> dict[str, np.ndarray]:
-    at = np.array([motion[frame] for motion in joints.values()], dtype=np.float32).reshape(-1, 2)
-    return {"x": at[:, 0], "y": at[:, 1]}
+def _positions(joints: Sequence[Primitive], frame: int, dimensions: int) -> dict[str, np.ndarray]:
+    at = np.array([joint.points[min(frame, len(joint.points) - 1), 0] for joint in joints], dtype=np.float32)
+    return dict(zip("xyz", at.reshape(-1, dimensions).T, strict=False))
 
 
-def _box(motions: list[np.ndarray]) -> np.ndarray:
-    """Range (2, 2) of x and y over the whole motion, with a margin."""
-    low = np.min([np.nanmin(motion.reshape(-1, 2), axis=0) for motion in motions], axis=0)
-    high = np.max([np.nanmax(motion.reshape(-1, 2), axis=0) for motion in motions], axis=0)
+def _box(scene: Scene) -> np.ndarray:
+    """Range (2 or 3, 2) of the coordinates over the motion, no side much shorter than the others, with a margin."""
+    positions = scene.positions
+    low, high = positions.min(axis=0), positions.max(axis=0)
     size = max(float((high - low).max()), 1e-9)
-    margin = 0.06 * size
-    flat = np.maximum(0.15 * size - (high - low) / 2, 0.0)
-    return np.stack([low - flat - margin, high + flat + margin], axis=1)
+    more = np.maximum(FLAT * size - (high - low), 0.0) / 2 + 0.06 * size
+    return np.stack([low - more, high + more], axis=1)

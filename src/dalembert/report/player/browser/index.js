@@ -1,10 +1,10 @@
 // Plays the motion of a mechanism: its drawing, a button and the time. Notebooks and pages share it.
-import { Scene, svgElement } from "./scene.js";
+import { Plane, svgElement } from "./plane.js";
+import { BY_KEY, RADIAN, Space } from "./space.js";
 
-const TURN = 150; // pixels that turn a mechanism in space by one radian
-const BY_KEY = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, -0.1], ArrowDown: [0, 0.1] };
 const STYLE = `
-.player-scene { display: block; width: 100%; height: clamp(180px, 27vh, 380px); touch-action: pan-y }
+.player-scene { position: relative; width: 100%; height: clamp(180px, 27vh, 380px); touch-action: pan-y }
+.player-plane { display: block; width: 100%; height: 100% }
 .player-scene[tabindex="0"] { cursor: grab; touch-action: none }
 .player-scene:focus-visible, .player-controls :focus-visible { outline: 2px solid currentColor; outline-offset: 2px }
 .player-controls { display: flex; align-items: center; gap: 8px }
@@ -29,7 +29,7 @@ export class Player {
     Object.assign(this, { root, onFrame, playing: false });
     root.classList.add("player");
     element(root, "style", { textContent: STYLE });
-    const svg = svgElement(root, "svg", { class: "player-scene", role: "img", "aria-label": label });
+    this.view = element(root, "div", { className: "player-scene", role: "img", ariaLabel: label });
     const controls = element(root, "div", { className: "player-controls" });
     this.button = element(controls, "button", { type: "button", onclick: () => this.toggle() });
     this.sign = svgElement(svgElement(this.button, "svg", { viewBox: "0 0 16 16", "aria-hidden": true }), "path", {});
@@ -40,35 +40,38 @@ export class Player {
       this.seek(frame);
     };
     this.clock = element(controls, "output");
-    this.scene = new Scene(svg, look);
-    this.makeTurnable(svg);
-    this.resizing = new ResizeObserver(() => this.scene.build());
-    this.resizing.observe(svg);
+    this.look = look;
     this.tell();
   }
 
-  makeTurnable(svg) {
-    let held = null;
-    svg.addEventListener("pointerdown", (event) => {
-      if (!this.scene.turns) return;
-      held = [event.clientX, event.clientY];
-      svg.setPointerCapture?.(event.pointerId);
+  // What draws a film: in space with WebGL where the browser has it.
+  sceneOf(film) {
+    const inSpace = film.dimensions === 3;
+    if (this.scene && this.inSpace === inSpace) return this.scene;
+    this.scene?.close();
+    this.inSpace = inSpace;
+    this.view.tabIndex = inSpace ? 0 : -1;
+    const space = inSpace ? Space.on(this.view, this.look) : null;
+    if (space) return space;
+    const plane = new Plane(this.view, this.look);
+    if (inSpace) this.makeTurnable(plane);
+    return plane;
+  }
+
+  makeTurnable(plane) {
+    plane.svg.addEventListener("pointermove", (event) => {
+      if (event.buttons & 1) plane.turn(event.movementX / RADIAN, event.movementY / RADIAN);
     });
-    svg.addEventListener("pointermove", (event) => {
-      if (!held) return;
-      this.scene.turn((event.clientX - held[0]) / TURN, (event.clientY - held[1]) / TURN);
-      held = [event.clientX, event.clientY];
-    });
-    for (const end of ["pointerup", "pointercancel"]) svg.addEventListener(end, () => (held = null));
-    svg.addEventListener("keydown", (event) => {
-      if (!BY_KEY[event.key] || !this.scene.turns) return;
+    this.view.addEventListener("keydown", (event) => {
+      if (!BY_KEY[event.key]) return;
       event.preventDefault();
-      this.scene.turn(...BY_KEY[event.key]);
+      plane.turn(...BY_KEY[event.key]);
     });
   }
 
   // Shows a newer film, which continues where the older one was, and plays it to its end.
   show(film, { plays = true } = {}) {
+    this.scene = this.sceneOf(film);
     this.scene.take(film);
     this.time.max = film.times.length - 1;
     if (plays && !this.playing && !matchMedia("(prefers-reduced-motion: reduce)").matches) this.play();
@@ -76,7 +79,7 @@ export class Player {
   }
 
   close() {
-    this.resizing.disconnect();
+    this.scene?.close();
     this.playing = false;
     cancelAnimationFrame(this.waiting);
   }
@@ -92,7 +95,7 @@ export class Player {
   }
 
   play() {
-    if (!this.scene.film) return;
+    if (!this.scene?.film) return;
     if (this.scene.frame >= this.last) this.scene.frame = 0;
     const passed = this.scene.frame / Math.max(this.last, 1), began = performance.now() - 1000 * passed * this.scene.film.seconds;
     this.playing = true;
@@ -124,7 +127,7 @@ export class Player {
       Object.assign(this.button, { ariaLabel: name, title: name });
       this.sign.setAttribute("d", this.playing ? "M3 2h4v12h-4zM9 2h4v12h-4z" : "M4 2l10 6l-10 6z");
     }
-    if (!this.scene.film) return;
+    if (!this.scene?.film) return;
     const { times } = this.scene.film, frame = this.scene.frame;
     const decimals = Math.max(0, 2 - Math.floor(Math.log10(Math.max(times.at(-1), 1e-12))));
     const time = `${times[frame].toFixed(decimals)} s`;

@@ -1,4 +1,6 @@
-// The drawing of a mechanism in motion as SVG. It needs no library: notebooks and pages share it.
+// A scene in the plane as SVG, and a scene in space where there is no WebGL. It needs no library.
+import { boxOf, decoded } from "./solids.js";
+
 const SVG = "http://www.w3.org/2000/svg";
 const MARGIN = 24; // pixels
 const RADIUS = 5; // of a joint, in pixels
@@ -18,40 +20,29 @@ function round(length) {
   return decade * [5, 2, 1].find((digit) => digit * decade <= length);
 }
 
-export class Scene {
+export class Plane {
   // look: { series: colours of bodies, ink, paper }, which are read on a light and on a dark page
-  constructor(svg, look) {
+  constructor(root, look) {
+    const svg = svgElement(root, "svg", { class: "player-plane" });
     Object.assign(this, { svg, look, frame: 0, yaw: -0.6, pitch: 0.35, box: null });
+    this.sizes = new ResizeObserver(() => this.build());
+    this.sizes.observe(svg);
   }
 
-  get turns() {
-    return this.film?.across === 3;
+  close() {
+    this.sizes.disconnect();
+    this.svg.remove();
   }
 
   // A newer film continues where the older one was.
   take(film) {
-    const parts = JSON.stringify([film.bodies, film.joints]), same = parts === this.parts;
-    Object.assign(this, { film, parts });
-    this.positions = new Float32Array(Uint8Array.from(atob(film.positions), (one) => one.charCodeAt(0)).buffer);
+    const shapes = decoded(film), parts = shapes.map(({ kind, part }) => kind + part).join(), same = parts === this.parts;
+    Object.assign(this, { film, shapes, parts, turns: film.dimensions === 3 });
     this.frame = Math.min(this.frame, film.times.length - 1);
-    this.svg.setAttribute("tabindex", this.turns ? 0 : -1);
-    if (this.widen() || !same) this.build();
-  }
-
-  // The box holds all motions so far, so that the picture does not jump while a value changes.
-  widen() {
-    const across = this.film.across, low = Array(across).fill(Infinity), high = Array(across).fill(-Infinity);
-    const measure = (values) => values.forEach((value, place) => {
-      if (!Number.isFinite(value)) return;
-      low[place % across] = Math.min(low[place % across], value);
-      high[place % across] = Math.max(high[place % across], value);
-    });
-    measure(this.positions);
-    Object.values(this.film.measured).forEach((points) => measure(points.flat()));
-    const old = this.box?.low.length === across ? this.box : { low, high };
-    const grown = old.low === low || low.some((value, k) => value < old.low[k]) || high.some((value, k) => value > old.high[k]);
-    this.box = { low: low.map((value, k) => Math.min(value, old.low[k])), high: high.map((value, k) => Math.max(value, old.high[k])) };
-    return grown;
+    const old = this.box?.low.length === film.dimensions ? this.box : null;
+    this.box = boxOf(shapes, film.dimensions, old); // of all motions so far: the picture does not jump while a value changes
+    if (this.box.grown || !same) this.build();
+    else this.draw();
   }
 
   // Coordinates of the picture: as they are in the plane, seen from a direction in space.
@@ -78,20 +69,21 @@ export class Scene {
 
   build() {
     const { svg, film, look } = this;
-    this.lines = null;
+    this.drawn = null;
     if (!film || !svg.clientWidth) return;
     [this.width, this.height] = [svg.clientWidth, svg.clientHeight];
     svg.setAttribute("viewBox", `0 0 ${this.width} ${this.height}`);
     svg.replaceChildren();
     this.fit();
     const ink = { fill: "none", stroke: look.ink, "stroke-width": 1.25 }, words = { class: "player-name", fill: look.ink };
-    this.crosses = svgElement(svg, "path", { ...ink, class: "player-measured" });
-    const bodies = Object.keys(film.bodies);
-    this.lines = bodies.map((name, k) => this.part(name, { class: "player-body", fill: "none", stroke: look.series[k % look.series.length], "stroke-width": 5 }));
-    this.joints = Object.entries(film.joints).map(([name, fixed]) => {
-      return this.part(name, { class: "player-joint", d: fixed ? "M0 0L-8 12H8Z" : CIRCLE, fill: look.paper, stroke: look.ink, "stroke-width": 2 });
+    const ring = { class: "player-joint", fill: look.paper, stroke: look.ink, "stroke-width": 2 };
+    this.drawn = this.shapes.map((shape) => {
+      const stroke = shape.colour < 0 ? look.ink : look.series[shape.colour % look.series.length];
+      if (shape.kind === "crosses") return svgElement(svg, "path", { ...ink, class: "player-measured" });
+      if (shape.role === "joint") return this.part(shape.name, { ...ring, d: shape.kind === "ground" ? "M0 0L-8 12H8Z" : CIRCLE });
+      return this.part(shape.name, { class: "player-body", fill: "none", stroke, "stroke-width": shape.faces ? 0.5 : 5 });
     });
-    this.names = bodies.map((name) => svgElement(svg, "text", words, name));
+    this.names = this.shapes.map((shape) => (shape.role === "body" ? svgElement(svg, "text", words, shape.name) : null));
     const length = round(this.width / 4 / this.factor), end = this.width - 12, bottom = this.height - 10;
     svgElement(svg, "path", { ...ink, d: `M${end - length * this.factor} ${bottom - 5}v5h${length * this.factor}v-5` });
     svgElement(svg, "text", { ...words, x: end, y: bottom - 9, "text-anchor": "end" }, `${+length.toPrecision(1)} m`);
@@ -105,27 +97,23 @@ export class Scene {
   }
 
   draw() {
-    if (!this.lines) return;
-    const { across, times, bodies, measured } = this.film;
-    let next = (this.frame * this.positions.length) / times.length;
-    const take = () => this.at(...this.positions.subarray(next, (next += across)));
-    Object.values(bodies).forEach((count, k) => {
-      let path = "", pen = "M", middle = null;
-      for (let point = 0; point < count; point++) {
-        const [x, y] = take();
-        if (Number.isNaN(x)) pen = "M";
-        else {
-          path += `${pen}${x.toFixed(1)} ${y.toFixed(1)}`;
-          pen = "L";
-          if (point === count >> 1) middle = [x + 9, y - 9];
-        }
-      }
-      this.lines[k].setAttribute("d", path);
-      if (middle) this.names[k].setAttribute("transform", `translate(${middle.join(" ")})`);
+    if (!this.drawn) return;
+    this.shapes.forEach((shape, k) => {
+      const numbers = shape.at(this.frame), across = this.film.dimensions;
+      const points = Array.from({ length: shape.count }, (_, one) => this.at(...numbers.subarray(one * across, (one + 1) * across)));
+      if (shape.role === "joint") this.drawn[k].setAttribute("transform", `translate(${points[0].join(" ")})`);
+      else this.drawn[k].setAttribute("d", this.path(shape, points));
+      const [x, y] = points[shape.count >> 1] ?? [];
+      if (x >= 0 || x < 0) this.names[k]?.setAttribute("transform", `translate(${x + 9} ${y - 9})`);
     });
-    for (const joint of this.joints) joint.setAttribute("transform", `translate(${take().join(" ")})`);
-    const marks = Object.values(measured).flat().map((one) => this.at(...one));
-    this.crosses.setAttribute("d", marks.map(([x, y]) => `M${x - 3} ${y - 3}l6 6m0 -6l-6 6`).join(""));
+  }
+
+  // Commands of a path through pixels, with gaps where they are not known.
+  path({ kind, faces }, points) {
+    if (kind === "crosses") return points.map(([x, y]) => `M${x - 3} ${y - 3}l6 6m0 -6l-6 6`).join("");
+    const at = points.map(([x, y]) => (Number.isNaN(x) ? "" : `${x.toFixed(1)} ${y.toFixed(1)}`));
+    if (faces) return faces.map((face) => `M${face.map((corner) => at[corner]).join("L")}Z`).join("");
+    return at.map((one, k) => one && (k && at[k - 1] ? "L" : "M") + one).join("");
   }
 
   turn(right, down) {

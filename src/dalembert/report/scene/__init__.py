@@ -1,0 +1,1 @@
+"""The picture of a model as data, which all renderers take."""

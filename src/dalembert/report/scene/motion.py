@@ -1,0 +1,133 @@
+"""The scene of a mechanism over time, thinned for an animation."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from dalembert.multibody import Drawing
+from dalembert.multibody.components.spatial.mesh_files import simplified
+from dalembert.multibody.components.spatial.shapes import Surface
+from dalembert.report.scene.mechanism import FEW_BODIES
+from dalembert.report.scene.scene import Primitive, Scene
+
+POINTS_A_FRAME = 1000
+"""Points of lines above which lines are thinned."""
+CORNERS_A_FRAME = 2500
+"""Corners of surfaces above which surfaces are simplified."""
+FEWEST = 20
+"""Corners of a surface below which bodies are drawn as lines."""
+POSES = 6
+"""Of the outline of a motion."""
+PATH, MEASURED = 2000, 150
+"""Points of a path, and measured positions of a point."""
+AXIS = 0.09
+"""Length of the axes of a body as part of the drawing's size."""
+STILL = 1e-9
+"""Motion of a joint, as part of the drawing's size, below which it is fixed to the ground."""
+Lines = Mapping[str, np.ndarray]
+"""Points (samples, 2 or 3) or (frames, points, 2 or 3) by name, m."""
+
+
+def motion_scene(drawing: Drawing, frames: np.ndarray, *, paths: Lines, measured: Lines) -> Scene:
+    """Return bodies, their axes and joints of a drawing at some of its frames, paths, and measured positions.
+
+    The lines of more than seven bodies become one with gaps; so do a few poses along the motion.
+    """
+    lines = {name: np.asarray(line)[frames] for name, line in drawing.lines.items()}
+    joints = {name: np.asarray(at)[frames] for name, at in drawing.joints.items()}
+    in_space = next(iter([*lines.values(), *joints.values()])).shape[-1] == 3
+    surfaces = _surfaces(drawing) if in_space else {}
+    poses = np.unique(np.linspace(0, len(frames) - 1, POSES).round().astype(int))
+    outline = joined({name: line[poses] for name, line in thinned(lines).items()})
+    shapes = [Primitive("line", "outline", "", outline.reshape(1, -1, outline.shape[2]))]
+    if in_space and drawing.ground is not None:
+        ground = drawing.ground
+        shapes.append(Primitive("surface", "ground", "", ground.corners[None], faces=ground.triangles))
+    shapes += [
+        Primitive("line", "path", name, path[None, :: max(1, len(path) // PATH)]) for name, path in paths.items()
+    ]
+    for name, positions in measured.items():
+        known = positions[np.isfinite(positions).all(axis=1)]
+        shapes.append(Primitive("crosses", "measured", name, known[None, :: max(1, len(known) // MEASURED)]))
+    numbers = {name: number for number, name in enumerate(lines)}
+    drawn = thinned({name: line for name, line in lines.items() if name not in surfaces})
+    if len(drawn) > FEW_BODIES:
+        drawn = {f"{len(drawn)} bodies": joined(drawn)}
+    shapes += [Primitive("line", "body", name, line, numbers.get(name, 0)) for name, line in drawn.items()]
+    for name, surface in surfaces.items():
+        corners, poses = surface.corners[None], drawing.axes[name][frames]
+        shapes.append(Primitive("surface", "body", name, corners, numbers[name], surface.triangles, poses=poses))
+    size = max(float(np.ptp(Scene(tuple(shapes)).positions, axis=0).max()), 1e-9)
+    for name, at in joints.items():
+        is_still = float(np.ptp(at, axis=0).max()) <= STILL * size
+        shapes.append(Primitive("ground" if is_still else "joint", "joint", name, at[: 1 if is_still else None, None]))
+    if in_space and 0 < len(drawing.axes) <= FEW_BODIES:
+        shapes += _axes({name: axes[frames] for name, axes in drawing.axes.items()}, AXIS * size)
+    return Scene(tuple(shapes), times=np.asarray(drawing.times, dtype=float)[frames])
+
+
+def thinned(lines: Lines) -> dict[str, np.ndarray]:
+    """Return lines (frames, points, 2 or 3) with every so many of their points, their two ends always."""
+    stride = max(1, -(-sum(line.shape[1] for line in lines.values()) // POINTS_A_FRAME))
+    return {
+        name: line[:, np.unique(np.linspace(0, points - 1, max(2, -(-points // stride))).round().astype(int))]
+        for name, line in lines.items()
+        for points in [line.shape[1]]
+    }
+
+
+def joined(lines: Lines) -> np.ndarray:
+    """Return lines (frames, points, 2 or 3) one after the other, with a gap behind each."""
+    first = next(iter(lines.values()))
+    gap = np.full((len(first), 1, first.shape[2]), np.nan)
+    return np.concatenate([part for line in lines.values() for part in (line, gap)], axis=1)
+
+
+def _surfaces(drawing: Drawing) -> dict[str, Surface]:
+    """Surfaces of bodies, simplified; none where there are too many corners."""
+    surfaces = dict(drawing.surfaces)
+    if sum(len(surface.corners) for surface in surfaces.values()) > CORNERS_A_FRAME:
+        most = CORNERS_A_FRAME // len(surfaces)
+        if most < FEWEST:
+            return {}
+        for name, surface in surfaces.items():
+            if len(surface.corners) > most:
+                surfaces[name] = Surface(*simplified(surface.corners, surface.triangles, most))
+    return surfaces
+
+
+def _axes(axes: Lines, length: float) -> list[Primitive]:
+    """The axes x, y and z of bodies (frames, 4, 3), each as one line with gaps; red, green and blue."""
+    return [
+        Primitive("line", "axis", name, joined({body: _ray(own, k, length) for body, own in axes.items()}), colour)
+        for k, (name, colour) in enumerate({"x": 1, "y": 2, "z": 0}.items(), start=1)
+    ]
+
+
+def _ray(axes: np.ndarray, number: int, length: float) -> np.ndarray:
+    """Origin of a body and the end of one of its axes, (frames, 2, 3)."""
+    return np.stack([axes[:, 0], axes[:, 0] + length * axes[:, number]], axis=1)
+
+
+def unfolded(line: np.ndarray) -> np.ndarray:
+    """Return a line (frames, points, 3) with gaps for pieces that go back or have no length: WebGL cannot draw them.
+
+    >>> there_and_back = np.array([[[0.0, 0, 0], [1, 0, 0], [0, 0, 0], [0, 0, 0], [0, 1, 0]]])
+    >>> unfolded(there_and_back)[0, :, :2].tolist()
+    [[0.0, 0.0], [1.0, 0.0], [nan, nan], [0.0, 0.0], [0.0, 1.0]]
+    """
+    first = line[0]
+    pieces: list[list[int]] = []
+    for end in range(1, len(first)):
+        back = end > 1 and np.array_equal(first[end], first[end - 2])
+        if back or np.array_equal(first[end], first[end - 1]):
+            continue
+        if pieces and pieces[-1][-1] == end - 1:
+            pieces[-1].append(end)
+        else:
+            pieces.append([end - 1, end])
+    if not pieces:
+        return line[:, :1]
+    gap = np.full((len(line), 1, 3), np.nan)
+    parts = [part for piece in pieces for part in (line[:, piece], gap)]
+    return np.concatenate(parts[:-1], axis=1)

@@ -20,13 +20,12 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 
-class Result(Displayed):
-    """A result that can be written to a file, drawn, and reported.
+class Summarised(Displayed):
+    """A result with facts and tables, which the summary, reports, notebooks and pages show.
 
-    A class of results defines :meth:`facts` and :meth:`tables`. The summary, reports, notebooks and pages show them.
+    A class of results defines :meth:`facts` and :meth:`tables`.
     """
 
-    FORMAT: ClassVar[str]
     TITLE: ClassVar[str] = ""
     """Heading of its report."""
     VERDICTS: ClassVar[tuple[str, str]] = ("computed", "incomplete")
@@ -45,9 +44,18 @@ class Result(Displayed):
         return tuple(finding for finding in self.conclusions if finding.doubtful)
 
     @property
+    def title(self) -> str:
+        """Heading of its report."""
+        return self.TITLE
+
+    @property
     def verdict(self) -> str:
         """Whether the result is a success, in a word or two."""
         return self.VERDICTS[0 if getattr(self, "success", True) else 1]
+
+    def key_values(self) -> dict[str, str]:
+        """Return the values of the parameters as texts, if they are few; the summary has them in its tables."""
+        return {}
 
     def facts(self) -> dict[str, str]:
         """Return the few numbers that matter, as texts by what they are."""
@@ -59,15 +67,22 @@ class Result(Displayed):
 
     def summary(self) -> str:
         """Return tables, facts, status and findings as text."""
-        tables, facts = self.tables(), {**self.facts(), **fixed_facts(self)}
+        tables = [table for table in self.tables() if not table.detail]
+        facts = {**self.facts(), **fixed_facts(self)}
         lines: list[str] = []
         for table in tables:
             lines += [*([table.caption] if len(tables) > 1 else []), *table.lines(), ""]
         if facts:
             lines += [*fact_lines(max(map(len, facts)) + 1, **facts), ""]
         status = getattr(self, "status", "")
-        findings = [str(finding) for finding in self.findings if str(finding) not in status]
+        findings = [str(finding) for finding in self.conclusions if str(finding) not in status]
         return "\n".join([*lines, *filter(None, (status, *findings))])
+
+
+class Result(Summarised):
+    """A result that can be written to a file, drawn, and reported."""
+
+    FORMAT: ClassVar[str]
 
     def contents(self) -> Contents:
         """Everything as labelled arrays, with units as attributes, by the types of the fields."""

@@ -10,7 +10,7 @@ from dalembert.errors import InputError
 from dalembert.report.headline import headline_of
 from dalembert.report.options import ReportOptions
 from dalembert.report.section import Section
-from dalembert.results import Result
+from dalembert.results import Summarised
 
 Sections = Callable[[Any, ReportOptions], list[Section]]
 Function = TypeVar("Function", bound=Sections)
@@ -75,7 +75,7 @@ def registered_sections(result: object, options: ReportOptions) -> list[Section]
             _import_sections(SUBJECTS[module])
         if (function := _SECTIONS.get(_full_name(kind))) is not None:
             return function(result, options)
-    if isinstance(result, Result) and (tables := result.tables()):
+    if isinstance(result, Summarised) and (tables := result.tables()):
         return [headline_of(result), Section("Result", tables)]
     raise InputError(
         f"report: a {type(result).__name__} was given; expected a result, such as identify(), simulate() or "

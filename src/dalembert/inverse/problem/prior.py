@@ -19,12 +19,14 @@ MANY = 4
 
 def priors(parameters: Parameters) -> np.ndarray:
     """Numbers of the parameters whose prior is a square; a uniform one adds nothing to a fit."""
-    return np.array([k for k, item in enumerate(parameters) if isinstance(item.distribution, SquarePrior)], dtype=int)
+    return np.array(
+        [k for k, item in enumerate(parameters.items) if isinstance(item.distribution, SquarePrior)], dtype=int
+    )
 
 
 def prior_deviations(parameters: Parameters) -> np.ndarray:
     """Standard deviations of the priors, one for each of :func:`priors`."""
-    known = [item.distribution for item in parameters]
+    known = [item.distribution for item in parameters.items]
     return np.array([prior.spread for prior in known if isinstance(prior, SquarePrior)], dtype=float)
 
 
@@ -59,7 +61,7 @@ def prior_slopes(parameters: Parameters, vector: np.ndarray, unit: np.ndarray) -
 
 def joint_priors(parameters: Parameters) -> Iterator[tuple[CorrelatedNormal, np.ndarray]]:
     """Yield the priors of several parameters, each with the numbers of its parameters."""
-    joints = dict.fromkeys(item.prior for item in parameters if isinstance(item.prior, CorrelatedNormal))
+    joints = dict.fromkeys(item.prior for item in parameters.items if isinstance(item.prior, CorrelatedNormal))
     for joint in joints:
         yield joint, np.array([parameters.names.index(name) for name in joint.names])
 

@@ -12,11 +12,11 @@ from dalembert.multibody.model.system import BaseSystem
 from dalembert.report.charts.motion.diagnostics import energies
 from dalembert.report.charts.motion.mechanism import mechanism
 from dalembert.report.contents import contents
+from dalembert.report.headline import headline_of
 from dalembert.report.notebook.figure import figure_svg
 from dalembert.report.notebook.page import Summary
 from dalembert.report.options import ReportOptions
 from dalembert.report.pictures import picture
-from dalembert.report.sections.motion.trajectory import motion_headline
 from dalembert.structure import Structure
 from dalembert.vibration import VibrationSystem
 
@@ -65,7 +65,7 @@ def html_of(value: object) -> str | None:
 
 @shown_in_notebook.register
 def _(result: Trajectory) -> Summary:
-    headline = motion_headline(result)
+    headline = headline_of(result)
     still = picture(result.system) if len(result.system.AXES) == 3 else figure_svg(_motion(result), height=320)
     pictures = [still, figure_svg(energies(result), height=320)]
     shown = [one for one in pictures if one]

@@ -248,8 +248,8 @@ def _over_frequency(own: StudyMotion, values: Mapping[str, float]) -> Influences
 
     A curve that is followed by arc length has other points at other values, and no effects.
     """
-    from dalembert.report.focus import movers
     from dalembert.study.tasks.frequency_response import drawn_dofs
+    from dalembert.vibration.paths.focus import movers
 
     vector, table, began = own.vector(values), own.study.table, perf_counter()
     first = _curve_at(own, vector)

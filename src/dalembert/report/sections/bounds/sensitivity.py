@@ -4,7 +4,7 @@ from dalembert.report import charts
 from dalembert.report.headline import headline_of
 from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Download, Fold, Plot, Row, Section, samples
+from dalembert.report.section import Plot, Row, Section, samples
 from dalembert.uncertainty import Screening, SensitivityIndices
 
 
@@ -12,7 +12,12 @@ from dalembert.uncertainty import Screening, SensitivityIndices
 def sensitivity_indices(result: SensitivityIndices, options: ReportOptions) -> list[Section]:
     """Indices of whole channels, then over the samples, then the distributions."""
     indices, box = result.tables()
-    sobol = Section("Sobol indices", (indices, Row(_plots(result)), _download(result)))
+    series = {"mean": result.mean, "deviation": result.deviations}
+    for number, name in enumerate(result.box.names):
+        series[f"first-order of {name}"] = result.first[:, :, number]
+        series[f"total of {name}"] = result.total[:, :, number]
+    download = samples("indices", result.coordinate, result.channels, series, "Download all indices as CSV")
+    sobol = Section("Sobol indices", (indices, Row(_plots(result)), download))
     return [headline_of(result), sobol, Section("Parameters", (box,))]
 
 
@@ -33,14 +38,6 @@ def _plots(result: SensitivityIndices) -> list[Plot]:
     return plots
 
 
-def _download(result: SensitivityIndices) -> Download:
-    series = {"mean": result.mean, "deviation": result.deviations}
-    for number, name in enumerate(result.box.names):
-        series[f"first-order of {name}"] = result.first[:, :, number]
-        series[f"total of {name}"] = result.total[:, :, number]
-    return samples("indices", result.coordinate, result.channels, series, "Download all indices as CSV")
-
-
 @sections_of(Screening)
 def screening(result: Screening, options: ReportOptions) -> list[Section]:
     """Effects on whole channels, the largest first, then the distributions."""
@@ -49,9 +46,5 @@ def screening(result: Screening, options: ReportOptions) -> list[Section]:
     series = {f"effect of {name}": result.effects[:, :, number] for number, name in enumerate(result.box.names)}
     download = samples("effects", result.coordinate, result.channels, series, "Download all effects as CSV")
     effects, box = result.tables()
-    fold = Fold(effects, most=40, rows="effects")
-    return [
-        headline_of(result),
-        Section("Elementary effects", (fold, Row(plots, side_by_side=len(plots) > 1), download)),
-        Section("Parameters", (box,)),
-    ]
+    elementary = Section("Elementary effects", (effects, Row(plots, side_by_side=len(plots) > 1), download))
+    return [headline_of(result), elementary, Section("Parameters", (box,))]

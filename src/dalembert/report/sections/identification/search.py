@@ -1,51 +1,32 @@
 """The search of a fit: how it ended, its starts, and what the data determine."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
-import numpy as np
-
-from dalembert.inverse import BandFit, Fit, Nodes
+from dalembert.inverse import BandFit, Fit, Identifiability
 from dalembert.report import charts
 from dalembert.report.charts.identification.identifiability import unknowns
 from dalembert.report.charts.identification.regularisation import accounts
-from dalembert.report.charts.identification.search import ranked
-from dalembert.report.headline import Headline
-from dalembert.report.section import Fold, Listed, Plot, Row, Section
-from dalembert.tables import Table, cells, labelled, unless
-
-
-def identified(fit: Fit | BandFit, title: str, facts: Mapping[str, str]) -> Headline:
-    """Headline of something identified, with what speaks against it."""
-    doubts = tuple(doubt.message for doubt in fit.doubts) if fit.success else ()
-    verdict = "not identified" if not fit.success else "identified, with doubts" if doubts else "identified"
-    return Headline(title=title, verdict=verdict, success=fit.success, status=fit.status, facts=facts, doubts=doubts)
-
-
-def shooting(fit: Fit, nodes: Nodes) -> Section:
-    """Gaps over the steps, and the states at which the segments meet."""
-    come = "The gaps weigh ever more until they are closed; where two segments merge, a gap opens once more."
-    grown = f"By the last of these states a small change of the initial state has grown {nodes.growth:.2g} times."
-    return Section("Multiple shooting", (f"{nodes} {grown}", Plot("gaps", charts.gaps(fit), come), _table(fit, nodes)))
-
-
-def _table(fit: Fit, nodes: Nodes) -> Table:
-    along = [fit, *fit.experiments][-1].data.coordinate
-    columns: dict[str, Iterable[object]] = {"experiment": nodes.experiments} if any(nodes.experiments) else {}
-    columns |= {"sample": nodes.samples, labelled(along.name, along.unit): nodes.times}
-    for name, unit, values in zip(nodes.states, nodes.units, nodes.begins.T, strict=True):
-        columns[labelled(name, unit)] = ["" if np.isnan(value) else value for value in values]
-    columns["largest gap"] = cells(np.nanmax(abs(nodes.ends - nodes.begins), axis=1), 2)
-    return Table.of("nodes", "States found where segments meet", columns)
-
+from dalembert.report.headline import Headline, headline_of
+from dalembert.report.section import Listed, Plot, Row, Section
+from dalembert.tables import Table
 
 MOST_BESIDE = 3
 """Unknowns up to which the figures have room side by side: combinations of many have long names."""
+GREW = "Fewer samples were fitted first: a line begins where all are compared, its simulations counting those before."
+LEAST_SQUARES = ("LeastSquares", "ResponseSensitivity")
+"""Methods whose horizon may grow."""
 
 
-def identifiability(fit: Fit | BandFit) -> Section:
+def identified(fit: Fit | BandFit, known: Identifiability) -> Headline:
+    """Headline of something identified, with what speaks against it."""
+    findings = (*fit.outcome, *known.findings, *fit.findings)
+    doubts = [finding.message for finding in findings if finding.doubtful] if fit.success else []
+    return headline_of(fit, doubts=doubts, verdict=f"{fit.verdict}, with doubts" if doubts else fit.verdict)
+
+
+def identifiability(fit: Fit | BandFit, known: Identifiability) -> Section:
     """Sentences on identifiability; of several unknowns, singular values and correlation."""
-    known, names = fit.identifiability(), unknowns(fit)
-    plots = []
+    plots, names = [], unknowns(fit)
     if len(names) > 1:
         pairs = "Near 1 or −1, the data determine a combination of the two parameters, but not each of them."
         small = "A small value belongs to a combination that is hardly identifiable."
@@ -55,14 +36,7 @@ def identifiability(fit: Fit | BandFit) -> Section:
     return Section("Identifiability", (Listed(str(known).splitlines()), row))
 
 
-GREW = "Fewer samples were fitted first: a line begins where all are compared, its simulations counting those before."
-LEAST_SQUARES = ("LeastSquares", "ResponseSensitivity")
-"""Methods whose horizon may grow."""
-MOST_STARTS = 12
-"""Rows of starts up to which their table is open."""
-
-
-def search(fit: Fit | BandFit) -> list[Section]:
+def search(fit: Fit | BandFit, tables: Iterable[Table]) -> list[Section]:
     """Convergence of every start or swarm, and where each start ended; nothing for a fit without a history."""
     if not fit.history:
         return []
@@ -75,23 +49,7 @@ def search(fit: Fit | BandFit) -> list[Section]:
         corner = "The weight is chosen at the corner, and raised until the step goes as the linear model foresees."
         went = "Agreement is the fall of the sum of squares over the fall foreseen; 1 is just as foreseen."
         plots += [Plot("l-curve", charts.l_curve(fit), corner), Plot("steps", charts.steps(fit), went)]
-    tables = [Fold(_starts(fit), MOST_STARTS, "starts")] if fit.starts else []
-    return [Section("Search", (f"Method: {fit.method}.", Row(plots), *tables))]
-
-
-def _starts(fit: Fit | BandFit) -> Table:
-    numbers = ranked(fit)
-    starts = [fit.starts[number] for number in numbers]
-    ended = unless((start.success for start in starts), "not converged")
-    columns = {
-        "start": [number + 1 for number in numbers],
-        "misfit": cells((start.misfit for start in starts), 4),
-        "simulations": [int(start.simulations) for start in starts],
-        "ended": [end if end.text else "converged" for end in ended],
-        "message": [start.message for start in starts],
-        **{f"{name} at end": [start.end[k] for start in starts] for k, name in enumerate(unknowns(fit))},
-    }
-    return Table.of("starts", "Where each start ended, best first", columns)
+    return [Section("Search", (Row(plots), *tables))]
 
 
 def grew(fit: Fit | BandFit) -> bool:

@@ -10,13 +10,12 @@ from dalembert.forward import Coordinate
 from dalembert.multibody import Drawing, Trajectory
 from dalembert.quantities import by_quantity
 from dalembert.report import charts
-from dalembert.report.charts.motion.diagnostics import LEVELS
-from dalembert.report.headline import Headline
+from dalembert.report.headline import headline_of
 from dalembert.report.look import plain
 from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Block, Plot, Row, Section, numbered, samples
-from dalembert.tables import Table, cells, counted, percent, shown
+from dalembert.tables import Table
 
 HEADING = "Mechanism"
 MOST_PATHS = 3
@@ -103,41 +102,14 @@ def diagnostics(trajectories: Mapping[str, Trajectory]) -> Section:
         )
         plots = [Plot(f"{name}{place}", _named(experiment, figure), how) for name, figure, how in drawn]
         blocks += [plots[0], Row(plots[1:])]
-    return Section("Diagnostics of the simulation", (*blocks, _table(trajectories)))
-
-
-def _table(trajectories: Mapping[str, Trajectory]) -> Table:
-    rows = {experiment: [cells(row, 3) for row in _rows(one)] for experiment, one in trajectories.items()}
-    return Table.of_experiments("diagnostics", "Diagnostics", ("quantity", "value", "unit"), rows)
+    tables = Table.joined({experiment: one.tables()[0] for experiment, one in trajectories.items()})
+    return Section("Diagnostics of the simulation", (*blocks, tables))
 
 
 def _named(experiment: str, figure: go.Figure) -> go.Figure:
     """A figure whose title says the experiment first, if there are several."""
     title = figure.layout.title.text  # pyright: ignore[reportAttributeAccessIssue]
     return figure.update_layout(title_text=f"{plain(experiment)}: {title}") if experiment else figure
-
-
-def _rows(trajectory: Trajectory) -> list[tuple[str, float, str]]:
-    """Quantities, values and units."""
-    counts = np.asarray(trajectory.newton_iterations)
-    return [
-        ("largest energy balance", largest(trajectory.energies, "balance"), "J"),
-        *(
-            (f"largest violation, {level}", largest(trajectory.violations, level), label.partition("(")[2][:-1])
-            for level, label in LEVELS.items()
-        ),
-        ("steps", len(counts), ""),
-        ("Newton iterations a step, mean", float(counts.mean()) if len(counts) else float("nan"), ""),
-        ("Newton iterations a step, most", int(counts.max(initial=0)), ""),
-    ]
-
-
-def largest(series: Mapping[str, np.ndarray], key: str) -> float:
-    """Largest magnitude in one of several series, NaN if it is not there."""
-    return float(np.nanmax(np.abs(series[key]), initial=0.0)) if key in series else float("nan")
-
-
-OUTPUTS_HEADING = "Outputs over time"
 
 
 def outputs(trajectory: Trajectory, channels: Sequence[str]) -> list[Section]:
@@ -150,7 +122,7 @@ def outputs(trajectory: Trajectory, channels: Sequence[str]) -> list[Section]:
     ]
     along = Coordinate("time", "s", np.asarray(trajectory.times))
     download = samples("outputs", along, channels, {"": trajectory.channels(channels)}, "Download all samples as CSV")
-    return [Section(OUTPUTS_HEADING, (*plots, download))]
+    return [Section("Outputs over time", (*plots, download))]
 
 
 def chosen_channels(trajectory: Trajectory, channels: Sequence[str], points: Sequence[str]) -> tuple[str, ...]:
@@ -165,29 +137,8 @@ def trajectory(result: Trajectory, options: ReportOptions) -> list[Section]:
     moving = {"": result}
     channels = chosen_channels(result, options.channels, options.points)
     return [
-        motion_headline(result),
+        headline_of(result),
         *mechanisms(moving, options.points),
         *outputs(result, channels),
         diagnostics(moving),
     ]
-
-
-def motion_headline(result: Trajectory) -> Headline:
-    """What was simulated, and how far it can be trusted."""
-    times, balance = np.asarray(result.times), largest(result.energies, "balance")
-    swing = max((float(np.ptp(values)) for key, values in result.energies.items() if key != "balance"), default=0.0)
-    status = "The motion was simulated to its end."
-    if swing > 0 and np.isfinite(balance):
-        kept = f"The energy balance is kept to {percent(balance / swing, 2)} of the energy that moves; "
-        status = f"{kept}a smaller step lowers it."
-    return Headline(
-        title="Simulated motion",
-        verdict="simulated",
-        status=status,
-        facts={
-            "simulated": shown(float(times[-1] - times[0])) + " s",
-            "steps": counted(len(result.newton_iterations)),
-            "largest energy error": shown(balance, digits=3) + " J",
-            "largest opening of a joint": shown(largest(result.violations, "position"), digits=3) + " m",
-        },
-    )

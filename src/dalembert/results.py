@@ -1,7 +1,6 @@
 """What the results of this package have in common: they can be kept, drawn and reported."""
 
 import json
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from pkgutil import resolve_name
@@ -73,7 +72,8 @@ class Summarised(Displayed):
         for table in tables:
             lines += [*([table.caption] if len(tables) > 1 else []), *table.lines(), ""]
         if facts:
-            lines += [*fact_lines(max(map(len, facts)) + 1, **facts), ""]
+            width = max(map(len, facts)) + 1
+            lines += [*(f"{name:<{width}} {value}" for name, value in facts.items()), ""]
         status = getattr(self, "status", "")
         findings = [str(finding) for finding in self.conclusions if str(finding) not in status]
         return "\n".join([*lines, *filter(None, (status, *findings))])
@@ -155,48 +155,16 @@ class EndedResult(Result):
         return replace(contents, attributes={**contents.attributes, "status": self.status})
 
 
-def fixed_of(result: Any) -> tuple[Parameter, ...]:
-    """Parameters of a result that were fixed by equal bounds."""
-    fixed = getattr(getattr(result, "parameters", None), "fixed", ())
-    return getattr(result, "fixed", fixed)
-
-
 def fixed_facts(result: Any) -> dict[str, str]:
-    """Values of the parameters that were fixed by equal bounds, as texts by their names."""
-    return {f"{labelled(item.name, item.unit)}, fixed": shown(float(item.lower)) for item in fixed_of(result)}
-
-
-def fixed_lines(result: Any, width: int = 12) -> list[str]:
-    """Line of a summary on fixed parameters, its label ``width`` characters wide; none without any.
+    """Return values of the parameters that were fixed by equal bounds, as texts by their names.
 
     >>> from types import SimpleNamespace
-    >>> fixed_lines(SimpleNamespace(fixed=(Parameter("mass", 2.0, 2.0, "kg"),)))
-    ['fixed        mass = 2 kg']
+    >>> fixed_facts(SimpleNamespace(fixed=(Parameter("mass", 2.0, 2.0, "kg"),)))
+    {'mass (kg), fixed': '2'}
     """
-    known = [f"{item.name} = {item.lower:.7g} {item.unit}".rstrip() for item in fixed_of(result)]
-    return fact_lines(width, fixed=", ".join(known)) if known else []
-
-
-def fact_lines(width: int = 12, **facts: object) -> list[str]:
-    """Return lines of a summary, each a name, ``width`` characters wide, and its value.
-
-    >>> fact_lines(starts=3)
-    ['starts       3']
-    """
-    return [f"{name:<{width}} {value}" for name, value in facts.items()]
-
-
-def text_table(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Return the lines of a table, its first row the head.
-
-    >>> print(*text_table([("name", "value"), ("mass", "2")]), sep="\\n")
-    name  value
-    ───────────
-    mass  2
-    """
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
-    return [lines[0], "─" * (sum(widths) + 2 * (len(widths) - 1)), *lines[1:]]
+    of_parameters = getattr(getattr(result, "parameters", None), "fixed", ())
+    fixed: tuple[Parameter, ...] = getattr(result, "fixed", of_parameters)
+    return {f"{labelled(item.name, item.unit)}, fixed": shown(float(item.lower)) for item in fixed}
 
 
 def stored_settings(dataset: "Dataset") -> dict[str, Any]:

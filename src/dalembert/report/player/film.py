@@ -64,18 +64,14 @@ def film_of(drawing: "Drawing", measured: Mapping[str, np.ndarray]) -> Film:
     joints = {name: np.asarray(at, dtype=np.float32)[:, None] for name, at in drawing.joints.items()}
     block = np.ascontiguousarray(np.concatenate([*lines.values(), *joints.values()], axis=1), dtype="<f4")
     size = float((np.nanmax(block, axis=(0, 1)) - np.nanmin(block, axis=(0, 1))).max())
+    finite = {name: points[np.all(np.isfinite(points), axis=1)] for name, points in measured.items()}
     return Film(
         times=[round(time, 9) for time in drawing.times.tolist()],
         seconds=playback.seconds,
         pace=playback.pace,
         bodies={name: line.shape[1] for name, line in lines.items()},
         joints={name: bool(np.ptp(at, axis=0).max() <= STILL * size) for name, at in joints.items()},
-        measured={name: _few(points).tolist() for name, points in measured.items()},
+        measured={name: points[:: max(1, len(points) // 150)].tolist() for name, points in finite.items()},
         across=block.shape[2],
         positions=b64encode(block.tobytes()).decode(),
     )
-
-
-def _few(points: np.ndarray) -> Any:
-    there = points[np.all(np.isfinite(points), axis=1)]
-    return there[:: max(1, len(there) // 150)]

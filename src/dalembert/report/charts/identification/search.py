@@ -70,7 +70,8 @@ def starts(fit: Fit | BandFit, *, title: str = "Starts and their ends") -> go.Fi
     """
     order = ranked(fit.starts)
     ends = positive(np.array([fit.starts[number].misfit for number in order], dtype=float))
-    began = positive(np.array([_first(fit, number) for number in order], dtype=float))
+    firsts = [next((step.best for step in fit.history if step.start == number), np.nan) for number in order]
+    began = positive(np.array(firsts, dtype=float))
     rank = np.arange(1, len(order) + 1)
     stems = np.stack([began, ends, np.full(len(order), np.nan)], axis=1).ravel()
     figure = go.Figure()
@@ -88,7 +89,3 @@ def starts(fit: Fit | BandFit, *, title: str = "Starts and their ends") -> go.Fi
         figure.add_scatter(x=rank[here], y=ends[here], name=name, **style)
     x = {"title": "starts, best first", "dtick": max(1, len(order) // 10)}
     return themed(figure, title, 360, x=x, y={"title": "misfit", **logarithmic(figure)})
-
-
-def _first(fit: Fit | BandFit, number: int) -> float:
-    return next((step.best for step in fit.history if step.start == number), np.nan)

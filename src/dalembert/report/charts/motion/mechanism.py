@@ -60,7 +60,10 @@ def mechanism(
     moving = {name: at for name, at in drawing.joints.items() if name not in grounded}
     still = [
         _line(outlines(drawing.lines, playback.frames), 3, LIGHT.grid, hoverinfo="skip", showlegend=False),
-        *(_path(name, path) for name, path in (paths or {}).items()),
+        *(
+            _line(path_of(path), 1.5, LIGHT.muted, name=f"path of {plain(name)}", line_dash="dot")
+            for name, path in (paths or {}).items()
+        ),
         *(_crosses(name, points) for name, points in (measured or {}).items()),
         _markers("fixed to ground", grounded, 0, "triangle-up", LIGHT.muted),
     ]
@@ -89,10 +92,6 @@ def _pose(bodies: dict[str, np.ndarray], frame: int) -> list[go.Scatter]:
         _line(motion[frame], 5, colour, name=plain(name), hoverinfo="name")
         for (name, motion), colour in zip(bodies.items(), LIGHT.series, strict=False)
     ]
-
-
-def _path(name: str, path: np.ndarray) -> go.Scatter:
-    return _line(path_of(path), 1.5, LIGHT.muted, name=f"path of {plain(name)}", line_dash="dot")
 
 
 def _line(points: np.ndarray, width: float, colour: str, **style: Any) -> go.Scatter:

@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-import plotly.graph_objects as go
 
 from dalembert.data import Measurements
 from dalembert.forward import Coordinate
@@ -58,10 +57,11 @@ def paths(trajectory: Trajectory, drawing: Drawing, points: tuple[str, ...]) -> 
         return {point: np.asarray(trajectory.channels([f"{point}.{axis}" for axis in axes])) for point in points}
     held = list(drawing.joints.values())
     last = {body.name: body.point_names[-1] for body in trajectory.system.bodies} if len(axes) == 3 else {}
+    spans = [float(np.ptp(line.reshape(-1, len(axes)), axis=0).max()) for line in drawing.lines.values()]
     ends = {
         f"{name}.{last[name]}" if name in last else f"{name}'s end": line[:, -1]
         for name, line in drawing.lines.items()
-        if not any(np.allclose(line[:, -1], joint, atol=1e-6 * _size(drawing)) for joint in held)
+        if not any(np.allclose(line[:, -1], joint, atol=1e-6 * max(spans)) for joint in held)
     }
     moving = {name: joint for name, joint in (ends or drawing.joints).items() if np.ptp(joint, axis=0).max() > 0}
     return dict(list(moving.items())[-MOST_PATHS:])
@@ -86,11 +86,6 @@ def _channels(point: str, axes: str) -> set[str]:
     return {f"{point}.{axis}" for axis in axes}
 
 
-def _size(drawing: Drawing) -> float:
-    across = len(_axes(drawing))
-    return max((float(np.ptp(line.reshape(-1, across), axis=0).max()) for line in drawing.lines.values()), default=1.0)
-
-
 def diagnostics(trajectories: Mapping[str, Trajectory]) -> Section:
     """Energy balance, constraint violations and Newton iterations, of each experiment's motion."""
     blocks: list[Block] = []
@@ -100,16 +95,13 @@ def diagnostics(trajectories: Mapping[str, Trajectory]) -> Section:
             ("violations", charts.violations(one), "Largest violation of any constraint."),
             ("newton", charts.newton(one), "A rise shows where the motion is hard to follow."),
         )
-        plots = [Plot(f"{name}{place}", _named(experiment, figure), how) for name, figure, how in drawn]
+        if experiment:
+            for _, figure, _ in drawn:
+                figure.update_layout(title_text=f"{plain(experiment)}: {figure.layout.title.text}")  # pyright: ignore[reportAttributeAccessIssue]
+        plots = [Plot(f"{name}{place}", figure, how) for name, figure, how in drawn]
         blocks += [plots[0], Row(plots[1:])]
     tables = Table.joined({experiment: one.tables()[0] for experiment, one in trajectories.items()})
     return Section("Diagnostics of the simulation", (*blocks, tables))
-
-
-def _named(experiment: str, figure: go.Figure) -> go.Figure:
-    """A figure whose title says the experiment first, if there are several."""
-    title = figure.layout.title.text  # pyright: ignore[reportAttributeAccessIssue]
-    return figure.update_layout(title_text=f"{plain(experiment)}: {title}") if experiment else figure
 
 
 def outputs(trajectory: Trajectory, channels: Sequence[str]) -> list[Section]:

@@ -197,7 +197,7 @@ def _motion(own: StudyMotion, values: Mapping[str, float]) -> "tuple[np.ndarray 
 
 
 def _film(own: StudyMotion, trajectory: "Trajectory", rows: np.ndarray) -> Film:
-    from dalembert.report.sections.motion.trajectory import measured
+    from dalembert.report.sections.motion_sections import measured
 
     whole = trajectory.drawing()
     drawing: Drawing = replace(

@@ -1,12 +1,13 @@
 """A motion: the mechanism, its outputs, and how well it was computed."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from dalembert.data import Measurements
 from dalembert.forward import Coordinate
-from dalembert.multibody import Drawing, Trajectory
+from dalembert.multibody import Drawing, Trajectory, WorkPrecision
 from dalembert.quantities import by_quantity
 from dalembert.report import charts
 from dalembert.report.headline import headline_of
@@ -134,3 +135,22 @@ def trajectory(result: Trajectory, options: ReportOptions) -> list[Section]:
         *outputs(result, channels),
         diagnostics(moving),
     ]
+
+
+@sections_of("dalembert.study.tasks.sweep.Sweep")
+def sweep(result: Any, options: ReportOptions) -> list[Section]:
+    """A figure and a table for each parameter."""
+    how = ["" if curve.sensitivities is None else "Below, its slope." for curve in result.curves]
+    plots = [
+        Plot(f"sweep-{place}", charts.sweep(curve, result.at), how[place - 1])
+        for place, curve in enumerate(result.curves, start=1)
+    ]
+    return [headline_of(result), Section("Sweep", (Row(plots), *result.tables()))]
+
+
+@sections_of(WorkPrecision)
+def work_precision(result: WorkPrecision, options: ReportOptions) -> list[Section]:
+    """Error, run time and constraint violations of each integrator with each of its settings."""
+    how = "Further down is more exact, further left is faster. Below the dotted line nothing is known."
+    plot = Plot("work-precision", charts.work_precision(result), how)
+    return [headline_of(result), Section("Integrators", (plot, *result.tables()))]

@@ -9,8 +9,8 @@ from dalembert.report.look import plain
 from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Download, Listed, Plot, Row, Section, by_name
-from dalembert.report.sections.identification.assessment import profiled
-from dalembert.report.sections.identification.response import compared_simply
+from dalembert.report.sections.assessment_sections import profiled
+from dalembert.report.sections.response_sections import compared_simply
 
 PAVING = "Every point of a consistent box explains all data within their errors; an undecided box may hold some."
 MARGINAL = (

@@ -8,7 +8,7 @@ from dalembert.report.headline import headline_of
 from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Plot, Row, Section, by_name
-from dalembert.report.sections.frequency.curve import beside, friction
+from dalembert.report.sections.curve_sections import beside, friction
 from dalembert.tables import in_words, percent, shown
 from dalembert.units import unit_of
 from dalembert.vibration import CurveFamily, ResonanceTrack

@@ -10,8 +10,8 @@ from dalembert.report.look import plain
 from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Block, Plot, Row, Section, by_name
-from dalembert.report.sections.frequency.modes import reduced
-from dalembert.report.sections.frequency.shapes import deformed, in_time, nonlinear_mode
+from dalembert.report.sections.mode_sections import reduced
+from dalembert.report.sections.shape_sections import deformed, in_time, nonlinear_mode
 from dalembert.structure import ReductionErrors
 from dalembert.tables import Table, percent, shown
 from dalembert.vibration import Backbone, Deformation, FrequencyCurve, TimeComparison

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dalembert.report.charts.motion.film import Playback
 from dalembert.report.charts.motion.outlines import bodies_of
+from dalembert.report.charts.motion.playback import Playback
 
 if TYPE_CHECKING:
     from dalembert.multibody import Drawing

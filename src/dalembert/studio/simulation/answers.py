@@ -13,7 +13,7 @@ from dalembert.report.look import plain
 from dalembert.report.player import Film, film_of, frames
 from dalembert.studio.editor.reading import study_of
 from dalembert.studio.simulation.curves import Curves, curves, on_page
-from dalembert.studio.simulation.parts import OVER_FREQUENCY, NothingToSimulateError, StudyMotion, part
+from dalembert.studio.simulation.simulated_parts import OVER_FREQUENCY, NothingToSimulateError, StudyMotion, part
 from dalembert.studio.worker import Kept
 
 if TYPE_CHECKING:

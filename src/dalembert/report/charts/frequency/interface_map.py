@@ -5,7 +5,7 @@ import plotly.graph_objects as go
 
 from dalembert.report.charts.frequency.contacts import COLOURS
 from dalembert.report.charts.frequency.shapes import SECONDS, edges
-from dalembert.report.charts.motion.film import Film, slowness
+from dalembert.report.charts.motion.playback import Film, slowness
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.tables import prefixed
 from dalembert.vibration import Deformation

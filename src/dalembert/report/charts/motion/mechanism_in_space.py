@@ -12,8 +12,8 @@ from dalembert.multibody.components.spatial.mesh_files import simplified
 from dalembert.multibody.components.spatial.shapes import Surface
 from dalembert.report.charts.drawing import colour_of
 from dalembert.report.charts.frequency.shapes import space
-from dalembert.report.charts.motion.film import Playback
 from dalembert.report.charts.motion.outlines import NAMED_BODIES, bodies_of, outlines, path_of, unfolded
+from dalembert.report.charts.motion.playback import Playback
 from dalembert.report.look import LIGHT, plain, themed
 
 CORNERS_A_FRAME = 2500

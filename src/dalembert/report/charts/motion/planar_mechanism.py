@@ -7,9 +7,9 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.multibody import Drawing
-from dalembert.report.charts.motion.film import Playback
 from dalembert.report.charts.motion.mechanism_in_space import mechanism_in_space
 from dalembert.report.charts.motion.outlines import bodies_of, outlines, path_of
+from dalembert.report.charts.motion.playback import Playback
 from dalembert.report.look import LIGHT, plain, themed
 
 

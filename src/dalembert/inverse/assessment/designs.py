@@ -11,7 +11,7 @@ from dalembert.errors import counted, listed
 from dalembert.findings import Finding
 from dalembert.results import EndedResult
 from dalembert.stored_fields import Over, StoredParameters
-from dalembert.tables import Table, cell, cells, labelled, marks, shown
+from dalembert.tables import Table, cell, cells, labelled, marks, noted, shown
 
 CRITERIA = {"D": "geometric mean of the standard deviations", "E": "largest standard deviation"}
 
@@ -140,7 +140,8 @@ class Designs(EndedResult):
             },
             "note": marks(f"{count} unseen" if count else "" for count in lost),
         }
-        return (Table.of("designs", "Designs, the best first, with the deviations to be expected", columns),)
+        caption = "Designs, the best first, with the deviations to be expected"
+        return (noted(Table.of("designs", caption, columns)),)
 
     def contents(self) -> Contents:
         contents = super().contents()

@@ -10,7 +10,7 @@ from dalembert.errors import listed
 from dalembert.findings import Finding
 from dalembert.results import EndedResult
 from dalembert.stored_fields import Over, Source, Store, StoredParameters
-from dalembert.tables import Table, cell, cells, counted, few_values, interval, marks
+from dalembert.tables import Table, cell, cells, counted, few_values, interval, marks, noted
 
 ASYMMETRIC = 1.5  # ratio of an interval's two sides from which its standard deviation does not describe it
 BETTER = 0.01  # variances of the noise by which a point must explain the data better for the fit to be no minimum
@@ -236,4 +236,5 @@ class Profiles(EndedResult):
             "standard deviation": cells(self.deviations[places], 2),
             "note": marks(f"open: {side} bound" if side else "" for side in sides),
         }
-        return (Table.of("profiles", f"{100 * self.level:g} % intervals from profile likelihoods", columns),)
+        caption = f"{100 * self.level:g} % intervals from profile likelihoods"
+        return (noted(Table.of("profiles", caption, columns)),)

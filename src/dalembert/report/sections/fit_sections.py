@@ -28,7 +28,7 @@ def fit(result: Fit, options: ReportOptions) -> list[Section]:
     caption = "Each value where it lies between its bounds; bars are two standard deviations."
     bars = Plot("parameters", charts.parameters(result), caption)
     sections = [
-        identified(result, known),
+        identified(result),
         Section("Parameters", (*tables["parameters"], *tables["noise"], bars, *tables["halves"])),
         compared(result, tables["residuals"]),
         *residuals(result),
@@ -71,7 +71,7 @@ def band_fit(result: BandFit, options: ReportOptions) -> list[Section]:
     download = samples("bands", bands.coordinate, bands.channels, series, "Download all samples as CSV")
     bars = Plot("intervals", charts.intervals(result, options.truth), caption)
     return [
-        identified(result, known),
+        identified(result),
         Section("Parameters", (*tables["intervals"], bars)),
         Section("Bands", (*plots, *tables["band-residuals"], download)),
         *search(result, tables["starts"]),
@@ -86,10 +86,9 @@ LEAST_SQUARES = ("LeastSquares", "ResponseSensitivity")
 """Methods whose horizon may grow."""
 
 
-def identified(fit: Fit | BandFit, known: Identifiability) -> Headline:
+def identified(fit: Fit | BandFit) -> Headline:
     """Headline of something identified, with what speaks against it."""
-    findings = (*fit.outcome, *known.findings, *fit.findings)
-    doubts = [finding.message for finding in findings if finding.doubtful] if fit.success else []
+    doubts = [doubt.message for doubt in fit.doubts] if fit.success else []
     return headline_of(fit, doubts=doubts, verdict=f"{fit.verdict}, with doubts" if doubts else fit.verdict)
 
 

@@ -37,6 +37,11 @@ class Headline(Section):
 
 def headline_of(result: Summarised, **changes: Any) -> Headline:
     """Return the headline of a result: its title, verdict, status and facts, with changes."""
-    content: dict[str, Any] = {"title": result.title, "verdict": result.verdict}
-    content |= {"success": getattr(result, "success", True), "status": getattr(result, "status", "")}
-    return Headline(**content | {"facts": {**result.key_values(), **result.facts()}} | changes)
+    content: dict[str, Any] = {
+        "title": result.title,
+        "verdict": result.verdict,
+        "success": getattr(result, "success", True),
+        "status": getattr(result, "status", ""),
+    }
+    facts = {**result.key_values(), **changes.pop("facts", result.facts())}
+    return Headline(facts=facts, **content | changes)

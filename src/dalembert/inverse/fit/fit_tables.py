@@ -1,6 +1,6 @@
 """Facts and tables of a fit: parameters, noise, halves of the records, residuals, nodes and starts."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -128,7 +128,7 @@ def _experiments(fit: "Fit") -> Table:
 
 def _nodes(nodes: Nodes, along: Coordinate) -> Table:
     """Return the states at which segments meet, and their gaps."""
-    columns: dict[str, Sequence[object]] = {"experiment": nodes.experiments} if any(nodes.experiments) else {}
+    columns: dict[str, Iterable[object]] = {"experiment": nodes.experiments} if any(nodes.experiments) else {}
     columns |= {"sample": nodes.samples, labelled(along.name, along.unit): nodes.times}
     for name, unit, values in zip(nodes.states, nodes.units, nodes.begins.T, strict=True):
         columns[labelled(name, unit)] = ["" if np.isnan(value) else value for value in values]

@@ -35,7 +35,7 @@ class Headline(Section):
         return "bad" if not self.success else "doubtful" if self.doubts or self.doubtful else "good"
 
 
-def headline_of(result: Summarised, **changes: Any) -> Headline:
+def headline_of(result: Summarised, facts: Mapping[str, str] | None = None, **changes: Any) -> Headline:
     """Return the headline of a result: its title, verdict, status and facts, with changes."""
     content: dict[str, Any] = {
         "title": result.title,
@@ -43,5 +43,5 @@ def headline_of(result: Summarised, **changes: Any) -> Headline:
         "success": getattr(result, "success", True),
         "status": getattr(result, "status", ""),
     }
-    facts = {**result.key_values(), **changes.pop("facts", result.facts())}
-    return Headline(facts=facts, **content | changes)
+    known = {**result.key_values(), **(result.facts() if facts is None else facts)}
+    return Headline(facts=known, **content | changes)

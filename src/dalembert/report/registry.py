@@ -75,7 +75,7 @@ def registered_sections(result: object, options: ReportOptions) -> list[Section]
         if (function := _SECTIONS.get(_full_name(kind))) is not None:
             return function(result, options)
     if isinstance(result, Summarised) and (tables := result.tables()):
-        return [headline_of(result), Section("Result", tables)]
+        return [headline_of(result), Section("Tables", tables)]
     raise InputError(
         f"report: a {type(result).__name__} was given; expected a result, such as identify(), simulate() or "
         "propagate() return. For a class of your own, register its sections first by dalembert.report.sections_of"

@@ -158,7 +158,7 @@ class BandFit(EndedResult):
         return {
             "method": self.method,
             "misfit": shown(self.misfit, digits=3),
-            "misfit by true runs": "not checked" if checked is None else shown(checked, digits=3),
+            **({} if checked is None else {"misfit by true runs": shown(checked, digits=3)}),
             "fitted bounds": counted(2 * self.lower.size),
             "simulations": counted(self.simulations),
             "time": f"{shown(self.seconds, digits=3)} s",

@@ -88,7 +88,7 @@ def friction(look: Look, tables: Mapping[str, list[Table]], lead: str = "") -> S
         pairs += [
             Plot("hysteresis", loops, area),
             Plot("dissipation", charts.dissipation(curve), "What each contact takes from the motion."),
-            Plot("contact-shares", charts.state_shares(curve), mean),
+            Plot("contact-shares", charts.contact_shares(curve), mean),
         ]
     if springs := of_springs(curve):
         few = springs[:FEW_SPRINGS]

@@ -53,7 +53,7 @@ class Summarised(Displayed):
         return self.VERDICTS[0 if getattr(self, "success", True) else 1]
 
     def key_values(self) -> dict[str, str]:
-        """Return the values of the parameters as texts, if they are few; the summary has them in its tables."""
+        """Return the few values that matter most, as texts by what they are; the summary has them in its tables."""
         return {}
 
     def facts(self) -> dict[str, str]:

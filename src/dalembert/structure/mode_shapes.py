@@ -53,7 +53,7 @@ class ModeShapes(Result):
         """How many modes there are, in a sentence."""
         return f"{len(self.frequencies)} natural frequencies and shapes of the undamped structure."
 
-    def facts(self) -> dict[str, str]:
+    def key_values(self) -> dict[str, str]:
         lowest = enumerate(self.frequencies[:MOST_FACTS].tolist(), start=1)
         return {f"mode {number}": f"{shown(frequency)} Hz" for number, frequency in lowest}
 

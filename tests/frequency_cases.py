@@ -259,7 +259,7 @@ FREQUENCY_CASES: dict[str, Case] = {
         (
             "Resonance over preload",
             "The peak was found at 6 of 6 values of preload.",
-            "The peak of m2.x is smallest with preload = 4 N:",
+            "smallest peak of m2.x",
             "Followed by ",
             " balanced points, without whole curves; this peak",
         ),

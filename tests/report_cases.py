@@ -441,7 +441,7 @@ CASES: dict[str, Case] = {
         (
             "'bent' predicts best: its log predictive density is larger",
             "The residuals of 'line' are correlated. AIC, AICc and BIC take values for independent",
-            "Left out together: blocks of neighbouring samples.",
+            "left out together blocks of neighbouring samples",
             "A step is a part of the data that a model predicts worse.",
         ),
         ("model-differences", "difference-by-group"),

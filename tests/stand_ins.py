@@ -76,6 +76,7 @@ def motion(samples: int = 401, end: float = 2.0) -> Motion:
             "acceleration": 3e-5 * (1 + np.abs(np.cos(7 * times))),
         },
         newton_iterations=np.where(np.arange(samples - 1) % 37 == 0, 5, 3),
+        run=SimpleNamespace(counts=(samples - 1, 3 * (samples - 1), 0, 0)),
     )
 
 
@@ -247,6 +248,7 @@ def band_fit(names: tuple[str, str] = ("theta1", "theta2")) -> Any:
         identifiability=lambda: Identifiability(np.arange(4.0, 0, -1), np.eye(4), ()),
         parameters=like.parameters,
         box=box(**{names[0]: (0.7461, 0.8247), names[1]: (0.52, 0.52)}),
+        intervals=names,
         unknowns=unknowns,
         middle=np.array([0.7854, 0.52]),
         radius=np.array([0.0393, 0.0]),
@@ -290,6 +292,7 @@ def parameter_set(names: tuple[str, ...] = ("theta1", "theta2"), cells: int = 12
         inner=box(**dict.fromkeys(names, (0.66, 0.84))),
         volume=(inside.sum() * size, touched.sum() * size),
         runs=81,
+        seconds=4.5,
         success=True,
         status="The set is paved to 1/12 of what was searched.",
         provenance={"version": "0.1.0", "seed": 0},

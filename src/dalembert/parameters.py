@@ -260,6 +260,19 @@ class Parameters:
             [mid if start is None else start for start, mid in zip(starts, middle, strict=True)], dtype=float
         )
 
+    def shares(self, values: np.ndarray) -> np.ndarray:
+        """Return where values (parameters,) lie between their bounds, from 0 to 1; logarithmic as the search is.
+
+        >>> Parameters.of({"mass": (1.0, 5.0), "stiffness": (1e3, 1e5)}).shares(np.array([2.0, 1e4]))
+        array([0.25, 0.5 ])
+        """
+        logarithmic = np.array([item.logarithmic for item in self.items], dtype=bool)
+        low, at, high = (
+            np.where(logarithmic, np.log(np.where(logarithmic, each, 1.0)), each)
+            for each in (self.lower, values, self.upper)
+        )
+        return (at - low) / (high - low)
+
     def vector(self, values: Mapping[str, float] | ArrayLike) -> np.ndarray:
         """Vector of shape (parameters,) from a mapping by name, or from a sequence in order.
 

@@ -1,7 +1,6 @@
 """What the results of this package have in common: they can be kept, drawn and reported."""
 
 import json
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from pkgutil import resolve_name
@@ -20,13 +19,12 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 
-class Result(Displayed):
-    """A result that can be written to a file, drawn, and reported.
+class Summarised(Displayed):
+    """A result with facts and tables, which the summary, reports, notebooks and pages show.
 
-    A class of results defines :meth:`facts` and :meth:`tables`. The summary, reports, notebooks and pages show them.
+    A class of results defines :meth:`facts` and :meth:`tables`.
     """
 
-    FORMAT: ClassVar[str]
     TITLE: ClassVar[str] = ""
     """Heading of its report."""
     VERDICTS: ClassVar[tuple[str, str]] = ("computed", "incomplete")
@@ -45,9 +43,18 @@ class Result(Displayed):
         return tuple(finding for finding in self.conclusions if finding.doubtful)
 
     @property
+    def title(self) -> str:
+        """Heading of its report."""
+        return self.TITLE
+
+    @property
     def verdict(self) -> str:
         """Whether the result is a success, in a word or two."""
         return self.VERDICTS[0 if getattr(self, "success", True) else 1]
+
+    def key_values(self) -> dict[str, str]:
+        """Return the few values that matter most, as texts by what they are; the summary has them in its tables."""
+        return {}
 
     def facts(self) -> dict[str, str]:
         """Return the few numbers that matter, as texts by what they are."""
@@ -59,15 +66,23 @@ class Result(Displayed):
 
     def summary(self) -> str:
         """Return tables, facts, status and findings as text."""
-        tables, facts = self.tables(), {**self.facts(), **fixed_facts(self)}
+        tables = [table for table in self.tables() if not table.detail]
+        facts = {**self.facts(), **fixed_facts(self)}
         lines: list[str] = []
         for table in tables:
             lines += [*([table.caption] if len(tables) > 1 else []), *table.lines(), ""]
         if facts:
-            lines += [*fact_lines(max(map(len, facts)) + 1, **facts), ""]
+            width = max(map(len, facts)) + 1
+            lines += [*(f"{name:<{width}} {value}" for name, value in facts.items()), ""]
         status = getattr(self, "status", "")
-        findings = [str(finding) for finding in self.findings if str(finding) not in status]
+        findings = [str(finding) for finding in self.conclusions if str(finding) not in status]
         return "\n".join([*lines, *filter(None, (status, *findings))])
+
+
+class Result(Summarised):
+    """A result that can be written to a file, drawn, and reported."""
+
+    FORMAT: ClassVar[str]
 
     def contents(self) -> Contents:
         """Everything as labelled arrays, with units as attributes, by the types of the fields."""
@@ -140,48 +155,16 @@ class EndedResult(Result):
         return replace(contents, attributes={**contents.attributes, "status": self.status})
 
 
-def fixed_of(result: Any) -> tuple[Parameter, ...]:
-    """Parameters of a result that were fixed by equal bounds."""
-    fixed = getattr(getattr(result, "parameters", None), "fixed", ())
-    return getattr(result, "fixed", fixed)
-
-
 def fixed_facts(result: Any) -> dict[str, str]:
-    """Values of the parameters that were fixed by equal bounds, as texts by their names."""
-    return {f"{labelled(item.name, item.unit)}, fixed": shown(float(item.lower)) for item in fixed_of(result)}
-
-
-def fixed_lines(result: Any, width: int = 12) -> list[str]:
-    """Line of a summary on fixed parameters, its label ``width`` characters wide; none without any.
+    """Return values of the parameters that were fixed by equal bounds, as texts by their names.
 
     >>> from types import SimpleNamespace
-    >>> fixed_lines(SimpleNamespace(fixed=(Parameter("mass", 2.0, 2.0, "kg"),)))
-    ['fixed        mass = 2 kg']
+    >>> fixed_facts(SimpleNamespace(fixed=(Parameter("mass", 2.0, 2.0, "kg"),)))
+    {'mass (kg), fixed': '2'}
     """
-    known = [f"{item.name} = {item.lower:.7g} {item.unit}".rstrip() for item in fixed_of(result)]
-    return fact_lines(width, fixed=", ".join(known)) if known else []
-
-
-def fact_lines(width: int = 12, **facts: object) -> list[str]:
-    """Return lines of a summary, each a name, ``width`` characters wide, and its value.
-
-    >>> fact_lines(starts=3)
-    ['starts       3']
-    """
-    return [f"{name:<{width}} {value}" for name, value in facts.items()]
-
-
-def text_table(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Return the lines of a table, its first row the head.
-
-    >>> print(*text_table([("name", "value"), ("mass", "2")]), sep="\\n")
-    name  value
-    ───────────
-    mass  2
-    """
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
-    return [lines[0], "─" * (sum(widths) + 2 * (len(widths) - 1)), *lines[1:]]
+    of_parameters = getattr(getattr(result, "parameters", None), "fixed", ())
+    fixed: tuple[Parameter, ...] = getattr(result, "fixed", of_parameters)
+    return {f"{labelled(item.name, item.unit)}, fixed": shown(float(item.lower)) for item in fixed}
 
 
 def stored_settings(dataset: "Dataset") -> dict[str, Any]:

@@ -159,10 +159,6 @@ class Cell:
     text: str
     mark: bool = False
 
-    @property
-    def numeric(self) -> bool:
-        return isinstance(self.value, int | float) and not isinstance(self.value, bool)
-
 
 @dataclass(frozen=True)
 class Table:
@@ -176,6 +172,8 @@ class Table:
         Shown above it; empty for one that is only downloaded.
     columns : sequence of str
     rows : sequence of sequence of Cell
+    detail : bool
+        Whether summaries leave it out.
     """
 
     macro: ClassVar[str] = "table"
@@ -183,26 +181,35 @@ class Table:
     caption: str
     columns: Sequence[str]
     rows: Sequence[Sequence[Cell]] = field(default_factory=tuple)
+    detail: bool = False
 
     @classmethod
-    def of(cls, name: str, caption: str, columns: Mapping[str, Iterable[object]]) -> "Table":
+    def of(cls, name: str, caption: str, columns: Mapping[str, Iterable[object]], *, detail: bool = False) -> "Table":
         """A table of columns: values, or cells."""
-        return cls.of_rows(name, caption, tuple(columns), zip(*columns.values(), strict=True))
+        rows = zip(*columns.values(), strict=True)
+        return cls(name, caption, tuple(columns), [tuple(map(cell, row)) for row in rows], detail)
 
     @classmethod
-    def of_rows(cls, name: str, caption: str, columns: Sequence[str], rows: Iterable[Iterable[object]]) -> "Table":
-        """A table of rows: values, or cells."""
-        return cls(name, caption, columns, [tuple(map(cell, row)) for row in rows])
-
-    @classmethod
-    def of_experiments(
-        cls, name: str, caption: str, columns: Sequence[str], rows: Mapping[str, Iterable[Iterable[object]]]
+    def of_rows(
+        cls,
+        name: str,
+        caption: str,
+        columns: Sequence[str],
+        rows: Iterable[Iterable[object]],
+        *,
+        detail: bool = False,
     ) -> "Table":
-        """A table of the rows of each experiment, whose names are the first column unless one has no name."""
-        if "" not in rows:
-            columns = ("experiment", *columns)
-            rows = {experiment: [(experiment, *row) for row in rows_here] for experiment, rows_here in rows.items()}
-        return cls.of_rows(name, caption, columns, [row for rows_here in rows.values() for row in rows_here])
+        """A table of rows: values, or cells."""
+        return cls(name, caption, columns, [tuple(map(cell, row)) for row in rows], detail)
+
+    @classmethod
+    def joined(cls, tables: Mapping[str, "Table"]) -> "Table":
+        """Return the tables of experiments as one, their names the first column unless one has no name."""
+        first = next(iter(tables.values()))
+        if "" in tables:
+            return first
+        rows = [(cell(experiment), *row) for experiment, table in tables.items() for row in table.rows]
+        return replace(first, columns=("experiment", *first.columns), rows=rows)
 
     @property
     def csv(self) -> str:
@@ -222,6 +229,7 @@ class Table:
         rod   0.25
         """
         texts = [tuple(self.columns), *(tuple(entry.text for entry in row) for row in self.rows[:most])]
+        texts = [(*(text if len(text) <= 60 else f"{text[:58]} …" for text in row[:-1]), row[-1]) for row in texts]
         widths = [max(map(len, column)) for column in zip(*texts, strict=True)]
         lines = ["  ".join(map(str.ljust, row, widths)).rstrip() for row in texts]
         more = [f"and {len(self.rows) - most} more"] if len(self.rows) > most else []

@@ -143,7 +143,9 @@ def test_methods_take_an_executor(client, started):
 
 def test_a_model_in_use_goes_from_worker_to_worker(decay):
     received = _received(packed(decay), Sender())
-    object.__setattr__(received.content, "lock", threading.Lock())  # as caches of a model that computes: it cannot be pickled
+    object.__setattr__(
+        received.content, "lock", threading.Lock()
+    )  # as caches of a model that computes: it cannot be pickled
     again = pickle.loads(pickle.dumps(received))
     vectors = np.array([[0.3]])
     np.testing.assert_array_equal(again.content.evaluate(vectors).values, decay.evaluate(vectors).values)

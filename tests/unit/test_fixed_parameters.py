@@ -87,7 +87,7 @@ def test_a_fit_is_that_of_the_model_without_it(fit: Fit) -> None:
 
 
 def test_a_fit_shows_and_keeps_it(fit: Fit, tmp_path: Path) -> None:
-    assert "fixed        rate = 1.3\n" in fit.summary()
+    assert re.search(r"^rate, fixed +1\.3$", fit.summary(), re.MULTILINE)
     fit.save(tmp_path / "fit.nc")
     assert Fit.load(tmp_path / "fit.nc").parameters.fixed == (Parameter("rate", 1.3, 1.3),)
     fit.report(tmp_path / "fit.html")
@@ -98,7 +98,7 @@ def test_a_fit_shows_and_keeps_it(fit: Fit, tmp_path: Path) -> None:
 def test_a_profile_and_a_prediction_leave_it_out(fit: Fit, tmp_path: Path) -> None:
     told = profile(model(), measured(), fit, points=6)
     assert tuple(told.intervals) == ("height", "floor")
-    assert "fixed        rate = 1.3\n" in told.summary()
+    assert re.search(r"^rate, fixed +1\.3$", told.summary(), re.MULTILINE)
     told.save(tmp_path / "profiles.nc")
     assert Profiles.load(tmp_path / "profiles.nc").parameters == fit.parameters
     assert np.array_equal(predict(model(), fit).deviations, predict(without(), fit).deviations)
@@ -139,8 +139,8 @@ def test_sets_bands_and_designs_leave_it_out() -> None:
     )
     ranked = design(model(), deviations=0.1)
     assert np.array_equal(ranked.deviations, design(without(), deviations=0.1).deviations)
-    for result, line in ((paved, "fixed        rate"), (box, "fixed        rate"), (ranked, "fixed        rate")):
-        assert line in result.summary()
+    for result in (paved, box, ranked):
+        assert re.search(r"^rate, fixed +1\.3$", result.summary(), re.MULTILINE)
     assert Designs.from_xarray(ranked.to_xarray()).parameters == ranked.parameters
     with pytest.raises(InputError, match=begins("intervals: parameter 'rate' is fixed at 1.3 by equal bounds")):
         identify_bands(model(), bands, intervals=["rate"])

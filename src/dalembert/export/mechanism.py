@@ -24,7 +24,9 @@ def motion(trajectory: Trajectory, frames: int | None, points: int) -> Iterator[
     bodies = list(drawn.lines.values())
     joints = [place[:, None] for place in drawn.joints.values()]
     corners = [drawn.corners(name) for name in drawn.surfaces]
-    places = _in_space(np.concatenate([*bodies, *joints, *corners], axis=1))
+    places = np.concatenate([*bodies, *joints, *corners], axis=1)
+    if places.shape[2] == 2:
+        places = np.concatenate([places, np.zeros_like(places[..., :1])], axis=2)
     sizes = [line.shape[1] for line in bodies] + [1] * len(joints)
     cells, marks = _cells(sizes, len(bodies))
     if corners:
@@ -44,13 +46,6 @@ def motion(trajectory: Trajectory, frames: int | None, points: int) -> Iterator[
     for time, place in zip(times, places, strict=True):
         fields = {"displacement": (place - places[0]).real, "velocity": place.imag / STEP}
         yield float(time), Mesh(place.real, cells, fields | sections, marks)
-
-
-def _in_space(places: np.ndarray) -> np.ndarray:
-    """Places (frames, points, 2 or 3), in the plane with z = 0."""
-    if places.shape[2] == 3:
-        return places
-    return np.concatenate([places, np.zeros_like(places[..., :1])], axis=2)
 
 
 def _cells(sizes: list[int], bodies: int) -> tuple[list[tuple[str, np.ndarray]], dict[str, list[np.ndarray]]]:

@@ -157,7 +157,7 @@ def worker_versions(client: "Client") -> list[dict[str, str]]:
     answers: Any = client.run(versions, on_error="return")
     different: list[dict[str, str]] = []
     for answer in answers.values():
-        _refuse_other(answer if isinstance(answer, dict) else {"dalembert": "of a former version"}, versions())
+        _refuse_other(answer if isinstance(answer, dict) else {"dalembert": "of unknown version"}, versions())
         if answer not in different:
             different.append(answer)
     return different

@@ -14,7 +14,7 @@ from dalembert.results import fixed_facts
 from dalembert.tables import Cell, Table
 
 LONGEST = 200
-"""Characters of a value that a page shows."""
+"""Characters of a value that a page shows; its CSV has all."""
 
 
 def provenance(facts: Mapping[str, Any], study: str | None) -> list[Section]:
@@ -22,7 +22,9 @@ def provenance(facts: Mapping[str, Any], study: str | None) -> list[Section]:
     blocks: list[Block] = []
     if facts:
         flat = dict(_flat(facts))
-        columns = {"what": flat, "value": [_shortened(_worded(value)) for value in flat.values()]}
+        texts = [_worded(value) for value in flat.values()]
+        cells = [Cell(text, text if len(text) <= LONGEST else f"{text[:LONGEST]} …") for text in texts]
+        columns = {"what": flat, "value": cells}
         blocks.append(Table.of("provenance", "What made this result", columns))
     if study:
         blocks.append(Source("The study as it was run", study))
@@ -38,11 +40,6 @@ def _worded(value: Any) -> str:
     if isinstance(value, list | tuple):
         return ", ".join(map(_worded, value))
     return {True: "yes", False: "no", None: "none"}[value] if value is None or isinstance(value, bool) else str(value)
-
-
-def _shortened(text: str) -> Cell:
-    """Cell of a text, its end left out of the page where it is long, but not of the CSV."""
-    return Cell(text, text if len(text) <= LONGEST else f"{text[:LONGEST]} …")
 
 
 def _flat(facts: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:

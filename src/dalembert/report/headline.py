@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from dalembert.findings import Finding
 from dalembert.report.section import Section
-from dalembert.results import Result
+from dalembert.results import Summarised
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,14 +24,6 @@ class Headline(Section):
     doubts: Sequence[str] = ()
     findings: Sequence[Finding] = ()
 
-    @classmethod
-    def of(
-        cls, title: str, success: bool, verdicts: tuple[str, str], status: str, facts: Mapping[str, str]
-    ) -> "Headline":
-        """Headline of a result whose verdict is the first of two where it is a success, else the second."""
-        verdict = verdicts[0] if success else verdicts[1]
-        return cls(title=title, verdict=verdict, success=success, status=status, facts=facts)
-
     @property
     def doubtful(self) -> bool:
         """Return True if a finding is a reason to doubt the result."""
@@ -43,8 +35,13 @@ class Headline(Section):
         return "bad" if not self.success else "doubtful" if self.doubts or self.doubtful else "good"
 
 
-def headline_of(result: Result, **changes: Any) -> Headline:
+def headline_of(result: Summarised, facts: Mapping[str, str] | None = None, **changes: Any) -> Headline:
     """Return the headline of a result: its title, verdict, status and facts, with changes."""
-    content: dict[str, Any] = {"title": result.TITLE, "verdict": result.verdict, "facts": result.facts()}
-    content |= {"success": getattr(result, "success", True), "status": getattr(result, "status", "")}
-    return Headline(**content | changes)
+    content: dict[str, Any] = {
+        "title": result.title,
+        "verdict": result.verdict,
+        "success": getattr(result, "success", True),
+        "status": getattr(result, "status", ""),
+    }
+    known = {**result.key_values(), **(result.facts() if facts is None else facts)}
+    return Headline(facts=known, **content | changes)

@@ -66,7 +66,9 @@ def report(
     paragraphs = notes.strip().split("\n\n") if isinstance(notes, str) else notes
     sections = contents(result, report_options(supplements, notes=[text for text in paragraphs if text], **options))
     templates = environment()
-    scripts = [Markup(get_plotlyjs()), Markup(_packaged("page.js"))]
+    player = files("dalembert.report").joinpath("templates", "page.js").read_text(encoding="utf-8")
+    scripts = [Markup(get_plotlyjs()), Markup(player)]
+    look = {"template": template().to_plotly_json(), "dark": exchanged()}
     page = templates.get_template("page.html").render(
         title=sections[0].title,
         sections=sections,
@@ -74,7 +76,7 @@ def report(
         style=Markup(templates.get_template("page.css").render(light=LIGHT, dark=DARK, font=Markup(FONT))),
         scripts=scripts,
         policy=_policy(scripts),
-        look=_json({"template": template().to_plotly_json(), "dark": exchanged()}),
+        look=Markup(json.dumps(look).translate(SAFE)),
         version=__version__,
     )
     path = Path(path)
@@ -92,14 +94,6 @@ def environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-
-
-def _packaged(name: str) -> str:
-    return files("dalembert.report").joinpath("templates", name).read_text(encoding="utf-8")
-
-
-def _json(content: object) -> Markup:
-    return Markup(json.dumps(content).translate(SAFE))
 
 
 def _policy(scripts: list[Markup]) -> str:

@@ -1,28 +1,26 @@
 """Which sections a kind of result has: one registered function each."""
 
 from collections.abc import Callable
-from functools import cache
 from importlib import import_module
-from pkgutil import iter_modules
 from typing import Any, TypeVar
 
 from dalembert.errors import InputError
 from dalembert.report.headline import headline_of
 from dalembert.report.options import ReportOptions
 from dalembert.report.section import Section
-from dalembert.results import Result
+from dalembert.results import Summarised
 
 Sections = Callable[[Any, ReportOptions], list[Section]]
 Function = TypeVar("Function", bound=Sections)
-SUBJECTS = {
-    "inverse": "identification",
+_MODULES = {
+    "inverse": "fit assessment alternative inertial",
     "multibody": "motion",
     "study": "motion",
-    "structure": "frequency",
-    "uncertainty": "bounds",
-    "vibration": "frequency",
+    "structure": "mode",
+    "uncertainty": "bound",
+    "vibration": "curve family shape",
 }
-"""Package in ``dalembert.report.sections`` with the sections of each package's results, imported when needed."""
+"""Modules ``…_sections`` with the sections of each package's results, imported when needed."""
 _PACKAGE = "dalembert.report.sections"
 _SECTIONS: dict[str, Sections] = {}
 
@@ -71,12 +69,13 @@ def registered_sections(result: object, options: ReportOptions) -> list[Section]
     """
     for kind in type(result).__mro__:
         package, module = [*kind.__module__.split("."), ""][:2]
-        if package == "dalembert" and module in SUBJECTS:
-            _import_sections(SUBJECTS[module])
+        if package == "dalembert":
+            for name in _MODULES.get(module, "").split():
+                import_module(f"{_PACKAGE}.{name}_sections")
         if (function := _SECTIONS.get(_full_name(kind))) is not None:
             return function(result, options)
-    if isinstance(result, Result) and (tables := result.tables()):
-        return [headline_of(result), Section("Result", tables)]
+    if isinstance(result, Summarised) and (tables := result.tables()):
+        return [headline_of(result), Section("Tables", tables)]
     raise InputError(
         f"report: a {type(result).__name__} was given; expected a result, such as identify(), simulate() or "
         "propagate() return. For a class of your own, register its sections first by dalembert.report.sections_of"
@@ -85,11 +84,3 @@ def registered_sections(result: object, options: ReportOptions) -> list[Section]
 
 def _full_name(kind: type) -> str:
     return f"{kind.__module__}.{kind.__qualname__}"
-
-
-@cache
-def _import_sections(subject: str) -> None:
-    """Import the modules that register the sections of a subject."""
-    package = import_module(f"{_PACKAGE}.{subject}")
-    for module in iter_modules(package.__path__):
-        import_module(f"{package.__name__}.{module.name}")

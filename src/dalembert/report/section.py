@@ -1,6 +1,7 @@
 """A section of a report, and what it is made of."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from html import unescape
@@ -67,16 +68,6 @@ class Row:
 
 
 @dataclass(frozen=True)
-class Fold:
-    """A table, folded away where it has more than ``most`` rows."""
-
-    macro: ClassVar[str] = "fold"
-    table: Table
-    most: int = 20
-    rows: str = "rows"
-
-
-@dataclass(frozen=True)
 class Listed:
     """Sentences as a list."""
 
@@ -102,7 +93,7 @@ class Source:
     text: str
 
 
-Block = str | Plot | Row | Table | Fold | Listed | Download | Source
+Block = str | Plot | Row | Table | Listed | Download | Source
 """What stands in a section; a str is a paragraph, left out if it is empty."""
 
 
@@ -157,7 +148,15 @@ class ReportSection(Section):
         name = Section(heading).anchor
         drawn = enumerate((figures or {}).items(), start=1)
         plots = [Plot(f"{name}-{number}", figure, caption) for number, (caption, figure) in drawn]
-        super().__init__(heading, (*sentences, *plots, *map(Fold, tables)))
+        super().__init__(heading, (*sentences, *plots, *tables))
+
+
+def by_name(tables: Iterable[Table]) -> dict[str, list[Table]]:
+    """Each table by its name, as a list, so that a name without a table stands for none."""
+    named: dict[str, list[Table]] = defaultdict(list)
+    for table in tables:
+        named[table.name].append(table)
+    return named
 
 
 def numbered(name: str, given: Mapping[str, Shown]) -> Iterator[tuple[str, str, Shown]]:

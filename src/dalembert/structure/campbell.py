@@ -9,7 +9,8 @@ import numpy as np
 
 from dalembert.contents import Contents
 from dalembert.findings import Finding
-from dalembert.results import Result, text_table
+from dalembert.results import Result
+from dalembert.tables import Table, counted, labelled, shown
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -71,6 +72,7 @@ class Campbell(Result):
     """
 
     FORMAT: ClassVar[str] = "dalembert Campbell diagram 1"
+    TITLE: ClassVar[str] = "Campbell diagram"
 
     parameter: str
     unit: str
@@ -154,12 +156,33 @@ class Campbell(Result):
         count = self.roots.shape[1]
         return f"{count} modes at {len(self.speeds)} speeds, seen in the {self.frame} frame."
 
-    def summary(self) -> str:
-        """Status, critical speeds and findings."""
-        rows = [["critical speed (rad/s)", "mode", "whirl"]]
-        rows += [[f"{critical.speed:.6g}", str(critical.mode), critical.direction] for critical in self.critical_speeds]
-        lines = [self.status, *(text_table(rows) if len(rows) > 1 else [])]
-        return "\n".join([*lines, *map(str, self.findings)])
+    def facts(self) -> dict[str, str]:
+        facts = {
+            "speeds": counted(len(self.speeds)),
+            "highest speed": f"{shown(float(self.speeds.max()))} rad/s",
+            "frame": self.frame,
+        }
+        critical = {f"critical speed of mode {x.mode}": f"{shown(x.speed)} rad/s" for x in self.critical_speeds[:3]}
+        return facts | critical
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the critical speeds, if there are any, and the frequencies at each speed."""
+        critical = self.critical_speeds
+        caption = "Critical speeds: a mode has the frequency of the rotation."
+        caption += " An unbalance excites those that whirl forward."
+        columns = {
+            "critical speed (rad/s)": [each.speed for each in critical],
+            "frequency (Hz)": [each.speed / (2.0 * np.pi) for each in critical],
+            "mode": [each.mode for each in critical],
+            "whirl": [each.direction for each in critical],
+        }
+        speeds = [Table.of("critical-speeds", caption, columns)] if critical else []
+        columns = {labelled(self.parameter, self.unit): self.values, "fastest body (rad/s)": self.speeds}
+        for number, frequencies in enumerate(self.frequencies.T, start=1):
+            columns[f"mode {number} (Hz)"] = frequencies
+            columns[f"damping ratio {number}"] = self.damping_ratios[:, number - 1]
+        columns["growth (1/s)"] = self.growth
+        return (*speeds, Table.of("campbell", f"Frequencies in the {self.frame} frame", columns, detail=True))
 
     def contents(self) -> Contents:
         variables = {

@@ -4,16 +4,19 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 import numpy as np
 from scipy.sparse import csc_array
 
 from dalembert.arguments import takes_checked
 from dalembert.errors import InputError
+from dalembert.results import Summarised
 from dalembert.structure.dofs import Dofs
 from dalembert.structure.eigenmodes import DENSE, all_modes, dense, eigenmodes, lanczos, real_part, similarity
 from dalembert.structure.factorise import factorise
 from dalembert.structure.structure import Matrix, Structure, block, changed
+from dalembert.tables import Table, cells, counted, percent, shown
 
 NEIGHBOURS = 0.01
 """Modes whose frequencies differ by less, relative, share their shapes when a reduction is judged."""
@@ -50,7 +53,7 @@ _cached: ContextVar[CachedBases | None] = ContextVar("held", default=None)
 
 
 @dataclass(frozen=True, eq=False)
-class ReductionErrors:
+class ReductionErrors(Summarised):
     """Errors of the lowest modes of a reduced structure relative to those of the full one.
 
     Parameters
@@ -62,6 +65,9 @@ class ReductionErrors:
         than 1 %; modes of equal frequency, whose shapes are anyone's choice, count together. 1 is perfect.
     """
 
+    TITLE: ClassVar[str] = "Reduction"
+    VERDICTS: ClassVar[tuple[str, str]] = ("compared", "")
+
     full: np.ndarray
     reduced: np.ndarray
     similarity: np.ndarray
@@ -70,6 +76,29 @@ class ReductionErrors:
     def relative(self) -> np.ndarray:
         """Relative errors of the frequencies; not negative, since a reduction only stiffens."""
         return self.reduced / self.full - 1
+
+    @property
+    def status(self) -> str:
+        """What is compared, in a sentence."""
+        return "The lowest modes of the reduced structure beside those of the full one."
+
+    def facts(self) -> dict[str, str]:
+        return {
+            "modes compared": counted(len(self.full)),
+            "largest error of a frequency": percent(np.max(self.relative)),
+            "least similarity of a shape": shown(float(np.min(self.similarity)), digits=4),
+        }
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the frequencies and their errors."""
+        columns = {
+            "mode": range(1, len(self.full) + 1),
+            "full (Hz)": self.full,
+            "reduced (Hz)": self.reduced,
+            "error (%)": cells(100 * np.asarray(self.relative), 3),
+            "similarity of the shapes": self.similarity,
+        }
+        return (Table.of("reduction", "Modes of the full and the reduced structure", columns),)
 
 
 @dataclass(frozen=True, eq=False)

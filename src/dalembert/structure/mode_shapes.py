@@ -11,6 +11,7 @@ from dalembert.results import Result
 from dalembert.structure.craig_bampton import ReducedStructure
 from dalembert.structure.eigenmodes import EigenModes
 from dalembert.structure.structure import Structure, known_nodes
+from dalembert.tables import MOST_FACTS, Table, shown
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -35,6 +36,7 @@ class ModeShapes(Result):
     """
 
     FORMAT: ClassVar[str] = "dalembert mode shapes 1"
+    TITLE: ClassVar[str] = "Modes"
 
     frequencies: np.ndarray
     places: np.ndarray
@@ -48,12 +50,17 @@ class ModeShapes(Result):
 
     @property
     def status(self) -> str:
-        """The frequencies, in a sentence."""
-        return self.summary()
+        """How many modes there are, in a sentence."""
+        return f"{len(self.frequencies)} natural frequencies and shapes of the undamped structure."
 
-    def summary(self) -> str:
-        """A line: the frequencies."""
-        return "modes at " + ", ".join(f"{value:.6g}" for value in self.frequencies) + " Hz"
+    def key_values(self) -> dict[str, str]:
+        lowest = enumerate(self.frequencies[:MOST_FACTS].tolist(), start=1)
+        return {f"mode {number}": f"{shown(frequency)} Hz" for number, frequency in lowest}
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the frequencies."""
+        columns = {"mode": range(1, len(self.frequencies) + 1), "frequency (Hz)": self.frequencies}
+        return (Table.of("modes", "Natural frequencies", columns),)
 
     def contents(self) -> Contents:
         variables = {

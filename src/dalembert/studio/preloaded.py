@@ -9,7 +9,7 @@ import typer  # each process imports the program that was started
 import dalembert.inverse
 import dalembert.multibody.motion.sketch
 import dalembert.report.charts.identification.responses
-import dalembert.report.sections.motion.trajectory
+import dalembert.report.sections.motion_sections
 import dalembert.studio.data.examined
 import dalembert.studio.model.picture
 import dalembert.studio.simulation.answers

@@ -65,19 +65,10 @@ class ConvergedResult(VibrationResult):
     def __len__(self) -> int:
         return len(self.converged)
 
-    def summary(self) -> str:
-        """Return some lines, the first on how many points are converged."""
-        raise NotImplementedError
-
     @property
     def success(self) -> bool:
         """Whether every point is converged, and no finding is an error."""
         return bool(self.converged.all()) and all(finding.severity != "error" for finding in self.findings)
-
-    @property
-    def status(self) -> str:
-        """How many points are converged, in a sentence."""
-        return self.summary().partition("\n")[0]
 
 
 def versions() -> dict[str, str]:

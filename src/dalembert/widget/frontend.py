@@ -12,7 +12,7 @@ from dalembert.errors import DalembertError
 from dalembert.multibody import Trajectory
 from dalembert.parameters import Parameter
 from dalembert.report.player import BROWSER, LOOK, film_of
-from dalembert.report.sections.motion.trajectory import measured
+from dalembert.report.sections.motion_sections import measured
 from dalembert.tables import shown
 from dalembert.widget.sliders import Source
 

@@ -73,7 +73,7 @@ def test_known_noise_has_the_deviations_of_the_data():
     assert fit.noise.known
     assert fit.misfit == pytest.approx(plain.misfit)
     assert [item.code for item in fit.findings if item.code == "noise-estimated"] == ["noise-estimated"]
-    assert "noise parameter" not in fit.summary()
+    assert "Noise, estimated" not in fit.summary()
 
 
 def test_proportional_and_mixed_noise():

@@ -263,10 +263,10 @@ def test_provenance_tells_versions_seed_hashes_and_settings():
 def test_the_summary_is_a_table_with_status():
     fit = identify(DECAY, measured(DECAY, [2.0, 0.8], noise=0.01, deviations=0.01))
     lines = fit.summary().splitlines()
-    assert lines[0].split() == ["parameter", "value", "±", "deviation", "unit", "bounds"]
-    assert lines[2].split()[0] == "size"
-    assert float(lines[2].split()[1]) == pytest.approx(fit.values[0], rel=1e-6)
-    assert any(line == f"simulations  {fit.simulations}" for line in lines)
+    assert lines[0] == "Identified values"
+    assert lines[3].split()[0] == "size"
+    assert float(lines[3].split()[1]) == pytest.approx(fit.values[0], rel=1e-4)
+    assert ["simulations", str(fit.simulations)] in [line.split() for line in lines]
     assert fit.status in lines
 
 

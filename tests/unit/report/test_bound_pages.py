@@ -131,6 +131,8 @@ def test_intervals_from_bands_have_their_report(intervals):
         "0.0393",
         "0.0004",
         "rad",
+        "0.6",
+        "1.0",
         "",
     ]
     assert rows[2][-1] == "a single number"

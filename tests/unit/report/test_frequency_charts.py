@@ -11,7 +11,6 @@ from dalembert.forward import Coordinate
 from dalembert.inverse import identify
 from dalembert.report import charts, figures, report
 from dalembert.report.charts.frequency.contacts import COLOURS, STATES
-from dalembert.report.focus import Look, movers
 from dalembert.structure import Campbell, ReductionErrors, eigenmodes, mode_shapes
 from dalembert.tables import prefixed
 from dalembert.uncertainty import Vertex, propagate
@@ -27,6 +26,7 @@ from dalembert.vibration import (
     steady_state,
     track_resonance,
 )
+from dalembert.vibration.paths.focus import Look, movers
 from frequency_cases import damped, strip
 from pages import read_page
 from support import says

@@ -10,7 +10,7 @@ from dalembert.multibody import Trajectory
 from dalembert.report import ReportSection, Table, figures, report, sections_of
 from dalembert.report.page import environment
 from dalembert.report.registry import _SECTIONS
-from dalembert.report.section import Download, Fold, Listed, Plot, Row, Section, Source
+from dalembert.report.section import Download, Listed, Plot, Row, Section, Source
 from pages import Page, read_page
 from stand_ins import motion, stand_in
 
@@ -34,10 +34,10 @@ def test_empty_blocks_leave_nothing():
     assert [tag for tag, _ in page.tags] == ["section", "h2"]
 
 
-@pytest.mark.parametrize(("most", "folded"), [(4, True), (5, False)])
-def test_a_long_table_is_folded(most, folded):
-    page = rendered(Fold(ROWS, most, "numbers"))
-    assert ("Rows: 5 numbers" in page.text) is folded
+@pytest.mark.parametrize(("count", "folded"), [(20, False), (21, True)])
+def test_a_long_table_is_folded(count, folded):
+    page = rendered(Table.of("rows", "Rows", {"number": range(count)}))
+    assert (f"Rows: {count} rows" in page.text) is folded
 
 
 def test_plots_are_those_of_all_blocks():

@@ -10,7 +10,7 @@ import pytest
 
 from dalembert.errors import InputError
 from dalembert.studio.simulation.answers import Source, influences, simulated
-from dalembert.studio.simulation.parts import parameters_of, part
+from dalembert.studio.simulation.simulated_parts import parameters_of, part
 from dalembert.studio.worker import Kept
 from dalembert.study import load
 from dalembert.study.tables.posing import posed

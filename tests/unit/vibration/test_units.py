@@ -28,20 +28,16 @@ def system(stiffness: float = 0.1) -> VibrationSystem:
 
 
 def test_a_curve_and_a_family_tell_rotations_in_rad() -> None:
-    lines = frequency_response(system(), BAND, METHOD).summary().splitlines()
-    told = {line.partition(":")[0]: line.split()[3] for line in lines if ": largest" in line}
-    assert told == {"A.x": "m", "A.rz": "rad"}
-    family = frequency_responses(system, "stiffness", [0.1, 0.2], BAND, METHOD, workers=1).summary()
-    moved, _, turned = family.partition("A.rz: smallest")
-    assert " m at " in moved
-    assert " rad at " in turned
-    assert " rad at " not in moved
-    assert " m at " not in turned
+    peaks = frequency_response(system(), BAND, METHOD).tables(["A.x", "A.rz"])[0]
+    assert {row[0].text: row[-1].text for row in peaks.rows} == {"A.x": "m", "A.rz": "rad"}
+    family = frequency_responses(system, "stiffness", [0.1, 0.2], BAND, METHOD, workers=1)
+    moved, turned = family.tables(["A.x", "A.rz"])
+    assert (moved.columns[1], turned.columns[1]) == ("peak (m)", "peak (rad)")
 
 
 def test_a_mode_over_a_rotation_is_told_in_rad() -> None:
     mode = backbone(system(), [0.1, 0.2], 2, METHOD, dof="A.rz")
-    assert "amplitudes 0.1 to 0.2 rad," in mode.summary()
+    assert mode.facts()["amplitude"] == "0.1 to 0.2 rad"
     assert mode.to_xarray()["amplitudes"].attrs["units"] == "rad"
 
 

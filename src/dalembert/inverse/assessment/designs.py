@@ -9,8 +9,9 @@ import numpy as np
 from dalembert.contents import Contents
 from dalembert.errors import counted, listed
 from dalembert.findings import Finding
-from dalembert.results import EndedResult, fixed_lines, text_table
+from dalembert.results import EndedResult
 from dalembert.stored_fields import Over, StoredParameters
+from dalembert.tables import Table, cell, cells, labelled, marks, noted, shown
 
 CRITERIA = {"D": "geometric mean of the standard deviations", "E": "largest standard deviation"}
 
@@ -45,6 +46,8 @@ class Designs(EndedResult):
     """
 
     FORMAT: ClassVar[str] = "dalembert designs 1"
+    TITLE: ClassVar[str] = "Design of the experiment"
+    VERDICTS: ClassVar[tuple[str, str]] = ("ranked", "not ranked")
 
     parameters: StoredParameters
     at: Annotated[np.ndarray, Over("parameter")]
@@ -115,14 +118,30 @@ class Designs(EndedResult):
         advice = "Compare designs elsewhere too if the true values may be far from these."
         yield Finding("local-design", "note", {}, f"The ranking holds near {at}.", advice)
 
-    def summary(self) -> str:
-        """The ranking as a text table, at most twenty designs, with its status."""
-        rows = [("sensors", f"{self.along} ({self.unit})", "score", *(f"± {name}" for name in self.parameters.names))]
-        for k in range(min(20, len(self.scores))):
-            expected = (f"{value:.3g}" for value in self.deviations[k])
-            rows.append((", ".join(self.sensors[k]), f"{self.horizons[k]:.6g}", f"{self.scores[k]:.4g}", *expected))
-        more = [f"and {len(self.scores) - 20} more"] if len(self.scores) > 20 else []
-        return "\n".join([*text_table(rows), *more, "", *fixed_lines(self), self.status])
+    def facts(self) -> dict[str, str]:
+        return {
+            "best sensors": ", ".join(self.sensors[0]),
+            f"until {self.along}": f"{shown(float(self.horizons[0]))} {self.unit}".rstrip(),
+            "criterion": self.criterion,
+            "designs": str(len(self.scores)),
+        }
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the designs, the best first."""
+        lost = list(map(int, self.unseen))
+        columns = {
+            "rank": range(1, len(self.scores) + 1),
+            "sensors": map(", ".join, self.sensors),
+            labelled(self.along, self.unit): self.horizons,
+            "score": [cell(score, digits=4, mark=count > 0) for score, count in zip(self.scores, lost, strict=True)],
+            **{
+                f"± {labelled(item.name, item.unit)}": cells(deviations, 3)
+                for item, deviations in zip(self.parameters, self.deviations.T, strict=True)
+            },
+            "note": marks(f"{count} unseen" if count else "" for count in lost),
+        }
+        caption = "Designs, the best first, with the deviations to be expected"
+        return (noted(Table.of("designs", caption, columns)),)
 
     def contents(self) -> Contents:
         contents = super().contents()

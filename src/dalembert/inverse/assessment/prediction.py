@@ -11,8 +11,10 @@ from dalembert.errors import listed
 from dalembert.findings import Finding
 from dalembert.forward.stored_coordinate import StoredCoordinate
 from dalembert.inverse.fit.stored_data import StoredMeasured
-from dalembert.results import EndedResult, text_table
+from dalembert.results import EndedResult
 from dalembert.stored_fields import Labels, OptionalTable, Over, Table
+from dalembert.tables import Table as ResultTable
+from dalembert.tables import cells, counted
 
 FLAT = 1e-9  # range of a response, as a part of its size, below which a band has no width relative to it
 
@@ -53,6 +55,8 @@ class Prediction(EndedResult):
     """
 
     FORMAT: ClassVar[str] = "dalembert prediction 1"
+    TITLE: ClassVar[str] = "Predicted response"
+    VERDICTS: ClassVar[tuple[str, str]] = ("predicted", "not bounded")
 
     coordinate: StoredCoordinate
     channels: Annotated[tuple[str, ...], Labels("channel")]
@@ -141,14 +145,20 @@ class Prediction(EndedResult):
         )
         yield Finding("band-assumptions", "note", {"noise_is_known": self.known}, message)
 
-    def summary(self) -> str:
-        """Widths of the bands as a text table with the status."""
-        rows = [("channel", "unit", "widest", "with noise")]
-        for k, (name, unit) in enumerate(zip(self.channels, self.units, strict=True)):
-            width = np.fmax.reduce(self.upper[:, k] - self.lower[:, k])
-            measured = np.fmax.reduce(self.measured_upper[:, k] - self.measured_lower[:, k])
-            rows.append((name, unit, f"{width:.4g}", "not measured" if np.isnan(measured) else f"{measured:.4g}"))
-        return "\n".join([*text_table(rows), "", self.status, *map(str, self.findings)])
+    def facts(self) -> dict[str, str]:
+        return {"level": f"{100 * self.level:g} %", "channels": counted(len(self.channels))}
+
+    def tables(self) -> tuple[ResultTable, ...]:
+        """Return the half widths of the bands."""
+        half = (self.upper - self.lower) / 2, (self.measured_upper - self.measured_lower) / 2
+        response, measurement = (cells(np.fmax.reduce(widths, axis=0), 3) for widths in half)
+        columns = {
+            "channel": self.channels,
+            "unit": self.units,
+            "± response at most": response,
+            "± measurement at most": measurement,
+        }
+        return (ResultTable.of("prediction", f"Half widths of the {100 * self.level:g} % bands", columns),)
 
     def contents(self) -> Contents:
         contents, over = super().contents(), ("sample", "channel")

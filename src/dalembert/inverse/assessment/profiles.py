@@ -8,8 +8,9 @@ import numpy as np
 
 from dalembert.errors import listed
 from dalembert.findings import Finding
-from dalembert.results import EndedResult, fixed_lines, text_table
+from dalembert.results import EndedResult
 from dalembert.stored_fields import Over, Source, Store, StoredParameters
+from dalembert.tables import Table, cell, cells, counted, few_values, interval, marks, noted
 
 ASYMMETRIC = 1.5  # ratio of an interval's two sides from which its standard deviation does not describe it
 BETTER = 0.01  # variances of the noise by which a point must explain the data better for the fit to be no minimum
@@ -114,6 +115,8 @@ class Profiles(EndedResult):
     """
 
     FORMAT: ClassVar[str] = "dalembert profiles 1"
+    TITLE: ClassVar[str] = "Profile likelihood"
+    VERDICTS: ClassVar[tuple[str, str]] = ("profiled", "not settled")
 
     parameters: StoredParameters
     values: Annotated[np.ndarray, Over("parameter")]
@@ -210,15 +213,28 @@ class Profiles(EndedResult):
                 "Measure a quantity that separates these minima, or narrow the bounds.",
             )
 
-    def summary(self) -> str:
-        """The intervals as a text table with the status."""
-        rows = [("parameter", "value", "lower", "upper", "unit", "± deviation")]
-        for curve in self.curves:
-            k = self.parameters.names.index(curve.name)
-            lower, upper = (
-                f"{end:.6g}" + (" (bound)" if is_open else "")
-                for end, is_open in zip((curve.lower, curve.upper), curve.open, strict=True)
-            )
-            item = self.parameters.items[k]
-            rows.append((curve.name, f"{self.values[k]:.7g}", lower, upper, item.unit, f"{self.deviations[k]:.2g}"))
-        return "\n".join([*text_table(rows), "", *fixed_lines(self), self.status, *map(str, self.findings)])
+    def key_values(self) -> dict[str, str]:
+        items = [self.parameters.items[self.parameters.names.index(curve.name)] for curve in self.curves]
+        return few_values(items, [interval(curve.lower, curve.upper) for curve in self.curves])
+
+    def facts(self) -> dict[str, str]:
+        return {"level": f"{100 * self.level:g} %", "simulations": counted(self.simulations)}
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the interval of each profiled parameter."""
+        places = [self.parameters.names.index(curve.name) for curve in self.curves]
+        sides = [
+            " and ".join(side for side, is_open in zip(("lower", "upper"), curve.open, strict=True) if is_open)
+            for curve in self.curves
+        ]
+        columns = {
+            "parameter": [curve.name for curve in self.curves],
+            "value": self.values[places],
+            "lower end": [cell(curve.lower, mark=curve.open[0]) for curve in self.curves],
+            "upper end": [cell(curve.upper, mark=curve.open[1]) for curve in self.curves],
+            "unit": [self.parameters.items[k].unit for k in places],
+            "standard deviation": cells(self.deviations[places], 2),
+            "note": marks(f"open: {side} bound" if side else "" for side in sides),
+        }
+        caption = f"{100 * self.level:g} % intervals from profile likelihoods"
+        return (noted(Table.of("profiles", caption, columns)),)

@@ -8,13 +8,17 @@ import numpy as np
 
 from dalembert.findings import Finding
 from dalembert.inverse.events import SearchIteration, StartEnd
+from dalembert.inverse.fit.starts_table import starts_table
 from dalembert.inverse.fit.stored_data import StoredBands
 from dalembert.inverse.fit.stored_search import History, Starts
 from dalembert.inverse.least_squares.estimate import Estimate, Identifiability
 from dalembert.inverse.least_squares.identifiable import unidentifiable
 from dalembert.parameters import Parameter
-from dalembert.results import EndedResult, fact_lines, fixed_lines, text_table
+from dalembert.quantities import unit
+from dalembert.results import EndedResult
 from dalembert.stored_fields import Labels, OptionalTable, Over, StoredBox, StoredParameters, Table
+from dalembert.tables import Table as ResultTable
+from dalembert.tables import cell, cells, counted, few_values, interval, labelled, marks, noted, shown
 
 ZERO = 1e-6  # lengths below this part of the bounds' width are zero
 ADVICE = "Identify it as a number without a radius, or give bands of a quantity that depends more on it."
@@ -75,6 +79,8 @@ class BandFit(EndedResult):
     """
 
     FORMAT: ClassVar[str] = "dalembert bandfit 1"
+    TITLE: ClassVar[str] = "Identified intervals"
+    VERDICTS: ClassVar[tuple[str, str]] = ("identified", "not identified")
 
     parameters: StoredParameters
     intervals: tuple[str, ...]
@@ -136,36 +142,71 @@ class BandFit(EndedResult):
         """How the search ended, what the bands cannot identify, and what else the method concludes."""
         return (*self.outcome, *self.identifiability().findings, *self.findings)
 
-    def summary(self) -> str:
-        """Return a table of intervals with middles, radii, deviations and bounds, then effort and findings."""
-        rows: list[tuple[str, ...]] = [("parameter", "interval", "middle", "±", "radius", "±", "unit", "bounds")]
-        for k, item in enumerate(self.parameters):
-            known = item.name in self.intervals
-            rows.append(
-                (
-                    item.name,
-                    f"[{self.box.lower[k]:.7g}, {self.box.upper[k]:.7g}]",
-                    f"{self.middle[k]:.7g}",
-                    f"{self.middle_deviations[k]:.2g}",
-                    f"{self.radius[k]:.5g}" if known else "0 (given)",
-                    f"{self.radius_deviations[k]:.2g}" if known else "",
-                    item.unit,
-                    f"{item.lower:.6g} to {item.upper:.6g}",
-                )
-            )
-        checked = "not checked" if self.checked_misfit is None else f"{self.checked_misfit:.6g} by true runs"
-        facts = [
-            *fact_lines(
-                method=self.method,
-                misfit=f"{self.misfit:.6g} (weighted sum of squares of {2 * self.lower.size} bounds), {checked}",
-                simulations=self.simulations,
-                seconds=f"{self.seconds:.2g}",
-                starts=len(self.starts),
-            ),
-            *fixed_lines(self),
-        ]
-        findings = map(str, (*self.identifiability().findings, *self.findings))
-        return "\n".join([*text_table(rows), "", *facts, "", self.status, *findings])
+    @property
+    def reproduced(self) -> dict[str, np.ndarray]:
+        """Lower and upper bounds (samples, channels) as true runs give them, or the surrogate where there were none."""
+        return {
+            "lower": self.lower if self.checked_lower is None else self.checked_lower,
+            "upper": self.upper if self.checked_upper is None else self.checked_upper,
+        }
+
+    def key_values(self) -> dict[str, str]:
+        return few_values(self.parameters, map(interval, self.box.lower, self.box.upper))
+
+    def facts(self) -> dict[str, str]:
+        checked = self.checked_misfit
+        return {
+            "method": self.method,
+            "misfit": shown(self.misfit, digits=3),
+            **({} if checked is None else {"misfit by true runs": shown(checked, digits=3)}),
+            "fitted bounds": counted(2 * self.lower.size),
+            "simulations": counted(self.simulations),
+            "time": f"{shown(self.seconds, digits=3)} s",
+        }
+
+    def tables(self, truth: Mapping[str, tuple[float, float]] | None = None) -> tuple[ResultTable, ...]:
+        """Return the intervals, beside true ones if these are given, the residuals of the bounds, and the starts."""
+        known = truth or {}
+        true = {
+            f"true {side}": [known.get(name, (np.nan, np.nan))[end] for name in self.parameters.names]
+            for end, side in enumerate(("lower", "upper"))
+        }
+        columns = {
+            "parameter": self.parameters.names,
+            "lower": self.box.lower,
+            "upper": self.box.upper,
+            **(true if truth else {}),
+            "middle": map(cell, self.middle, self.middle_deviations),
+            "deviation of the middle": cells(self.middle_deviations, 2),
+            "radius": map(cell, self.radius, self.radius_deviations),
+            "deviation of the radius": cells(self.radius_deviations, 2),
+            "unit": [item.unit for item in self.parameters],
+            "lower bound": [float(item.lower) for item in self.parameters],
+            "upper bound": [float(item.upper) for item in self.parameters],
+            "note": marks(self._note(k, item) for k, item in enumerate(self.parameters)),
+        }
+        intervals = ResultTable.of("intervals", "Identified intervals", columns)
+        starts = [starts_table(self.starts, self.unknowns)] if self.starts else []
+        return noted(intervals), self._residuals(), *starts
+
+    def _note(self, k: int, item: Parameter) -> str:
+        """Return whether an interval is a single number, as far as the bands show."""
+        if item.name not in self.intervals:
+            return "a single number (given)"
+        if self.radius[k] <= ZERO * (item.upper - item.lower):
+            return "a single number"
+        return "possibly a single number" if self.radius[k] <= 2 * self.radius_deviations[k] else ""
+
+    def _residuals(self) -> ResultTable:
+        bands, rows = self.bands, []
+        for column, channel in enumerate(bands.channels):
+            for side, values in self.reproduced.items():
+                residual = np.abs(values[:, column] - getattr(bands, side)[:, column])
+                sizes = cells((np.sqrt(np.mean(residual**2)), residual.max()), 3)
+                rows.append((channel, side, *sizes, bands.coordinate.values[residual.argmax()], unit(channel)))
+        at = labelled(f"largest at {bands.coordinate.name}", bands.coordinate.unit)
+        names = ("channel", "bound", "rms residual", "largest residual", at, "unit")
+        return noted(ResultTable.of_rows("band-residuals", "Residuals of the bounds", names, rows))
 
 
 def _identifiability(fit: BandFit) -> Iterator[Finding]:

@@ -6,9 +6,12 @@ from typing import Annotated, ClassVar
 import numpy as np
 
 from dalembert.data import Measurements
+from dalembert.findings import Finding
+from dalembert.inverse.experiments.residual_table import residual_table
 from dalembert.inverse.fit.fit import Fit
-from dalembert.results import Result, fact_lines, text_table
+from dalembert.results import Result
 from dalembert.stored_fields import Over
+from dalembert.tables import Table, cells, counted, noted, shown, unless
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +36,7 @@ class CrossValidation(Result):
     """
 
     FORMAT: ClassVar[str] = "dalembert cross-validation 1"
+    TITLE: ClassVar[str] = "Cross-validation"
 
     fit: Fit
     left_out: str
@@ -67,16 +71,35 @@ class CrossValidation(Result):
         """The same of each group, (groups,)."""
         return np.array([self._rms(self.groups == number) for number in range(len(self.log_densities))])
 
-    def summary(self) -> str:
-        """Return a table of the groups, in the order of the data, and the totals."""
-        names = self.fit.parameters.names
-        rows: list[tuple[str, ...]] = [("group", "rms error", "log density", *names, "")]
-        for k, rms in enumerate(self.rms_of_groups):
-            numbers = (rms, self.log_densities[k], *self.values[k])
-            note = "" if self.converged[k] else "not converged"
-            rows.append((str(k + 1), *(f"{number:.6g}" for number in numbers), note))
-        facts = fact_lines(groups=self.left_out, rms=f"{self.rms:.6g}", elpd=f"{self.log_densities.sum():.6g}")
-        return "\n".join([*text_table(rows), "", *facts])
+    @property
+    def findings(self) -> tuple[Finding, ...]:  # type: ignore[override]
+        """A finding on fits that did not converge."""
+        missing = int(np.count_nonzero(~self.converged))
+        if not missing:
+            return ()
+        message = f"{missing} of {len(self.converged)} fits without a group did not converge."
+        advice = "Do not compare their densities; leave out smaller groups."
+        return (Finding("unconverged-groups", "warning", {"groups": missing}, message, advice),)
+
+    def facts(self) -> dict[str, str]:
+        return {
+            "groups": counted(len(self.log_densities)),
+            "left out": self.left_out,
+            "rms of the prediction errors": shown(self.rms),
+            "elpd": shown(float(self.log_densities.sum())),
+        }
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the groups in the order of the data; of a single record the residuals too."""
+        columns = {
+            "group": range(1, 1 + len(self.log_densities)),
+            "rms error": cells(self.rms_of_groups, 4),
+            "log density": cells(self.log_densities, 4),
+            **{name: cells(column) for name, column in zip(self.fit.parameters.names, self.values.T, strict=True)},
+            "note": unless(self.converged, "not converged"),
+        }
+        groups = noted(Table.of("cross-validation", "Groups in the order of the data", columns))
+        return (groups,) if self.fit.experiments else (groups, residual_table(self))
 
     def _rms(self, kept: np.ndarray) -> float:
         return float(np.sqrt(np.mean(self.fit.weights[kept] * self.errors[kept] ** 2)))

@@ -1,6 +1,6 @@
 """The result of a comparison of models, its text and its file."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
@@ -8,8 +8,9 @@ import numpy as np
 
 from dalembert.findings import Finding
 from dalembert.inverse.comparison.left_out import WAYS
-from dalembert.results import Result, fact_lines, text_table
+from dalembert.results import Result
 from dalembert.stored_fields import Labels, Over
+from dalembert.tables import Table, cells, counted
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +47,7 @@ class ModelComparison(Result):
     """
 
     FORMAT: ClassVar[str] = "dalembert model comparison 1"
+    TITLE: ClassVar[str] = "Models compared"
 
     models: Annotated[tuple[str, ...], Labels("model")]
     parameters: Annotated[np.ndarray, Over("model", name="free_parameters")]
@@ -75,20 +77,31 @@ class ModelComparison(Result):
         shares = np.exp(-(self.aicc - np.min(self.aicc)) / 2)
         return shares / np.sum(shares)
 
-    def summary(self) -> str:
-        """Return a table of the models, the best one first, then the findings."""
-        columns: dict[str, list[str]] = {
-            "model": list(self.models),
-            "parameters": [str(count) if count >= 0 else "" for count in self.parameters],
-            **{
-                name: ["" if np.isnan(number) else f"{number:.6g}" for number in numbers]
-                for name, numbers in (("rms", self.rms), ("AICc", self.aicc), ("BIC", self.bic), ("WAIC", self.waic))
-            },
-            "elpd": [f"{number:.6g}" for number in self.elpd],
-            "difference": ["", *(f"{number:.3g}" for number in self.difference[1:])],
-            "± deviation": ["", *(f"{number:.3g}" for number in self.difference_deviation[1:])],
+    @property
+    def verdict(self) -> str:
+        return "equal models" if any(finding.code == "equal-models" for finding in self.findings) else "ranked"
+
+    def facts(self) -> dict[str, str]:
+        return {
+            "best": self.models[0],
+            "models": counted(len(self.models)),
+            "values": counted(self.values),
+            "elpd": self.how,
+            "left out together": WAYS[self.left_out],
         }
-        filled = {name: cells for name, cells in columns.items() if any(cells)}  # draws alone have no criteria
-        rows = [tuple(filled), *zip(*filled.values(), strict=True)]
-        facts = fact_lines(elpd=f"{self.how}; left out: {WAYS[self.left_out]}", values=self.values)
-        return "\n".join([*text_table(rows), "", *facts, *map(str, self.findings)])
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the models, the one that predicts best first; draws alone have no criteria."""
+        columns: dict[str, Iterable[object]] = {"model": self.models}
+        if np.any(self.parameters >= 0):
+            columns["parameters"] = [count if count >= 0 else "" for count in self.parameters.tolist()]
+        criteria = {"rms residual": self.rms, "AIC": self.aic, "AICc": self.aicc, "BIC": self.bic}
+        columns |= {name: cells(values) for name, values in criteria.items() if np.any(np.isfinite(values))}
+        columns |= {
+            "elpd": cells(self.elpd),
+            "difference": cells(self.difference, 4),
+            "deviation of the difference": cells(self.difference_deviation, 2),
+        }
+        if np.any(np.isfinite(self.waic)):
+            columns["WAIC (elpd)"] = cells(self.waic)
+        return (Table.of("model-comparison", "Models, the one that predicts best first", columns),)

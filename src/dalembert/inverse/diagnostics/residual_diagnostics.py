@@ -9,6 +9,7 @@ from scipy.special import ndtr, stdtr
 
 from dalembert.findings import Finding
 from dalembert.inverse.diagnostics.channel_pairs import ChannelPair, correlated_pairs, factors
+from dalembert.inverse.diagnostics.diagnostic_tables import diagnostic_tables
 from dalembert.inverse.diagnostics.findings import LEVEL, Outlier, diagnostic_findings, pair_findings
 from dalembert.inverse.diagnostics.influence import ALONE, Influence, influence
 from dalembert.inverse.diagnostics.noise_tests import normality, runs
@@ -21,6 +22,7 @@ from dalembert.inverse.noise.correlation.series import Series, series_of_record
 from dalembert.inverse.noise.correlation.whiteness import LEAST, p_value
 from dalembert.inverse.problem.prior import prior_slopes
 from dalembert.inverse.problem.search_coordinates import off_bounds
+from dalembert.tables import Table
 
 if TYPE_CHECKING:
     from dalembert.inverse.fit.fit import Fit
@@ -56,6 +58,10 @@ class ResidualDiagnostics:
     outliers: tuple[Outlier, ...]
     findings: tuple[Finding, ...]
     tested: bool
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the tests of each channel, the outliers, and the samples of the largest influence."""
+        return tuple(diagnostic_tables(self.series, self.outliers, self.parameters))
 
     def __str__(self) -> str:
         return "\n".join(map(str, self.findings)) or "The tests find nothing against independent normal residuals."

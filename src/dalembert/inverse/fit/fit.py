@@ -14,6 +14,7 @@ from dalembert.findings import Finding
 from dalembert.inverse.diagnostics.residual_diagnostics import ResidualDiagnostics, residual_diagnostics
 from dalembert.inverse.events import SearchIteration, StartEnd
 from dalembert.inverse.experiments.experiment import ExperimentFit, ExperimentPart, experiment_fit
+from dalembert.inverse.fit.fit_tables import fit_facts, fit_tables
 from dalembert.inverse.fit.integration import IntegrationBias
 from dalembert.inverse.fit.stored_data import StoredData, StoredParts
 from dalembert.inverse.fit.stored_search import History, Starts
@@ -25,8 +26,10 @@ from dalembert.inverse.noise.likelihood.estimated_noise import EstimatedNoise
 from dalembert.inverse.problem.combinations import amounts
 from dalembert.inverse.problem.nodes import Nodes
 from dalembert.inverse.validation.validation import Validation
-from dalembert.results import EndedResult, fact_lines, fixed_lines, text_table
+from dalembert.results import EndedResult
 from dalembert.stored_fields import Over, StoredParameters, Table
+from dalembert.tables import Table as ResultTable
+from dalembert.tables import few_values, with_deviation
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,6 +90,8 @@ class Fit(EndedResult):
     """
 
     FORMAT: ClassVar[str] = "dalembert fit 1"
+    TITLE: ClassVar[str] = "Identified parameters"
+    VERDICTS: ClassVar[tuple[str, str]] = ("identified", "not identified")
 
     parameters: StoredParameters
     values: Annotated[np.ndarray, Over("parameter")]
@@ -243,40 +248,19 @@ class Fit(EndedResult):
             return 1.0
         return self.misfit / self.degrees_of_freedom if self.degrees_of_freedom > 0 else np.nan
 
+    def key_values(self) -> dict[str, str]:
+        return few_values(self.parameters, map(with_deviation, self.values, self.deviations))
+
+    def facts(self) -> dict[str, str]:
+        return fit_facts(self)
+
+    def tables(self) -> tuple[ResultTable, ...]:
+        """Return the parameters, their noise, the halves of the records, the residuals, the nodes and the starts."""
+        return tuple(fit_tables(self))
+
     def summary(self) -> str:
-        """Return a table of parameters with standard deviations, unit and bounds, then effort and findings."""
-        rows = [("parameter", "value", "± deviation", "unit", "bounds")]
-        for item, value, deviation in zip(self.parameters, self.values, self.deviations, strict=True):
-            known = "unknown" if np.isnan(deviation) else f"{deviation:.2g}"
-            rows.append((item.name, f"{value:.7g}", known, item.unit, f"{item.lower:.6g} to {item.upper:.6g}"))
-        facts = [
-            *fact_lines(
-                method=self.method,
-                misfit=f"{self.misfit:.6g} (weighted sum of squares of {np.count_nonzero(self.weights)} values)",
-                simulations=self.simulations,
-                starts=len(self.starts),
-            ),
-            *_integration_facts(self),
-            *fixed_lines(self),
-        ]
-        texts = [
-            self.status,
-            *([] if self.validation is None else [str(self.validation)]),
-            *map(str, self.identifiability().findings),
-        ]
-        texts += map(str, self.findings)
-        return "\n".join(
-            [
-                *text_table(rows),
-                *_noise_table(self),
-                "",
-                *facts,
-                "",
-                *_experiments_table(self),
-                *_halves_table(self),
-                *texts,
-            ]
-        )
+        """Return tables, facts, status, findings, and how what was not fitted is predicted, as text."""
+        return "\n".join([super().summary(), *([] if self.validation is None else [str(self.validation)])])
 
     def contents(self) -> Contents:
         found = super().contents()
@@ -292,54 +276,3 @@ def check_level(level: float, where: str) -> None:
     """
     if not is_number(level) or np.iscomplexobj(level) or not 0 < level < 1:
         raise InputError(f"{where}: level is {shown(level)}; expected a number between 0 and 1, such as 0.95")
-
-
-def _integration_facts(fit: Fit) -> list[str]:
-    """Lines on the bias by the integrator and on the misfit with converged steps; none without an estimate."""
-    found = fit.integration
-    if found is None or found.failed:
-        return []
-    return [
-        f"integrator   bias of the values {amounts(fit.parameters, found.bias)} (by one simulation {found.how})",
-        f"             misfit with converged steps {found.misfit:.6g}, with corrected values {found.corrected:.6g}",
-    ]
-
-
-def _noise_table(fit: Fit) -> list[str]:
-    """Lines of a table of noise parameters, with an empty one before it; none where no noise was estimated."""
-    if fit.noise is None or fit.noise.known:
-        return []
-    rows = [("noise parameter", "value", "± deviation", "unit", "bounds")]
-    for item, value, deviation in zip(fit.noise.parameters, fit.noise.values, fit.noise.deviations, strict=True):
-        known = "unknown" if np.isnan(deviation) else f"{deviation:.2g}"
-        rows.append((item.name, f"{value:.4g}", known, item.unit, f"{item.lower:.3g} to {item.upper:.3g}"))
-    return ["", *text_table(rows)]
-
-
-def _experiments_table(fit: Fit) -> list[str]:
-    """Lines of a table of experiments and their residuals, with an empty one after it; none for a single one."""
-    if not fit.experiments:
-        return []
-    rows = [("experiment", "channel", "samples", "rms residual", "")]
-    for item in fit.experiments:
-        for column, channel in enumerate(item.data.channels):
-            own = item.residuals[item.data.present[:, column], column]
-            rms = f"{np.sqrt(np.mean(own**2)):.4g}"
-            rows.append((item.name, channel, str(len(own)), rms, "" if item.fitted else "predicted"))
-    return [*text_table(rows), ""]
-
-
-def _halves_table(fit: Fit) -> list[str]:
-    """Lines of a table of the parameters of the halves, with an empty one after it; none where they agree."""
-    found = fit.halves
-    if found is None or not np.any(found.drifting):
-        return []
-    rows = [("parameter", "first half", "second half", "difference / deviation")]
-    for k, name in enumerate(fit.parameters.names):
-        first, second = (
-            "not determined" if np.isnan(value) else f"{value:.5g} ± {deviation:.2g}"
-            for value, deviation in zip(found.values[:, k], found.deviations[:, k], strict=True)
-        )
-        size = found.differences[k]
-        rows.append((name, first, second, "" if np.isnan(size) else f"{size:.2g}"))
-    return [*text_table(rows), ""]

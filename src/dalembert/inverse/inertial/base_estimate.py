@@ -13,12 +13,13 @@ from dalembert.inverse.fit.fit import check_level
 from dalembert.inverse.inertial.base_parameters import BaseParameters, base_parameters
 from dalembert.inverse.inertial.stacked import checked_deviations, checked_regressor, checked_torques
 from dalembert.inverse.problem.search_findings import converged
-from dalembert.results import EndedResult, fact_lines, text_table
+from dalembert.results import EndedResult
 from dalembert.stored_fields import Labels, Over
+from dalembert.tables import Table, cell, cells, counted
+from dalembert.units import inertial_unit
 
 ITERATIONS = 100  # most iterations of the weights
 SETTLED = 1e-8  # relative change of the standard deviations at which the weights are converged
-LONGEST = 60  # characters of a combination in a table; :attr:`BaseParameters.words` has all
 # Lag-1 autocorrelation, in standard deviations of that of white noise, from which residuals are correlated.
 CORRELATED = 4.0
 
@@ -42,6 +43,8 @@ class BaseEstimate(EndedResult):
     """
 
     FORMAT: ClassVar[str] = "dalembert baseestimate 1"
+    TITLE: ClassVar[str] = "Base parameters"
+    VERDICTS: ClassVar[tuple[str, str]] = ("identified", "not identified")
 
     base: BaseParameters
     joints: Annotated[tuple[str, ...], Labels("joint")]
@@ -66,17 +69,23 @@ class BaseEstimate(EndedResult):
         """Torques (samples, joints) along another motion, from its regressor (samples, joints, parameters)."""
         return np.asarray(regressor)[..., self.base.independent] @ self.values
 
-    def summary(self) -> str:
-        """Return a table of the base parameters, then the noise of each joint and findings."""
-        return "\n".join(
-            [
-                *base_table(self.base, self.values, self.deviations),
-                "",
-                *noise_lines(self.joints, self.noise, self.noise_is_known),
-                "",
-                self.status,
-                *map(str, (*self.base.findings, *self.findings)),
-            ]
+    @property
+    def success(self) -> bool:
+        """Whether the weights converged."""
+        return not any(finding.severity == "error" for finding in self.outcome)
+
+    @property
+    def conclusions(self) -> tuple[Finding, ...]:
+        return (*self.outcome, *self.base.findings, *self.findings)
+
+    def facts(self) -> dict[str, str]:
+        return {"base parameters": counted(self.base.rank), "joints": counted(len(self.joints))}
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the base parameters, and the noise of each joint."""
+        return (
+            base_table(self.base, self.values, self.deviations),
+            noise_table(self.joints, self.noise, self.noise_is_known),
         )
 
 
@@ -199,21 +208,20 @@ def intervals(
     return dict(zip(names, zip((values - radius).tolist(), (values + radius).tolist(), strict=True), strict=True))
 
 
-def base_table(base: BaseParameters, values: np.ndarray, deviations: np.ndarray) -> list[str]:
-    """Lines of a table of base parameters."""
-    rows = [("combination", "value", "± deviation")]
-    for words, value, deviation in zip(base.words, values, deviations, strict=True):
-        rows.append(
-            (
-                words if len(words) <= LONGEST else f"{words[: LONGEST - 4].rpartition(' ')[0]} ...",
-                f"{value:.6g}",
-                f"{deviation:.2g}",
-            )
-        )
-    return text_table(rows)
+def base_table(base: BaseParameters, values: np.ndarray, deviations: np.ndarray) -> Table:
+    """Return the table of base parameters."""
+    columns = {
+        "combination": base.words,
+        "value": map(cell, values, deviations),
+        "standard deviation": cells(deviations, 2),
+        "unit": map(inertial_unit, base.base),
+    }
+    return Table.of("base", "Base parameters: the combinations that torques determine", columns)
 
 
-def noise_lines(joints: Sequence[str], noise: np.ndarray, known: bool) -> list[str]:
-    """Line of a summary on the noise of each joint."""
-    each = ", ".join(f"{joint}: {size:.3g}" for joint, size in zip(joints, noise, strict=True))
-    return fact_lines(noise=f"{each} ({'given' if known else 'from the residuals'})")
+def noise_table(joints: Sequence[str], noise: np.ndarray, known: bool, **more: np.ndarray) -> Table:
+    """Return the noise of each joint, and more columns (joints,)."""
+    source = "given" if known else "from the residuals"
+    caption = f"Standard deviation of the noise of each joint, in N m, of a prismatic joint in N ({source})"
+    columns = {"joint": joints, "noise": noise, **more}
+    return Table.of("noise", caption, {name: cells(column, 3) for name, column in columns.items()})

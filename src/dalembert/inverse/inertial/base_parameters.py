@@ -10,8 +10,9 @@ from scipy.linalg import qr, solve_triangular
 from dalembert.errors import InputError, counted
 from dalembert.findings import Finding
 from dalembert.inverse.inertial.stacked import checked_regressor
-from dalembert.results import Result, fact_lines, text_table
+from dalembert.results import Result
 from dalembert.stored_fields import Labels, Over
+from dalembert.tables import Table, shown
 
 # Size of a column, relative to the largest, and of a pivot, relative to the first, that are rounding errors.
 ROUNDING = 1e-10
@@ -44,6 +45,7 @@ class BaseParameters(Result):
     """
 
     FORMAT: ClassVar[str] = "dalembert baseparameters 1"
+    TITLE: ClassVar[str] = "Base parameters"
 
     names: Annotated[tuple[str, ...], Labels("parameter")]
     base: Annotated[tuple[str, ...], Labels("base")]
@@ -75,11 +77,13 @@ class BaseParameters(Result):
         """Base parameters (..., base) of parameters (..., parameters)."""
         return np.asarray(parameters) @ self.combinations.T
 
-    def summary(self) -> str:
-        """Return a table of the combinations, then rank, condition number and findings."""
-        rows = [("base parameter", "combination"), *zip(self.base, self.words, strict=True)]
-        facts = fact_lines(rank=f"{self.rank} of {len(self.names)}", condition=f"{self.condition:.4g}")
-        return "\n".join([*text_table(rows), "", *facts, "", *map(str, self.findings)])
+    def facts(self) -> dict[str, str]:
+        return {"rank": f"{self.rank} of {len(self.names)}", "condition number": shown(self.condition, digits=4)}
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the combinations of parameters."""
+        columns = {"base parameter": self.base, "combination": self.words}
+        return (Table.of("base", "Combinations that torques depend on", columns),)
 
 
 def base_parameters(regressor: np.ndarray, names: Sequence[str], *, noise: float = 0.0) -> BaseParameters:

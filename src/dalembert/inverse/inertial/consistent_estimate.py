@@ -6,11 +6,13 @@ from typing import Annotated, ClassVar
 import numpy as np
 
 from dalembert.findings import Finding
-from dalembert.inverse.inertial.base_estimate import base_table, intervals, noise_lines
+from dalembert.inverse.inertial.base_estimate import base_table, intervals, noise_table
 from dalembert.inverse.inertial.base_parameters import BaseParameters
 from dalembert.inverse.inertial.pseudo_inertia import pseudo_inertia
-from dalembert.results import EndedResult, fact_lines, text_table
+from dalembert.results import EndedResult
 from dalembert.stored_fields import Labels, Over
+from dalembert.tables import Table, cell, cells, counted, shown
+from dalembert.units import inertial_unit
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +57,8 @@ class ConsistentInertias(EndedResult):
     """
 
     FORMAT: ClassVar[str] = "dalembert consistentinertias 1"
+    TITLE: ClassVar[str] = "Inertial parameters"
+    VERDICTS: ClassVar[tuple[str, str]] = ("identified", "not identified")
 
     base: BaseParameters
     links: Annotated[tuple[str, ...], Labels("link")]
@@ -116,38 +120,43 @@ class ConsistentInertias(EndedResult):
         """Torques (samples, joints) along another motion, from its regressor (samples, joints, parameters)."""
         return np.asarray(regressor) @ self.values
 
-    def summary(self) -> str:
-        """Return tables of base parameters, links and other parameters, then the noise and findings."""
-        count = 10 * len(self.links)
-        masses, before = self.values[:count:10], self.prior[:count:10]
-        rows: list[tuple[str, ...]] = [
-            ("link", "mass", "prior mass", "distance", "eigenvalue", "without conditions", "consistent")
-        ]
-        for k, link in enumerate(self.links):
-            sizes = (masses[k], before[k], self.distances[k], self.eigenvalues[k], self.plain_eigenvalues[k])
-            rows.append((link, *(f"{size:.4g}" for size in sizes), "yes" if self.consistent[k] else "no"))
-        rows_of_others = [("other parameter", "value", "± deviation", "prior")]
-        for name, *sizes in zip(
-            self.names[count:], self.values[count:], self.deviations[count:], self.prior[count:], strict=True
-        ):
-            rows_of_others.append((name, f"{sizes[0]:.6g}", f"{sizes[1]:.2g}", f"{sizes[2]:.4g}"))
+    @property
+    def conclusions(self) -> tuple[Finding, ...]:
+        return (*self.outcome, *self.base.findings, *self.findings)
+
+    def facts(self) -> dict[str, str]:
         largest = float(np.max(np.abs(np.concatenate([self.gradient.ravel(), self.other_gradient]))))
-        return "\n".join(
-            [
-                *text_table(rows),
-                "",
-                *([*text_table(rows_of_others), ""] if len(rows_of_others) > 1 else []),
-                *base_table(self.base, self.base_values, self.base_deviations),
-                "",
-                *noise_lines(self.joints, self.noise, self.noise_is_known),
-                *fact_lines(
-                    start=self.started,
-                    steps=self.steps,
-                    gradient=f"{largest:.1g} (largest, by log-Cholesky parameters)",
-                    regularised=f"{self.regularisation:.4g}",
-                ),
-                "",
-                self.status,
-                *map(str, (*self.base.findings, *self.findings)),
-            ]
+        return {
+            "links": counted(len(self.links)),
+            "base parameters": counted(self.base.rank),
+            "regularisation": shown(self.regularisation),
+            "start": self.started,
+            "steps": counted(self.steps),
+            "largest gradient by log-Cholesky parameters": shown(largest, digits=1),
+        }
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return links, parameters, base parameters and noise."""
+        count = 10 * len(self.links)
+        links = {
+            "link": self.links,
+            "mass (kg)": cells(self.values[:count:10]),
+            "prior mass (kg)": cells(self.prior[:count:10]),
+            "distance from the prior": cells(self.distances, 4),
+            "smallest eigenvalue": cells(self.eigenvalues, 4),
+            "without conditions": [cell(float(x), digits=4, mark=bool(x <= 0)) for x in self.plain_eigenvalues],
+        }
+        parameters = {
+            "parameter": self.names,
+            "value": map(cell, self.values, self.deviations),
+            "standard deviation": cells(self.deviations, 2),
+            "prior": cells(self.prior),
+            "unit": map(inertial_unit, self.names),
+        }
+        caption = "Smallest eigenvalue of each pseudo-inertia, relative to the prior one: positive for a possible body"
+        return (
+            Table.of("links", caption, links),
+            Table.of("parameters", "All parameters", parameters, detail=True),
+            base_table(self.base, self.base_values, self.base_deviations),
+            noise_table(self.joints, self.noise, self.noise_is_known, **{"rms residual": self.residual}),
         )

@@ -12,8 +12,9 @@ from dalembert.inverse.inertial.base_estimate import joint_names
 from dalembert.inverse.inertial.base_parameters import BaseParameters, base_parameters
 from dalembert.inverse.inertial.fourier_motion import FINE, FourierMotion, JointLimits, largest_motion
 from dalembert.inverse.inertial.stacked import checked_deviations
-from dalembert.results import EndedResult, fact_lines, text_table
+from dalembert.results import EndedResult
 from dalembert.stored_fields import Labels, Over
+from dalembert.tables import Table, cells, counted, shown
 
 Regressor = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 CRITERIA = {"D": "mean log standard deviation", "condition": "log condition number"}
@@ -45,6 +46,8 @@ class ExcitingTrajectory(EndedResult):
     """
 
     FORMAT: ClassVar[str] = "dalembert excitingtrajectory 1"
+    TITLE: ClassVar[str] = "Exciting trajectory"
+    VERDICTS: ClassVar[tuple[str, str]] = ("found", "")
 
     motion: FourierMotion
     limits: JointLimits
@@ -64,29 +67,33 @@ class ExcitingTrajectory(EndedResult):
         times = np.arange(int(np.floor(self.motion.period * rate)) + 1) / rate
         return times, *self.motion.motion(times)
 
-    def summary(self) -> str:
-        """Return a table of the largest positions, velocities and accelerations, then the criterion."""
-        sampled = self.sampled(FINE * self.motion.sine.shape[1] / self.motion.period)[1:]
-        rows = [("joint", "positions", "limits", "velocity", "limit", "acceleration", "limit")]
-        for k, joint in enumerate(self.joints):
-            path, velocity, acceleration = (table[:, k] for table in sampled)
-            rows.append(
-                (
-                    joint,
-                    f"{path.min():.4g} to {path.max():.4g}",
-                    f"{self.limits.lower[k]:.4g} to {self.limits.upper[k]:.4g}",
-                    f"{np.abs(velocity).max():.4g}",
-                    f"{self.limits.velocity[k]:.4g}",
-                    f"{np.abs(acceleration).max():.4g}",
-                    f"{self.limits.acceleration[k]:.4g}",
-                )
-            )
-        facts = fact_lines(
-            period=f"{self.motion.period:.6g} s, {self.motion.sine.shape[1]} harmonics",
-            criterion=f"{CRITERIA[self.criterion]} {self.score:.4g}, of random motions {self.usual_score:.4g}",
-            evaluations=len(self.history),
-        )
-        return "\n".join([*text_table(rows), "", *facts, "", self.status, *map(str, self.findings)])
+    def facts(self) -> dict[str, str]:
+        return {
+            "period": f"{shown(self.motion.period)} s, {self.motion.sine.shape[1]} harmonics",
+            CRITERIA[
+                self.criterion
+            ]: f"{shown(self.score, digits=4)}, of random motions {shown(self.usual_score, digits=4)}",
+            "condition number": f"{shown(self.condition, digits=4)}, of random motions "
+            f"{shown(self.usual_condition, digits=4)}",
+            "evaluations": counted(len(self.history)),
+        }
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the positions, velocities and accelerations of the joints with their limits."""
+        rate = FINE * self.motion.sine.shape[1] / self.motion.period
+        _, positions, velocities, accelerations = self.sampled(rate)
+        columns = {
+            "joint": self.joints,
+            "smallest position": cells(positions.min(axis=0), 4),
+            "lower limit": cells(self.limits.lower),
+            "largest position": cells(positions.max(axis=0), 4),
+            "upper limit": cells(self.limits.upper),
+            "largest velocity": cells(np.abs(velocities).max(axis=0), 4),
+            "limit of velocity": cells(self.limits.velocity),
+            "largest acceleration": cells(np.abs(accelerations).max(axis=0), 4),
+            "limit of acceleration": cells(self.limits.acceleration),
+        }
+        return (Table.of("limits", "Limits of the joints", columns),)
 
 
 def exciting_trajectory(

@@ -11,8 +11,9 @@ from dalembert.inverse.fit.fit import check_level
 from dalembert.inverse.inertial.base_parameters import base_parameters
 from dalembert.inverse.inertial.consistent import identify_inertias
 from dalembert.inverse.inertial.stacked import checked_regressor
-from dalembert.results import Result, fact_lines, text_table
+from dalembert.results import Result
 from dalembert.stored_fields import Labels, Over
+from dalembert.tables import Table, cells, counted, shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +42,7 @@ class Recovery(Result):
     """
 
     FORMAT: ClassVar[str] = "dalembert recovery 1"
+    TITLE: ClassVar[str] = "Simulated recovery"
 
     base: Annotated[tuple[str, ...], Labels("base")]
     level: float
@@ -57,18 +59,24 @@ class Recovery(Result):
         """Share of runs (base,) whose interval contains the true value."""
         return self.covered.mean(axis=0)
 
-    def summary(self) -> str:
-        """Return a table of the coverage of each base parameter, then the prediction."""
-        rows: list[tuple[str, ...]] = [("base parameter", "coverage", "without prior")]
-        for name, *shares in zip(self.base, self.coverage, self.plain_covered.mean(axis=0), strict=True):
-            rows.append((name, *(f"{share:.3g}" for share in shares)))
-        facts = fact_lines(
-            runs=len(self.prediction),
-            coverage=f"{self.covered.mean():.4g} of all intervals, nominal {self.level:.4g}",
-            prediction=f"{(self.prediction / self.unseen_noise).max():.4g} times the noise of the record at most",
-            consistent=f"{self.consistent.mean():.4g} of all links",
-        )
-        return "\n".join([*text_table(rows), "", *facts])
+    def facts(self) -> dict[str, str]:
+        worst = float(np.max(self.prediction / self.unseen_noise))
+        coverage = f"{shown(100 * float(self.covered.mean()), digits=4)} %, nominal {shown(100 * self.level)} %"
+        return {
+            "runs": counted(len(self.prediction)),
+            "coverage": coverage,
+            "prediction, worst run": f"{shown(worst, digits=4)} times the noise",
+            "consistent links": f"{shown(100 * float(self.consistent.mean()), digits=4)} %",
+        }
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the coverage of the interval of each base parameter."""
+        shares = {
+            "base parameter": self.base,
+            "coverage": cells(self.coverage, 3),
+            "without prior": cells(self.plain_covered.mean(axis=0), 3),
+        }
+        return (Table.of("coverage", "Share of intervals that contain the true value", shares),)
 
 
 def simulated_recovery(

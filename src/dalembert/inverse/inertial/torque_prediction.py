@@ -9,8 +9,9 @@ from scipy.special import chdtri
 from dalembert.errors import InputError
 from dalembert.findings import Finding
 from dalembert.inverse.inertial.consistent_estimate import ConsistentInertias
-from dalembert.results import EndedResult, fact_lines, text_table
+from dalembert.results import EndedResult
 from dalembert.stored_fields import Over
+from dalembert.tables import Table, cells, counted, shown
 
 CERTAIN = 1e-3  # probability of noise alone above which a prediction is as exact as the noise
 
@@ -52,6 +53,8 @@ class TorquePrediction(EndedResult):
     """
 
     FORMAT: ClassVar[str] = "dalembert torqueprediction 1"
+    TITLE: ClassVar[str] = "Inertial parameters"
+    VERDICTS: ClassVar[tuple[str, str]] = ("identified", "not identified")
 
     inertias: ConsistentInertias
     times: Annotated[np.ndarray, Over("sample")]
@@ -119,12 +122,19 @@ class TorquePrediction(EndedResult):
         advice = "Excite the joints more, or add what the model lacks, for example friction or a payload."
         return [Finding("unseen-torques", "warning", values, text, advice)]
 
-    def summary(self) -> str:
-        """Return the summary of the inertias, then a table of the prediction."""
-        lines = [self.inertias.summary()]
+    def facts(self) -> dict[str, str]:
+        facts = self.inertias.facts()
         if len(self.unseen_times):
-            rows = [("joint", "noise", "error of the prediction / noise")]
-            for name, noise, ratio in zip(self.inertias.joints, self.inertias.noise, self.ratios, strict=True):
-                rows.append((name, f"{noise:.3g}", f"{ratio:.4g}"))
-            lines += ["", *text_table(rows), *fact_lines(unseen=f"{len(self.unseen_times)} samples")]
-        return "\n".join([*lines, *map(str, self._told())])
+            facts["prediction, worst joint"] = f"{shown(float(self.ratios.max()), digits=4)} times the noise"
+            facts["unseen samples"] = counted(len(self.unseen_times))
+        return facts
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the tables of the inertias, then the errors of the prediction."""
+        if not len(self.unseen_times):
+            return self.inertias.tables()
+        columns = {"joint": self.inertias.joints, "error / noise": cells(self.ratios, 4)}
+        caption = (
+            f"Rms error of the predicted torques; noise alone exceeds {shown(self.most, digits=4)} in 0.1 % of records"
+        )
+        return (*self.inertias.tables(), Table.of("prediction", caption, columns))

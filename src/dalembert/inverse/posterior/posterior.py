@@ -1,6 +1,6 @@
 """The result of sampling a posterior."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
@@ -12,8 +12,9 @@ from dalembert.inverse.fit.fit import check_level
 from dalembert.inverse.fit.stored_data import StoredData, StoredParts
 from dalembert.inverse.posterior.convergence import Convergence, ended
 from dalembert.inverse.posterior.packages import package
-from dalembert.results import EndedResult, fact_lines, fixed_lines, text_table
+from dalembert.results import EndedResult
 from dalembert.stored_fields import Labels, Over, Source, Store, StoredParameters
+from dalembert.tables import Table, cell, cells, counted, few_values, interval, with_deviation
 
 if TYPE_CHECKING:
     from arviz import InferenceData
@@ -89,6 +90,8 @@ class Posterior(EndedResult):
     """
 
     FORMAT: ClassVar[str] = "dalembert posterior 1"
+    TITLE: ClassVar[str] = "Posterior"
+    VERDICTS: ClassVar[tuple[str, str]] = ("sampled", "not converged")
 
     parameters: StoredParameters
     draws: Annotated[np.ndarray, Over("chain", "draw", "parameter")]
@@ -209,19 +212,36 @@ class Posterior(EndedResult):
             dims={name: [f"{name}.sample"] for name in of_channel},
         )
 
-    def summary(self) -> str:
-        """Return a table of the parameters, then how sampling ended and the findings."""
-        rows = [("parameter", "mean", "± deviation", "95 % interval", "unit", "R-hat", "effective draws", "± linear")]
-        intervals = self.intervals()
-        columns = zip(
-            self.parameters, self.mean, self.deviations, self.r_hat, np.minimum(self.bulk, self.tail),
-            self.linear_deviations, strict=True,
-        )  # fmt: skip
-        for item, mean, deviation, r_hat, effective, linear in columns:
-            lower, upper = intervals[item.name]
-            texts = f"{mean:.6g}", f"{deviation:.2g}", f"{lower:.5g} to {upper:.5g}", item.unit
-            rows.append((item.name, *texts, f"{r_hat:.3f}", f"{effective:.0f}", f"{linear:.2g}"))
+    def key_values(self) -> dict[str, str]:
+        return few_values(self.parameters, map(with_deviation, self.mean.tolist(), self.deviations.tolist()))
+
+    def facts(self) -> dict[str, str]:
         chains, draws, _ = self.draws.shape
-        facts = fact_lines(sampler=self.sampler, draws=f"{chains} chains x {draws}", simulations=self.simulations)
-        lines = [*text_table(rows), "", *fixed_lines(self), *facts, self.status, *map(str, self.findings)]
-        return "\n".join(lines)
+        return {
+            "draws": f"{counted(chains)} chains × {counted(draws)}",
+            "sampler": self.sampler,
+            "simulations": counted(self.simulations),
+        }
+
+    def tables(self, profiles: Any = None) -> tuple[Table, ...]:
+        """Return means, intervals and convergence of the parameters, beside intervals of profiles if given."""
+        names, linear = self.parameters.names, 1.959964 * self.linear_deviations
+        columns: dict[str, Iterable[object]] = {
+            "parameter": names,
+            "mean": map(cell, self.mean, self.deviations),
+            "standard deviation": cells(self.deviations, 2),
+            "95 % of the posterior": [interval(*ends) for ends in self.intervals().values()],
+            "95 % linearised": map(interval, self.mode - linear, self.mode + linear),
+        }
+        if profiles is not None:
+            ends = profiles.intervals
+            texts = [interval(*ends[name]) if name in ends else "" for name in names]
+            columns[f"{100 * profiles.level:g} % of the profile"] = texts
+        columns |= {
+            "unit": [item.unit for item in self.parameters],
+            "R-hat": cells(self.r_hat, 4),
+            "effective draws, centre": cells(self.bulk, 3),
+            "effective draws, tails": cells(self.tail, 3),
+            "error of the mean": cells(self.errors, 2),
+        }
+        return (Table.of("posterior", "Posterior of the parameters", columns),)

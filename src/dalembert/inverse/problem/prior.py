@@ -58,7 +58,7 @@ def prior_slopes(parameters: Parameters, vector: np.ndarray, unit: np.ndarray) -
 
 def joint_priors(parameters: Parameters) -> Iterator[tuple[CorrelatedNormal, np.ndarray]]:
     """Yield the priors of several parameters, each with the numbers of its parameters."""
-    joints = dict.fromkeys(item.prior for item in parameters if isinstance(item.prior, CorrelatedNormal))
+    joints = dict.fromkeys(item.prior for item in parameters.items if isinstance(item.prior, CorrelatedNormal))
     for joint in joints:
         yield joint, np.array([parameters.names.index(name) for name in joint.names])
 

@@ -7,9 +7,12 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 
 from dalembert.findings import Finding
+from dalembert.inverse.experiments.residual_table import residual_table
 from dalembert.inverse.fit.stored_data import StoredData
-from dalembert.results import Result, fact_lines
+from dalembert.results import Result
 from dalembert.stored_fields import Labels, Over, Table
+from dalembert.tables import Table as ResultTable
+from dalembert.tables import cells, counted, shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +49,8 @@ class RegularisedFit(Result):
     """
 
     FORMAT: ClassVar[str] = "dalembert regularised fit 1"
+    TITLE: ClassVar[str] = "Smooth parameters"
+    VERDICTS: ClassVar[tuple[str, str]] = ("estimated", "not settled")
 
     names: Annotated[tuple[str, ...], Labels("parameter")]
     units: tuple[str, ...]
@@ -88,17 +93,31 @@ class RegularisedFit(Result):
         """Values by name."""
         return dict(zip(self.names, self.values.tolist(), strict=True))
 
-    def summary(self) -> str:
-        """The result in a few lines."""
-        known = f"{self.discrepancy:.3g}" if np.isfinite(self.discrepancy) else "none (the noise is not known)"
-        facts = fact_lines(
-            22,
-            parameters=f"{len(self.names)}, {len(self.smooth)} of them smooth",
-            weight=f"{self.weight:.3g} ({self.rule})",
-            corner=f"{self.corner:.3g} (of the L-curve)",
-            discrepancy=known,
-            residual=f"{self.residual_norm:.4g}",
-            effective=f"{self.effective:.3g} parameters",
-            simulations=self.simulations,
+    def facts(self) -> dict[str, str]:
+        return {
+            "parameters": f"{counted(len(self.names))}, {counted(len(self.smooth))} of them smooth",
+            "effective parameters": shown(self.effective),
+            "weight of the penalty": f"{shown(self.weight)} ({self.rule})",
+            "by the corner of the L-curve": shown(self.corner),
+            "by the discrepancy principle": shown(self.discrepancy)
+            if np.isfinite(self.discrepancy)
+            else "noise not known",
+            "residual norm": shown(self.residual_norm),
+            "simulations": counted(self.simulations),
+        }
+
+    def tables(self) -> tuple[ResultTable, ...]:
+        """Return the parameters without a penalty, all values, and the residuals."""
+        places = [place for place, name in enumerate(self.names) if name not in self.smooth]
+        plain = {
+            "parameter": [self.names[place] for place in places],
+            "value": cells(self.values[places]),
+            "standard deviation": cells(self.deviations[places], 2),
+            "unit": [self.units[place] for place in places],
+        }
+        each = {"parameter": self.names, "value": self.values, "standard deviation": self.deviations}
+        return (
+            *([ResultTable.of("other-values", "Parameters without a penalty", plain)] if places else []),
+            ResultTable.of("values", "Values", {**each, "unit": self.units}, detail=True),
+            residual_table(self),
         )
-        return "\n".join([*facts, *map(str, self.findings)])

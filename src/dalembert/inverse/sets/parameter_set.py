@@ -8,8 +8,10 @@ import numpy as np
 
 from dalembert.findings import Finding
 from dalembert.inverse.fit.stored_data import StoredData
-from dalembert.results import EndedResult, fact_lines, fixed_lines, text_table
+from dalembert.results import EndedResult
 from dalembert.stored_fields import Over, StoredParameters, StoredSides, Table
+from dalembert.tables import Table as ResultTable
+from dalembert.tables import box_table, counted, few_values, interval, shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +50,8 @@ class ParameterSet(EndedResult):
     """
 
     FORMAT: ClassVar[str] = "dalembert parameterset 1"
+    TITLE: ClassVar[str] = "Consistent parameters"
+    VERDICTS: ClassVar[tuple[str, str]] = ("found", "not settled")
 
     parameters: StoredParameters
     data: StoredData
@@ -85,23 +89,36 @@ class ParameterSet(EndedResult):
         inside, boundary = (np.array([_in_any(boxes, point) for point in points], dtype=bool) for boxes in self._paved)
         return np.where(inside, 1.0, np.where(boundary, np.nan, 0.0))
 
-    def summary(self) -> str:
-        """Return a table of outer and inner intervals with unit and bounds, then volume, effort and findings."""
-        rows: list[tuple[str, ...]] = [("parameter", "outer", "inner", "unit", "bounds")]
-        for item in self.parameters:
-            outer, inner = ("none" if box is None else str(box[item.name]) for box in (self.outer, self.inner))
-            rows.append((item.name, outer, inner, item.unit, f"{item.lower:.6g} to {item.upper:.6g}"))
-        smallest, largest = self.volume
-        facts = [
-            *fact_lines(
-                volume=f"{smallest:.6g} to {largest:.6g}",
-                boxes=f"{len(self.inside)} inside, {len(self.boundary)} on the boundary",
-                simulations=self.runs,
-                seconds=f"{self.seconds:.2g}",
-            ),
-            *fixed_lines(self),
-        ]
-        return "\n".join([*text_table(rows), "", *facts, "", self.status, *map(str, self.findings)])
+    @property
+    def verdict(self) -> str:
+        return "empty" if self.empty else super().verdict
+
+    def key_values(self) -> dict[str, str]:
+        box = self.outer
+        ends = [] if box is None else [f"in {interval(*pair)}" for pair in zip(box.lower, box.upper, strict=True)]
+        return few_values(self.parameters, ends) if ends else {}
+
+    def facts(self) -> dict[str, str]:
+        searched = float(np.prod(self.parameters.upper - self.parameters.lower))
+        least, most = (shown(100 * volume / searched, digits=3) for volume in self.volume)
+        return {
+            "part of what was searched": f"{least} to {most} %",
+            "boxes": f"{counted(len(self.inside))} inside, {counted(len(self.boundary))} on the boundary",
+            "runs of the model": counted(self.runs),
+            "time": f"{shown(self.seconds, digits=3)} s",
+        }
+
+    def tables(self) -> tuple[ResultTable, ...]:
+        """Return the outer and the inner box."""
+        boxes = {
+            "Outer box: all consistent parameters lie in it": self.outer,
+            "Inner box: all parameters in it are consistent": self.inner,
+        }
+        return tuple(
+            box_table(box, caption, f"{caption[:5].lower()}-box", units=self.parameters.units(box.names))
+            for caption, box in boxes.items()
+            if box is not None
+        )
 
 
 def _in_any(boxes: np.ndarray, point: np.ndarray) -> bool:

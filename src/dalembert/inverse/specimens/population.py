@@ -1,6 +1,6 @@
 """The result of several specimens: the mean of their parameters, and how much these vary."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
@@ -8,8 +8,9 @@ import numpy as np
 from scipy.special import stdtrit
 
 from dalembert.findings import Finding
-from dalembert.results import Result, fact_lines, text_table
+from dalembert.results import Result
 from dalembert.stored_fields import Labels, Over
+from dalembert.tables import MOST_FACTS, Table, cell, cells, counted, interval, labelled, shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +44,8 @@ class Population(Result):
     """
 
     FORMAT: ClassVar[str] = "dalembert population 1"
+    TITLE: ClassVar[str] = "Several specimens"
+    VERDICTS: ClassVar[tuple[str, str]] = ("estimated", "")
 
     names: Annotated[tuple[str, ...], Labels("parameter")]
     units: tuple[str, ...]
@@ -79,14 +82,42 @@ class Population(Result):
     def _named(self, lower: np.ndarray, upper: np.ndarray) -> dict[str, tuple[float, float]]:
         return dict(zip(self.names, zip(lower.tolist(), upper.tolist(), strict=True), strict=True))
 
-    def summary(self) -> str:
-        """Return a table of means and spreads, then the findings."""
-        part = f"{100 * self.level:g} %"
-        rows = [("parameter", "mean", "± deviation", "spread", f"spread, {part}", f"new specimen, {part}", "unit")]
-        for k, (name, unit) in enumerate(zip(self.names, self.units, strict=True)):
-            lower, upper = self.prediction[name]
-            spread = f"{self.spread_lower[k]:.3g} to {self.spread_upper[k]:.3g}"
-            facts = f"{self.mean[k]:.6g}", f"{self.mean_deviations[k]:.2g}", f"{self.spread[k]:.3g}"
-            rows.append((name, *facts, spread, f"{lower:.5g} to {upper:.5g}", unit))
-        facts = fact_lines(specimens=len(self.specimens))
-        return "\n".join([*text_table(rows), "", *facts, *map(str, self.findings)])
+    def key_values(self) -> dict[str, str]:
+        pairs = zip(self.labels, self.mean.tolist(), self.spread.tolist(), strict=True)
+        texts = {label: f"{shown(mean)}, spread {shown(spread)}" for label, mean, spread in pairs}
+        return texts if len(texts) <= MOST_FACTS else {}
+
+    def facts(self) -> dict[str, str]:
+        return {"specimens": counted(len(self.specimens))}
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Names of the parameters with their units."""
+        return tuple(map(labelled, self.names, self.units))
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the means and spreads, then the values of the specimens."""
+        level = f"{100 * self.level:g} %"
+        means = {
+            "parameter": self.labels,
+            "mean": map(cell, self.mean, self.mean_deviations),
+            "standard deviation": cells(self.mean_deviations, 2),
+            "spread": cells(self.spread, 3),
+            f"spread, {level}": map(interval, self.spread_lower, self.spread_upper),
+            f"new specimen, {level}": map(interval, self.new_lower, self.new_upper),
+            "Q": cells(self.heterogeneity, 3),
+            "p-value of Q": cells(self.p_value, 2),
+        }
+        values: dict[str, Iterable[object]] = {"specimen": self.specimens}
+        for k, label in enumerate(self.labels):
+            for suffix, columns, deviations in (
+                ("", self.values, self.deviations),
+                (", adjusted", self.adjusted, self.adjusted_deviations),
+            ):
+                values[f"{label}{suffix}"] = map(cell, columns[:, k], deviations[:, k])
+                values[f"± {label}{suffix}"] = cells(deviations[:, k], 2)
+        caption = "Values of the specimens, and adjusted by what is known of the others"
+        return (
+            Table.of("population", "Mean over specimens, and standard deviation between them", means),
+            Table.of("specimens", caption, values, detail=True),
+        )

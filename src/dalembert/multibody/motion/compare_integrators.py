@@ -23,8 +23,11 @@ from dalembert.multibody.motion.simulation import prepared, simulate
 from dalembert.multibody.motion.trajectory import Trajectory
 from dalembert.results import Result
 from dalembert.stored_fields import Source, Store
+from dalembert.tables import Table, cells, counted, marks, noted, shown
 
 OnRow = Callable[["IntegratorRun"], None]
+ERRORS = (1e-4, 1e-8)
+"""Errors that the fastest integrator is named for."""
 
 
 @dataclass(frozen=True)
@@ -92,6 +95,8 @@ class WorkPrecision(Result):
     """
 
     FORMAT: ClassVar[str] = "dalembert work and precision 1"
+    TITLE: ClassVar[str] = "Work and precision"
+    VERDICTS: ClassVar[tuple[str, str]] = ("compared", "not compared")
 
     channels: tuple[str, ...]
     end: float
@@ -111,31 +116,43 @@ class WorkPrecision(Result):
 
     @property
     def status(self) -> str:
-        """What is compared and how far it can be trusted, in a sentence."""
-        failed = [row.settings for row in self.rows if row.failure]
-        told = f"; {len(failed)} of {len(self.rows)} runs ended early, see the table" if failed else ""
-        return (
-            f"{len(self.rows)} runs of {len(self.methods)} integrators to {self.end:g} s beside {self.reference}, "
-            f"which is itself known to about {self.apart:.1e}{told}"
-        )
+        """What is compared and how far it can be trusted, in sentences."""
+        failed = sum(bool(row.failure) for row in self.rows)
+        known = f"to about {self.apart:.1e}" if np.isfinite(self.apart) and self.apart > 0 else "to rounding"
+        early = f" {failed} of {len(self.rows)} runs ended early; the table has the reasons." if failed else ""
+        return f"The reference is {self.reference}; by a second one it is known {known}.{early}"
 
     def fastest(self, error: float) -> IntegratorRun | None:
         """The fastest run whose error is at most ``error``; None if there is none."""
         good = [row for row in self.rows if row.error <= error]
         return min(good, key=lambda row: row.seconds, default=None)
 
-    def summary(self) -> str:
-        """The runs as a text table."""
-        width = max((len(row.settings) for row in self.rows), default=0)
-        lines = [f"{'integrator':{width}}     error  run time/s    steps  position  velocity  energy"]
-        for row in self.rows:
-            told = (
-                row.failure
-                or f"{row.error:9.1e} {row.seconds:11.4f} {row.steps:8d} {row.position:9.1e} {row.velocity:9.1e} "
-                f"{row.energy:7.0e}"
-            )
-            lines.append(f"{row.settings:{width}} {told}")
-        return "\n".join([*lines, "", self.status])
+    def facts(self) -> dict[str, str]:
+        return {
+            "simulated": f"{shown(self.end)} s",
+            "integrators": counted(len(self.methods)),
+            "runs": counted(len(self.rows)),
+            **{f"fastest to {error:.0e}": row.method for error in ERRORS if (row := self.fastest(error))},
+        }
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return error, run time and constraint violations of each run."""
+        columns = {
+            "integrator": [row.method for row in self.rows],
+            "settings": [row.settings for row in self.rows],
+            "error": cells([row.error for row in self.rows], 3),
+            "run time (s)": cells([row.seconds for row in self.rows], 3),
+            "steps": [row.steps for row in self.rows],
+            "|Φ|": cells([row.position for row in self.rows], 2),
+            "|Φ̇|": cells([row.velocity for row in self.rows], 2),
+            "|Φ̈|": cells([row.acceleration for row in self.rows], 2),
+            "energy": cells([row.energy for row in self.rows], 2),
+            "note": marks(row.failure for row in self.rows),
+        }
+        caption = (
+            "Errors relative to the channels' ranges, constraint violations, energy relative to the kinetic energy's"
+        )
+        return (noted(Table.of("integrators", caption, columns)),)
 
 
 @takes_checked()

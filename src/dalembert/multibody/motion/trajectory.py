@@ -1,11 +1,11 @@
 """A simulated motion: channels, energies, constraint violations, reactions and what is needed to draw it."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -33,19 +33,20 @@ from dalembert.multibody.motion.work import works_of_steps
 from dalembert.multibody.start.lost_freedom import no_freedom
 from dalembert.multibody.start.redundant_constraints import redundant_constraints
 from dalembert.multibody.start.start_findings import start_findings
-from dalembert.notebook_display import Displayed
+from dalembert.results import Summarised
+from dalembert.tables import Table, cells, counted, percent, shown
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
 
 @dataclass(frozen=True, eq=False)
-class Trajectory(Displayed):
+class Trajectory(Summarised):
     """The motion of a system, as :func:`simulate` returns it.
 
     Parameters
     ----------
-    system : Mechanism
+    system : BaseSystem
         The mechanism.
     lowered : Lowered
         Its arrays, which kernels take.
@@ -56,6 +57,9 @@ class Trajectory(Displayed):
     rows : array of int, shape (samples,)
         Indices of the output times among the times of the run.
     """
+
+    TITLE: ClassVar[str] = "Simulated motion"
+    VERDICTS: ClassVar[tuple[str, str]] = ("simulated", "")
 
     system: BaseSystem
     lowered: Lowered
@@ -218,18 +222,43 @@ class Trajectory(Displayed):
         """Write :meth:`contents` as NetCDF-4, whole or not at all."""
         write_contents(path, self.contents(names))
 
-    def summary(self) -> str:
-        """A few lines: steps, Newton iterations, energy balance and constraint violations, findings."""
-        steps, iterations, factorisations, rejected = self.run.counts
-        worst = {name: np.max(np.abs(value)) for name, value in self.violations.items()}
-        kinetic = np.ptp(self.energies["kinetic"])
-        return "\n".join(
-            [
-                f"{self.times[-1]:g} s in {steps} steps ({rejected} rejected), {iterations / max(steps, 1):.2f} Newton "
-                f"iterations a step, {factorisations} factorisations",
-                f"energy: largest imbalance {np.max(np.abs(self.energies['balance'])):.3g} J, "
-                f"range of the kinetic energy {kinetic:.3g} J",
-                "constraints: largest violation " + ", ".join(f"{name} {value:.2g}" for name, value in worst.items()),
-                *map(str, self.findings),
-            ]
-        )
+    @property
+    def status(self) -> str:
+        """How well energy is balanced, in a sentence."""
+        energies, balance = self.energies, _largest(self.energies, "balance")
+        swing = max((float(np.ptp(values)) for key, values in energies.items() if key != "balance"), default=0.0)
+        if not (swing > 0 and np.isfinite(balance)):
+            return "The motion was simulated to its end."
+        kept = f"The energy balance is kept to {percent(balance / swing, 2)} of the energy that moves"
+        return f"{kept}; a smaller step lowers it."
+
+    def facts(self) -> dict[str, str]:
+        steps, iterations, _, rejected = self.run.counts
+        return {
+            "simulated": f"{shown(float(self.times[-1] - self.times[0]))} s",
+            "steps": f"{counted(int(steps))}, {counted(int(rejected))} rejected" if rejected else counted(int(steps)),
+            "Newton iterations a step": shown(iterations / max(steps, 1), digits=3),
+            "largest energy error": f"{shown(_largest(self.energies, 'balance'), digits=3)} J",
+            "largest constraint violation": f"{shown(_largest(self.violations, 'position'), digits=3)} m",
+        }
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the largest energy imbalance and constraint violations, and the iterations."""
+        counts = np.asarray(self.newton_iterations)
+        rows = [
+            ("largest energy balance", _largest(self.energies, "balance"), "J"),
+            *(
+                (f"largest violation, {level}", _largest(self.violations, level), unit)
+                for level, unit in {"position": "m", "velocity": "m/s", "acceleration": "m/s²"}.items()
+            ),
+            ("steps", len(counts), ""),
+            ("Newton iterations a step, mean", float(counts.mean()) if len(counts) else float("nan"), ""),
+            ("Newton iterations a step, most", int(counts.max(initial=0)), ""),
+        ]
+        names = ("quantity", "value", "unit")
+        return (Table.of_rows("diagnostics", "Diagnostics", names, [cells(row, 3) for row in rows]),)
+
+
+def _largest(series: Mapping[str, np.ndarray], key: str) -> float:
+    """Return the largest magnitude of one of several series; NaN if it is missing."""
+    return float(np.nanmax(np.abs(series[key]), initial=0.0)) if key in series else float("nan")

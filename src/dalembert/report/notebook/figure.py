@@ -209,7 +209,8 @@ def _trace(panel: Panel, trace: Any, before: Any) -> list[str]:
     colour = trace.line.color or trace.marker.color
     colour = colour if isinstance(colour, str) else LIGHT.series[0]
     if trace.fill in ("toself", "tozeroy") or (trace.fill == "tonexty" and before is not None):
-        lines.append(f'<path d="{path(_area(panel, trace, pixels, before))}Z" fill="{_fill(trace, colour)}"/>')
+        fill = trace.fillcolor or f"{colour}38"
+        lines.append(f'<path d="{path(_area(panel, trace, pixels, before))}Z" fill="{fill}"/>')
     if "lines" in mode and trace.line.width != 0:
         lines.append(_stroke(_thinned(pixels), colour, trace.line.width or 2, DASHES.get(trace.line.dash or "", "")))
     if "markers" in mode:
@@ -225,10 +226,6 @@ def _area(panel: Panel, trace: Any, pixels: np.ndarray, before: Any) -> np.ndarr
         zero = panel.pixels(trace.x, np.zeros(len(pixels)))
         return np.concatenate([pixels, zero[::-1]])
     return np.concatenate([pixels, panel.pixels(before.x, before.y)[::-1]])
-
-
-def _fill(trace: Any, colour: str) -> str:
-    return trace.fillcolor or f"{colour}38"
 
 
 def _markers(trace: Any, pixels: np.ndarray) -> list[str]:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dalembert.report.charts.motion.film import Playback
+from dalembert.report.charts.motion.playback import Playback
 from dalembert.report.scene.motion import motion_scene
 from dalembert.report.scene.scene import Scene
 

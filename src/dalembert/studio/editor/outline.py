@@ -43,7 +43,7 @@ class Outline:
     @classmethod
     def of(cls, study: "Study", text: str) -> "Outline":
         """The outline of a study that was read from a text."""
-        from dalembert.studio.simulation.parts import parameters_of
+        from dalembert.studio.simulation.simulated_parts import parameters_of
 
         name = study.file.study.name or study.name
         return cls(text, name, study.task, study.parameters, parameters_of(study), channels_of(study), study.files)

@@ -28,7 +28,7 @@ Positions = dict[str, np.ndarray]
 
 def measured_positions(study: "Study", axes: Sequence[str]) -> Positions:
     """Return positions of the points of which all coordinates are measured; none of data that cannot be read."""
-    from dalembert.report.sections.motion.trajectory import measured
+    from dalembert.report.sections.motion_sections import measured
 
     tables = study.file.experiments or ([] if study.file.data is None else [study.file.data])
     parts_of_point: dict[str, list[np.ndarray]] = {}

@@ -47,7 +47,7 @@ def changes_of(state: Mapping[str, Any], document: TOMLDocument) -> list[Change]
         The study of the run. It is not changed.
     """
     best = (state.get("best") or {}).get("values") or {}
-    findings = [one for one in state.get("findings") or [] if "values" in one]  # those of former versions have none
+    findings = state.get("findings") or []
     return [change for one in findings for change in changes(one["code"], one["values"], document, best)]
 
 

@@ -100,7 +100,7 @@ def _sections(comparison: RunComparison, options: ReportOptions) -> list[Section
 def _models(comparison: RunComparison) -> list[Section]:
     """The ranking of identified models; none where fewer than two runs identified one."""
     from dalembert.inverse import compare_models
-    from dalembert.report.sections.identification.model_comparison import compared_models
+    from dalembert.report.sections.alternative_sections import compared_models
 
     fits = {}
     for folder in comparison.folders:

@@ -34,7 +34,7 @@ def fit_so_far(kept: Kept, run: Path, values: list[float], experiment: str = "")
     from dalembert.inverse import ExperimentFit
     from dalembert.report.charts import responses
     from dalembert.studio.simulation.answers import response_at
-    from dalembert.studio.simulation.parts import parameters_of, part
+    from dalembert.studio.simulation.simulated_parts import parameters_of, part
 
     study, names = kept.newest("study of run", run, lambda: _fitted(run))
     if not names or len(values) != len(names):

@@ -71,17 +71,13 @@ class _Page:
         self.learning: asyncio.Task | None = None
 
     def build(self) -> None:
+        """Make the parts of the page: state, actions, values, what is live, files, findings, report."""
         with ui.row().classes("items-center gap-x-4 gap-y-2"):
             self.badge = badge(STARTING)
             self.told = ui.label("").props("role=status aria-live=polite").classes("break-words")
         self.bar = ui.linear_progress(0, show_value=False).props('aria-label="Progress" indeterminate')
         with ui.row().classes("gap-2"):
-            self.pause = button("Pause", complaints()(lambda: pause(self.folder)), icon="pause")
-            self.stop = button("Stop", complaints()(lambda: stop(self.folder)), icon="stop", colour="negative")
-            self.resume = button("Resume", complaints()(lambda: self.jobs.resume(self.folder.path)), icon="play_arrow")
-            self.study = button("Open the study", self._open_study, icon="edit_note").props("flat")
-            self.again = button("Run again", complaints()(self._run_again), icon="replay").props("flat")
-            self.next = button("Continue as a new study", self._continue, icon="note_add").props("flat")
+            self._build_actions()
         self.message = ui.label("").classes("whitespace-pre-wrap break-words")
         self.values = ui.column().classes("w-full")
         self.live_part = ui.column().classes("w-full gap-4")
@@ -95,14 +91,24 @@ class _Page:
         self.findings = ui.column().classes("w-full gap-2")
         self.report = ui.column().classes("w-full")
 
-    def _open_study(self) -> None:
-        ui.navigate.to(f"/study/{quote(study_of(self.workspace, self.folder) or '')}")
+    def _build_actions(self) -> None:
+        name = self.folder.path.name
 
-    def _run_again(self) -> None:
-        ui.navigate.to(f"/run/{quote(run_again(self.workspace, self.jobs, self.folder.path.name))}")
+        def open_study() -> None:
+            ui.navigate.to(f"/study/{quote(study_of(self.workspace, self.folder) or '')}")
 
-    def _continue(self) -> None:
-        ui.navigate.to(f"/continue/{quote(self.folder.path.name)}")
+        def start_again() -> None:
+            ui.navigate.to(f"/run/{quote(run_again(self.workspace, self.jobs, name))}")
+
+        def continue_as_new() -> None:
+            ui.navigate.to(f"/continue/{quote(name)}")
+
+        self.pause = button("Pause", complaints()(lambda: pause(self.folder)), icon="pause")
+        self.stop = button("Stop", complaints()(lambda: stop(self.folder)), icon="stop", colour="negative")
+        self.resume = button("Resume", complaints()(lambda: self.jobs.resume(self.folder.path)), icon="play_arrow")
+        self.study = button("Open the study", open_study, icon="edit_note").props("flat")
+        self.again = button("Run again", complaints()(start_again), icon="replay").props("flat")
+        self.next = button("Continue as a new study", continue_as_new, icon="note_add").props("flat")
 
     async def look(self) -> None:
         """Bring the page up to what the run's folder says."""
@@ -110,12 +116,8 @@ class _Page:
             self._show_events()
         self.look_at_state()
         self._draw_curves()
-        if self.state == RUNNING and self.learning is None:
-            self.learning = asyncio.create_task(self._learn())
-        is_new = self.live.values and self.live.values != self.fitted
-        if self.state == RUNNING and is_new and self.computing.is_due and (self.fitting is None or self.fitting.done()):
-            self.fitted = list(self.live.values)
-            self.fitting = asyncio.create_task(self._show_fit(self.fitted))
+        if self.state == RUNNING:
+            self._ask_worker()
 
     def look_at_state(self) -> None:
         """Show the state of the run, and what depends on it, if it has changed."""
@@ -136,52 +138,60 @@ class _Page:
         return STARTING if self.jobs.is_started(self.folder.path) else MISSING
 
     def _show_state(self) -> None:
-        """The state itself, what can be done now, and what there is to read."""
-        state, ended = self.state, self.state not in (RUNNING, STARTING)
+        """Show the state itself, what can be done now, and what there is to read."""
+        ended = self.state not in (RUNNING, STARTING)
+        self._show_actions(ended)
+        message = self.folder.state().get("message", "") if self.folder.is_run else ""
+        self.message.set_text(str(message or self.complaint or SAYS.get(self.state, "")) if ended else "")
+        for part in (self.files, self.report, self.findings, self.values):
+            part.clear()
+        if ended:
+            self._show_files()
+            self._show_result()
+
+    def _show_actions(self, ended: bool) -> None:
+        state = self.state
         self.badge.set_text(state)
         self.badge.props(f"color={STATES.get(state, 'grey' if state == STARTING else 'negative')}")
-        self.stop.set_visibility(state == RUNNING)
-        self.pause.set_visibility(state == RUNNING)
-        self.resume.set_visibility(state in RESUMABLE)
-        self.study.set_visibility(study_of(self.workspace, self.folder) is not None)
-        for one in (self.again, self.next):
-            one.set_visibility(ended and self.folder.is_run)
         self.bar.set_visibility(not ended)
-        said = self.folder.state().get("message", "") if self.folder.is_run else ""
-        self.message.set_text(str(said or self.complaint or SAYS.get(state, "")) if ended else "")
-        self.files.clear()
-        self.report.clear()
-        self.findings.clear()
-        self.values.clear()
-        if not ended:
-            return
-        name = quote(self.folder.path.name)
+        for action, offered in (
+            (self.stop, state == RUNNING),
+            (self.pause, state == RUNNING),
+            (self.resume, state in RESUMABLE),
+            (self.study, study_of(self.workspace, self.folder) is not None),
+            (self.again, ended and self.folder.is_run),
+            (self.next, ended and self.folder.is_run),
+        ):
+            action.set_visibility(offered)
+
+    def _show_files(self) -> None:
+        name = self.folder.path.name
         with self.files:
             ui.label("Download:")
             for file, what in FILES.items():
                 if (self.folder.path / file).is_file():
-                    ui.link(what, f"/files/{name}/{file}").props(f'download="{_saved(self.folder, file)}"')
+                    saved = f"{name}-{file}".replace('"', "")
+                    ui.link(what, f"/files/{quote(name)}/{file}").props(f'download="{saved}"')
+
+    def _show_result(self) -> None:
+        """Show findings, misfit, values, many of them as a table, and the report."""
         with self.findings:
             if self.folder.is_run:
                 findings_list(self.folder)
-        if state == FINISHED:
-            self.told.set_text(self._result())
-        self.live_part.set_visibility(state != FINISHED)
+        if self.state == FINISHED:
+            best = self.folder.state().get("best") or {}
+            misfit, values = best.get("misfit"), best.get("values") or {}
+            units, text = run_units(self.folder, values), "" if misfit is None else f"misfit {misfit:.4g}"
+            if len(values) > FEW_VALUES:
+                with self.values:
+                    _value_table(values_of(best, units))
+            else:
+                text = ", ".join(filter(None, (text, values_text(best, units))))
+            self.told.set_text(text)
+        self.live_part.set_visibility(self.state != FINISHED)
         if self.folder.report.is_file():
             with self.report:
                 report_of(self.folder, "85vh")
-
-    def _result(self) -> str:
-        """Misfit of the result, and its values, many of them as a table."""
-        found = self.folder.state().get("best") or {}
-        misfit, values = found.get("misfit"), found.get("values") or {}
-        units = run_units(self.folder, values)
-        said = "" if misfit is None else f"misfit {misfit:.4g}"
-        if len(values) > FEW_VALUES:
-            with self.values:
-                _value_table(values_of(found, units))
-            return said
-        return ", ".join(filter(None, (said, values_text(found, units))))
 
     def _show_events(self) -> None:
         text, done, total = self.live.progress
@@ -197,23 +207,30 @@ class _Page:
         """Draw the curves that have changed, those of a run that has ended at once."""
         if self.state == FINISHED or (self.state == RUNNING and not self.drawing.is_due):
             return
+        live = self.live
         with self.drawing.work():
-            self._draw_changed()
-
-    def _draw_changed(self) -> None:
-        points, visited, names = self.live.convergence, self.live.visited, self.live.names
-        if points and self._is_new("convergence", points):
-            _draw(self.curve, "Best value over simulations", convergence({self.folder.path.name: points}))
-        if visited and names and self._is_new("visited", visited):
-            _draw(self.paths, "Parameters over simulations", wandering(visited, names, self.live.units))
-        if len(self.live.followed) > 1 and self._is_new("followed", self.live.followed):
-            _draw(self.curve, "The response computed so far", followed(self.live.followed, self.live.axes))
+            if live.convergence and self._is_new("convergence", live.convergence):
+                curve = convergence({self.folder.path.name: live.convergence})
+                _draw(self.curve, "Best value over simulations", curve)
+            if live.visited and live.names and self._is_new("visited", live.visited):
+                _draw(self.paths, "Parameters over simulations", wandering(live.visited, live.names, live.units))
+            if len(live.followed) > 1 and self._is_new("followed", live.followed):
+                _draw(self.curve, "The response computed so far", followed(live.followed, live.axes))
 
     def _is_new(self, what: str, points: Sequence[object]) -> bool:
         """Return True unless these points of a curve are drawn; a new stage may have fewer of them than the last."""
         is_new = self.drawn.get(what) != tuple(points)
         self.drawn[what] = tuple(points)
         return is_new
+
+    def _ask_worker(self) -> None:
+        """Start to learn the names of the unknowns once, and to compute each new best fit when that is due."""
+        if self.learning is None:
+            self.learning = asyncio.create_task(self._learn())
+        is_new = self.live.values and self.live.values != self.fitted
+        if is_new and self.computing.is_due and (self.fitting is None or self.fitting.done()):
+            self.fitted = list(self.live.values)
+            self.fitting = asyncio.create_task(self._show_fit(self.fitted))
 
     async def _learn(self) -> None:
         """Ask another process for the names of the unknowns and the number of simulations, which take imports."""
@@ -274,8 +291,3 @@ def _names(kept: Kept, folder: RunFolder) -> tuple[str, ...]:
 
 def _planned(kept: Kept, run: Path) -> int | None:
     return planned_simulations(run)
-
-
-def _saved(folder: RunFolder, file: str) -> str:
-    """Name under which a file of a run is saved."""
-    return f"{folder.path.name}-{Path(file).name}".replace('"', "")

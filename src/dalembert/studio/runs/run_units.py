@@ -22,7 +22,7 @@ def run_units(folder: RunFolder, names: Iterable[str]) -> dict[str, Unit]:
     """Return the units of the values of a run by their names, as far as its study or a channel gives one."""
     try:
         document = tomllib.loads(folder.study.read_text(encoding="utf-8"))
-    except (OSError, ValueError):  # a run of a former version, or a damaged one
+    except (OSError, ValueError):  # a damaged run
         document = {}
     found = {name: value_unit(document, name) for name in names}
     return {name: unit for name, unit in found.items() if unit != PLAIN}

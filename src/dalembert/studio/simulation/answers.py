@@ -13,7 +13,7 @@ from dalembert.report.look import plain
 from dalembert.report.player import film_of, frames
 from dalembert.studio.editor.reading import study_of
 from dalembert.studio.simulation.curves import Curves, curves, on_page
-from dalembert.studio.simulation.parts import OVER_FREQUENCY, NothingToSimulateError, StudyMotion, part
+from dalembert.studio.simulation.simulated_parts import OVER_FREQUENCY, NothingToSimulateError, StudyMotion, part
 from dalembert.studio.worker import Kept
 
 if TYPE_CHECKING:
@@ -197,7 +197,7 @@ def _motion(own: StudyMotion, values: Mapping[str, float]) -> "tuple[np.ndarray 
 
 
 def _film(own: StudyMotion, trajectory: "Trajectory", rows: np.ndarray) -> dict[str, Any]:
-    from dalembert.report.sections.motion.trajectory import measured
+    from dalembert.report.sections.motion_sections import measured
 
     axes = "xyz"[: len(trajectory.system.AXES)]
     positions = {} if own.data is None else measured(own.data.channels, own.data.values, axes)
@@ -242,8 +242,8 @@ def _over_frequency(own: StudyMotion, values: Mapping[str, float]) -> Influences
 
     A curve that is followed by arc length has other points at other values, and no effects.
     """
-    from dalembert.report.focus import movers
     from dalembert.study.tasks.frequency_response import drawn_dofs
+    from dalembert.vibration.paths.focus import movers
 
     vector, table, began = own.vector(values), own.study.table, perf_counter()
     first = _curve_at(own, vector)

@@ -11,7 +11,7 @@ from dalembert.quantities import by_quantity, common, quantity
 from dalembert.report.charts.drawing import colour_of, draw
 from dalembert.report.look import plain, themed
 from dalembert.report.thinning import thinned
-from dalembert.studio.simulation.parts import StudyMotion
+from dalembert.studio.simulation.simulated_parts import StudyMotion
 from dalembert.tables import labelled
 
 HEIGHT = 320

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
 from pydantic import Field
@@ -12,6 +12,7 @@ from dalembert.errors import InputError, StorageError, require_known, told
 from dalembert.files import replacing
 from dalembert.forward import ForwardModel, prefetched
 from dalembert.parameters import Parameters
+from dalembert.results import Summarised
 from dalembert.study.run.duration import TOGETHER, Effort, evaluated
 from dalembert.study.run.events import Emit
 from dalembert.study.tables.study import Study
@@ -19,6 +20,7 @@ from dalembert.study.tasks.requirements import needs_solver, unnamed
 from dalembert.study.tasks.task import ResultTask
 from dalembert.study.text.numbers import MOST, Number, samples
 from dalembert.study.text.table import Read, StudyTable, alternative, problem
+from dalembert.tables import MOST_FACTS, Table, labelled
 
 _BATCH = 64  # points between two events
 
@@ -76,8 +78,11 @@ class Curve:
 
 
 @dataclass(frozen=True, eq=False)
-class Sweep:
+class Sweep(Summarised):
     """One curve a parameter, at one instant that ``at`` names."""
+
+    TITLE: ClassVar[str] = "Parameter sweep"
+    VERDICTS: ClassVar[tuple[str, str]] = ("swept", "incomplete")
 
     at: str
     curves: tuple[Curve, ...]
@@ -93,12 +98,27 @@ class Sweep:
 
     @property
     def status(self) -> str:
-        count = sum(len(curve.values) for curve in self.curves)
+        """What was varied, and how many simulations failed, in sentences."""
+        count, names = sum(len(curve.values) for curve in self.curves), [curve.parameter for curve in self.curves]
         failed = f"; {self.failed} of them failed, see events.jsonl" if self.failed else ""
-        return f"{count} points along {', '.join(curve.parameter for curve in self.curves)}{failed}"
+        varied = f"Responses at {self.at}, one parameter varied at a time: {', '.join(names)}."
+        return f"{varied} {count} points{failed}."
 
-    def summary(self) -> str:
-        return self.status
+    def facts(self) -> dict[str, str]:
+        return {f"values of {curve.parameter}": str(len(curve.values)) for curve in self.curves[:MOST_FACTS]}
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the responses, and their derivatives, along each parameter."""
+        tables = []
+        for place, curve in enumerate(self.curves, start=1):
+            columns = {labelled(curve.parameter, curve.unit): curve.values}
+            columns |= zip(curve.channels, curve.responses.T, strict=True)
+            if curve.sensitivities is not None:
+                names = [f"d {channel} / d {curve.parameter}" for channel in curve.channels]
+                columns |= zip(names, curve.sensitivities.T, strict=True)
+            caption = f"Responses along {curve.parameter}"
+            tables.append(Table.of(f"sweep-{place}", caption, columns, detail=True))
+        return tuple(tables)
 
     def save(self, path: Path) -> None:
         import xarray as xr

@@ -8,6 +8,7 @@ import numpy as np
 
 from dalembert.errors import counted
 from dalembert.findings import Finding
+from dalembert.tables import Table, cells, labelled, noted, percent, shown, unless
 from dalembert.units import unit_of
 from dalembert.vibration.paths.amplitudes import Amplitude, observed_column
 from dalembert.vibration.storage import ConvergedResult, Over
@@ -54,6 +55,7 @@ class Backbone(ConvergedResult):
     """
 
     FORMAT: ClassVar[str] = "dalembert backbone 1"
+    TITLE: ClassVar[str] = "Nonlinear mode"
 
     mode: int
     dof: str
@@ -83,32 +85,38 @@ class Backbone(ConvergedResult):
         return Amplitude(kind, self.orders).of(self.shapes[:, observed_column(self.dofs, dof)])
 
     @property
-    def extent(self) -> str:
-        """How many motions were found, in words, and how far a path came that did not reach its end."""
+    def status(self) -> str:
+        """How many motions were found, and how far a path came that did not reach its end."""
         count = int(self.converged.sum())
         short = next((finding.values for finding in self.findings if finding.code == "end-not-reached"), None)
         if short is None:
-            return f"{count} of {len(self)} amplitudes of {self.dof}"
+            return f"Mode {self.mode} was found at {count} of {len(self)} amplitudes of {self.dof}."
         unit = unit_of(self.dof)
+        came = f"came to {short['farthest']:.6g} {unit} and not to {short['end']:.6g} {unit}"
         points = f"{counted(count, 'point')} of a path over the amplitude of {self.dof}"
-        return f"{points}, which came to {short['farthest']:.6g} {unit} and not to {short['end']:.6g} {unit}"
+        return f"Mode {self.mode} was found at {points}, which {came}."
 
-    def summary(self) -> str:
-        """A few lines: points, and the ranges of frequency, damping and energy."""
-        converged = self.converged
-        lines = [f"mode {self.mode} at {self.extent}"]
-        if converged.any():
-            ranges = [
-                f"{name} {values[converged].min():.6g} to {values[converged].max():.6g}{unit}"
-                for name, values, unit in (
-                    ("amplitudes", self.amplitudes, f" {unit_of(self.dof)}"),
-                    ("frequencies", self.frequencies, " Hz"),
-                    ("damping ratios", self.damping, ""),
-                    ("energies", self.energies, " J"),
-                )
-            ]
-            lines.append(", ".join(ranges))
-        if not converged.all():
-            lost = ", ".join(f"{value:.6g} {unit_of(self.dof)}" for value in self.amplitudes[~converged][:5])
-            lines.append(f"not found: {lost}")
-        return "\n".join([*lines, *map(str, self.findings)])
+    def facts(self) -> dict[str, str]:
+        facts = {"points": f"{int(self.converged.sum())} of {len(self)}"}
+        if self.converged.any():
+            for name, values, unit in (
+                ("amplitude", self.amplitudes, unit_of(self.dof)),
+                ("frequency", self.frequencies, "Hz"),
+                ("kinetic energy", self.energies, "J"),
+            ):
+                ends = [shown(float(values[self.converged][end])) for end in (0, -1)]
+                facts[name] = f"{' to '.join(dict.fromkeys(ends))} {unit}"
+            facts["largest damping ratio"] = percent(self.damping[self.converged].max())
+        return facts
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return frequency, damping, energy and force over the amplitude."""
+        columns = {
+            labelled(f"amplitude of {self.dof}", unit_of(self.dof)): self.amplitudes,
+            "frequency (Hz)": self.frequencies,
+            "damping ratio (%)": cells(100 * np.asarray(self.damping), 4),
+            "kinetic energy, largest (J)": cells(self.energies, 4),
+            "force at resonance (N)": cells(self.forces, 4),
+            "note": unless(self.converged, "not found"),
+        }
+        return (noted(Table.of("backbone", f"Mode {self.mode} over its amplitude", columns)),)

@@ -1,6 +1,6 @@
 """A response over frequency."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, NamedTuple
 
@@ -10,9 +10,10 @@ from scipy.optimize import minimize_scalar
 
 from dalembert.errors import InputError
 from dalembert.findings import Finding
-from dalembert.units import unit_of
+from dalembert.tables import Table
 from dalembert.vibration.fourier import synthesis
 from dalembert.vibration.paths.amplitudes import Amplitude, coordinate_row, observed_column
+from dalembert.vibration.paths.curve_tables import curve_facts, curve_status, curve_tables
 from dalembert.vibration.storage import ConvergedResult, Over
 
 
@@ -75,6 +76,7 @@ class FrequencyCurve(ConvergedResult):
     """
 
     FORMAT: ClassVar[str] = "dalembert frequency curve 1"
+    TITLE: ClassVar[str] = "Forced response"
 
     dofs: tuple[str, ...]
     coordinates: tuple[str, ...]
@@ -177,37 +179,26 @@ class FrequencyCurve(ConvergedResult):
         return Peak(float(best[0]), float(size.of(best[1:])))
 
     @property
+    def verdict(self) -> str:
+        return super().verdict if self.converged.any() else "not found"
+
+    @property
     def status(self) -> str:
-        """How many points were found, in a sentence, and which were not, with residuals as part of the forces."""
-        text = f"{int(self.converged.sum())} of {len(self)} points found"
-        lost = zip(self.frequencies[~self.converged][:5], self.residuals[~self.converged], strict=False)
-        worst = ", ".join(f"{value:.6g} Hz ({error:.1e})" for value, error in lost)
-        return f"{text}; not found, with residuals as part of the forces: {worst}" if worst else text
+        """How many points were found, in a sentence."""
+        return curve_status(self)
 
-    def summary(self) -> str:
-        """Return some lines: points, iterations, samples, and the largest responses."""
-        count, *lost = self.status.split("; ")
-        lines = [
-            f"{count} between {self.frequencies.min():.6g} and {self.frequencies.max():.6g} Hz, "
-            f"{self.iterations.mean():.2f} Newton iterations a point",
-            *lost,
-        ]
-        if self.converged.any():
-            lines.append(
-                f"{self.samples.max()} samples of a period; twice as many change the forces by up to "
-                f"{np.nanmax(self.sampling_errors):.1e}"
-            )
-            lines += self._bifurcations()
-            for dof in self.dofs[:8]:
-                peak = self.peak(dof)
-                lines.append(f"{dof}: largest {peak.amplitude:.6g} {unit_of(dof)} at {peak.frequency:.6g} Hz")
-        return "\n".join([*lines, *map(str, self.findings)])
+    def facts(self, dofs: Sequence[str] = (), kind: str = "peak") -> dict[str, str]:
+        """Return the peak of the degree of freedom that moves most, of ``dofs`` if given, and effort."""
+        return curve_facts(self, dofs, kind)
 
-    def _bifurcations(self) -> list[str]:
-        """A line a kind, and one on stability."""
-        kinds: dict[str, list[str]] = {}
-        for kind, point in self.markers:
-            kinds.setdefault(kind, []).append(f"{self.frequencies[point]:.6g}")
-        lines = [f"{kind} at {', '.join(places)} Hz" for kind, places in kinds.items()]
-        judged = int(np.sum(self.stable >= 0))
-        return lines + [f"{np.sum(self.stable == 1)} of {judged} points stable"] * bool(judged)
+    def tables(self, dofs: Sequence[str] = (), kind: str = "peak") -> tuple[Table, ...]:
+        """Return peaks, marked points, points that were not found, contacts, springs, harmonics and diagnostics.
+
+        Parameters
+        ----------
+        dofs : sequence of str
+            Degrees of freedom; those that move most if not given.
+        kind : str
+            Of amplitude: ``"peak"``, ``"rms"`` or ``"harmonic 1"`` and so on.
+        """
+        return tuple(curve_tables(self, dofs, kind))

@@ -9,6 +9,7 @@ import numpy as np
 from dalembert.errors import InputError
 from dalembert.structure.mode_shapes import drawn_nodes, node_motion
 from dalembert.structure.structure import known_nodes
+from dalembert.tables import counted, in_words, shown
 from dalembert.threads import single_thread
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
@@ -49,6 +50,7 @@ class Deformation(VibrationResult):
     """
 
     FORMAT: ClassVar[str] = "dalembert deformation 1"
+    TITLE: ClassVar[str] = "Deformed shape"
 
     frequency: float
     orders: tuple[int, ...]
@@ -66,10 +68,19 @@ class Deformation(VibrationResult):
         waves = synthesis(self.orders, np.asarray(phases, dtype=float))
         return np.moveaxis(self.coefficients @ waves.T, -1, 0)
 
-    def summary(self) -> str:
-        """A line: nodes, frequency and the largest displacement of a period."""
+    @property
+    def status(self) -> str:
+        """What the result is, in a sentence."""
+        return "The motion of the whole structure at one point of a response over frequency."
+
+    def facts(self) -> dict[str, str]:
         largest = np.linalg.norm(self.motion(np.linspace(0, 2 * np.pi, 64)), axis=2).max(initial=0.0)
-        return f"{len(self.places)} nodes at {self.frequency:.6g} Hz, displacements up to {largest:.6g} m"
+        return {
+            "frequency": f"{shown(self.frequency)} Hz",
+            "nodes": counted(len(self.places)),
+            "largest displacement": in_words(float(largest), "m", 5),
+            **({"contacts": counted(len(self.contacts))} if self.contacts else {}),
+        }
 
 
 def deformation(system: VibrationSystem, curve: FrequencyCurve, point: int | None = None) -> Deformation:

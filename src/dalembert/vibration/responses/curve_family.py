@@ -1,7 +1,7 @@
 """Responses over frequency for several values of a parameter, as one result."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
@@ -11,8 +11,10 @@ from dalembert.contents import Contents
 from dalembert.errors import InputError
 from dalembert.findings import Finding
 from dalembert.results import Result
+from dalembert.tables import Table, cells, counted, in_words, labelled, marks, noted, percent, shown
 from dalembert.units import unit_of
 from dalembert.vibration.paths.curve import FrequencyCurve, Peak
+from dalembert.vibration.paths.focus import Look
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -137,7 +139,7 @@ class CurveFamily(Result):
             for value, reason in zip(self.values, self.failures, strict=True)
             if reason
         ]
-        return text + "".join(reasons[:3])
+        return text + "".join(reasons[:3]) + "."
 
     @property
     def findings(self) -> tuple[Finding, ...]:
@@ -156,18 +158,48 @@ class CurveFamily(Result):
                 worst.append(replace(finding, values={**finding.values, "value": value}, message=message))
         return tuple(worst)
 
-    def summary(self) -> str:
-        """A few lines: the number of curves, and the peaks of the observed degrees of freedom over the parameter."""
-        lines = [self.status]
-        for dof in self.dofs[:4]:
-            peaks, more = self.peaks(dof), 0.0 - self.reduction(dof)
-            lines.append(f"{dof}: smallest peak at {self.parameter} = {_quantity(self.best(dof), self.unit)}")
-            lines += [
-                f"  {_quantity(value, self.unit)}: {_quantity(peak.amplitude, unit_of(dof))} at "
-                f"{peak.frequency:.6g} Hz ({part:+.1%})"
-                for value, peak, part in zip(self.values, peaks, more, strict=True)
-            ]
-        return "\n".join([*lines, *map(str, self.findings)])
+    @property
+    def title(self) -> str:
+        return f"Forced response over {self.parameter}"
+
+    def foremost(self, kind: str = "peak") -> tuple[str, ...]:
+        """The degree of freedom that moves most in the first curve there is; none where there is none."""
+        curves = (curve for curve in self.curves if curve is not None and curve.converged.any())
+        return next(((Look.of(curve, kind=kind).dof,) for curve in curves), ())
+
+    def facts(self, dofs: Sequence[str] = (), kind: str = "peak") -> dict[str, str]:
+        """Return the value of the smallest peak of the first of ``dofs``, or of the one that moves most."""
+        facts = {"values": counted(len(self))}
+        for dof in tuple(dofs or self.foremost(kind))[:1]:
+            best = self.best_row(dof, kind)
+            gain = float(self.reduction(dof, kind)[best])
+            facts[f"{self.parameter} of the smallest peak"] = _quantity(self.values[best], self.unit)
+            facts[f"peak of {dof} there"] = in_words(self.peaks(dof, kind)[best].amplitude, unit_of(dof), 5)
+            facts |= {f"reduction from {_quantity(self.values[0], self.unit)}": percent(gain)} if gain > 0 else {}
+        return facts
+
+    def tables(self, dofs: Sequence[str] = (), kind: str = "peak") -> tuple[Table, ...]:
+        """Return the peaks of each of ``dofs``, or of the one that moves most."""
+        tables = []
+        for place, dof in enumerate(dofs or self.foremost(kind), start=1):
+            peaks = self.peaks(dof, kind)
+            columns = {
+                labelled(self.parameter, self.unit): self.values,
+                labelled("peak", unit_of(dof)): [peak.amplitude for peak in peaks],
+                "at frequency (Hz)": [peak.frequency for peak in peaks],
+                "change from the first (%)": cells(-100 * np.asarray(self.reduction(dof, kind)), 4),
+                "points found": [
+                    "" if curve is None else f"{int(curve.converged.sum())} of {len(curve.converged)}"
+                    for curve in self.curves
+                ],
+                "note": marks(reason or "" for reason in self.failures),
+            }
+            tables.append(noted(Table.of(f"family-{place}", f"Peaks of {dof}", columns)))
+        return tuple(tables)
+
+    def best_row(self, dof: str, kind: str = "peak") -> int:
+        """Number of the curve with the smallest peak; :meth:`best` is its value."""
+        return int(np.flatnonzero(np.asarray(self.values) == self.best(dof, kind))[0])
 
     def contents(self) -> Contents:
         """Everything as arrays: the names and dimensions of each curve end in its number, ``_0``."""
@@ -218,4 +250,4 @@ def _passes(along: np.ndarray, sizes: np.ndarray, frequencies: np.ndarray) -> It
 
 
 def _quantity(value: float, unit: str) -> str:
-    return f"{value:.6g} {unit}".rstrip()
+    return f"{shown(float(value))} {unit}".rstrip()

@@ -8,6 +8,7 @@ import numpy as np
 
 from dalembert.errors import InputError
 from dalembert.findings import Finding
+from dalembert.tables import Table, counted, in_words, labelled, noted, shown, unless
 from dalembert.units import unit_of
 from dalembert.vibration.storage import ConvergedResult, Over
 
@@ -39,6 +40,7 @@ class ResonanceTrack(ConvergedResult):
     """
 
     FORMAT: ClassVar[str] = "dalembert resonance track 1"
+    VERDICTS: ClassVar[tuple[str, str]] = ("tracked", "incomplete")
 
     parameter: str
     unit: str
@@ -64,20 +66,31 @@ class ResonanceTrack(ConvergedResult):
             raise InputError("no peak was found, so none is the smallest; begin nearer to it, or with a whole curve")
         return float(self.values[np.nanargmin(self.amplitudes)])
 
-    def summary(self) -> str:
-        """Return some lines: converged peaks, the smallest and the largest, and the number of solutions."""
-        converged = self.converged
-        lines = [
-            f"{converged.sum()} of {len(self)} peaks found of {self.dof} ({self.kind}), "
-            f"by {self.solves.sum()} solutions"
-        ]
-        if converged.any():
-            ends = ("smallest", np.nanargmin(self.amplitudes)), ("largest", np.nanargmax(self.amplitudes))
-            for word, place in ends:
-                peak = f"{self.amplitudes[place]:.6g} {unit_of(self.dof)} at {self.frequencies[place]:.6g} Hz"
-                where = f"{self.parameter} is {self.values[place]:.6g} {self.unit}".rstrip()
-                lines.append(f"{word} {peak}, where {where}")
-        if not converged.all():
-            lost = ", ".join(f"{value:.6g}" for value in self.values[~converged][:5])
-            lines.append(f"not found where {self.parameter} is {lost} {self.unit}".rstrip())
-        return "\n".join([*lines, *map(str, self.findings)])
+    @property
+    def title(self) -> str:
+        return f"Resonance over {self.parameter}"
+
+    @property
+    def status(self) -> str:
+        """At how many values the peak was found, in a sentence."""
+        return f"The peak was found at {int(self.converged.sum())} of {len(self)} values of {self.parameter}."
+
+    def facts(self) -> dict[str, str]:
+        facts = {"values": counted(len(self)), "points balanced": counted(int(np.sum(self.solves)))}
+        if self.converged.any():
+            for size, row in (("smallest", np.nanargmin(self.amplitudes)), ("largest", np.nanargmax(self.amplitudes))):
+                amplitude = in_words(float(self.amplitudes[row]), unit_of(self.dof), 5)
+                facts[f"{self.parameter} of the {size} peak"] = f"{shown(float(self.values[row]))} {self.unit}".rstrip()
+                facts[f"{size} peak of {self.dof}"] = f"{amplitude} at {shown(float(self.frequencies[row]))} Hz"
+        return facts
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the peak at each value."""
+        columns = {
+            labelled(self.parameter, self.unit): self.values,
+            labelled("peak", unit_of(self.dof)): self.amplitudes,
+            "at frequency (Hz)": self.frequencies,
+            "points balanced": self.solves,
+            "note": unless(self.converged, "not found"),
+        }
+        return (noted(Table.of("resonance", f"Peaks of {self.dof}", columns)),)

@@ -10,10 +10,13 @@ import numpy as np
 from dalembert.arguments import takes_checked
 from dalembert.errors import InputError
 from dalembert.forward import Checkpoint, ensemble
+from dalembert.tables import Table, cells, counted, labelled, noted, percent, unless
 from dalembert.threads import single_thread
+from dalembert.units import unit_of
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.paths.curve import FrequencyCurve
+from dalembert.vibration.paths.focus import foremost
 from dalembert.vibration.storage import Over, VibrationResult
 from dalembert.vibration.system.system import VibrationSystem
 from dalembert.vibration.time.newmark import Newmark
@@ -51,6 +54,8 @@ class TimeComparison(VibrationResult):
     """
 
     FORMAT: ClassVar[str] = "dalembert comparison in time 1"
+    TITLE: ClassVar[str] = "Comparison with time integration"
+    VERDICTS: ClassVar[tuple[str, str]] = ("compared", "incomplete")
 
     dofs: tuple[str, ...]
     kind: str
@@ -71,18 +76,44 @@ class TimeComparison(VibrationResult):
         """Of harmonic balance from time, as part of the largest size of each degree of freedom in time, (k, dofs)."""
         return (self.balance - self.time) / self.time.max(axis=0, initial=np.finfo(float).tiny)
 
-    def summary(self) -> str:
-        """A few lines: the largest differences, and the points in time that are not periodic yet."""
-        largest = np.abs(self.differences).max(axis=0)
-        worst = int(largest.argmax())
-        first, last, steps = self.periods.min(), self.periods.max(), self.provenance["method"]["steps_per_period"]
-        lines = [
-            f"{len(self)} points in time with {steps} steps of a period, after {first} to {last} periods: harmonic "
-            f"balance differs by up to {largest[worst]:.1e} of the largest motion ({self.dofs[worst]}, {self.kind})"
-        ]
-        late = ", ".join(f"{value:.6g} Hz" for value in self.frequencies[~self.converged])
-        lines += [f"not periodic yet in time, so not to be compared: {late}"] * bool(late)
-        return "\n".join(lines)
+    @property
+    def success(self) -> bool:
+        """Whether all points are periodic in time."""
+        return bool(self.converged.all())
+
+    @property
+    def status(self) -> str:
+        """Whether all points are periodic in time, in a sentence."""
+        return "All points are periodic in time." if self.success else "Some points are not periodic in time yet."
+
+    def facts(self) -> dict[str, str]:
+        most = float(np.nanmax(np.abs(self.differences[self.converged]), initial=0.0))
+        return {
+            "points": counted(len(self)),
+            "largest difference": percent(most, 2),
+            "steps a period": counted(int(self.provenance["method"]["steps_per_period"])),
+            "periods": f"{self.periods.min()} to {self.periods.max()}",
+        }
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the sizes by harmonic balance and in time, of the degrees of freedom that move most."""
+        dofs = self.movers()
+        places, unit = [self.dofs.index(dof) for dof in dofs], unit_of(self.dofs[0])
+        columns = {
+            "frequency (Hz)": np.tile(self.frequencies, len(dofs)),
+            "degree of freedom": np.repeat(dofs, len(self.frequencies)),
+            labelled("harmonic balance", unit): self.balance[:, places].T.ravel(),
+            labelled("in time", unit): self.time[:, places].T.ravel(),
+            "difference (% of the largest)": cells(100 * self.differences[:, places].T.ravel(), 3),
+            "periods": np.tile(self.periods, len(dofs)),
+            "note": unless(np.tile(self.converged, len(dofs)), "not periodic yet"),
+        }
+        return (noted(Table.of("in-time", "Harmonic balance and time integration", columns)),)
+
+    def movers(self, most: int = 4) -> tuple[str, ...]:
+        """The degrees of freedom that move most in time, displacements before others."""
+        sizes = dict(zip(self.dofs, np.nanmax(self.time, axis=0).tolist(), strict=True))
+        return foremost({dof: size for dof, size in sizes.items() if unit_of(dof) == unit_of(self.dofs[0])}, most)
 
 
 @takes_checked("points", "frequencies", "way", "kind")

@@ -7,6 +7,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 
 from dalembert.errors import InputError
+from dalembert.tables import Table, counted, shown
 from dalembert.units import unit_of
 from dalembert.vibration.paths.amplitudes import PHASES, Amplitude, coordinate_row, observed_column
 from dalembert.vibration.storage import Over, VibrationResult
@@ -41,6 +42,8 @@ class PeriodicMotion(VibrationResult):
     """
 
     FORMAT: ClassVar[str] = "dalembert periodic motion 1"
+    TITLE: ClassVar[str] = "Periodic motion"
+    VERDICTS: ClassVar[tuple[str, str]] = ("periodic", "not periodic")
 
     dofs: tuple[str, ...]
     coordinates: tuple[str, ...]
@@ -100,15 +103,33 @@ class PeriodicMotion(VibrationResult):
         # ∮ λ du by trapezia.
         return float(np.diff(u) @ (force[1:] + force[:-1]) / 2)
 
-    def summary(self) -> str:
-        """A few lines: periods, what the last one changed, and the sizes."""
-        state = "periodic" if self.converged else "not yet periodic"
-        lines = [
-            f"{state} after {self.periods} periods of {len(self.times)} steps at {self.frequency:.6g} Hz; "
-            f"the last one changed {self.residual:.1e} of the motion"
-        ]
-        lines += [f"{dof}: largest {self.amplitude(dof):.6g} {unit_of(dof)}" for dof in self.dofs[:8]]
-        return "\n".join(lines)
+    @property
+    def success(self) -> bool:
+        """Whether the motion repeats itself within the tolerance."""
+        return self.converged
+
+    @property
+    def status(self) -> str:
+        """Whether the motion repeats itself, in a sentence."""
+        return "The motion repeats itself." if self.converged else "The motion does not repeat itself yet."
+
+    def facts(self) -> dict[str, str]:
+        return {
+            "frequency": f"{shown(self.frequency)} Hz",
+            "periods": counted(self.periods),
+            "change over the last one": shown(self.residual, digits=2),
+            "steps of a period": counted(len(self.times)),
+        }
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the sizes of the motion."""
+        columns = {
+            "degree of freedom": self.dofs,
+            "largest amplitude": [self.amplitude(dof) for dof in self.dofs],
+            "rms": [self.amplitude(dof, "rms") for dof in self.dofs],
+            "unit": map(unit_of, self.dofs),
+        }
+        return (Table.of("sizes", "Sizes of the motion", columns),)
 
 
 def _coefficients(samples: np.ndarray, highest: int) -> np.ndarray:

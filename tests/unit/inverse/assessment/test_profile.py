@@ -97,7 +97,7 @@ def test_a_side_without_a_limit_is_told():
         "The data give no upper limit of 'rate': all values up to its bound 50 explain them within their noise. Measure a quantity that depends on it."
     )
     assert codes(told) == ["profile-level", "open-interval"]
-    assert "50 (bound)" in told.summary()
+    assert "open: upper bound" in told.summary()
 
 
 def test_further_intervals_are_told_and_mirror_the_first():

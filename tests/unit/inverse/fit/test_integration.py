@@ -79,7 +79,7 @@ def test_a_finer_simulation_that_fails_is_said_and_the_fit_stays(finer):
     assert not finding.doubtful
     assert "too stiff" in finding.message
     assert np.isnan(fit.integration.bias).all()
-    assert "integrator" not in fit.summary().split("Converged")[0]
+    assert "bias by the integrator" not in fit.facts()
 
 
 def test_only_experiments_that_can_be_refined_are():

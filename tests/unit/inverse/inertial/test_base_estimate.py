@@ -25,7 +25,7 @@ def test_weights_follow_the_noise_of_each_joint():
     np.testing.assert_allclose(found.noise, NOISE, rtol=0.15)
     given = identify_base(TABLE, measured(0), PLANAR.names, deviations=NOISE)
     np.testing.assert_allclose(found.values, given.values, rtol=2e-3, atol=2e-3)
-    assert "shoulder: " in found.summary()
+    assert "shoulder  " in found.summary()
 
 
 def test_equal_weights_are_worse_for_the_parameters_of_the_quiet_joint():

@@ -14,9 +14,8 @@ from dalembert.inverse.problem.problem import pose
 from dalembert.inverse.problem.random_residuals import random_residuals
 from dalembert.inverse.starts.multistart import horizons
 from dalembert.optimize import ParticleSwarm
-from dalembert.report import Table
 from dalembert.report.charts import responses
-from dalembert.report.sections.identification.response import compared
+from dalembert.report.section import by_name
 from small_models import DECAY, LINE, TIMES, line, measured
 
 TURN = 2 * np.pi
@@ -53,7 +52,7 @@ def test_a_fit_with_gaps_is_the_least_squares_of_what_is_there(deviations):
     assert fit.misfit == pytest.approx(squares.item(), rel=1e-9)
     np.testing.assert_array_equal(fit.weights == 0, ~data.present)
     np.testing.assert_array_equal(np.isnan(fit.residuals), ~data.present)
-    assert f"(weighted sum of squares of {data.present.sum()} values)" in fit.summary()
+    assert fit.facts()["fitted values"] == str(data.present.sum())
 
 
 def test_the_noise_is_told_from_the_values_that_are_there():
@@ -154,8 +153,7 @@ def test_the_report_draws_the_computed_angle_at_the_turn_of_the_measured_one(tmp
     np.testing.assert_allclose(computed[there], data.values[there, 0], atol=1e-6)
     np.testing.assert_allclose(computed[~there], angle(4.0, 0.5)[~there], atol=1e-6)
     fit.report(tmp_path / "report.html")
-    (table,) = [block for block in compared(fit).blocks if isinstance(block, Table)]
-    (row,) = table.rows
+    (row,) = by_name(fit.tables())["residuals"][0].rows
     assert row[1].value < 1e-8
 
 

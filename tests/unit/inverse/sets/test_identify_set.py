@@ -135,7 +135,7 @@ def test_inconsistent_data_have_an_empty_set_and_a_sentence_that_says_where():
     assert found.status == snapshot(
         "No parameters within the bounds are consistent with the data: everywhere, the surrogate differs from the data by more than their error. The nearest run, at x = 2, y = 2, differs by 4 times the error in channel 'r', time 0 s. Increase the error, widen the bounds, or check the model structure."
     )
-    assert "none" in found.summary()
+    assert (found.verdict, found.tables()) == ("empty", ())
     (finding,) = found.findings
     assert (finding.code, finding.severity) == ("unseen-features", "note")
     assert finding.message.startswith("The set may have a component where the response has a narrow feature.")

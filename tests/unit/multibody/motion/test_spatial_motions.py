@@ -63,10 +63,10 @@ def test_contents_are_stored_with_units(trajectory, tmp_path):
 
 
 def test_the_summary_states_steps_and_violations(trajectory):
-    lines = trajectory.summary().splitlines()
-    assert lines[0].startswith("1 s in 500 steps (0 rejected)")
-    assert lines[2].startswith("constraints: largest violation position ")
-    assert float(lines[2].split("position ")[1].split(",")[0]) < 1e-13
+    facts = trajectory.facts()
+    assert (facts["simulated"], facts["steps"]) == ("1 s", "500")
+    violation = next(row for row in trajectory.tables()[0].rows if row[0].text == "largest violation, position")
+    assert violation[1].value < 1e-13
 
 
 @pytest.mark.slow

@@ -46,7 +46,7 @@ def test_a_run_that_ends_early_has_its_reason_and_no_numbers(found: WorkPrecisio
     early = found.rows[2]
     assert early.failure.startswith("the adaptive step reached most_steps = 3 at t = ")
     assert np.isnan([early.error, early.seconds]).all()
-    assert "1 of 3 runs ended early, see the table" in found.status
+    assert "1 of 3 runs ended early; the table has the reasons." in found.status
     assert early.failure in found.summary()
 
 

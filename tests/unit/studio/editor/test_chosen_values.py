@@ -9,7 +9,7 @@ import tomlkit
 
 from dalembert.errors import InputError
 from dalembert.studio.editor.chosen_values import unit_in, use_as_start, use_as_value
-from dalembert.studio.simulation.parts import parameters_of
+from dalembert.studio.simulation.simulated_parts import parameters_of
 from dalembert.study import load
 from dalembert.study.template import begin
 from support import says

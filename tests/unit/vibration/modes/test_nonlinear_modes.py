@@ -71,7 +71,7 @@ def test_a_path_leads_through_the_begin_of_slip() -> None:
 def test_given_amplitudes_do_not_jump_to_another_mode() -> None:
     given = backbone(chain(), np.array([0.6, 0.9, 1.1]), method=METHOD)
     np.testing.assert_array_equal(given.converged, [True, False, False])
-    assert "not found: 0.9 m, 1.1 m" in given.summary()
+    assert [row[-1].text for row in given.tables()[0].rows] == ["", "not found", "not found"]
 
 
 def test_a_path_that_turns_back_before_its_end_says_so(tmp_path: Path) -> None:
@@ -84,9 +84,9 @@ def test_a_path_that_turns_back_before_its_end_says_so(tmp_path: Path) -> None:
     assert (finding.values["last"], finding.values["end"]) == (0.6, 1.1)
     assert finding.values["farthest"] == path.amplitudes.max() == pytest.approx(0.74436, abs=1e-4)
     assert finding.message in path.summary()
-    assert path.summary().splitlines()[0] == (
-        f"mode 1 at {len(path)} points of a path over the amplitude of {path.dof}, which came to "
-        f"{path.amplitudes.max():.6g} m and not to 1.1 m"
+    assert path.status == (
+        f"Mode 1 was found at {len(path)} points of a path over the amplitude of {path.dof}, which came to "
+        f"{path.amplitudes.max():.6g} m and not to 1.1 m."
     )
     path.save(tmp_path / "mode.nc")
     assert Backbone.load(tmp_path / "mode.nc").findings == path.findings

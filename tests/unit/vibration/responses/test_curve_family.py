@@ -57,10 +57,8 @@ def test_each_curve_is_that_of_its_value() -> None:
     assert family.success
     assert family.best("m") == 2.0
     assert family.reduction("m")[1] == pytest.approx(1 - alone[1].peak("m").amplitude / alone[0].peak("m").amplitude)
-    assert family.summary().splitlines()[:2] == [
-        "2 of 2 curves over preload, 28 of 28 points found",
-        "m.x: smallest peak at preload = 2 N",
-    ]
+    assert family.status == "2 of 2 curves over preload, 28 of 28 points found."
+    assert family.facts()["preload of the smallest peak"] == "2 N"
 
 
 @pytest.mark.parametrize("builder", [damped, free_or_damped])
@@ -82,7 +80,7 @@ def test_a_value_without_a_curve_is_marked_with_its_reason() -> None:
     reason = "FrictionContact 'damper': preload is -1 N; expected zero or a positive number"
     assert family.failures == (None, reason)
     assert not family.success
-    assert family.status == f"1 of 2 curves over preload, 14 of 14 points found; preload = -1: {reason}"
+    assert family.status == f"1 of 2 curves over preload, 14 of 14 points found; preload = -1: {reason}."
     assert np.isnan(family.peaks("m")[1].amplitude)
     assert family.best("m") == 2.0
 

@@ -42,7 +42,7 @@ def test_a_curve_is_unstable_between_its_folds(duffings_curve: FrequencyCurve) -
     between[first + 1 : last + 1] = True
     np.testing.assert_array_equal(duffings_curve.stable == 0, between)
     np.testing.assert_array_equal(np.flatnonzero(duffings_curve.fold), [first, last])
-    assert "points stable" in duffings_curve.summary()
+    assert "stable points" in duffings_curve.facts()
 
 
 def test_stability_is_kept_with_a_curve(duffings_curve: FrequencyCurve, tmp_path: Path) -> None:

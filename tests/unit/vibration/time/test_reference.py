@@ -253,10 +253,10 @@ def test_points_that_were_compared_are_not_integrated_again(tmp_path: Path, monk
 def test_a_motion_that_is_not_periodic_yet_is_said_to_be_so() -> None:
     motion = steady_state(one_mass(), 0.18, Newmark(32, periods=3))
     assert (motion.converged, motion.periods) == (False, 3)
-    assert motion.summary().startswith("not yet periodic after 3 periods of 32 steps at 0.18 Hz; the last one changed ")
+    assert motion.status == "The motion does not repeat itself yet."
     curve = frequency_response(one_mass(), np.array([0.18]), HarmonicBalance(3, samples=64))
     comparison = compare_in_time(one_mass(), curve, method=Newmark(32, periods=2))
-    assert comparison.summary().endswith("\nnot periodic yet in time, so not to be compared: 0.18 Hz")
+    assert "not periodic yet" in comparison.summary()
 
 
 def broken(u: np.ndarray) -> np.ndarray:

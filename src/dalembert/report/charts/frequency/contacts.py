@@ -6,12 +6,12 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.report.charts.drawing import colour_of, draw
-from dalembert.report.focus import dissipation_of, foremost, of_contacts
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.tables import labelled, prefixed
 from dalembert.vibration import FrequencyCurve
+from dalembert.vibration.laws.friction_law import STATES
+from dalembert.vibration.paths.focus import dissipation_of, foremost, of_contacts
 
-STATES = ("separated", "stuck", "slipping")
 COLOURS = {"separated": LIGHT.grid, "stuck": LIGHT.series[0], "slipping": LIGHT.series[1]}
 PHASE = {"title": "phase of the period (°)", "dtick": 90, "range": [0, 360]}
 NAMED = 40
@@ -107,11 +107,6 @@ def dissipation(curve: FrequencyCurve, *, title: str = "Friction energy of a per
         draw(figure, curve.frequencies, factor * total, f"all {len(energies)} contacts", LIGHT.ink)
     y = {"title": labelled("energy of a period", unit), "rangemode": "tozero"}
     return themed(figure, title, 360, x="frequency (Hz)", y=y, showlegend=True)
-
-
-def shares(states: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the share of the period in each state, (contacts,), from states (contacts, phases)."""
-    return {name: np.mean(np.asarray(states) == number, axis=1) for number, name in enumerate(STATES)}
 
 
 NOTHING = 1e-9

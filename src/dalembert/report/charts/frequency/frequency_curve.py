@@ -10,12 +10,12 @@ from scipy.ndimage import binary_dilation
 from dalembert.quantities import size_label
 from dalembert.report.charts.drawing import HOVER, colour_of, draw, logarithmic, positive, stacked
 from dalembert.report.charts.frequency.backbone import backbone_line
-from dalembert.report.focus import marked, movers, unstable
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.thinning import thinned
 from dalembert.tables import labelled, prefixed
 from dalembert.units import unit_of
 from dalembert.vibration import Backbone, FrequencyCurve
+from dalembert.vibration.paths.focus import by_order, marked, movers, unstable
 
 SYMBOLS = {"fold": "diamond", "torus": "circle-open", "period doubling": "square-open", "branch point": "star"}
 WIDE = 300
@@ -150,16 +150,6 @@ def harmonic_content(curve: FrequencyCurve, dof: str, *, title: str | None = Non
         draw(figure, curve.frequencies, y, name, colour_of(place), width, line_dash=dash)
     y = {"title": labelled("amplitude", unit), **logarithmic(figure)}
     return themed(figure, title or f"Harmonics of {plain(dof)}", 400, x="frequency (Hz)", y=y, showlegend=True)
-
-
-def by_order(curve: FrequencyCurve, dof: str) -> dict[int, np.ndarray]:
-    """Amplitude of each harmonic, of the mean its size, (points,)."""
-    coefficients, mean = curve.harmonics(dof), int(curve.orders[0] == 0)
-    sizes = {0: np.abs(coefficients[:, 0])} if mean else {}
-    for number, order in enumerate(curve.orders[mean:]):
-        place = mean + 2 * number
-        sizes[order] = np.hypot(coefficients[:, place], coefficients[:, place + 1])
-    return sizes
 
 
 def points_found(curve: FrequencyCurve, *, title: str = "How the points were found") -> go.Figure:

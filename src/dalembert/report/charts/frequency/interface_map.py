@@ -3,13 +3,15 @@
 import numpy as np
 import plotly.graph_objects as go
 
-from dalembert.report.charts.frequency.contacts import COLOURS, STATES, shares
+from dalembert.report.charts.frequency.contacts import COLOURS
 from dalembert.report.charts.frequency.shapes import SECONDS
-from dalembert.report.charts.motion.film import Film, slowness
+from dalembert.report.charts.motion.playback import Film, slowness
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.scene.structure import edges
 from dalembert.tables import prefixed
 from dalembert.vibration import Deformation
+from dalembert.vibration.laws.friction_law import STATES
+from dalembert.vibration.paths.focus import state_shares
 
 FRAMES = 32
 SMALLEST, LARGEST = 9, 22
@@ -33,7 +35,7 @@ def interface_map(shape: Deformation, *, title: str | None = None) -> go.Figure:
     plotly.graph_objects.Figure
     """
     wide = np.sort(np.argsort(-np.ptp(np.concatenate([shape.places, shape.contact_places]), axis=0), kind="stable")[:2])
-    parts = shares(shape.states)
+    parts = state_shares(shape.states)
     longest = np.argmax([parts[state] for state in STATES], axis=0)
     energies = np.clip(np.asarray(shape.energies), 0.0, None)
     most = float(energies.max(initial=0.0))

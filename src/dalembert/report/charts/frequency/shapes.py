@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import plotly.graph_objects as go
 
-from dalembert.report.charts.motion.film import Film, slowness
+from dalembert.report.charts.motion.playback import Film, slowness
 from dalembert.report.look import LIGHT, themed
 from dalembert.report.scene.structure import edges, triangles
 from dalembert.structure import ModeShapes

@@ -9,11 +9,11 @@ import plotly.graph_objects as go
 from dalembert.quantities import size_label
 from dalembert.report.charts.drawing import HOVER, colour_of, draw
 from dalembert.report.charts.frequency.contacts import PHASE, draw_loops
-from dalembert.report.focus import foremost
 from dalembert.report.look import plain, themed
 from dalembert.tables import labelled, prefixed
 from dalembert.units import unit_of
 from dalembert.vibration import FrequencyCurve, PeriodicMotion, TimeComparison
+from dalembert.vibration.paths.focus import foremost
 
 
 def periodic_motion(motion: PeriodicMotion, *, title: str = "A period in time") -> go.Figure:
@@ -80,7 +80,7 @@ def time_comparison(
     -------
     plotly.graph_objects.Figure
     """
-    chosen = compared_dofs(comparison) if not dofs else tuple(dofs)
+    chosen = comparison.movers() if not dofs else tuple(dofs)
     columns = [comparison.dofs.index(dof) for dof in chosen]
     most = float(np.nanmax(comparison.time[:, columns], initial=0.0))
     if curve is not None:
@@ -103,10 +103,3 @@ def time_comparison(
             figure.add_scatter(x=comparison.frequencies, y=factor * values[:, column], **style)
     y = {"title": labelled(size_label(comparison.kind), unit), "rangemode": "tozero"}
     return themed(figure, title, 440, x="frequency (Hz)", y=y, showlegend=True)
-
-
-def compared_dofs(comparison: TimeComparison, most: int = 4) -> tuple[str, ...]:
-    """The degrees of freedom that move most in time, displacements before others."""
-    sizes = dict(zip(comparison.dofs, np.nanmax(comparison.time, axis=0).tolist(), strict=True))
-    own = {dof: size for dof, size in sizes.items() if unit_of(dof) == unit_of(comparison.dofs[0])}
-    return foremost(own, most)

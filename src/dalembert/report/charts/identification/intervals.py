@@ -137,15 +137,8 @@ def residual_bands(
 def _channel(figure: go.Figure, fit: BandFit, column: int, colour: str) -> None:
     at, name = fit.bands.coordinate.values, plain(fit.bands.channels[column])
     draw_band(figure, fit.bands, column, colour, legend=", given")
-    for side, found in reproduced(fit).items():
+    for side, found in fit.reproduced.items():
         values, given = found[:, column], getattr(fit.bands, side)[:, column]
         draw_line(figure, at, values, f"{name} reproduced, {side}", name, LIGHT.ink, row=1, line_dash="dash")
         residual, dash = values - given, DASHES[side]
         draw_line(figure, at, residual, f"{name} residual, {side}", name, colour, row=2, line_dash=dash)
-
-
-def reproduced(fit: BandFit) -> dict:
-    """Lower and upper bounds (samples, channels) as true runs give them, or the surrogate where there were none."""
-    lower = fit.lower if fit.checked_lower is None else fit.checked_lower
-    upper = fit.upper if fit.checked_upper is None else fit.checked_upper
-    return {"lower": lower, "upper": upper}

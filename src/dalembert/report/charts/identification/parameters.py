@@ -6,15 +6,13 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.inverse import Fit
-from dalembert.parameters import Parameters
+from dalembert.inverse.fit.fit_tables import on_bound
 from dalembert.report.charts.drawing import draw
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.tables import shown
 
 BETWEEN = {"showgrid": False, "tickvals": [0, 0.5, 1], "ticktext": ["lower", "middle", "upper"]}
 """Axis of the way between the bounds."""
-ON_BOUND = 1e-6
-"""Part of the way between the bounds within which a value counts as on one."""
 
 
 def parameters(fit: Fit, *, title: str = "Parameters within their bounds") -> go.Figure:
@@ -34,10 +32,10 @@ def parameters(fit: Fit, *, title: str = "Parameters within their bounds") -> go
     box = fit.parameters
     deviations = np.asarray(fit.deviations, dtype=float)
     spread = np.where(np.isfinite(deviations), 2 * deviations, 0.0)
-    place, low, high = (
-        placed(box, box.clip(values)) for values in (fit.values, fit.values - spread, fit.values + spread)
-    )
-    stuck = on_bound(fit)
+    place, low, high = [
+        box.shares(box.clip(values)) for values in (fit.values, fit.values - spread, fit.values + spread)
+    ]
+    stuck = on_bound(box, fit.values)
     texts = [
         f"{shown(value, deviation)} {plain(item.unit)}".strip()
         for item, value, deviation in zip(box, fit.values, fit.deviations, strict=True)
@@ -68,20 +66,3 @@ def tracks(names: Sequence[str]) -> go.Figure:
 def side_of(place: float) -> str:
     """Side of a point on its track at which its text has room."""
     return "right" if place < 0.25 else "left" if place > 0.75 else "center"
-
-
-def on_bound(fit: Fit) -> np.ndarray:
-    """Mask (parameters,) of the values that lie on a bound."""
-    place = placed(fit.parameters, fit.values)
-    return (place <= ON_BOUND) | (place >= 1 - ON_BOUND)
-
-
-def placed(box: Parameters, values: np.ndarray) -> np.ndarray:
-    """How far on the way from its lower to its upper bound each value lies, shape (parameters,)."""
-    logarithmic = np.array([item.logarithmic for item in box], dtype=bool)
-    low, at, high = (np.where(logarithmic, _log(each, logarithmic), each) for each in (box.lower, values, box.upper))
-    return (at - low) / (high - low)
-
-
-def _log(values: np.ndarray, where: np.ndarray) -> np.ndarray:
-    return np.log(np.where(where, values, 1.0))

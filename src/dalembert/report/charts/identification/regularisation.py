@@ -4,9 +4,9 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.inverse import BandFit, Fit, RegularisedFit
+from dalembert.inverse.fit.starts_table import ranked
 from dalembert.optimize.minimum import RegularisedStep
 from dalembert.report.charts.drawing import draw, logarithmic, positive, stacked
-from dalembert.report.charts.identification.search import ranked
 from dalembert.report.look import LIGHT, themed
 
 
@@ -80,7 +80,7 @@ def steps(fit: Fit | BandFit, *, title: str = "Steps of the best start") -> go.F
 def accounts(fit: Fit | BandFit) -> list[RegularisedStep]:
     """Accounts of the steps of the best start that has several of them, or of the best that has any."""
     best: list[RegularisedStep] = []
-    for start in ranked(fit):
+    for start in ranked(fit.starts):
         steps = [step.regularised for step in fit.history if step.start == start]
         own = [step for step in steps if step is not None]
         if len(own) > 1:

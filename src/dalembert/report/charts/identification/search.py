@@ -4,6 +4,7 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.inverse import BandFit, Fit
+from dalembert.inverse.fit.starts_table import ranked
 from dalembert.report.charts.drawing import draw, logarithmic, positive
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.thinning import thin
@@ -67,9 +68,10 @@ def starts(fit: Fit | BandFit, *, title: str = "Starts and their ends") -> go.Fi
     -------
     plotly.graph_objects.Figure
     """
-    order = ranked(fit)
+    order = ranked(fit.starts)
     ends = positive(np.array([fit.starts[number].misfit for number in order], dtype=float))
-    began = positive(np.array([_first(fit, number) for number in order], dtype=float))
+    firsts = [next((step.best for step in fit.history if step.start == number), np.nan) for number in order]
+    began = positive(np.array(firsts, dtype=float))
     rank = np.arange(1, len(order) + 1)
     stems = np.stack([began, ends, np.full(len(order), np.nan)], axis=1).ravel()
     figure = go.Figure()
@@ -87,12 +89,3 @@ def starts(fit: Fit | BandFit, *, title: str = "Starts and their ends") -> go.Fi
         figure.add_scatter(x=rank[here], y=ends[here], name=name, **style)
     x = {"title": "starts, best first", "dtick": max(1, len(order) // 10)}
     return themed(figure, title, 360, x=x, y={"title": "misfit", **logarithmic(figure)})
-
-
-def ranked(fit: Fit | BandFit) -> list[int]:
-    """Numbers of the starts, the lowest final misfit first, those that failed last."""
-    return sorted(range(len(fit.starts)), key=lambda number: np.nan_to_num(fit.starts[number].misfit, nan=np.inf))
-
-
-def _first(fit: Fit | BandFit, number: int) -> float:
-    return next((step.best for step in fit.history if step.start == number), np.nan)

@@ -1,22 +1,21 @@
 """A motion: the mechanism, its outputs, and how well it was computed."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
-import plotly.graph_objects as go
 
 from dalembert.data import Measurements
 from dalembert.forward import Coordinate
-from dalembert.multibody import Drawing, Trajectory
+from dalembert.multibody import Drawing, Trajectory, WorkPrecision
 from dalembert.quantities import by_quantity
 from dalembert.report import charts
-from dalembert.report.charts.motion.diagnostics import LEVELS
-from dalembert.report.headline import Headline
+from dalembert.report.headline import headline_of
 from dalembert.report.look import plain
 from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Block, Plot, Row, Section, numbered, samples
-from dalembert.tables import Table, cells, counted, percent, shown
+from dalembert.tables import Table
 
 HEADING = "Mechanism"
 MOST_PATHS = 3
@@ -59,10 +58,11 @@ def paths(trajectory: Trajectory, drawing: Drawing, points: tuple[str, ...]) -> 
         return {point: np.asarray(trajectory.channels([f"{point}.{axis}" for axis in axes])) for point in points}
     held = list(drawing.joints.values())
     last = {body.name: body.point_names[-1] for body in trajectory.system.bodies} if len(axes) == 3 else {}
+    spans = [float(np.ptp(line.reshape(-1, len(axes)), axis=0).max()) for line in drawing.lines.values()]
     ends = {
         f"{name}.{last[name]}" if name in last else f"{name}'s end": line[:, -1]
         for name, line in drawing.lines.items()
-        if not any(np.allclose(line[:, -1], joint, atol=1e-6 * _size(drawing)) for joint in held)
+        if not any(np.allclose(line[:, -1], joint, atol=1e-6 * max(spans)) for joint in held)
     }
     moving = {name: joint for name, joint in (ends or drawing.joints).items() if np.ptp(joint, axis=0).max() > 0}
     return dict(list(moving.items())[-MOST_PATHS:])
@@ -87,11 +87,6 @@ def _channels(point: str, axes: str) -> set[str]:
     return {f"{point}.{axis}" for axis in axes}
 
 
-def _size(drawing: Drawing) -> float:
-    across = len(_axes(drawing))
-    return max((float(np.ptp(line.reshape(-1, across), axis=0).max()) for line in drawing.lines.values()), default=1.0)
-
-
 def diagnostics(trajectories: Mapping[str, Trajectory]) -> Section:
     """Energy balance, constraint violations and Newton iterations, of each experiment's motion."""
     blocks: list[Block] = []
@@ -101,43 +96,13 @@ def diagnostics(trajectories: Mapping[str, Trajectory]) -> Section:
             ("violations", charts.violations(one), "Largest violation of any constraint."),
             ("newton", charts.newton(one), "A rise shows where the motion is hard to follow."),
         )
-        plots = [Plot(f"{name}{place}", _named(experiment, figure), how) for name, figure, how in drawn]
+        if experiment:
+            for _, figure, _ in drawn:
+                figure.update_layout(title_text=f"{plain(experiment)}: {figure.layout.title.text}")  # pyright: ignore[reportAttributeAccessIssue]
+        plots = [Plot(f"{name}{place}", figure, how) for name, figure, how in drawn]
         blocks += [plots[0], Row(plots[1:])]
-    return Section("Diagnostics of the simulation", (*blocks, _table(trajectories)))
-
-
-def _table(trajectories: Mapping[str, Trajectory]) -> Table:
-    rows = {experiment: [cells(row, 3) for row in _rows(one)] for experiment, one in trajectories.items()}
-    return Table.of_experiments("diagnostics", "Diagnostics", ("quantity", "value", "unit"), rows)
-
-
-def _named(experiment: str, figure: go.Figure) -> go.Figure:
-    """A figure whose title says the experiment first, if there are several."""
-    title = figure.layout.title.text  # pyright: ignore[reportAttributeAccessIssue]
-    return figure.update_layout(title_text=f"{plain(experiment)}: {title}") if experiment else figure
-
-
-def _rows(trajectory: Trajectory) -> list[tuple[str, float, str]]:
-    """Quantities, values and units."""
-    counts = np.asarray(trajectory.newton_iterations)
-    return [
-        ("largest energy balance", largest(trajectory.energies, "balance"), "J"),
-        *(
-            (f"largest violation, {level}", largest(trajectory.violations, level), label.partition("(")[2][:-1])
-            for level, label in LEVELS.items()
-        ),
-        ("steps", len(counts), ""),
-        ("Newton iterations a step, mean", float(counts.mean()) if len(counts) else float("nan"), ""),
-        ("Newton iterations a step, most", int(counts.max(initial=0)), ""),
-    ]
-
-
-def largest(series: Mapping[str, np.ndarray], key: str) -> float:
-    """Largest magnitude in one of several series, NaN if it is not there."""
-    return float(np.nanmax(np.abs(series[key]), initial=0.0)) if key in series else float("nan")
-
-
-OUTPUTS_HEADING = "Outputs over time"
+    tables = Table.joined({experiment: one.tables()[0] for experiment, one in trajectories.items()})
+    return Section("Diagnostics of the simulation", (*blocks, tables))
 
 
 def outputs(trajectory: Trajectory, channels: Sequence[str]) -> list[Section]:
@@ -150,7 +115,7 @@ def outputs(trajectory: Trajectory, channels: Sequence[str]) -> list[Section]:
     ]
     along = Coordinate("time", "s", np.asarray(trajectory.times))
     download = samples("outputs", along, channels, {"": trajectory.channels(channels)}, "Download all samples as CSV")
-    return [Section(OUTPUTS_HEADING, (*plots, download))]
+    return [Section("Outputs over time", (*plots, download))]
 
 
 def chosen_channels(trajectory: Trajectory, channels: Sequence[str], points: Sequence[str]) -> tuple[str, ...]:
@@ -165,29 +130,27 @@ def trajectory(result: Trajectory, options: ReportOptions) -> list[Section]:
     moving = {"": result}
     channels = chosen_channels(result, options.channels, options.points)
     return [
-        motion_headline(result),
+        headline_of(result),
         *mechanisms(moving, options.points),
         *outputs(result, channels),
         diagnostics(moving),
     ]
 
 
-def motion_headline(result: Trajectory) -> Headline:
-    """What was simulated, and how far it can be trusted."""
-    times, balance = np.asarray(result.times), largest(result.energies, "balance")
-    swing = max((float(np.ptp(values)) for key, values in result.energies.items() if key != "balance"), default=0.0)
-    status = "The motion was simulated to its end."
-    if swing > 0 and np.isfinite(balance):
-        kept = f"The energy balance is kept to {percent(balance / swing, 2)} of the energy that moves; "
-        status = f"{kept}a smaller step lowers it."
-    return Headline(
-        title="Simulated motion",
-        verdict="simulated",
-        status=status,
-        facts={
-            "simulated": shown(float(times[-1] - times[0])) + " s",
-            "steps": counted(len(result.newton_iterations)),
-            "largest energy error": shown(balance, digits=3) + " J",
-            "largest opening of a joint": shown(largest(result.violations, "position"), digits=3) + " m",
-        },
-    )
+@sections_of("dalembert.study.tasks.sweep.Sweep")
+def sweep(result: Any, options: ReportOptions) -> list[Section]:
+    """A figure and a table for each parameter."""
+    how = ["" if curve.sensitivities is None else "Below, its slope." for curve in result.curves]
+    plots = [
+        Plot(f"sweep-{place}", charts.sweep(curve, result.at), how[place - 1])
+        for place, curve in enumerate(result.curves, start=1)
+    ]
+    return [headline_of(result), Section("Sweep", (Row(plots), *result.tables()))]
+
+
+@sections_of(WorkPrecision)
+def work_precision(result: WorkPrecision, options: ReportOptions) -> list[Section]:
+    """Error, run time and constraint violations of each integrator with each of its settings."""
+    how = "Further down is more exact, further left is faster. Below the dotted line nothing is known."
+    plot = Plot("work-precision", charts.work_precision(result), how)
+    return [headline_of(result), Section("Integrators", (plot, *result.tables()))]

@@ -10,7 +10,7 @@ import plotly.graph_objects as go
 from dalembert.multibody import Drawing
 from dalembert.report.charts.drawing import colour_of
 from dalembert.report.charts.frequency.shapes import space
-from dalembert.report.charts.motion.film import Playback
+from dalembert.report.charts.motion.playback import Playback
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.scene.mechanism import FEW_BODIES
 from dalembert.report.scene.motion import motion_scene, unfolded

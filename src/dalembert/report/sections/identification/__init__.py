@@ -1,1 +1,0 @@
-"""Sections of fits, of intervals and sets identified, and of what is known beyond a fit."""

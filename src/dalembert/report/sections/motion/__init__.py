@@ -1,1 +1,0 @@
-"""Sections of motions in time, sweeps of a parameter, and comparisons of integrators."""

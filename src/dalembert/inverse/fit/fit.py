@@ -23,7 +23,6 @@ from dalembert.inverse.least_squares.identifiable import identifiability_finding
 from dalembert.inverse.misfit.halves import Halves
 from dalembert.inverse.noise.correlation.correlated_residuals import CorrelatedResiduals
 from dalembert.inverse.noise.likelihood.estimated_noise import EstimatedNoise
-from dalembert.inverse.problem.combinations import amounts
 from dalembert.inverse.problem.nodes import Nodes
 from dalembert.inverse.validation.validation import Validation
 from dalembert.results import EndedResult

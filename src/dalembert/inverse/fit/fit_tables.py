@@ -10,7 +10,7 @@ from dalembert.inverse.experiments.residual_table import COLUMNS, residual_colum
 from dalembert.inverse.fit.starts_table import starts_table
 from dalembert.inverse.misfit.halves import Halves
 from dalembert.inverse.problem.combinations import amounts
-from dalembert.inverse.shooting.nodes import Nodes
+from dalembert.inverse.problem.nodes import Nodes
 from dalembert.parameters import Parameter, Parameters
 from dalembert.tables import Cell, Table, cell, cells, counted, labelled, noted, shown
 

@@ -12,7 +12,7 @@ from dalembert.data.known_formats import known_formats
 from dalembert.errors import DalembertError, InputError
 from dalembert.findings import Finding
 from dalembert.studio.data.choices import Choices, fix_of, of_table, write
-from dalembert.studio.data.examined import FEW, Examined, compare, examine
+from dalembert.studio.data.examined import MOST_SAMPLES, Examined, compare, examine
 from dalembert.studio.editor.draft import Draft
 from dalembert.studio.worker import Worker
 from dalembert.study.schema_file import NAME as SCHEMA
@@ -149,7 +149,7 @@ class DataGuide:
     async def doubt(self) -> None:
         """Compare the data with the response at the first guesses."""
         shown = self.examined
-        if shown is None or not shown.table or shown.samples // (shown.choices.decimate or 1) > FEW:
+        if shown is None or not shown.table or shown.samples // (shown.choices.decimate or 1) > MOST_SAMPLES:
             self.suspects = ()
             return
         try:

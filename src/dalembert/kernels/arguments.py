@@ -25,6 +25,7 @@ class Stored(types.Type):
 
     def __init__(self, record: type) -> None:
         self.record = record
+        # Numba compares types by their names: two records of one name in two modules have to differ.
         super().__init__(f"Stored({record.__module__}.{record.__qualname__})")
 
     @property
@@ -48,12 +49,14 @@ class _StoredFields(AttributeTemplate):
 
     def generic_resolve(self, kind: Stored, name: str) -> Any:
         annotation = fields(kind.record).get(name)
+        # None tells Numba that the record has no such field; it then reports the name and the line.
         return None if annotation is None else numba_type(annotation)
 
 
 @lower_getattr_generic(Stored)
 def _field(context: Any, builder: Any, kind: Stored, words: Any, name: str) -> Any:
     at = 0
+    # The address of a field is a constant offset, as each annotation has a known number of words.
     for other, annotation in fields(kind.record).items():
         if other == name:
             return load_words(context, builder, annotation, words, at)
@@ -66,6 +69,7 @@ def _as_tuple(context: Any, builder: Any, given: Stored, wanted: Any, words: Any
     values, at = [], 0
     for annotation, kind in zip(fields(given.record).values(), wanted.types, strict=True):
         value = load_words(context, builder, annotation, words, at)
+        # A field that is a record itself is stored, but is part of a tuple by its values: the cast loads these.
         values.append(context.cast(builder, value, numba_type(annotation), kind))
         at += count(annotation)
     return context.make_tuple(builder, wanted, values)
@@ -92,6 +96,7 @@ def accepted(annotation: Any, given: Any) -> Any:
     """The type in which a kernel takes an argument of a type: a NamedTuple in memory, or its values, as it is."""
     kind = numba_type(annotation)
     if isinstance(kind, Stored) and getattr(given, "instance_class", None) is kind.record:
+        # A kernel called with a tuple made in compiled code takes its values, so that nothing has to be stored first.
         entries = map(accepted, fields(kind.record).values(), given.types)
         return types.BaseTuple.from_types(list(entries), kind.record)
     return kind
@@ -99,6 +104,7 @@ def accepted(annotation: Any, given: Any) -> Any:
 
 def load_words(context: Any, builder: Any, annotation: Any, words: Any, at: int) -> Any:
     """Generate an argument from its words, which do not change: LLVM may load them once."""
+    # The metadata `invariant.load` needs an empty node. It lets LLVM load a word once and keep it in a register.
     constant = builder.module.add_metadata([])
 
     def word(k: int, kind: Any = WORD) -> Any:
@@ -109,6 +115,7 @@ def load_words(context: Any, builder: Any, annotation: Any, words: Any, at: int)
     if annotation is float:
         return word(at, ir.DoubleType())
     if annotation is bool:
+        # A bool has a whole word; Numba's booleans are one bit.
         return builder.icmp_unsigned("!=", word(at), WORD(0))
     if annotation is int:
         return word(at)
@@ -123,6 +130,7 @@ def read_words(context: Any, builder: Any, result: Any, words: Any, at: int) -> 
     if get_origin(result) is tuple:
         values = [read_words(context, builder, entry, words, at + k) for k, entry in enumerate(get_args(result))]
         return context.make_tuple(builder, numba_type(result), values)
+    # Without the metadata of `load_words`: the kernel wrote these words after the caller had stored the arguments.
     place = _place(builder, words, at)
     if result is float:
         return builder.load(builder.bitcast(place, ir.DoubleType().as_pointer()))
@@ -146,6 +154,7 @@ def store_words(context: Any, builder: Any, annotation: Any, kind: Any, value: A
         for axis, length in enumerate(cgutils.unpack_tuple(builder, array.shape, kind.ndim)):
             put(length, at + 1 + axis)
     elif isinstance(kind, Stored):
+        # A record that is passed on is copied, as the words of all arguments stand one after the other.
         cgutils.raw_memcpy(builder, _place(builder, words, at), value, WORD(count(annotation)), 8)
     else:
         entries = get_args(annotation) if get_origin(annotation) is tuple else fields(annotation).values()

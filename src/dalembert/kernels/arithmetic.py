@@ -23,6 +23,7 @@ def kernels(function: Callable) -> tuple[Kernel, Kernel]:
 
 def _kernel_of(function: Callable, numbers: str, dtype: str) -> Kernel:
     given = cast(FunctionType, function)
+    # A copy with the same code, since the annotations of one function cannot have two meanings.
     own = FunctionType(
         given.__code__, given.__globals__, f"{given.__name__}_{numbers}", given.__defaults__, given.__closure__
     )

@@ -44,6 +44,7 @@ def product(typingctx, gemm, a, b, former, c):
     def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         (a, m, k), (b, _, n), (c, _, _) = (_matrix(context, builder, signature, values, at) for at in (1, 2, 4))
         # By columns, as the BLAS has matrices, it is the transposed product.
+        # The BLAS takes all arguments by address, so that each scalar has a cell on the stack.
         no, one, scale = _letter(builder, "N"), _number(builder, 1.0), cgutils.alloca_once_value(builder, values[3])
         _call(builder, values[0], [no, no, n, m, k, one, b, n, a, k, scale, c, n])
         return context.get_dummy_value()
@@ -63,6 +64,7 @@ def applied(typingctx, gemv, a, x, y):
     def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         a, m, n = _matrix(context, builder, signature, values, 1)
         x, y = (cgutils.create_struct_proxy(signature.args[k])(context, builder, value=values[k]).data for k in (2, 3))
+        # The rows of a are the columns of the BLAS's matrix, so that a x is its transposed product.
         yes, one, none, step = _letter(builder, "T"), _number(builder, 1.0), _number(builder, 0.0), _length(builder, 1)
         _call(builder, values[0], [yes, n, m, one, a, n, x, step, none, y, step])
         return context.get_dummy_value()
@@ -78,6 +80,7 @@ def _matrix(context: Any, builder: Any, signature: Any, values: Any, k: int) -> 
 
 
 def _length(builder: Any, value: Any) -> Any:
+    # SciPy's BLAS counts in 32 bits.
     short = ir.IntType(32)
     return cgutils.alloca_once_value(builder, short(value) if isinstance(value, int) else builder.trunc(value, short))
 

@@ -61,10 +61,12 @@ class _Library(CPUCodeLibrary):
 def _linked(library: CPUCodeLibrary) -> Any:
     """One module of a library and of all that it calls."""
     whole = ll.parse_assembly(str(library._codegen._create_empty_module(library.name)))
+    # Parts are cloned, because linking moves a module into another one and leaves it empty.
     for part in _reached(library):
         module = part._final_module.clone() if isinstance(part, _Library) else part._get_module_for_linking().clone()
         for function in module.functions:
             if not function.is_declaration and function.linkage == ll.Linkage.external:
+                # Two parts may define the same inner function; with this linkage LLVM keeps one definition.
                 function.linkage = "weak_odr"
         whole.link_in(module)
     return whole
@@ -174,6 +176,7 @@ def caller(handle: Any, symbol: str | None, arguments: tuple[Any, ...], result: 
 
     @lower_builtin(handle, types.VarArg(types.Any))
     def lower(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        # In the entry block the cells are made once a call of the caller, not once an iteration of its loops.
         with builder.goto_entry_block():
             words = builder.alloca(WORD, size=max(size, 1))
         at, kinds = 0, signature.args[len(leading) :]
@@ -182,6 +185,7 @@ def caller(handle: Any, symbol: str | None, arguments: tuple[Any, ...], result: 
             at += count(annotation)
         kind = ir.FunctionType(ir.VoidType(), [WORD])
         if symbol:
+            # The linker of the process resolves the symbol, when the object of the caller is loaded.
             function = cgutils.get_or_insert_function(builder.module, kind, symbol)
         else:
             function = builder.inttoptr(values[0], kind.as_pointer())
@@ -195,8 +199,10 @@ def caller(handle: Any, symbol: str | None, arguments: tuple[Any, ...], result: 
 
 def _flags() -> Any:
     flags: Any = compiler.Flags()
+    # Kernels allocate nothing, so that they need no reference counts.
     flags.nrt = False
     flags.release_gil = True
+    # A division by zero gives inf or nan; Python's error would be an exception.
     flags.error_model = "numpy"
     flags.no_cpython_wrapper = True
     flags.no_cfunc_wrapper = True
@@ -208,6 +214,7 @@ def optimised(function: Callable, symbol: str, addresses: int, cpu: str | None =
     """LLVM's module of a function of ``addresses`` addresses that returns nothing, optimised for a processor."""
     with _apart(), hastened(), refusals(function):
         context = cpu_target.target_context
+        # Declarations that were made since the last compilation, such as those of `caller`, become known here.
         context.refresh()
         cpu_target.typing_context.refresh()
         arguments = (types.int64,) * addresses
@@ -234,15 +241,18 @@ def _add_entry(module: Any, native: str, symbol: str, addresses: int) -> None:
         f"  %r = alloca ptr\n  %e = alloca ptr\n"
         f'  %s = call i32 @"{native}"(ptr %r, ptr %e, {given})\n  ret void\n}}'
     )
+    # LLVM refuses to link modules of different layouts.
     stub.triple, stub.data_layout = module.triple, module.data_layout
     module.link_in(stub)
     for entry in (*module.functions, *module.global_variables):
         if not entry.is_declaration and entry.name != symbol:
+            # Internal functions may be inlined and removed, and symbols of different objects cannot collide.
             entry.linkage = "internal"
 
 
 def _optimise(module: Any, cpu: str | None) -> None:
     options = ll.create_pipeline_tuning_options(speed_level=_OPTIMISATION)
+    # SLP vectorisation stays off. Loop vectorisation without fast-math leaves the order of sums.
     options.loop_vectorization, options.slp_vectorization = True, False
     builder = ll.create_pass_builder(target_machine(cpu), options)
     builder.getModulePassManager().run(module, builder)

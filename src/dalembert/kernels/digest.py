@@ -20,6 +20,7 @@ _LIBRARIES = ("numba", "numpy", "llvmlite", "scipy")
 
 def digest(function: FunctionType, layout: str = "") -> str:
     """Hexadecimal digits for a function and all that it reaches; ``layout``: what else it depends on."""
+    # Sorted, because the order in which functions are reached is no property of the kernel.
     parts = sorted(_own(entry)[0] for entry in _closure(function))
     return hashlib.sha256("\n".join([layout, *parts]).encode()).hexdigest()[:24]
 
@@ -56,6 +57,7 @@ def _own(function: FunctionType) -> tuple[str, tuple[FunctionType, ...], tuple[A
     texts, functions, kernels = list(_code_texts(function.__code__)), [], []
     for name, value in _named(function):
         functions += _functions(value)
+        # A kernel that is called by its symbol is a separate object: only its signature matters here.
         if hasattr(value, "symbol"):
             kernels.append(value)
         texts.append(f"{name} {_text(value)}")
@@ -92,6 +94,7 @@ def _names(code: CodeType) -> tuple[list[str], list[str]]:
 
 
 def _code_texts(code: CodeType) -> Iterator[str]:
+    # Bytecode, names and constants determine the kernel. Line numbers and comments are in none of these.
     yield code.co_code.hex()
     yield repr((code.co_names, code.co_varnames, code.co_freevars))
     for entry in code.co_consts:
@@ -131,6 +134,7 @@ def _text(value: Any) -> str:
         return ", ".join(map(_text, value))
     if isinstance(value, ModuleType):
         return value.__name__
+    # The usual `repr` of an object has its address, which differs between processes.
     return repr(value) if type(value).__repr__ is not object.__repr__ else type(value).__qualname__
 
 

@@ -42,6 +42,7 @@ def build(folder: Path, progress: Callable[[int, int, str], None] = lambda *_: N
         if whole is None:
             whole = module
         else:
+            # All symbols differ, so that the objects of kernels can be one module.
             whole.link_in(module)
         progress(count, len(kernels), kernel.symbol)
     about = {

@@ -21,6 +21,7 @@ def rarely_collected() -> Iterator[Callable[[], None]]:
         if calls % _SPAN == 0:
             gc.collect()
 
+    # Collections that are forced bound the memory, whatever the thresholds of the collector are.
     gc.disable()
     try:
         yield count

@@ -35,6 +35,7 @@ def _decorator(**options: Any) -> Callable[[_Function], _Function]:
 
     def decorated(function: _Function) -> _Function:
         dispatcher = decorate(function)
+        # Numba's decorator makes its own dispatcher; the class is exchanged, since no option chooses another one.
         dispatcher.__class__ = Inner
         return dispatcher
 
@@ -166,6 +167,7 @@ class Kernel(Compiled):
         self._result = None if result is type(None) else result
         names = list(inspect.signature(function).parameters)
         self._arguments = tuple(hints[name] for name in names)
+        # One layout for both directions: words of the arguments, then of the result, at least one of them.
         given, answer = "".join(map(form, self._arguments)), "" if self._result is None else form(self._result)
         self._packers = [packer(f"{function.__name__}: {name}", hints[name]) for name in names]
         self._given = struct.Struct(f"{given}{8 * max(len(answer), 1)}x")
@@ -207,6 +209,7 @@ class Kernel(Compiled):
         given = self._given.pack(*values)
         if self._result is None:
             return entry(given)
+        # The C function writes behind the arguments, and bytes of Python may not change.
         words = bytearray(given)
         entry(address(words))
         return unpack(self._result, self._answer.unpack_from(words))

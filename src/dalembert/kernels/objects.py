@@ -60,6 +60,7 @@ def cache_folder() -> Path:
     """The folder for this processor, these versions, and this compiler of kernels."""
     import numba
 
+    # The compiler itself is a part of the source of each object.
     own = sorted(Path(__file__).parent.glob("*.py"))
     features = ll.get_host_cpu_features().flatten()
     parts = (
@@ -105,6 +106,7 @@ def write_object(path: Path, code: bytes) -> None:
     if not path.parent.exists():
         path.parent.mkdir(parents=True, exist_ok=True)
         remove_unused()
+    # Written under another name and then renamed: other processes see no half of an object.
     handle, name = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
     try:
         with os.fdopen(handle, "wb") as file:

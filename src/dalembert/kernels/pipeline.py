@@ -45,6 +45,7 @@ from dalembert.kernels.powers import IntegerPowers
 arrayobj: Any = _arrayobj
 lowering: Any = _lowering
 typeinfer: Any = _typeinfer
+# `IntegerPowers` comes before types are inferred, so that its products are typed and compiled like all others.
 _PASSES = (
     TranslateByteCode, FixupArgs, IRProcessing, IntegerPowers, RewriteSemanticConstants, DeadBranchPrune,
     GenericRewrites, ReconstructSSA, NopythonTypeInference, PreLowerStripPhis, InlineOverloads, IRLegalization,
@@ -109,6 +110,7 @@ def _flags_hash(self: Any) -> int:
     return len(self.options)  # Numba's hash has the same value for all flags, but reads each of them
 
 
+# The signature for arguments of these types depends on the types alone.
 _SCALARS = (types.Number, types.Boolean, types.IntegerLiteral, types.Array)
 _resolve = BaseFunction.get_call_type
 _resolved: dict[Any, Any] = {}
@@ -118,6 +120,7 @@ def _call_type(self: Any, context: Any, args: Any, kws: Any) -> Any:
     """The signature of a function of scalars and arrays, which Numba would look for at each call of the source."""
     if kws or not all(isinstance(kind, _SCALARS) for kind in args):
         return _resolve(self, context, args, kws)
+    # The key has all types, so that the answer is the one that Numba would give again.
     key = self, context, tuple(args)
     if key not in _resolved:
         _resolved[key] = _resolve(self, context, args, kws)
@@ -143,6 +146,7 @@ _make_array = arrayobj.make_array
 
 def _array_fields(kind: Any) -> Any:
     def made(context: Any, builder: Any, value: Any = None, ref: Any = None) -> Any:
+        # Arrays that are made, not read, need the copy on the stack.
         if value is None or not isinstance(kind, types.Array):
             return _make_array(kind)(context, builder, value=value, ref=ref)
         return _Fields(context, builder, kind, value)
@@ -185,6 +189,7 @@ def _collect(value: Any, found: list[Any]) -> None:
     if kind is ir.Var:
         found.append(value)
     elif kind in (dict, list, tuple):
+        # Most parts are names and locations, whose types decide at once.
         for part in value.values() if kind is dict else value:
             if type(part) not in _ATOMS:
                 _collect(part, found)
@@ -224,6 +229,7 @@ def hastened() -> Iterator[None]:
     if not _SHORTENED:
         yield
         return
+    # Numba has no hooks here, so that its methods are exchanged, and restored whatever happens in the block.
     flags: Any = Flags
     usual = flags.__eq__, flags.__hash__
     flags.__eq__, flags.__hash__ = _same_flags, _flags_hash

@@ -48,6 +48,7 @@ def _exponent(code: Any, statement: Any) -> int | None:
     if value.fn not in (operator.pow, operator.ipow):
         return None
     exponent = guard(find_const, code, value.rhs)
+    # Exponents 0 and 1 need no product.
     if isinstance(exponent, int | float) and float(exponent).is_integer() and 2 <= exponent <= LARGEST:
         return int(exponent)
     return None
@@ -58,9 +59,11 @@ def _products(code: Any, scope: Any, statement: Any, exponent: int) -> Iterator[
     where = statement.loc
 
     def assigned(value: Any, target: Any) -> Any:
+        # Later passes look definitions up by name, so that each new variable needs its entry.
         code._definitions[target.name] = [value]
         return ir.Assign(value, target, where)
 
+    # Exponent in binary, from its lowest bit: square is x^(2^k), and bits that are set multiply the result by it.
     result, square = None, statement.value.lhs
     while True:
         if exponent & 1 and result is None:

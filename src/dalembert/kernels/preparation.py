@@ -37,9 +37,11 @@ def _compile(missing: list["Compiled"], progress: Progress) -> None:
     own = [kernel for kernel in missing if kernel.origin is None]
     others = [kernel for kernel in missing if kernel.origin is not None]
     tasks: queue.SimpleQueue[list[Compiled]] = queue.SimpleQueue()
+    # A family goes to one process: its kernels share inner functions, which are then compiled once.
     for _, group in groupby(sorted(others, key=lambda kernel: kernel.family), key=lambda kernel: kernel.family):
         tasks.put(list(group))
     done = _Counter(len(missing), progress)
+    # Kernels of scripts have no origin, so that no other process could find them: they come first, here.
     kernels = chain(own, _taken(tasks))
     with tempfile.TemporaryDirectory() as spare, rarely_collected() as compiled:
 

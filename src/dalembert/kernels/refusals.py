@@ -34,6 +34,7 @@ def refusals(function: Callable) -> Iterator[None]:
     ModelError
         Where the function, or one that it calls, does what a kernel cannot do.
     """
+    # Numba compiles `raise`, but the C function of a kernel ignores the status that the native function returns.
     _refuse_statements(function)
     try:
         yield
@@ -75,6 +76,7 @@ def _codes(code: CodeType) -> Iterator[CodeType]:
 
 def _sentence(error: NumbaError, function: Callable) -> str:
     text = str(error)
+    # Numba names places in two formats, by the stage that failed.
     places = re.findall(r'File "([^"]+)", line (\d+)', text) or re.findall(r"at (\S+) \((\d+)\)", text)
     name = function.__name__
     file, line = _innermost(places) if places else ("", "")

@@ -18,6 +18,7 @@ def intrinsic(plain: Callable[..., Any], **options: Any) -> Callable[[Callable],
 
     def declared(definition: Callable) -> Any:
         handle: Any = _typed_intrinsic(**options)(definition) if options else _typed_intrinsic(definition)
+        # The handle stays Numba's, so that compiled code sees the intrinsic; only the call from Python differs.
         handle.__class__ = type("Intrinsic", (type(handle),), {"__call__": lambda self, *given: plain(*given)})
         return handle
 
@@ -28,6 +29,7 @@ def array_at(context: Any, builder: Any, kind: types.Array, address: Any, shape:
     """Generate an array structure over memory that the caller keeps alive."""
     item = context.get_data_type(kind.dtype)
     size = WORD(context.get_abi_sizeof(item))
+    # Row-major strides from the last axis on: each is the next one times the length of its axis.
     strides, step = [size], size
     for length in reversed(shape[1:]):
         step = builder.mul(step, length)
@@ -143,6 +145,7 @@ def call_with(typingctx, address, *arrays):
         values = cgutils.unpack_tuple(builder, arguments[1])
         for kind, value in zip(signature.args[1], values, strict=True):
             data = cgutils.create_struct_proxy(kind)(context, builder, value=value).data
+            # Untyped pointers, as the C function takes arrays of real and of complex numbers alike.
             pointers.append(builder.bitcast(data, byte))
         kind = ir.FunctionType(ir.VoidType(), [byte] * len(pointers))
         builder.call(builder.inttoptr(arguments[0], kind.as_pointer()), pointers)
@@ -154,6 +157,7 @@ def call_with(typingctx, address, *arrays):
 def _on_stack(context: Any, builder: Any, kind: types.Array, shape: tuple[int, ...]) -> Any:
     """Generate an array on the stack of the function, the same one at each call from one place."""
     with builder.goto_entry_block():
+        # In the entry block, else a loop around the call would use more stack at each turn.
         cells = builder.alloca(context.get_data_type(kind.dtype), size=int(np.prod(shape)))
     return array_at(context, builder, kind, builder.ptrtoint(cells, WORD), [WORD(length) for length in shape])
 

@@ -86,6 +86,7 @@ def packer(name: str, annotation: Any) -> Pack:
     if get_origin(annotation) is Annotated:
         return _array_packer(name, next(leaves(annotation)))
     entries = get_args(annotation) if get_origin(annotation) is tuple else fields(annotation).values()
+    # A message names the field, or the number of an entry without a name.
     names = getattr(annotation, "_fields", range(len(entries)))
     parts = [packer(f"{name}.{own}", entry) for own, entry in zip(names, entries, strict=True)]
 
@@ -108,6 +109,7 @@ def _array_packer(name: str, leaf: ArrayOf) -> Pack:
     dtype, axes = np.dtype(leaf.dtype), leaf.axes
 
     def pack(value: np.ndarray, words: Words) -> None:
+        # The kernel sees an address only. Another dtype or stride would read other memory than meant.
         if value.dtype != dtype or value.ndim != axes or not value.flags.c_contiguous:
             raise TypeError(
                 f"{name} is an array of {value.dtype} with shape {value.shape}; "
@@ -122,6 +124,7 @@ def _array_packer(name: str, leaf: ArrayOf) -> Pack:
 def address(memory: Any) -> int:
     """Address of the first entry of a contiguous array, or of another object's memory."""
     try:
+        # It takes less than half of the time of `array.ctypes.data`.
         return ctypes.addressof(ctypes.c_char.from_buffer(memory))
     except (TypeError, ValueError):  # it cannot be written to, or is empty
         return memory.ctypes.data  # of an array; slower, since it makes several objects

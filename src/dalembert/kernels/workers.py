@@ -52,6 +52,7 @@ def work(requests: Iterable[str], answers: IO[str]) -> None:
             origin, digest, path = json.loads(line)
             try:
                 kernel = find(origin)
+                # An object is stored by its digest, and must be that of the source of this process.
                 assert kernel.digest == digest, "the source has changed since the other process read it"
                 write_object(Path(path), kernel.object_code())
                 answer = "done"

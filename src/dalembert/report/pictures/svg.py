@@ -73,8 +73,8 @@ def _from_far_to_near(scene: Scene, view: Projection) -> list[Primitive]:
     bodies = {shape.part: shape for shape in lines} | surfaces
     ordered = sorted(bodies.values(), key=lambda shape: (shape.kind == "line", depth[shape.part]))
     first = next((k for k, shape in enumerate(scene.primitives) if shape.kind in ("line", "surface")), 0)
-    others = [shape for shape in scene.primitives if shape.kind not in ("line", "surface")]
-    return [*others[:first], *ordered, *others[first:]]
+    symbols = [shape for shape in scene.primitives if shape.kind not in ("line", "surface")]
+    return [*symbols[:first], *ordered, *symbols[first:]]
 
 
 def _line(canvas: Canvas, view: Projection, shape: Primitive) -> None:

@@ -99,7 +99,7 @@ def _surfaces(drawing: Drawing) -> dict[str, Surface]:
 def _axes(axes: Lines, length: float) -> list[Primitive]:
     """The axes x, y and z of bodies (frames, 4, 3), each as one line with gaps; red, green and blue."""
     return [
-        Primitive("line", "axis", name, joined({body: _ray(own, k, length) for body, own in axes.items()}), colour)
+        Primitive("line", "axis", name, joined({body: _ray(frame, k, length) for body, frame in axes.items()}), colour)
         for k, (name, colour) in enumerate({"x": 1, "y": 2, "z": 0}.items(), start=1)
     ]
 

@@ -110,28 +110,13 @@ def _connections(system: VibrationSystem, masses: list[str]) -> Iterator[tuple[s
     signed = np.real(stiffness.toarray() if issparse(stiffness) else np.asarray(stiffness))
     dense = np.abs(signed)
     owners = [masses.index(name.rpartition(".")[0]) for name in system.structure.dofs.names]
-    for row, own in enumerate(masses):
+    for row, mass in enumerate(masses):
         rows = [k for k, owner in enumerate(owners) if owner == row]
         if np.abs(signed[rows].sum(axis=1)).max() > 1e-9 * dense.max(initial=1e-300):
-            yield own, None
+            yield mass, None
         for column in range(row + 1, len(masses)):
             if dense[np.ix_(rows, [k for k, owner in enumerate(owners) if owner == column])].any():
-                yield own, masses[column]
-
-
-def sides(faces: np.ndarray) -> np.ndarray:
-    """Return the ends (sides, 2) of the sides of all faces, each once."""
-    pairs = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2)
-    return np.unique(np.sort(pairs, axis=1), axis=0)
-
-
-def triangles(faces: np.ndarray) -> np.ndarray:
-    """Triangles (count, 3) of faces of three or four corners.
-
-    >>> triangles(np.array([[0, 1, 2, 3]])).tolist()
-    [[0, 1, 2], [0, 2, 3]]
-    """
-    return np.concatenate([faces[:, [0, second, second + 1]] for second in range(1, faces.shape[1] - 1)])
+                yield mass, masses[column]
 
 
 def edges(places: np.ndarray, faces: np.ndarray) -> np.ndarray:
@@ -147,12 +132,12 @@ def edges(places: np.ndarray, faces: np.ndarray) -> np.ndarray:
     first, second, third = (places[faces[:, corner]] for corner in (0, 1, 2))
     normals = np.cross(second - first, third - first)
     normals = np.repeat(normals / np.linalg.norm(normals, axis=1, keepdims=True), faces.shape[1], axis=0)
-    ends, own, counts = np.unique(np.sort(sides, axis=1), axis=0, return_inverse=True, return_counts=True)
-    order = np.argsort(own.ravel(), kind="stable")
+    ends, numbers, counts = np.unique(np.sort(sides, axis=1), axis=0, return_inverse=True, return_counts=True)
+    order = np.argsort(numbers.ravel(), kind="stable")
     begins = np.cumsum(counts) - counts
     drawn = counts != 2
     pairs = np.flatnonzero(counts == 2)
-    one, other = (normals[order[begins[pairs] + place]] for place in (0, 1))
+    first, second = (normals[order[begins[pairs] + place]] for place in (0, 1))
     # Neighbouring faces may be numbered in opposite senses, so only the axes of their normals count.
-    drawn[pairs] = np.abs(np.einsum("ij,ij->i", one, other)) < SHARP
+    drawn[pairs] = np.abs(np.einsum("ij,ij->i", first, second)) < SHARP
     return ends[drawn]

@@ -7,7 +7,7 @@ import plotly.graph_objects as go
 
 from dalembert.report.charts.motion.playback import Film, slowness
 from dalembert.report.look import LIGHT, themed
-from dalembert.report.scene.structure import edges, triangles
+from dalembert.report.scene.structure import edges
 from dalembert.structure import ModeShapes
 from dalembert.tables import labelled, prefixed, shown
 
@@ -43,6 +43,15 @@ def outline(places: np.ndarray, faces: np.ndarray) -> go.Scatter3d:
     x, y, z = lines.reshape(-1, 3).T
     line = {"color": LIGHT.muted, "width": 2}
     return go.Scatter3d(x=x, y=y, z=z, mode="lines", line=line, hoverinfo="skip", showlegend=False, name="at rest")
+
+
+def triangles(faces: np.ndarray) -> np.ndarray:
+    """Triangles (count, 3) of faces of three or four corners.
+
+    >>> triangles(np.array([[0, 1, 2, 3]])).tolist()
+    [[0, 1, 2], [0, 2, 3]]
+    """
+    return np.concatenate([faces[:, [0, second, second + 1]] for second in range(1, faces.shape[1] - 1)])
 
 
 def space(figure: go.Figure, positions: np.ndarray) -> None:

@@ -107,17 +107,17 @@ def mechanism(
 
 def _few_surfaces(shapes: Sequence[Primitive]) -> list[Primitive]:
     """Shapes with the surfaces of many bodies as one."""
-    own = [shape for shape in shapes if shape.kind == "surface" and shape.role == "body"]
-    if len(own) <= FEW_BODIES:
+    surfaces = [shape for shape in shapes if shape.kind == "surface" and shape.role == "body"]
+    if len(surfaces) <= FEW_BODIES:
         return [replace(shape, points=shape.positions, poses=None) for shape in shapes]
-    first = np.cumsum([0, *(shape.points.shape[1] for shape in own)])
-    faces = np.concatenate([shape.faces + number for shape, number in zip(own, first, strict=False)])
-    points = np.concatenate([shape.positions for shape in own], axis=1)
-    lines = sum(shape.role == "body" for shape in shapes) - len(own)
-    joined = Primitive("surface", "body", f"{len(own)} bodies with shapes", points, lines, faces)
-    place = next(k for k, shape in enumerate(shapes) if shape is own[0])
-    kept = [shape for shape in shapes if not any(shape is one for one in own)]
-    return [*kept[:place], joined, *kept[place:]]
+    first = np.cumsum([0, *(shape.points.shape[1] for shape in surfaces)])
+    faces = np.concatenate([shape.faces + number for shape, number in zip(surfaces, first, strict=False)])
+    points = np.concatenate([shape.positions for shape in surfaces], axis=1)
+    lines = sum(shape.role == "body" for shape in shapes) - len(surfaces)
+    joined = Primitive("surface", "body", f"{len(surfaces)} bodies with shapes", points, lines, faces)
+    place = next(k for k, shape in enumerate(shapes) if shape is surfaces[0])
+    remaining = [shape for shape in shapes if not any(shape is surface for surface in surfaces)]
+    return [*remaining[:place], joined, *remaining[place:]]
 
 
 def _trace(shape: Primitive) -> go.Scatter | go.Scatter3d | go.Mesh3d:

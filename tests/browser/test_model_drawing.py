@@ -144,6 +144,8 @@ def test_a_mechanism_in_space_is_turned_and_its_parts_are_chosen(chromium, visit
     wait_until(page, f"{CURSOR} === '[[model.joint]]'")
     line_of(page, 'name = "wire3"').click()
     wait_until(page, "document.querySelector('.model-space button.chosen')?.innerText === 'wire3'")
+    page.locator(".model-space canvas").click(position={"x": 3, "y": 3})  # beside all parts
+    wait_until(page, "!document.querySelector('.model-space button.chosen')")
     where = "[...document.querySelectorAll('.model-space span')].map((one) => one.getBoundingClientRect().x | 0).join()"
     before = page.evaluate(where)
     page.locator(".model-space").focus()

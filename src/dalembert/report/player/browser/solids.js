@@ -75,8 +75,8 @@ export class Solids {
     const ring = (centre, r) => Array.from({ length: count }, (_, k) => plus(plus(centre, u, r * Math.cos((2 * Math.PI * k) / count)), v, r * Math.sin((2 * Math.PI * k) / count)));
     const first = ring(a, radius), last = ring(b, end);
     first.forEach((_, k) => this.face(first[k], first[(k + 1) % count], last[(k + 1) % count], last[k]));
-    this.face(...first);
-    this.face(...last);
+    if (radius) this.face(...first);
+    if (end) this.face(...last);
   }
 
   ball(centre, radius, count = 12) {

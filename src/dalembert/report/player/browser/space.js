@@ -290,7 +290,8 @@ export class Space {
     for (let k = 0; k < this.triangles.length / 7; k += 3) {
       const [a, b, c] = [0, 1, 2].map((one) => corner(this.triangles, k + one)), signs = [side(a, b), side(b, c), side(c, a)];
       const depth = (a[2] + b[2] + c[2]) / 3, part = this.triangles[7 * k + 6];
-      if (part >= 0 && depth < nearest && (signs.every((one) => one >= 0) || signs.every((one) => one <= 0))) [nearest, found] = [depth, part];
+      const inside = signs.some((one) => one) && (signs.every((one) => one >= 0) || signs.every((one) => one <= 0));
+      if (part >= 0 && depth < nearest && inside) [nearest, found] = [depth, part];
     }
     let closest = REACH;
     for (let k = 0; found === null && k < this.lines.length / 7; k += 2) {

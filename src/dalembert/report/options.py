@@ -70,13 +70,7 @@ class ReportOptions:
         return [item for item in self.supplements if isinstance(item, Section)]
 
     def refuse_others(self) -> None:
-        """Refuse what no section has taken.
-
-        Raises
-        ------
-        InputError
-            For anything else than results that a section has taken, and sections.
-        """
+        """Refuse what no section has taken."""
         for item in self.supplements:
             for value in item.values() if isinstance(item, Mapping) else [item]:
                 if not isinstance(value, Section) and not any(value is shown_result for shown_result in self.taken):
@@ -88,13 +82,7 @@ class ReportOptions:
 
 
 def report_options(supplements: tuple[Any, ...], **options: Any) -> ReportOptions:
-    """Return the options from the arguments of :func:`dalembert.report.report`.
-
-    Raises
-    ------
-    InputError
-        For an unknown option.
-    """
+    """Return the options from the arguments of :func:`dalembert.report.report`."""
     known = {item.name for item in fields(ReportOptions) if item.init} - {"supplements"}
     for name in options:
         if name not in known:

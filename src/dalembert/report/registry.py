@@ -60,13 +60,7 @@ def sections_of(kind: type | str) -> Callable[[Function], Function]:
 
 
 def registered_sections(result: object, options: ReportOptions) -> list[Section]:
-    """Return the sections of a result: the registered ones, or its facts and tables.
-
-    Raises
-    ------
-    InputError
-        For a result of no registered kind.
-    """
+    """Return the sections of a result: the registered ones, or its facts and tables."""
     for kind in type(result).__mro__:
         package, module = [*kind.__module__.split("."), ""][:2]
         if package == "dalembert":

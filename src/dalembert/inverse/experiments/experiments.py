@@ -169,15 +169,7 @@ class JointModel:
 
 
 def joint(experiments: Sequence[Experiment]) -> tuple[JointModel, Measurements]:
-    """Experiments as one model and one set of measurements, after checking that they fit together.
-
-    Raises
-    ------
-    DataError
-        As :func:`dalembert.identify` for one experiment, with its name.
-    InputError
-        For names that repeat, a shared parameter that differs, deviations of some experiments only.
-    """
+    """Experiments as one model and one set of measurements, after checking that they fit together."""
     _check_names(experiments)
     picked = []
     for item in experiments:
@@ -230,13 +222,7 @@ def _values(parameters: Parameters, start: Mapping[str, float] | ArrayLike) -> d
 
 
 def joint_weights(model: JointModel, given: Mapping[str, ArrayLike] | None) -> np.ndarray | None:
-    """Weights (rows, channels) of the joint response from those of each experiment by name; 1 for the others.
-
-    Raises
-    ------
-    InputError
-        For something else than a mapping, an unknown experiment, weights of the wrong shape.
-    """
+    """Weights (rows, channels) of the joint response from those of each experiment by name; 1 for the others."""
     if given is None:
         return None
     names = [part.name for part in model.parts]

@@ -267,11 +267,6 @@ class Fit(EndedResult):
 
 
 def check_level(level: float, where: str) -> None:
-    """Check that a level is a probability.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that a level is a probability."""
     if not is_number(level) or np.iscomplexobj(level) or not 0 < level < 1:
         raise InputError(f"{where}: level is {shown(level)}; expected a number between 0 and 1, such as 0.95")

@@ -8,13 +8,7 @@ from dalembert.errors import InputError
 
 
 def package(name: str, what: str) -> Any:
-    """Return a package that ``what`` needs.
-
-    Raises
-    ------
-    InputError
-        If it is not installed.
-    """
+    """Return a package that ``what`` needs."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", FutureWarning)  # ArviZ announces its next version once a day

@@ -95,13 +95,7 @@ class Loss:
 
 
 def loss_of(name: str, scale: float | None, *, known: bool) -> Loss | None:
-    """Loss by name, None for the square; where deviations are known the scale has a usual value.
-
-    Raises
-    ------
-    InputError
-        For an unknown name, a scale that is not positive or has nothing to scale, none where none is usual.
-    """
+    """Loss by name, None for the square; where deviations are known the scale has a usual value."""
     require_known("loss", str(name), NAMES)
     if name == "linear":
         if scale is not None:

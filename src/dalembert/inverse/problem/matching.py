@@ -10,12 +10,7 @@ from dalembert.units import wrong_kind
 
 
 def check_kinds(owner: str, model: object, data: object, kind: type = Measurements) -> None:
-    """Refuse what is not a model with parameters, or not data of a kind.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse what is not a model with parameters, or not data of a kind."""
     if not isinstance(model, ForwardModel):
         raise InputError(
             f"{owner}: {shown(model)} was given as the model; expected a forward model, such as TimeResponse or "
@@ -29,13 +24,7 @@ def check_kinds(owner: str, model: object, data: object, kind: type = Measuremen
 
 
 def columns_of(model: ForwardModel, data: Measurements | Bands) -> np.ndarray:
-    """Where the data's channels stand among the model's, shape (channels,).
-
-    Raises
-    ------
-    DataError
-        For a channel that the model lacks, and for one that was measured in a unit of another kind.
-    """
+    """Where the data's channels stand among the model's, shape (channels,)."""
     names = tuple(channel.name for channel in model.channels)
     for channel in data.channels:
         if channel not in names:
@@ -48,10 +37,6 @@ def _check_kinds(model: ForwardModel, data: Measurements | Bands) -> None:
     """Refuse channels that were measured in a unit of another kind, and turns of what is no angle.
 
     A sensor of unknown gain may have any unit.
-
-    Raises
-    ------
-    DataError
     """
     scaled = getattr(model, "scaled", frozenset())
     units = {channel.name: channel.unit for channel in model.channels if channel.name not in scaled}
@@ -66,12 +51,7 @@ def _check_kinds(model: ForwardModel, data: Measurements | Bands) -> None:
 
 
 def check_samples(model: ForwardModel, data: Measurements | Bands) -> None:
-    """Refuse data whose samples lie elsewhere than the model's.
-
-    Raises
-    ------
-    DataError
-    """
+    """Refuse data whose samples lie elsewhere than the model's."""
     ours, theirs = model.coordinate, data.coordinate
     advice = "build the model with the samples of the data"
     if len(ours.values) != len(theirs.values):
@@ -88,12 +68,7 @@ def check_samples(model: ForwardModel, data: Measurements | Bands) -> None:
 
 
 def check_finite(data: Measurements) -> None:
-    """Refuse measurements with a value that is not a number, unless NaN is to be left out and something remains.
-
-    Raises
-    ------
-    DataError
-    """
+    """Refuse measurements with a value that is not a number, unless NaN is to be left out and something remains."""
     leave_out = data.missing == "leave-out"
     missing = np.argwhere(np.isinf(data.values) if leave_out else ~np.isfinite(data.values))
     if len(missing):
@@ -114,12 +89,7 @@ MOST = 1e50
 
 
 def check_sizes(data: Measurements) -> None:
-    """Refuse values and deviations whose squares would leave the range of floating point.
-
-    Raises
-    ------
-    DataError
-    """
+    """Refuse values and deviations whose squares would leave the range of floating point."""
     sizes = np.max(np.abs(np.where(data.present, data.values, 0.0)), axis=0)
     limits = [("largest absolute value", sizes, 0.0, f"at most {MOST:g}")]
     if data.deviations is not None:
@@ -134,12 +104,7 @@ UNITS = "use other units"
 
 
 def check_weighted(data: Measurements, weights: np.ndarray) -> None:
-    """Refuse data whose weighted squares would leave the range of floating point, where they are not zero.
-
-    Raises
-    ------
-    DataError
-    """
+    """Refuse data whose weighted squares would leave the range of floating point, where they are not zero."""
     largest = float(np.max(np.sqrt(weights) * np.abs(np.where(data.present, data.values, 0.0))))
     if largest > 0 and not 1 / MOST <= largest <= MOST:
         raise DataError(
@@ -149,13 +114,7 @@ def check_weighted(data: Measurements, weights: np.ndarray) -> None:
 
 
 def weights_of(given: ArrayLike | None, shape: tuple[int, ...]) -> np.ndarray:
-    """Weights of shape (samples, channels), 1 where none are given.
-
-    Raises
-    ------
-    InputError
-        For weights of another shape, negative, or all zero.
-    """
+    """Weights of shape (samples, channels), 1 where none are given."""
     if given is None:
         return np.broadcast_to(1.0, shape)
     try:

@@ -64,12 +64,7 @@ def joint_priors(parameters: Parameters) -> Iterator[tuple[CorrelatedNormal, np.
 
 
 def check_priors(parameters: Parameters, known: bool) -> None:
-    """Refuse priors with data of unknown noise: which of the two to trust more would not be known.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse priors with data of unknown noise: which of the two to trust more would not be known."""
     for k in () if known else parameters.square_priors[:1]:
         what = "its deviation" if parameters.items[k].prior is None else parameters.items[k].distribution.name
         raise InputError(

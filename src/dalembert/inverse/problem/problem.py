@@ -153,13 +153,7 @@ class MisfitProblem:
         return np.where(self.data.present, self.data.difference(response), 0.0)
 
     def linearise(self, vector: np.ndarray) -> Linearisation:
-        """Response and jacobian at a parameter vector.
-
-        Raises
-        ------
-        SolveError
-            Whatever goes wrong in the simulation at this vector.
-        """
+        """Response and jacobian at a parameter vector."""
         self.journal.simulations += 1 + len(vector)
         with failing_at(self.model, self.journal, vector):
             response, jacobian = self.model.linearise(vector)
@@ -175,15 +169,7 @@ class MisfitProblem:
         return self.derivative == ADJOINT or (self.derivative == AUTO and prefers_adjoint(self.model))
 
     def pulled(self, vector: np.ndarray) -> tuple[np.ndarray, Pull]:
-        """Response (samples, channels), and the gradients of its weighted sums (parameters,) by the adjoint.
-
-        Raises
-        ------
-        SolveError
-            Whatever goes wrong in the simulation at this vector.
-        InputError
-            For a model without an adjoint.
-        """
+        """Response (samples, channels), and the gradients of its weighted sums (parameters,) by the adjoint."""
         self.journal.simulations += ADJOINT_COST
         with failing_at(self.model, self.journal, vector):
             response, pull_whole = pullback(self.model, vector, ADJOINT)
@@ -246,13 +232,7 @@ class MisfitProblem:
         return 2 * self.slopes(at).T @ self.residuals(at.vector, at.response)
 
     def slope(self, vector: np.ndarray) -> np.ndarray:
-        """Gradient of the misfit by the parameters, without priors, at a vector, both (parameters,).
-
-        Raises
-        ------
-        SolveError
-            If the simulation fails.
-        """
+        """Gradient of the misfit by the parameters, without priors, at a vector, both (parameters,)."""
         if not self.by_adjoint:
             at = self.linearise(vector)
             rows = self.weighted(at.jacobian, at.response).reshape(-1, len(vector))
@@ -276,14 +256,6 @@ def pose(
     """The problem of explaining data by a model, after checking that they fit together.
 
     ``noise_known`` means that priors may be given, although the data have neither deviations nor weights.
-
-    Raises
-    ------
-    DataError
-        For a NaN in data that do not leave it out, a channel that the model lacks, samples that lie elsewhere than
-        the model's.
-    InputError
-        For weights of another shape, or negative; for priors beside data of unknown noise.
     """
     check_priors(model.parameters, known=noise_known or weights is not None or data.deviations is not None)
     columns = columns_of(model, data)

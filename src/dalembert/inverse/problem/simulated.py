@@ -28,13 +28,7 @@ def simulated(model: ForwardModel, columns: np.ndarray, journal: Journal, vector
 
 @contextmanager
 def failing_at(model: ForwardModel, journal: Journal, vector: np.ndarray) -> Iterator[None]:
-    """Keep the failure of a simulation at a parameter vector (parameters,) in the journal.
-
-    Raises
-    ------
-    SolveError
-        Whatever goes wrong in the simulation at this vector.
-    """
+    """Keep the failure of a simulation at a parameter vector (parameters,) in the journal."""
     try:
         yield
     except (InputError, StorageError):  # no other vector will do better

@@ -25,11 +25,6 @@ def surrogate_of(
     """Surrogate of (samples, channels) = ``shape`` outputs, told to the journal.
 
     Each channel has a scale of its own, or the outputs that have one number in ``groups`` (outputs,).
-
-    Raises
-    ------
-    SolveError
-        For failed runs that the scheme cannot do without, with the model's own reason for the first.
     """
     samples, channels = shape
     before = len(journal.failures)

@@ -19,14 +19,7 @@ begins anew differs by some of its error."""
 
 
 def check_segments(problem: MisfitProblem, shooting: MultipleShooting) -> None:
-    """Refuse what cannot be cut into segments.
-
-    Raises
-    ------
-    InputError
-        For models that cannot begin later, without states or with uneven samples; for too few samples, and for unknown
-        names.
-    """
+    """Refuse what cannot be cut into segments."""
     for track in tracks(problem):
         if shooting.states is not None:
             _check_named(track, shooting)
@@ -60,14 +53,7 @@ def _check_named(track: Track, shooting: MultipleShooting) -> None:
 
 
 def check_restart(problem: MisfitProblem, shooting: MultipleShooting, values: np.ndarray) -> None:
-    """Refuse states with which a motion does not go on as it did: one run over two segments, the second one anew.
-
-    Raises
-    ------
-    InputError
-        Where the motion at parameters ``values`` does not begin with the given states, or a segment that begins with
-        the states in its midst does not continue it. A simulation that fails says neither.
-    """
+    """Refuse states with which a motion does not go on as it did: one run over two segments, the second one anew."""
     for track in tracks(problem):
         if shooting.states is None:
             _check_begun(track, shooting.segments or 2, values[track.wiring])

@@ -85,13 +85,7 @@ class Segments:
     shape: tuple[int, int]  # of the data
 
     def evaluate(self, vector: np.ndarray) -> Response:
-        """Response at a vector (unknowns,).
-
-        Raises
-        ------
-        SolveError
-            Where a segment cannot be simulated.
-        """
+        """Response at a vector (unknowns,)."""
 
         def run(piece: Piece) -> np.ndarray:
             found = piece.model.evaluate(vector[piece.places][None])
@@ -102,13 +96,7 @@ class Segments:
         return self._response(vector, [run(piece) for piece in self.pieces])
 
     def linearise(self, vector: np.ndarray) -> Tangent:
-        """Response and derivatives at a vector (unknowns,).
-
-        Raises
-        ------
-        SolveError
-            Where a segment cannot be simulated.
-        """
+        """Response and derivatives at a vector (unknowns,)."""
         runs = [piece.model.linearise(vector[piece.places]) for piece in self.pieces]
         slopes = [(piece, own) for piece, (_, own) in zip(self.pieces, runs, strict=True)]
         blocks = tuple(own[-len(piece.rows) :][:, piece.picked] for piece, own in slopes)

@@ -94,14 +94,7 @@ class Split:
 
 
 def split(problem: MisfitProblem, validation: HeldOut) -> Split:
-    """A problem without a share of its samples at the end, or without some of its experiments after their first parts.
-
-    Raises
-    ------
-    InputError
-        For a share that leaves nothing on one side, an unknown experiment, one with parameters of its own of which no
-        part is fitted, a part that holds no sample or all of them.
-    """
+    """A problem without a share of its samples at the end, or without some of its experiments after their first parts."""
     everything = np.ones(problem.weights.shape, dtype=bool)
     if validation is None:
         return Split(problem, problem, everything, "nothing")
@@ -174,13 +167,7 @@ def _experiments(problem: MisfitProblem, lengths: Mapping[str, float], fitted: n
 
 
 def _samples_until(part: ExperimentPart, length: float) -> int:
-    """Number of samples of an experiment that is predicted which belong to its first part, which is fitted.
-
-    Raises
-    ------
-    InputError
-        For a length that leaves no sample, or only one, on one side.
-    """
+    """Number of samples of an experiment that is predicted which belong to its first part, which is fitted."""
     along = part.coordinate
     if length == 0:
         return 0

@@ -95,12 +95,6 @@ class BaseSystem(Displayed):
             By joint: angles in rad and displacements in m, as the joints' channels are, and their rates. Write
             ``"bearing.angle"`` for a joint that has several. The class of each joint lists its coordinates.
 
-        Raises
-        ------
-        InputError
-            For another joint, and for what is no finite number. When the mechanism is assembled, `ModelError` is raised
-            where the joints cannot have these coordinates or rates.
-
         Examples
         --------
         >>> from dalembert.multibody import simulate

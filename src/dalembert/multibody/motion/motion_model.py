@@ -104,16 +104,7 @@ class MotionModel(ABC):
         return self.linearise(vector)[1]
 
     def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Response (samples, channels) and its exact derivative (samples, channels, parameters), in one run.
-
-        Raises
-        ------
-        InputError
-            Where the builder, or a function of the user's in the model, cannot run in complex numbers, or loses the
-            imaginary part.
-        SolveError
-            Where the solver could not go on.
-        """
+        """Response (samples, channels) and its exact derivative (samples, channels, parameters), in one run."""
         vector = self.parameters.real_vector(vector)
         if self._built.derivative != COMPLEX_STEP:
             return central_differences(self, vector)
@@ -219,23 +210,12 @@ class BuiltModel(MotionModel):
 
         Nothing is simulated. The forces of functions of the user's are compared by the next derivative, along its
         motion.
-
-        Raises
-        ------
-        InputError
-            With the parameter, the component and its number, where the builder drops the imaginary part.
         """
         if self.derivative == COMPLEX_STEP:
             self._compared.once(vector, lambda thorough: check_numbers(self.builder, self.parameters, vector, thorough))
 
     def check_together(self, vector: np.ndarray) -> None:
-        """Compare as :meth:`check_derivatives` where nothing was compared, along one direction of all parameters.
-
-        Raises
-        ------
-        InputError
-            As :meth:`check_derivatives`.
-        """
+        """Compare as :meth:`check_derivatives` where nothing was compared, along one direction of all parameters."""
         if not (self._compared.vectors or self._compared.together):
             check_numbers_together(self.builder, self.parameters, vector)
             self._compared.together = True
@@ -264,14 +244,6 @@ class BuiltModel(MotionModel):
         """Response (samples, channels), and the gradients of its weighted sums by the discrete adjoint.
 
         See :func:`dalembert.forward.pullback`, which chooses between this method and :meth:`linearise`.
-
-        Raises
-        ------
-        InputError
-            For what has no adjoint: other integrators than generalized-alpha, mechanisms in space, energies of the
-            system as channels, functions of the user's; and as :meth:`linearise`.
-        SolveError
-            Where the solver could not go on.
         """
         from dalembert.multibody.adjoint.model_pullback import pulled  # which only users of an adjoint load
 

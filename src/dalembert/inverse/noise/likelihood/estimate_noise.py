@@ -56,13 +56,6 @@ def estimate_noise(problem: MisfitProblem, noise: Noise, at: Linearisation, *, k
     """Return model and noise at the maximum of the restricted likelihood, from a plain minimum.
 
     ``at``: at the plain minimum. ``known``: whether the weights of the problem are 1/variance.
-
-    Raises
-    ------
-    InputError
-        For noise models that the data do not allow, and fewer values than parameters.
-    SolveError
-        If the response cannot be linearised.
     """
     _check_count(problem)
     given, _ = picked_models(problem, noise, known=known)
@@ -86,12 +79,7 @@ def estimate_noise(problem: MisfitProblem, noise: Noise, at: Linearisation, *, k
 
 
 def _check_count(problem: MisfitProblem) -> None:
-    """Refuse fewer values than parameters, from which no noise can be estimated.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse fewer values than parameters, from which no noise can be estimated."""
     count = len(problem.model.parameters)
     if problem.compared < count:
         values, parameters = counted(problem.compared, "value"), counted(count, "parameter")
@@ -112,12 +100,7 @@ def _largest(
 
 
 def _check_response(likelihood: Likelihood, at: Linearisation) -> None:
-    """Refuse noise that is proportional to a response of zero.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse noise that is proportional to a response of zero."""
     for channel in likelihood.channels:
         series, response = channel.series, at.response.ravel()[channel.series.rows]
         model = channel.model.deviation if isinstance(channel.model, CorrelatedNoise) else channel.model

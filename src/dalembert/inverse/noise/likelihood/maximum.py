@@ -107,11 +107,6 @@ def maximum(
     ``start`` (parameters,). ``held``: places of parameters that keep their values. ``at``: of the response at the
     start, if it is known. ``restriction``: a fixed one; if not given, that of each linearised response in turn.
 
-    Raises
-    ------
-    SolveError
-        If the response cannot be linearised at the start.
-
     Notes
     -----
     Fisher's scoring: the response is linearised, the likelihood of the linearised model made largest over all
@@ -176,13 +171,7 @@ def _forward(
     step: np.ndarray,
     gain: float,
 ) -> Expansion:
-    """Return the expansion after a step (parameters,), which is halved until it gains something.
-
-    Raises
-    ------
-    SolveError
-        If no part of the step can be simulated, or gains anything.
-    """
+    """Return the expansion after a step (parameters,), which is halved until it gains something."""
     reason = "no part of the last step increases the likelihood"
     origin = search.points(here.vector)
     for halving in range(HALVINGS):

@@ -26,11 +26,6 @@ def picked_models(
     """Return the noise model of each channel with compared values, and the models by which it was chosen.
 
     ``known`` means that the weights of the problem are 1/variance.
-
-    Raises
-    ------
-    InputError
-        For a channel that there is not, and what is no noise model.
     """
     usual = KnownNoise() if known else ConstantNoise()
     series = list(series_of(problem, fewest=1))
@@ -49,13 +44,7 @@ def picked_models(
 def noises_of(
     problem: MisfitProblem, picked: Mapping[Series, NoiseModel], *, known: bool
 ) -> tuple[tuple[ChannelNoise, ...], Parameters]:
-    """Return the noise of each series, and the parameters of all of them.
-
-    Raises
-    ------
-    InputError
-        For known noise that is not known, and what :meth:`NoiseModel.whitening` refuses.
-    """
+    """Return the noise of each series, and the parameters of all of them."""
     channels = tuple(_channel_noise(problem, own, model, known=known) for own, model in picked.items())
     return channels, noise_parameters(problem, channels)
 
@@ -77,13 +66,7 @@ def base_of(series: Series, model: NoiseModel) -> str:
 
 
 def noise_parameters(problem: MisfitProblem, channels: tuple[ChannelNoise, ...]) -> Parameters:
-    """Return the parameters of the noise of all channels; those of the same name are one, if they are alike.
-
-    Raises
-    ------
-    InputError
-        For channels of one name with different noise models.
-    """
+    """Return the parameters of the noise of all channels; those of the same name are one, if they are alike."""
     found: dict[str, tuple[NoiseModel, Extent, str]] = {}
     for channel in channels:
         extent = _extent(problem, channel.series)

@@ -16,12 +16,7 @@ MODELS: dict[str, type[NoiseModel]] = {
 
 
 def noise_model(given: object) -> NoiseModel:
-    """Return a noise model, from itself or from its name with its defaults.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return a noise model, from itself or from its name with its defaults."""
     if isinstance(given, str):
         require_known("noise model", given, MODELS, "noise")
         return MODELS[given]()
@@ -49,20 +44,7 @@ def as_table(model: NoiseModel) -> dict[str, Any]:
 
 
 def from_table(table: Mapping[str, Any]) -> NoiseModel:
-    """Return the noise model of a table, see :func:`as_table`.
-
-    Raises
-    ------
-    InputError
-        For an unknown model, and arguments that it does not have or allow.
-
-    The number, or the two bounds, of the deviation of correlated noise are those of constant noise.
-
-    >>> from_table({"model": "autoregressive", "deviation": 0.2}).deviation
-    ConstantNoise(local=False, deviation=0.2)
-    >>> from_table({"model": "autoregressive", "order": 2, "deviation": {"model": "mixed"}}).order
-    2
-    """
+    """Return the noise model of a table, see :func:`as_table`."""
     values: dict[str, Any] = {
         name: from_table(value) if isinstance(value, Mapping) else tuple(value) if isinstance(value, list) else value
         for name, value in table.items()

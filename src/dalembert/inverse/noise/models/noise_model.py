@@ -96,12 +96,7 @@ def noise_parameter(
 
 
 def check_known(owner: NoiseModel, name: str, known: Known, *, zero: bool = False) -> None:
-    """Refuse bounds that are reversed, and values that are not positive; a single value may be ``zero``.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse bounds that are reversed, and values that are not positive; a single value may be ``zero``."""
     if known is None:
         return
     lower, upper = known if isinstance(known, tuple | list) else (known, known)

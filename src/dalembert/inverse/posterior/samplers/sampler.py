@@ -44,18 +44,8 @@ class Sampler(Checked, ABC):
     """Whether it jumps between modes."""
 
     def check(self) -> None:
-        """Refuse where a package that it needs is not installed.
-
-        Raises
-        ------
-        InputError
-        """
+        """Refuse where a package that it needs is not installed."""
 
     @abstractmethod
     def sampled(self, modes: PosteriorModes, length: Length, on_draws: OnDraws) -> Chains:
-        """Sample from starts in all modes; places are in the coordinates of the best mode.
-
-        Raises
-        ------
-        SolveError
-        """
+        """Sample from starts in all modes; places are in the coordinates of the best mode."""

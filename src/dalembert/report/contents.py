@@ -59,10 +59,10 @@ def contents(result: object, options: ReportOptions) -> tuple[Headline, *tuple[S
     InputError
         For a result that no sections are registered for, and for what no section shows.
     """
-    first, *others = registered_sections(result, options)
+    first, *rest = registered_sections(result, options)
     options.refuse_others()
     if not isinstance(first, Headline):
-        first, others = Headline(title=type(result).__name__), [first, *others]
+        first, rest = Headline(title=type(result).__name__), [first, *rest]
     headline = replace(
         first,
         title=options.title or first.title,
@@ -70,7 +70,7 @@ def contents(result: object, options: ReportOptions) -> tuple[Headline, *tuple[S
         facts={**first.facts, **fixed_facts(result)},
         findings=(*options.findings, *getattr(result, "findings", ())),
     )
-    return headline, *others, *options.sections, *provenance(getattr(result, "provenance", {}), options.study)
+    return headline, *rest, *options.sections, *provenance(getattr(result, "provenance", {}), options.study)
 
 
 def figures(result: object, *supplements: object, **options: Any) -> dict[str, go.Figure]:

@@ -159,14 +159,14 @@ def by_name(tables: Iterable[Table]) -> dict[str, list[Table]]:
     return named
 
 
-def numbered(name: str, given: Mapping[str, Shown]) -> Iterator[tuple[str, str, Shown]]:
+def numbered(name: str, by_experiment: Mapping[str, Shown]) -> Iterator[tuple[str, str, Shown]]:
     """Name of a figure's place, name of the experiment, and what was given for it.
 
     >>> list(numbered("mechanism", {"": 3})), list(numbered("mechanism", {"warm": 3}))
     ([('mechanism', '', 3)], [('mechanism-1', 'warm', 3)])
     """
-    for number, (experiment, one) in enumerate(given.items(), start=1):
-        yield f"{name}-{number}" if experiment else name, experiment, one
+    for number, (experiment, item) in enumerate(by_experiment.items(), start=1):
+        yield f"{name}-{number}" if experiment else name, experiment, item
 
 
 def samples(

@@ -36,11 +36,11 @@ def with_coverage(fit: Fit, problem: MisfitProblem) -> Fit:
     deviations, width = response_deviations(fit, at.jacobian).ravel(), fit.quantile(LEVEL)
     apart, response = np.abs(problem.unweighted_residual(at.response)).ravel(), at.response.ravel()
     inside: list[np.ndarray] = []
-    for own in series_of(problem, validation.weights):
-        wraps = own.name in problem.data.wraps
-        end = band_end(width * deviations[own.rows], response[own.rows], wraps=wraps)
-        rows = own.rows[:end]
-        noise = noise_deviations(fit, own.name, response[rows])
+    for signal in series_of(problem, validation.weights):
+        wraps = signal.name in problem.data.wraps
+        end = band_end(width * deviations[signal.rows], response[signal.rows], wraps=wraps)
+        rows = signal.rows[:end]
+        noise = noise_deviations(fit, signal.name, response[rows])
         inside.append(apart[rows] <= width * np.hypot(deviations[rows], noise))
     shares = [float(np.mean(here)) if len(here) else np.nan for here in inside]
     together = np.concatenate([*inside, np.zeros(0, dtype=bool)])

@@ -45,10 +45,10 @@ def _around(
         if any(lower <= end_vector[k] <= upper for lower, upper in intervals):
             return None
         if walk.likelihood is not None and excess < 4 * walk.threshold:  # the misfit with fixed noise is near it
-            found_there = least(problem, k, end.x, walk)
-            if isinstance(found_there, str):
+            bracket = least(problem, k, end.x, walk)
+            if isinstance(bracket, str):
                 return None
-            excess, end_vector = found_there[0], search.vectors(found_there[1])
+            excess, end_vector = bracket[0], search.vectors(bracket[1])
         if not excess < walk.threshold or any(lower <= end_vector[k] <= upper for lower, upper in intervals):
             return None
         at = problem.linearise(end_vector)

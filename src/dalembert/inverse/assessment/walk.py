@@ -119,7 +119,7 @@ def least(problem: MisfitProblem, k: int, guess: np.ndarray, walk: ProfileWalk) 
     free = np.arange(len(guess)) != k
     memo = Memo(problem)
 
-    def whole(rest: np.ndarray) -> np.ndarray:
+    def full(rest: np.ndarray) -> np.ndarray:
         point = guess.copy()
         point[free] = rest
         return point
@@ -131,16 +131,16 @@ def least(problem: MisfitProblem, k: int, guess: np.ndarray, walk: ProfileWalk) 
     else:
         try:
             end = walk.method.minimise(
-                lambda rest: memo.residual(whole(rest)),
-                lambda rest: memo.jacobian(whole(rest))[:, free],
+                lambda rest: memo.residual(full(rest)),
+                lambda rest: memo.jacobian(full(rest))[:, free],
                 search.lower[free],
                 search.upper[free],
                 guess[free],
-                ahead=lambda rest: memo.ahead(whole(rest)),
+                ahead=lambda rest: memo.ahead(full(rest)),
             )
         except SolveError as error:
             return str(error)
-        misfit, point = end.misfit, whole(end.x)
+        misfit, point = end.misfit, full(end.x)
     if not np.isfinite(misfit):
         reasons = problem.journal.failures[before:]
         return reasons[0] if reasons else "the misfit is not finite"

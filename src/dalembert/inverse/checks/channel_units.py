@@ -51,7 +51,7 @@ def channel_units(optimum: Optimum) -> Iterator[Finding]:
 def _shares(problem: MisfitProblem, response: np.ndarray) -> dict[str, float]:
     """Part of the variation of each channel that a response explains."""
     names = [series.name for series in series_of(problem)]
-    return dict(zip(names, (one.share for one in explained(problem, response, problem.weights, np.inf)), strict=True))
+    return dict(zip(names, (item.share for item in explained(problem, response, problem.weights, np.inf)), strict=True))
 
 
 def _explaining(
@@ -68,9 +68,9 @@ def _explaining(
         part = replace(_converted(problem, tried), journal=Journal(problem.samples), loss=None)
         ends = (refine(part, FITTED, End(part.search.points(start), np.inf, False, "")) for start in starts)
         good = (_good(problem, part.responses(part.search.vectors(end.point)[None])[0], tried) for end in ends)
-        found = any(names & poor and names >= {suspect.channel for suspect in tried} for names in good)
+        explains = any(names & poor and names >= {suspect.channel for suspect in tried} for names in good)
         problem.journal.simulations += part.journal.simulations
-        if found:
+        if explains:
             return tried
     return []
 
@@ -84,7 +84,7 @@ def _converted(problem: MisfitProblem, suspects: Sequence[SuspectUnit]) -> Misfi
     """The problem of data whose suspected units are changed; their weights change as those of converted deviations."""
     factors = np.ones(problem.weights.size)
     for series in series_of(problem):
-        factors[series.rows] = next((one.factor for one in suspects if one.channel == series.name), 1.0)
+        factors[series.rows] = next((suspect.factor for suspect in suspects if suspect.channel == series.name), 1.0)
     factors = factors.reshape(problem.weights.shape)
     data = replace(problem.data, values=problem.data.values / factors)
     return replace(problem, data=data, weights=problem.weights * factors**2)

@@ -81,9 +81,9 @@ def _rivals(search: MisfitMinimum, deviations: np.ndarray, *, known: bool) -> li
 
 def _new(problem: MisfitProblem, end: End, known: list[End], reach: np.ndarray) -> bool:
     """Return True if an end lies apart from the known ones."""
-    here, *others = (problem.search.vectors(one.point) for one in (end, *known))
-    sizes = [np.fmax(reach, SAME * np.maximum(np.abs(here), np.abs(there))) for there in others]
-    return all(np.any(np.abs(here - there) > size) for there, size in zip(others, sizes, strict=True))
+    here, *known_points = (problem.search.vectors(point_end.point) for point_end in (end, *known))
+    sizes = [np.fmax(reach, SAME * np.maximum(np.abs(here), np.abs(point))) for point in known_points]
+    return all(np.any(np.abs(here - point) > size) for point, size in zip(known_points, sizes, strict=True))
 
 
 def _one_valley(

@@ -42,35 +42,35 @@ def error_growth(problem: MisfitProblem, vector: np.ndarray) -> float:
 
     States are measured in parts of their ranges.
     """
-    found = [1.0]
+    growths = [1.0]
     for track in tracks(problem):
         try:
-            found.append(_growth(track, vector[track.wiring]))
+            growths.append(_growth(track, vector[track.wiring]))
         except DalembertError:  # a motion that cannot be simulated, or begun anew
             continue
         problem.journal.simulations += 2 + len(track.wiring)
-    return float(np.nanmax(found))
+    return float(np.nanmax(growths))
 
 
-def _growth(track: Track, own: np.ndarray) -> float:
+def _growth(track: Track, vector: np.ndarray) -> float:
     model, times, number = restartable(track.model), track.times, len(track.model.channels)
     if model is None or len(times) <= PIECES:
         return 1.0
-    start = model.state_chart(own)
+    start = model.state_chart(vector)
     if len(start.names) > MOST_STATES:
         return 1.0
-    whole = model.restarted(0.0, times, None, model.state_chart(own, whole=True)).evaluate(own[None])
+    whole = model.restarted(0.0, times, None, model.state_chart(vector, whole=True)).evaluate(vector[None])
     states = whole.values[0][:, number:]
     if not np.all(np.isfinite(states)):
         return 1.0
     places = np.rint(np.linspace(0, len(times) - 1, PIECES + 1)).astype(int)
-    charts = [model.state_chart(own, states[place], like=start) for place in places]
+    charts = [model.state_chart(vector, states[place], like=start) for place in places]
     ranges = [_ranges(chart, states) for chart in charts]
     passed = np.eye(len(start.names))
     for (begin, chart, was), (end, after, now) in pairwise(zip(places, charts, ranges, strict=True)):
         piece = model.restarted(float(times[begin]), [float(times[end] - times[begin])], chart, after)
-        _, jacobian = piece.linearise(np.concatenate([own, chart.values]))
-        slopes = jacobian[-1, number:, len(own) :]
+        _, jacobian = piece.linearise(np.concatenate([vector, chart.values]))
+        slopes = jacobian[-1, number:, len(vector) :]
         passed = slopes * was / now[:, None] @ passed
     return float(np.linalg.norm(passed, 2))
 

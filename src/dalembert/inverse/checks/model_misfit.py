@@ -70,13 +70,13 @@ def _misfits(residuals: Residuals) -> tuple[ModelMisfit, ...]:
     Only residuals that stay correlated as long as the motion takes to change are those of a model, or correlated ones
     that are far above given deviations: the size alone may be that of noise.
     """
-    found: dict[str, ModelMisfit] = {}
-    for own in residuals.series:
-        process = residuals.processes.get(own.name)
-        misfit = _misfit(residuals, own, process) if process is not None and _model(residuals, process) else None
-        if misfit is not None and misfit.at < getattr(found.get(misfit.experiment), "at", np.inf):
-            found[misfit.experiment] = misfit
-    return tuple(found.values())
+    misfits: dict[str, ModelMisfit] = {}
+    for signal in residuals.series:
+        process = residuals.processes.get(signal.name)
+        misfit = _misfit(residuals, signal, process) if process is not None and _model(residuals, process) else None
+        if misfit is not None and misfit.at < getattr(misfits.get(misfit.experiment), "at", np.inf):
+            misfits[misfit.experiment] = misfit
+    return tuple(misfits.values())
 
 
 def _model(residuals: Residuals, process: NoiseProcess) -> bool:
@@ -84,9 +84,9 @@ def _model(residuals: Residuals, process: NoiseProcess) -> bool:
     return process.systematic or (residuals.known and process.p_value < CLEAR and process.variance > FAR**2)
 
 
-def _misfit(residuals: Residuals, own: Series, process: NoiseProcess) -> ModelMisfit | None:
-    values, noise = residuals.values[own.rows], residuals.noise(own)
-    size = max(LEAST, min(int(process.period / 2 / own.step), len(values) // 8))
+def _misfit(residuals: Residuals, signal: Series, process: NoiseProcess) -> ModelMisfit | None:
+    values, noise = residuals.values[signal.rows], residuals.noise(signal)
+    size = max(LEAST, min(int(process.period / 2 / signal.step), len(values) // 8))
     windows = np.array_split(np.arange(len(values)), max(1, len(values) // size))
     least = min(len(rows) for rows in windows)
     limit = max(FAR, np.sqrt(chdtri(least, LEVEL / len(windows)) / least)) * noise
@@ -97,11 +97,11 @@ def _misfit(residuals: Residuals, own: Series, process: NoiseProcess) -> ModelMi
     rows = windows[outside[0]]
     first = rows[np.argmax(np.abs(values[rows]) > OUTSIDE * noise)]
     return ModelMisfit(
-        own.experiment,
-        own.channel,
-        float(own.along[first]),
-        _followed(residuals, own, windows, limit),
-        own.unit,
+        signal.experiment,
+        signal.channel,
+        float(signal.along[first]),
+        _followed(residuals, signal, windows, limit),
+        signal.unit,
         float(sizes.max()) / noise,
         residuals.known,
     )
@@ -112,18 +112,18 @@ def _sizes(values: np.ndarray, windows: Sequence[np.ndarray]) -> np.ndarray:
     return np.array([np.sqrt(np.mean(values[rows] ** 2)) for rows in windows])
 
 
-def _followed(residuals: Residuals, own: Series, windows: Sequence[np.ndarray], limit: float) -> float:
+def _followed(residuals: Residuals, signal: Series, windows: Sequence[np.ndarray], limit: float) -> float:
     """Coordinate up to which one Gauss–Newton step of the record's first windows alone leaves at most ``limit``."""
-    followed = float(own.along[0])
+    followed = float(signal.along[0])
     shares = {other: (other.along - other.along[0]) / (other.length or 1.0) for other in residuals.series}
     for count, window in enumerate(windows, start=1):
-        end = shares[own][window[-1]]
+        end = shares[signal][window[-1]]
         rows = np.concatenate([other.rows[share <= end] for other, share in shares.items()])
         basis, singular, _ = np.linalg.svd(residuals.basis[rows], full_matrices=False)
         basis = basis[:, singular > DETERMINED * singular[0]]
         values = np.zeros(len(residuals.values))
         values[rows] = residuals.values[rows] - basis @ (basis.T @ residuals.values[rows])
-        if np.any(_sizes(values[own.rows], windows[:count]) > limit):
+        if np.any(_sizes(values[signal.rows], windows[:count]) > limit):
             break
-        followed = float(own.along[window[-1]])
+        followed = float(signal.along[window[-1]])
     return followed

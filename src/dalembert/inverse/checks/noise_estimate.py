@@ -49,8 +49,8 @@ def _in_words(model: NoiseModel) -> str:
     return f"{model.name}{order}" + (f", {inner.name}" if isinstance(inner, NoiseModel) else "")
 
 
-def _at_bounds(found: NoiseFit) -> Iterator[Finding]:
-    for item, value in zip(found.noise.parameters, found.noise.values, strict=True):
+def _at_bounds(noise: NoiseFit) -> Iterator[Finding]:
+    for item, value in zip(noise.noise.parameters, noise.noise.values, strict=True):
         near = 1e-6 * (abs(value) if item.log else item.upper - item.lower)
         for side, bound in (("lower", item.lower), ("upper", item.upper)):
             if abs(value - bound) <= near:
@@ -63,17 +63,17 @@ def _at_bounds(found: NoiseFit) -> Iterator[Finding]:
                 )
 
 
-def _left_correlated(found: NoiseFit) -> Iterator[Finding]:
+def _left_correlated(noise: NoiseFit) -> Iterator[Finding]:
     """Yield a finding where whitened residuals are correlated still."""
-    white = np.nan_to_num(found.noise.whitened).ravel()
-    basis = left_vectors(found.slopes)[: len(white)]
-    series = [channel.series for channel in found.likelihood.channels if len(channel.series.rows) > 1]
+    white = np.nan_to_num(noise.noise.whitened).ravel()
+    basis = left_vectors(noise.slopes)[: len(white)]
+    series = [channel.series for channel in noise.likelihood.channels if len(channel.series.rows) > 1]
     left = correlated_series(series, white, basis)
     if not left:
         return
-    worst = min(left, key=lambda own: left[own])
+    worst = min(left, key=lambda signal: left[signal])
     first = _first(worst, white)
-    names = listed([repr(own.name) for own in left])
+    names = listed([repr(signal.name) for signal in left])
     yield Finding(
         "noise-model-too-simple",
         "warning",
@@ -88,10 +88,10 @@ def _first(series: Series, white: np.ndarray) -> float:
     return autocorrelation(white[series.rows], (len(series.rows), 1))
 
 
-def _processes(found: NoiseFit) -> Iterator[NoiseProcess]:
+def _processes(noise: NoiseFit) -> Iterator[NoiseProcess]:
     """Yield the processes of correlated noise."""
-    response, known = found.at.response.ravel(), found.noise.estimates
-    for channel in found.likelihood.channels:
+    response, known = noise.at.response.ravel(), noise.noise.estimates
+    for channel in noise.likelihood.channels:
         series, model = channel.series, channel.model
         values = {bare: float(known[full]) for bare, full in channel.names.items()}
         time, first = _memory(channel, values)

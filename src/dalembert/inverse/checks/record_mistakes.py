@@ -83,26 +83,33 @@ def mistake_findings(record: FittedRecord, vectors: Sequence[np.ndarray]) -> Ite
     if not mistakes:
         return
     points = [record.at, *_linearised(record, vectors)]
-    estimates = [min((linear(record, mistake, at) for at in points), key=lambda one: one.ratio) for mistake in mistakes]
-    hopeful = sorted((one for one in estimates if one.ratio < PROMISING), key=lambda one: one.ratio)[:MOST]
-    found = [one for one in (refitted(record, item) for item in hopeful) if _explains(one, 1.0)]
-    if not found:
+    estimates = [
+        min((linear(record, mistake, at) for at in points), key=lambda supposed: supposed.ratio) for mistake in mistakes
+    ]
+    hopeful = sorted(
+        (supposed for supposed in estimates if supposed.ratio < PROMISING), key=lambda supposed: supposed.ratio
+    )[:MOST]
+    explaining = [supposed for supposed in (refitted(record, item) for item in hopeful) if _explains(supposed, 1.0)]
+    if not explaining:
         return
-    best = max(found, key=lambda one: one.gain)
+    best = max(explaining, key=lambda supposed: supposed.gain)
     nothing = Mistake(_unchanged, best.mistake.finding, NONE)
     again = refitted(record, Supposed(nothing, best.at, np.nan, 1.0, best.values, np.zeros(0)))
     usual = min(1.0, again.ratio)  # a start near the end of this fit may lead to a better minimum without a mistake
-    order = [one for mistake in mistakes for one in found if one.mistake is mistake]
-    alike = [one for one in order if best.better_than(one) < ALIKE and _explains(one, usual)]
-    for one in alike[:2]:
-        if np.isfinite(one.number) and abs(one.number) < one.mistake.least:
+    order = [supposed for mistake in mistakes for supposed in explaining if supposed.mistake is mistake]
+    alike = [supposed for supposed in order if best.better_than(supposed) < ALIKE and _explains(supposed, usual)]
+    for supposed in alike[:2]:
+        if np.isfinite(supposed.number) and abs(supposed.number) < supposed.mistake.least:
             continue
-        yield one.mistake.finding(Verdict(one.number, 1 - one.ratio))
+        yield supposed.mistake.finding(Verdict(supposed.number, 1 - supposed.ratio))
 
 
-def _explains(one: Supposed, usual: float) -> bool:
+def _explains(supposed: Supposed, usual: float) -> bool:
     """Return True if a mistake explains enough of the residuals, and noise cannot be the reason."""
-    return one.ratio < (1 - EXPLAINS) * usual and one.gain + one.values / 2 * np.log(max(usual, LEAST)) > CLEAR
+    return (
+        supposed.ratio < (1 - EXPLAINS) * usual
+        and supposed.gain + supposed.values / 2 * np.log(max(usual, LEAST)) > CLEAR
+    )
 
 
 def _unchanged(response: np.ndarray, _: float) -> np.ndarray:

@@ -36,9 +36,9 @@ def single_start(search: MisfitMinimum) -> Iterator[Finding]:
     problem, best, ends = search.problem, search.end, search.ends
     if len(ends) < LEAST or not best.success or search.explained_by:
         return
-    _, *others = sorted(ends, key=lambda end: end.misfit)
+    _, *further_ends = sorted(ends, key=lambda end: end.misfit)
     alike = best.misfit * (1 + ALIKE / max(1, problem.compared - len(best.point)))
-    if any(_refined(problem, end, alike) for end in others[:REFINED]):
+    if any(_refined(problem, end, alike) for end in further_ends[:REFINED]):
         return
     message = (
         f"Only 1 of {len(ends)} starts reached the smallest misfit, and its residuals are not noise: another minimum "

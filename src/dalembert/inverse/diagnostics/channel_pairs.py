@@ -31,9 +31,9 @@ class ChannelPair:
 
 
 def _common(first: SeriesResiduals, second: SeriesResiduals, width: int) -> tuple[np.ndarray, np.ndarray]:
-    one, other = first.series.rows, second.series.rows
-    _, here, there = np.intersect1d(one // width, other // width, return_indices=True)
-    return one[here], other[there]
+    first_rows, second_rows = first.series.rows, second.series.rows
+    _, here, there = np.intersect1d(first_rows // width, second_rows // width, return_indices=True)
+    return first_rows[here], second_rows[there]
 
 
 def correlated_pairs(
@@ -62,8 +62,8 @@ def correlated_pairs(
     (1935).
     """
     tried = list(_pairs(series, residual, basis, width, processes))
-    found = [pair for pair in tried if pair.p_value < level / len(tried)]
-    return sorted(found, key=lambda pair: -abs(pair.correlation))
+    correlated = [pair for pair in tried if pair.p_value < level / len(tried)]
+    return sorted(correlated, key=lambda pair: -abs(pair.correlation))
 
 
 def _pairs(
@@ -74,17 +74,17 @@ def _pairs(
     processes: Mapping[str, NoiseProcess],
 ) -> Iterator[ChannelPair]:
     for first, second in combinations(series, 2):
-        one, other = _common(first, second, width)
-        if first.series.experiment != second.series.experiment or len(one) < LEAST:
+        first_samples, second_samples = _common(first, second, width)
+        if first.series.experiment != second.series.experiment or len(first_samples) < LEAST:
             continue
-        size = np.linalg.norm(residual[one]) * np.linalg.norm(residual[other])
-        correlation = float(residual[one] @ residual[other] / size) if size > 0 else 0.0
+        size = np.linalg.norm(residual[first_samples]) * np.linalg.norm(residual[second_samples])
+        correlation = float(residual[first_samples] @ residual[second_samples] / size) if size > 0 else 0.0
         known = [processes[name] for name in (first.name, second.name) if name in processes]
         if len(known) == 2 and all(process.systematic for process in known) and abs(correlation) < COPY:
             continue
-        left = [len(rows) - np.sum(basis[rows] ** 2) for rows in (one, other)]
+        left = [len(rows) - np.sum(basis[rows] ** 2) for rows in (first_samples, second_samples)]
         freedom = np.sqrt(np.prod(np.maximum(left, 1.0)))
-        fitted = np.sum(basis[one] * basis[other]) / freedom
+        fitted = np.sum(basis[first_samples] * basis[second_samples]) / freedom
         product = np.prod([process.first for process in known]) if len(known) == 2 else 0.0
         number = max(freedom * (1 - product) / (1 + product), 4.0)
         excess = np.arctanh(np.clip(correlation + fitted, -1 + UNSEEN, 1 - UNSEEN)) * np.sqrt(number - 3)
@@ -107,7 +107,7 @@ def factors(pairs: Sequence[ChannelPair], slopes: np.ndarray, deviations: np.nda
     plain = np.sum(weighted**2, axis=1)
     total = plain.copy()
     for pair in pairs:
-        one, other = pair.samples(width)
-        total += 2 * pair.correlation * np.sum(weighted[:, one] * weighted[:, other], axis=1)
+        first_samples, second_samples = pair.samples(width)
+        total += 2 * pair.correlation * np.sum(weighted[:, first_samples] * weighted[:, second_samples], axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.sqrt(np.maximum(total, 0.0) / plain)

@@ -30,44 +30,46 @@ def diagnostic_tables(
     """Yield the tests of each channel, the outliers if there are any, and the influential samples if known."""
     caption = "Probability of the residuals of each channel in independent noise"
     names = ("channel", "values", *TESTS.values())
-    rows = [(one.name, len(one.residuals), *(_probability(one, test) for test in TESTS)) for one in series]
+    rows = [(item.name, len(item.residuals), *(_probability(item, test) for test in TESTS)) for item in series]
     yield Table.of_rows("residual-tests", caption, names, rows, detail=True)
     if outliers:
         names = ("channel", "experiment", "at", "unit", "standard deviations", "p-value", "parameter", "change by it")
         rows = [
             (
-                one.channel,
-                one.experiment,
-                one.at,
-                one.unit,
-                cell(one.size, digits=3),
-                cell(one.p_value, digits=2),
-                one.parameter,
-                cell(one.change, digits=2),
+                item.channel,
+                item.experiment,
+                item.at,
+                item.unit,
+                cell(item.size, digits=3),
+                cell(item.p_value, digits=2),
+                item.parameter,
+                cell(item.change, digits=2),
             )
-            for one in outliers[:MOST_OUTLIERS]
+            for item in outliers[:MOST_OUTLIERS]
         ]
         yield Table.of_rows("outliers", "Outliers, the largest first", names, rows, detail=True)
     samples = []
-    for one in series:
-        known = np.flatnonzero(np.isfinite(one.distance))
-        samples += [(one, row) for row in known[np.argsort(-one.distance[known], kind="stable")[:INFLUENTIAL]]]
+    for item in series:
+        known = np.flatnonzero(np.isfinite(item.distance))
+        samples += [(item, row) for row in known[np.argsort(-item.distance[known], kind="stable")[:INFLUENTIAL]]]
     samples = sorted(samples, key=lambda pair: -pair[0].distance[pair[1]])[:INFLUENTIAL]
     if samples:
         names = ("channel", "at", "unit", "leverage", "Cook's distance", "parameter", "change by it")
         rows = []
-        for one, row in samples:
-            most = int(np.argmax(np.abs(np.nan_to_num(one.changes[row]))))
-            numbers = (cell(float(value), digits=3) for value in (one.leverage[row], one.distance[row]))
-            change = cell(float(one.changes[row, most]), digits=2)
-            rows.append((one.series.name, one.series.along[row], one.series.unit, *numbers, parameters[most], change))
+        for item, row in samples:
+            most = int(np.argmax(np.abs(np.nan_to_num(item.changes[row]))))
+            numbers = (cell(float(value), digits=3) for value in (item.leverage[row], item.distance[row]))
+            change = cell(float(item.changes[row, most]), digits=2)
+            rows.append(
+                (item.series.name, item.series.along[row], item.series.unit, *numbers, parameters[most], change)
+            )
         caption = (
             "Samples with the largest influence. The change is that of the parameter by the sample, in its deviations"
         )
         yield Table.of_rows("influence", caption, names, rows, detail=True)
 
 
-def _probability(one: SeriesResiduals, test: str) -> Cell:
-    if test not in one.p_values:
+def _probability(item: SeriesResiduals, test: str) -> Cell:
+    if test not in item.p_values:
         return Cell("", "not tested")
-    return cell(one.p_values[test], digits=2, mark=one.p_values[test] < SIGNIFICANT)
+    return cell(item.p_values[test], digits=2, mark=item.p_values[test] < SIGNIFICANT)

@@ -84,7 +84,7 @@ def diagnostic_findings(
         yield _of_runs(worst)
     if (worst := _worst(series, "period", enough=_strongly_periodic)) is not None:
         yield _of_period(worst)
-    over = [(one, key) for key in ("size over response", "size over coordinate") if (one := _worst(series, key, 2))]
+    over = [(item, key) for key in ("size over response", "size over coordinate") if (item := _worst(series, key, 2))]
     if over:
         yield _of_size(*min(over, key=lambda pair: pair[0].p_values[pair[1]]), plain=plain)
     if (worst := _worst(series, "normality")) is not None:
@@ -96,16 +96,16 @@ def _worst(
     series: Sequence[SeriesResiduals],
     test: str,
     tests: int = 1,
-    enough: Callable[[SeriesResiduals], bool] = lambda one: True,
+    enough: Callable[[SeriesResiduals], bool] = lambda item: True,
 ) -> SeriesResiduals | None:
     """Return the series of the least probability that is significant among all series and ``tests``, and ``enough``."""
-    tried = [one for one in series if test in one.p_values]
-    significant = [one for one in tried if one.p_values[test] < LEVEL / (len(tried) * tests) and enough(one)]
-    return min(significant, key=lambda one: one.p_values[test], default=None)
+    tried = [item for item in series if test in item.p_values]
+    significant = [item for item in tried if item.p_values[test] < LEVEL / (len(tried) * tests) and enough(item)]
+    return min(significant, key=lambda item: item.p_values[test], default=None)
 
 
-def _strongly_periodic(one: SeriesResiduals) -> bool:
-    return one.periodic_part()[2] >= PERIODIC
+def _strongly_periodic(item: SeriesResiduals) -> bool:
+    return item.periodic_part()[2] >= PERIODIC
 
 
 def _of_outliers(outliers: Sequence[Outlier], *, robust: bool) -> Finding:
@@ -132,36 +132,35 @@ def _of_outliers(outliers: Sequence[Outlier], *, robust: bool) -> Finding:
     return Finding("outlying-samples", "note" if robust else "warning", values, message, "" if robust else advice)
 
 
-def _of_runs(one: SeriesResiduals) -> Finding:
-    count, expected, probability = runs(one.standardised[np.isfinite(one.standardised)])
-    values = {"channel": one.name, "runs": count, "expected": expected, "p_value": probability}
+def _of_runs(item: SeriesResiduals) -> Finding:
+    count, expected, probability = runs(item.standardised[np.isfinite(item.standardised)])
+    values = {"channel": item.name, "runs": count, "expected": expected, "p_value": probability}
     how = "rarely" if count < expected else "often"
     message = (
-        f"The residuals of {one.name!r} change their sign too {how}: {count} runs of equal signs, {expected:.0f} are "
+        f"The residuals of {item.name!r} change their sign too {how}: {count} runs of equal signs, {expected:.0f} are "
         "expected of independent noise."
     )
     advice = "Look at the residuals over time for what the model lacks."
     return Finding("runs-of-signs", "warning", values, message, advice)
 
 
-def _of_period(one: SeriesResiduals) -> Finding:
-    _, frequency, share = one.periodic_part()
-    values = {"channel": one.name, "period": 1 / frequency, "share": share, "p_value": one.p_values["period"]}
-    size = f"{1 / frequency:.3g} {one.series.unit}".rstrip()
-    message = (
-        f"The residuals of {one.name!r} have a periodic part: {100 * share:.2g} % of their power has the period {size}."
-    )
+def _of_period(item: SeriesResiduals) -> Finding:
+    _, frequency, share = item.periodic_part()
+    values = {"channel": item.name, "period": 1 / frequency, "share": share, "p_value": item.p_values["period"]}
+    size = f"{1 / frequency:.3g} {item.series.unit}".rstrip()
+    power = f"{100 * share:.2g} % of their power has the period {size}"
+    message = f"The residuals of {item.name!r} have a periodic part: {power}."
     advice = "Look for its source, such as mains voltage, a motor, or a mode that the model lacks."
-    return Finding("periodic-residuals", "note" if one.correlated else "warning", values, message, advice)
+    return Finding("periodic-residuals", "note" if item.correlated else "warning", values, message, advice)
 
 
-def _of_size(one: SeriesResiduals, test: str, *, plain: bool) -> Finding:
+def _of_size(item: SeriesResiduals, test: str, *, plain: bool) -> Finding:
     over_response = test == "size over response"
-    correlation, probability = one.growth(np.abs(one.response) if over_response else one.series.along)
+    correlation, probability = item.growth(np.abs(item.response) if over_response else item.series.along)
     what = "the size of the response" if over_response else "the coordinate"
     how = "grow" if correlation > 0 else "shrink"
-    values = {"channel": one.name, "over": what, "correlation": correlation, "p_value": probability}
-    message = f"The residuals of {one.name!r} {how} with {what} (correlation of ranks {correlation:.2f})."
+    values = {"channel": item.name, "over": what, "correlation": correlation, "p_value": probability}
+    message = f"The residuals of {item.name!r} {how} with {what} (correlation of ranks {correlation:.2f})."
     advice = "Weight the samples by their noise: the standard deviations assume that it is constant in a channel."
     if plain and over_response and correlation > 0:
         values["noise"] = PROPOSED
@@ -173,9 +172,9 @@ def _of_size(one: SeriesResiduals, test: str, *, plain: bool) -> Finding:
     return Finding("unequal-variance", "warning", values, message, advice)
 
 
-def _of_normality(one: SeriesResiduals) -> Finding:
-    values = {"channel": one.name, "p_value": one.p_values["normality"]}
-    message = f"The residuals of {one.name!r} are not normally distributed (Anderson–Darling test)."
+def _of_normality(item: SeriesResiduals) -> Finding:
+    values = {"channel": item.name, "p_value": item.p_values["normality"]}
+    message = f"The residuals of {item.name!r} are not normally distributed (Anderson–Darling test)."
     advice = "Look at the normal quantiles. A robust loss is more exact where large residuals are frequent."
     return Finding("non-normal-residuals", "note", values, message, advice)
 
@@ -216,11 +215,11 @@ def pair_findings(pairs: Sequence[ChannelPair], grown: np.ndarray) -> Iterator[F
 
 def _of_influence(names: Sequence[str], series: Sequence[SeriesResiduals]) -> Iterator[Finding]:
     """Yield the sample that decides the fit, if there is one."""
-    known = [one for one in series if np.any(np.isfinite(one.distance))]
-    freedom = sum(len(one.residuals) for one in known) - len(names)
+    known = [item for item in series if np.any(np.isfinite(item.distance))]
+    freedom = sum(len(item.residuals) for item in known) - len(names)
     if not known or freedom < FREEDOM:
         return
-    worst = max(known, key=lambda one: float(np.nanmax(one.distance)))
+    worst = max(known, key=lambda item: float(np.nanmax(item.distance)))
     row = int(np.nanargmax(worst.distance))
     distance = float(worst.distance[row])
     if not distance > DECIDES:

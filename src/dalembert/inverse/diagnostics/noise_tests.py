@@ -91,9 +91,9 @@ def growth(sizes: np.ndarray, quantity: np.ndarray) -> tuple[float, float]:
     size = np.sqrt((first @ first) * (second @ second))
     if not size > TINY * len(first) ** 2:
         return 0.0, 1.0
-    found, freedom = float(first @ second / size), len(first) - 2
-    root = np.sqrt(max(1 - found**2, np.finfo(float).tiny))
-    return found, float(2 * stdtr(freedom, -abs(found) * np.sqrt(freedom) / root))
+    correlation, freedom = float(first @ second / size), len(first) - 2
+    root = np.sqrt(max(1 - correlation**2, np.finfo(float).tiny))
+    return correlation, float(2 * stdtr(freedom, -abs(correlation) * np.sqrt(freedom) / root))
 
 
 def _ranks(values: np.ndarray) -> np.ndarray:

@@ -88,22 +88,24 @@ def residual_diagnostics(fit: "Fit") -> ResidualDiagnostics:
         left, basis = balanced(everything, residual, basis)
         used = np.sum(basis**2, axis=1)
     correlated = {} if fit.correlated is None else {item.channel: item for item in fit.correlated.detected}
-    found = []
-    for own in everything:
-        made = _standardised(
-            fit, own, left[own.rows], used[own.rows], known, robust=robust, process=correlated.get(own.name)
+    results = []
+    for signal in everything:
+        standardised = _standardised(
+            fit, signal, left[signal.rows], used[signal.rows], known, robust=robust, process=correlated.get(signal.name)
         )
-        judged = tested and len(own.rows) >= LEAST and not (fit.noise_is_known and made.deviation**2 < SMALL)
-        tests = _tests(made, left, basis) if judged else {}
-        found.append(replace(made, p_values=tests))
-    outliers = _outliers(fit, found, robust=robust) if tested else ()
+        judged = tested and len(signal.rows) >= LEAST and not (fit.noise_is_known and standardised.deviation**2 < SMALL)
+        tests = _tests(standardised, left, basis) if judged else {}
+        results.append(replace(standardised, p_values=tests))
+    outliers = _outliers(fit, results, robust=robust) if tested else ()
     plain = fit.noise is None and not robust and fit.nodes is None
-    findings = diagnostic_findings(fit.parameters.names, found, outliers, robust=robust, plain=plain) if tested else ()
-    judged = [one for one in found if one.p_values]
+    findings = (
+        diagnostic_findings(fit.parameters.names, results, outliers, robust=robust, plain=plain) if tested else ()
+    )
+    judged = [one for one in results if one.p_values]
     pairs = correlated_pairs(judged, left, basis, fit.weights.shape[1], correlated, LEVEL)
     grown = _grown(pairs, judged, None if slopes is None else slopes[:, free], fit.weights.shape)
     findings = (*findings, *pair_findings(pairs, grown))
-    return ResidualDiagnostics(fit.parameters.names, tuple(found), outliers, findings, tested)
+    return ResidualDiagnostics(fit.parameters.names, tuple(results), outliers, findings, tested)
 
 
 def _grown(
@@ -160,7 +162,7 @@ def _variance(values: np.ndarray) -> float:
 
 def _standardised(
     fit: "Fit",
-    own: Series,
+    signal: Series,
     values: np.ndarray,
     leverage: np.ndarray,
     known: Influence,
@@ -180,20 +182,20 @@ def _standardised(
     else:
         variance = float(values @ values) / freedom if freedom > 1 else np.nan
     standardised = np.full(len(values), np.nan)
-    there = (1 - used > ALONE) & (variance > 0)
-    standardised[there] = values[there] / np.sqrt(variance * (1 - used[there]))
+    usable = (1 - used > ALONE) & (variance > 0)
+    standardised[usable] = values[usable] / np.sqrt(variance * (1 - used[usable]))
     deleted = standardised
     if not robust and freedom > 1:
         deleted = standardised * np.sqrt((freedom - 1) / np.maximum(freedom - standardised**2, ALONE * freedom))
     return SeriesResiduals(
-        series=own,
-        response=fit.response.ravel()[own.rows],
-        residuals=fit.residuals.ravel()[own.rows],
+        series=signal,
+        response=fit.response.ravel()[signal.rows],
+        residuals=fit.residuals.ravel()[signal.rows],
         standardised=standardised,
         deleted=deleted,
-        leverage=known.leverage[own.rows],
-        distance=known.distance[own.rows],
-        changes=known.changes[own.rows],
+        leverage=known.leverage[signal.rows],
+        distance=known.distance[signal.rows],
+        changes=known.changes[signal.rows],
         deviation=float(np.sqrt(variance)),
         correlated=process is not None,
         memory=0.0 if process is None else _memory(process),
@@ -211,33 +213,33 @@ def _memory(process: NoiseProcess) -> float:
     return process.first if white and not process.systematic else np.nan
 
 
-def _tests(made: SeriesResiduals, residual: np.ndarray, basis: np.ndarray) -> dict[str, float]:
+def _tests(item: SeriesResiduals, residual: np.ndarray, basis: np.ndarray) -> dict[str, float]:
     """Probabilities of the tests; correlated residuals are not tested for what needs independence.
 
     Their size is tested where they are noise: noise that grows is taken for correlated more often than others.
     """
-    own, values = made.series, made.standardised
-    found = {"autocorrelation": p_value(own, residual[own.rows], basis[own.rows])}
-    there = np.isfinite(values)
-    if np.count_nonzero(there) < LEAST or not np.std(values[there]) > 0:
-        return found
-    if own.grid is not None:
-        found["period"] = made.periodic_part(float(np.sum(basis[own.rows] ** 2)))[0]
-    if np.isfinite(made.memory):
-        found["size over response"] = made.growth(np.abs(made.response))[1]
-        found["size over coordinate"] = made.growth(own.along)[1]
-    if made.correlated:
-        return found
-    kept = values[there]
-    usual = kept[np.abs(made.deleted[there]) < OUTSIDE]
-    found["runs"] = runs(kept)[2]
-    found["normality"] = normality(usual) if len(usual) >= LEAST else 1.0
-    return found
+    signal, values = item.series, item.standardised
+    p_values = {"autocorrelation": p_value(signal, residual[signal.rows], basis[signal.rows])}
+    finite = np.isfinite(values)
+    if np.count_nonzero(finite) < LEAST or not np.std(values[finite]) > 0:
+        return p_values
+    if signal.grid is not None:
+        p_values["period"] = item.periodic_part(float(np.sum(basis[signal.rows] ** 2)))[0]
+    if np.isfinite(item.memory):
+        p_values["size over response"] = item.growth(np.abs(item.response))[1]
+        p_values["size over coordinate"] = item.growth(signal.along)[1]
+    if item.correlated:
+        return p_values
+    kept = values[finite]
+    usual = kept[np.abs(item.deleted[finite]) < OUTSIDE]
+    p_values["runs"] = runs(kept)[2]
+    p_values["normality"] = normality(usual) if len(usual) >= LEAST else 1.0
+    return p_values
 
 
-def _outliers(fit: "Fit", found: list[SeriesResiduals], *, robust: bool) -> tuple[Outlier, ...]:
+def _outliers(fit: "Fit", results: list[SeriesResiduals], *, robust: bool) -> tuple[Outlier, ...]:
     """Values that no normal noise explains, largest first; correlated residuals are not searched."""
-    searched = [one for one in found if one.p_values and not one.correlated]
+    searched = [one for one in results if one.p_values and not one.correlated]
     total = sum(len(one.residuals) for one in searched)
     outliers = []
     for one in searched:

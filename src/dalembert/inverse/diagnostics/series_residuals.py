@@ -89,8 +89,8 @@ class SeriesResiduals:
             np.add.at(sums, lag[near], (values[apart:] * values[:-apart])[near])
             np.add.at(count, lag[near], 1.0)
         there = np.flatnonzero(count[1:] > 0) + 1
-        found = sums[there] / count[there] * len(values) / max(values @ values, np.finfo(float).tiny)
-        return there * self.series.step, found, 1.96 / np.sqrt(count[there])
+        correlations = sums[there] / count[there] * len(values) / max(values @ values, np.finfo(float).tiny)
+        return there * self.series.step, correlations, 1.96 / np.sqrt(count[there])
 
     def spectrum(self) -> tuple[np.ndarray, np.ndarray]:
         """Return frequencies, in cycles per unit of the coordinate, and the power over its mean, both (frequencies,).
@@ -137,8 +137,8 @@ class SeriesResiduals:
         if self.memory:
             factors = np.sign(self.memory) * np.abs(self.memory) ** (np.diff(self.series.along) / self.series.step)
             values = np.concatenate([[np.nan], (values[1:] - factors * values[:-1]) / np.sqrt(1 - factors**2)])
-        there = np.isfinite(values)
-        return growth(np.abs(values[there]), quantity[there])
+        finite = np.isfinite(values)
+        return growth(np.abs(values[finite]), quantity[finite])
 
     def normal_quantiles(self) -> tuple[np.ndarray, np.ndarray]:
         """Return quantiles of the normal distribution, and the sorted standardised residuals, both (values,).

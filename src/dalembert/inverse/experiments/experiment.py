@@ -91,16 +91,18 @@ class ExperimentPart:
     def data(self, joint: Measurements) -> Measurements:
         """Its own measurements among the joint ones."""
         names = [joint.channels[column] for column in self.columns]
-        own = dict(zip(names, self.channels, strict=True))
+        channel_of = dict(zip(names, self.channels, strict=True))
         return replace(
             joint,
             coordinate=self.coordinate,
             channels=self.channels,
             values=joint.values[self.block],
             deviations=None if joint.deviations is None else joint.deviations[self.columns],
-            wraps=tuple(own[name] for name in joint.wraps if name in own),
+            wraps=tuple(channel_of[name] for name in joint.wraps if name in channel_of),
             sampled=None if joint.sampled is None else joint.sampled[self.block],
-            source_units={own.get(name, name): unit for name, unit in joint.source_units.items() if name in own},
+            source_units={
+                channel_of.get(name, name): unit for name, unit in joint.source_units.items() if name in channel_of
+            },
         )
 
 

@@ -58,8 +58,8 @@ class JointModel:
     @property
     def fingerprint(self) -> str:
         """Hash of the experiments' names, models and parameters."""
-        told = [(part.name, model.fingerprint, sorted(part.channels)) for part, model in self._all()]
-        return hashlib.sha256(repr((told, self.parameters.identity, sorted(self.active))).encode()).hexdigest()
+        parts = [(part.name, model.fingerprint, sorted(part.channels)) for part, model in self._all()]
+        return hashlib.sha256(repr((parts, self.parameters.identity, sorted(self.active))).encode()).hexdigest()
 
     def evaluate(self, vectors: np.ndarray) -> Responses:
         """Responses of a batch, values (batch, rows, channels); a sample fails where one of its experiments does."""
@@ -85,8 +85,8 @@ class JointModel:
         jacobian = np.zeros((*self._shape, len(vector)))
         for part, model, picked, wiring in self._simulated():
             with errors_named(part.name):
-                own, slopes = model.linearise(np.asarray(vector)[wiring])
-            response[part.block] = own[: len(part.rows), picked]
+                values, slopes = model.linearise(np.asarray(vector)[wiring])
+            response[part.block] = values[: len(part.rows), picked]
             jacobian[np.ix_(part.rows, part.columns, wiring)] = slopes[: len(part.rows), picked]
         return response, jacobian
 
@@ -100,16 +100,16 @@ class JointModel:
         response, pulls = np.zeros(self._shape), []
         for part, model, picked, wiring in self._simulated():
             with errors_named(part.name):
-                own, pull_own = pullback(model, np.asarray(vector)[wiring])
-            response[part.block] = own[: len(part.rows), picked]
-            pulls.append((part, picked, wiring, own.shape, pull_own))
+                values, pull_part = pullback(model, np.asarray(vector)[wiring])
+            response[part.block] = values[: len(part.rows), picked]
+            pulls.append((part, picked, wiring, values.shape, pull_part))
 
         def pull(cotangent: np.ndarray) -> np.ndarray:
             gradient = np.zeros(len(vector))
-            for part, picked, wiring, shape, pull_own in pulls:
+            for part, picked, wiring, shape, pull_part in pulls:
                 inner = np.zeros(shape)
                 inner[: len(part.rows), picked] = np.asarray(cotangent)[part.block]
-                gradient[wiring] += pull_own(inner)
+                gradient[wiring] += pull_part(inner)
             return gradient
 
         return response, pull
@@ -122,10 +122,12 @@ class JointModel:
 
     def findings(self, vector: np.ndarray) -> tuple[Finding, ...]:
         """Findings on the models of all experiments at a joint vector (parameters,), each once."""
-        found: list[Finding] = []
+        findings: list[Finding] = []
         for model, wiring in zip(self.models, self.wiring, strict=True):
-            found += [finding for finding in findings_at(model, np.asarray(vector)[wiring]) if finding not in found]
-        return tuple(found)
+            findings += [
+                finding for finding in findings_at(model, np.asarray(vector)[wiring]) if finding not in findings
+            ]
+        return tuple(findings)
 
     def first(self, samples: int) -> "JointModel":
         """The same experiments, each cut to its samples in the first rows."""
@@ -143,12 +145,15 @@ class JointModel:
         if not any(finer):
             return None
         factors = np.zeros(len(self.channels))
-        for part, found, picked in zip(self.parts, finer, self.picked, strict=True):
-            if found is not None:
-                factors[part.columns] = np.broadcast_to(found.factor, len(found.model.channels))[picked]
-        models = tuple(model if found is None else found.model for model, found in zip(self.models, finer, strict=True))
-        active = frozenset(part.name for part, found in zip(self.parts, finer, strict=True) if found)
-        how = " or ".join(dict.fromkeys(found.how for found in finer if found))
+        for part, finer_model, picked in zip(self.parts, finer, self.picked, strict=True):
+            if finer_model is not None:
+                factors[part.columns] = np.broadcast_to(finer_model.factor, len(finer_model.model.channels))[picked]
+        models = tuple(
+            model if finer_model is None else finer_model.model
+            for model, finer_model in zip(self.models, finer, strict=True)
+        )
+        active = frozenset(part.name for part, finer_model in zip(self.parts, finer, strict=True) if finer_model)
+        how = " or ".join(dict.fromkeys(finer_model.how for finer_model in finer if finer_model))
         return Refinement(replace(self, models=models, active=active), factors, how)
 
     def only(self, names: Collection[str]) -> "JointModel":
@@ -181,15 +186,17 @@ def joint(experiments: Sequence[Experiment]) -> tuple[JointModel, Measurements]:
     rows, along = _rows([item.data.coordinate.values for item in experiments])
     ends = np.cumsum([0, *(len(item.data.channels) for item in experiments)])
     parts = tuple(
-        ExperimentPart(item.name, item.data.coordinate, item.data.channels, own, np.arange(begin, end))
-        for item, own, begin, end in zip(experiments, rows, ends[:-1], ends[1:], strict=True)
+        ExperimentPart(item.name, item.data.coordinate, item.data.channels, part_rows, np.arange(begin, end))
+        for item, part_rows, begin, end in zip(experiments, rows, ends[:-1], ends[1:], strict=True)
     )
     channels = tuple(
         replace(item.model.channels[column], name=f"{item.name}.{item.model.channels[column].name}")
         for item, columns in zip(experiments, picked, strict=True)
         for column in columns
     )
-    wiring = tuple(np.array([parameters.names.index(own.name) for own in item.parameters], int) for item in experiments)
+    wiring = tuple(
+        np.array([parameters.names.index(part_rows.name) for part_rows in item.parameters], int) for item in experiments
+    )
     models, names = tuple(item.model for item in experiments), frozenset(item.name for item in experiments)
     model = JointModel(models, parts, tuple(picked), wiring, parameters, channels, along, names)
     return model, _measurements(experiments, model)
@@ -270,10 +277,10 @@ def _check_names(experiments: Sequence[Experiment]) -> None:
 
 def _parameters(experiments: Sequence[Experiment]) -> Parameters:
     """Parameters of all experiments, each once, in the order in which they occur."""
-    found: dict[str, tuple[Parameter, str]] = {}
+    by_name: dict[str, tuple[Parameter, str]] = {}
     for item in experiments:
         for parameter in (*item.parameters, *item.fixed):
-            known, where = found.setdefault(parameter.name, (parameter, item.name))
+            known, where = by_name.setdefault(parameter.name, (parameter, item.name))
             if known != parameter:
                 raise InputError(
                     f"parameter {parameter.name!r} is shared by the experiments {where!r} and {item.name!r}, but is "
@@ -281,12 +288,12 @@ def _parameters(experiments: Sequence[Experiment]) -> Parameters:
                     f"{parameter.upper:.6g} in the other, or differs in unit, scale or start; give it alike, or name "
                     "it in own"
                 )
-    return Parameters(tuple(parameter for parameter, _ in found.values()))
+    return Parameters(tuple(parameter for parameter, _ in by_name.values()))
 
 
 def _rows(samples: Sequence[np.ndarray]) -> tuple[list[np.ndarray], Coordinate]:
     """Rows of each experiment's samples (samples,), and the part of the time that the rows lie at."""
-    parts = [((own - own[0]) / (np.ptp(own) or 1.0)).round(12) for own in samples]
+    parts = [((times - times[0]) / (np.ptp(times) or 1.0)).round(12) for times in samples]
     rows = np.unique(np.concatenate(parts))
     return [np.searchsorted(rows, part) for part in parts], Coordinate("part of each experiment", "", rows)
 

@@ -56,9 +56,9 @@ def tracks(problem: MisfitProblem) -> Iterator[Track]:
         samples, channels = (np.arange(size) for size in data.values.shape)
         yield Track("", model, data, problem.columns, samples, channels, np.arange(len(model.parameters)))
         return
-    for part, own, picked, wiring in zip(model.parts, model.models, model.picked, model.wiring, strict=True):
+    for part, submodel, picked, wiring in zip(model.parts, model.models, model.picked, model.wiring, strict=True):
         if part.name in model.active:
             names = [model.channels[column].name for column in part.columns]
             columns = np.array([data.channels.index(name) for name in names])  # without validation data, fewer
             measured = replace(part, columns=columns).data(data)
-            yield Track(part.name, own, measured, picked, part.rows, columns, wiring)
+            yield Track(part.name, submodel, measured, picked, part.rows, columns, wiring)

@@ -165,8 +165,8 @@ class Fit(EndedResult):
             else replace(known, deviations=self.correlated.deviations, correlation=self.correlated.correlation)
         )
         bias = None if self.integration is None else self.integration.bias
-        found = tuple(identifiability_findings(self.parameters, self.values, known, plain, bias))
-        return Identifiability(self.singular_values, self.directions, found, self.deviations, self.correlation)
+        findings = tuple(identifiability_findings(self.parameters, self.values, known, plain, bias))
+        return Identifiability(self.singular_values, self.directions, findings, self.deviations, self.correlation)
 
     def diagnostics(self) -> ResidualDiagnostics:
         """Return tests of the residuals, outliers by channel and time, and the influence of single samples.
@@ -208,8 +208,8 @@ class Fit(EndedResult):
         """Return True if the standard deviations follow from those of the data, not from the residuals."""
         if self.noise is not None:
             return self.noise.known
-        given = self.data.deviations is not None and self.provenance.get("weights") == "data"
-        return given or len(self.parameters.square_priors) > 0
+        from_data = self.data.deviations is not None and self.provenance.get("weights") == "data"
+        return from_data or len(self.parameters.square_priors) > 0
 
     @property
     def degrees_of_freedom(self) -> int:
@@ -262,8 +262,8 @@ class Fit(EndedResult):
         return "\n".join([super().summary(), *([] if self.validation is None else [str(self.validation)])])
 
     def contents(self) -> Contents:
-        found = super().contents()
-        return replace(found, variables={**found.variables, "residuals": (("sample", "channel"), self.residuals)})
+        contents = super().contents()
+        return replace(contents, variables={**contents.variables, "residuals": (("sample", "channel"), self.residuals)})
 
 
 def check_level(level: float, where: str) -> None:

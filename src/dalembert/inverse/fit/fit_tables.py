@@ -31,10 +31,10 @@ def fit_facts(fit: "Fit") -> dict[str, str]:
     }
     if len(fit.starts) > 1:
         facts["starts converged"] = f"{sum(start.success for start in fit.starts)} of {len(fit.starts)}"
-    if (found := fit.integration) is not None and not found.failed:
-        facts["bias by the integrator"] = f"{amounts(fit.parameters, found.bias)} (by one simulation {found.how})"
-        facts["misfit with converged steps"] = shown(found.misfit, digits=3)
-        facts["misfit with corrected values"] = shown(found.corrected, digits=3)
+    if (bias := fit.integration) is not None and not bias.failed:
+        facts["bias by the integrator"] = f"{amounts(fit.parameters, bias.bias)} (by one simulation {bias.how})"
+        facts["misfit with converged steps"] = shown(bias.misfit, digits=3)
+        facts["misfit with corrected values"] = shown(bias.corrected, digits=3)
     return facts
 
 

@@ -57,8 +57,8 @@ def integration_bias(problem: MisfitProblem, at: Linearisation | None, nodes: No
         return _unknown(at, f"the response is that of {nodes.segments} segments, which one simulation does not follow")
     if nodes is not None and nodes.growth > CHAOTIC:
         return _unknown(at, f"a small change of the initial state grows {nodes.growth:.2g} times")
-    found = integration_error(problem, at, finer)
-    return _unknown(at, found.how) if found.error is None else _estimated(problem, at, found.error, found.how)
+    error = integration_error(problem, at, finer)
+    return _unknown(at, error.how) if error.error is None else _estimated(problem, at, error.error, error.how)
 
 
 def _estimated(problem: MisfitProblem, at: Linearisation, error: np.ndarray, how: str) -> IntegrationBias:

@@ -43,10 +43,10 @@ class _Measured:
     def load(self, source: Source, settings: Mapping[str, Any], name: str) -> Measurements | None:
         if "measured" not in settings:
             return None
-        own = source.dataset.drop_vars(["channel", "coordinate"]).drop_dims(["sample", "channel"])
-        own = own.rename({"measured_sample": "sample", "measured_channel": "channel"})
-        own = own.rename_vars({"measured_at": "coordinate"}).assign_coords(channel=settings["measured"])
-        return _measurements(own)
+        dataset = source.dataset.drop_vars(["channel", "coordinate"]).drop_dims(["sample", "channel"])
+        dataset = dataset.rename({"measured_sample": "sample", "measured_channel": "channel"})
+        dataset = dataset.rename_vars({"measured_at": "coordinate"}).assign_coords(channel=settings["measured"])
+        return _measurements(dataset)
 
 
 class _Bands:
@@ -78,20 +78,20 @@ class StoredParts:
         ]
         if value:
             along = np.full((len(value), len(to.coordinates["coordinate"][1])), np.nan)
-            for own, part in zip(along, value, strict=True):
-                own[part.rows] = part.coordinate.values
+            for part_values, part in zip(along, value, strict=True):
+                part_values[part.rows] = part.coordinate.values
             to.variables["experiment_coordinate"] = (("experiment", "sample"), along)
 
     def load(self, source: Source, settings: Mapping[str, Any], name: str) -> tuple[ExperimentPart, ...]:
-        found = []
+        parts = []
         for number, part in enumerate(settings[name]):
             along = source.arrays["experiment_coordinate"][number]
             rows = np.flatnonzero(np.isfinite(along))
             label, unit = part["coordinate"]
             coordinate = Coordinate(label, unit, along[rows])
             columns = np.array(part["columns"], dtype=int)
-            found.append(ExperimentPart(part["name"], coordinate, tuple(part["channels"]), rows, columns))
-        return tuple(found)
+            parts.append(ExperimentPart(part["name"], coordinate, tuple(part["channels"]), rows, columns))
+        return tuple(parts)
 
 
 StoredData = Annotated[Measurements, _Data()]

@@ -29,7 +29,7 @@ class History:
         to.variables["step_values"] = (("step", self.over), _column(value, "values").reshape(-1, size))
         to.variables.update(_stored_steps(value))
         if any(step.gap is not None for step in value):
-            to.variables.update({name: ("step", _column(value, own)) for name, own in OPTIONAL.items()})
+            to.variables.update({name: ("step", _column(value, attribute)) for name, attribute in OPTIONAL.items()})
         settings["samples"] = value[-1].samples if value else 0
 
     def load(self, source: Source, settings: Mapping[str, Any], name: str) -> tuple[SearchIteration, ...]:
@@ -101,11 +101,11 @@ def _steps_of(arrays: Mapping[str, np.ndarray], number: int) -> Iterator[Regular
             yield None
             continue
         curves = {name: arrays[f"step_{name}"][k] for name in CURVES}
-        there = np.isfinite(curves["weights"])
+        finite = np.isfinite(curves["weights"])
         yield RegularisedStep(
             **{name: float(arrays[f"step_{name}"][k]) for name in NUMBERS},
             trials=int(arrays["step_trials"][k]),
-            **{name: curve[there] for name, curve in curves.items()},
+            **{name: curve[finite] for name, curve in curves.items()},
         )
 
 

@@ -29,7 +29,7 @@ class Optimum:
     vector: np.ndarray  # (parameters,)
     linearisation: Linearisation | None
     response: np.ndarray  # (samples, channels) of the fitted part of the data
-    whole_response: np.ndarray  # (samples, channels) of all data
+    full_response: np.ndarray  # (samples, channels) of all data
     noise_is_known: bool  # whether the deviations follow from those of the data, not from the residuals
     estimate: Estimate
     correlated: CorrelatedResiduals | None
@@ -73,7 +73,7 @@ def assess(
         estimated, correlated = _estimated(minimum, response, at, known=known)
     else:
         known, estimated, correlated = noise.noise.known, noise.estimate, None
-    whole_response = response if problem is posed.whole else posed.whole.responses(vector[None])[0]
+    full_response = response if problem is posed.whole else posed.whole.responses(vector[None])[0]
     return Optimum(
         posed=posed,
         settings=settings,
@@ -82,13 +82,13 @@ def assess(
         vector=vector,
         linearisation=at,
         response=response,
-        whole_response=whole_response,
+        whole_response=full_response,
         noise_is_known=known,
         estimate=estimated,
         correlated=correlated,
         integration=integration_bias(problem, at, end.nodes),
         causes=residual_causes(problem, at if minimum.shows_model else None, known=known),
-        validation=posed.split.validation(whole_response),
+        validation=posed.split.validation(full_response),
     )
 
 

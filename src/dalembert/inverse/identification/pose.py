@@ -77,14 +77,14 @@ def pose_identification(
     joint, measured, weights, parts = joined("identify", model, data, weights)
     counted, weights = (None, weights) if noise is None else (_counted_values(weights, measured), None)
     _check_noise(noise, loss=loss, shooting=shooting)
-    given = measured.deviations is not None and weights is None
+    deviations_are_known = measured.deviations is not None and weights is None
     smoothing = shooting is not None or (noise is not None and len(joint.parameters.square_priors) > 0)
-    smooth = smooth_noise(measured, parts) if smoothing and not given and weights is None else None
+    smooth = smooth_noise(measured, parts) if smoothing and not deviations_are_known and weights is None else None
     journal = Journal(len(measured.coordinate.values), on_event)
     weighed = weights if smooth is None else np.broadcast_to(smooth**-2.0, measured.values.shape)
     whole = replace(
         pose(joint, measured, weighed, journal, noise_known=noise is not None),
-        loss=loss_of(loss, loss_scale, known=given),
+        loss=loss_of(loss, loss_scale, known=deviations_are_known),
         derivative=derivative,
     )
     parted = split(whole if counted is None else replace(whole, weights=whole.weights * counted), validation)
@@ -101,7 +101,7 @@ def pose_identification(
         floor=noise_floor(problem, smooth),
         noise=noise,
         smooth_noise=smooth,
-        noise_is_given=given,
+        noise_is_given=deviations_are_known,
         weights_source="noise" if noise is not None else usual if weights is None else "given",
     )
 

@@ -59,9 +59,9 @@ def _provenance(optimum: Optimum) -> Mapping[str, Any]:
         unusual["shooting"] = asdict(chosen.shooting)
     if whole.loss is not None:
         unusual["loss"] = {"name": whole.loss.name, "scale": whole.loss.scale}
-    if (held_out := posed.validation) is not None:
-        plain = isinstance(held_out, float | int | str | Mapping)
-        unusual["validation"] = encoded(held_out if plain else list(held_out))
+    if (validation := posed.validation) is not None:
+        plain = isinstance(validation, float | int | str | Mapping)
+        unusual["validation"] = encoded(validation if plain else list(validation))
     if noise is not None:
         unusual["noise"] = {channel: as_table(model) for channel, model in noise.noise.models.items()}
     if isinstance(whole.model, JointModel):

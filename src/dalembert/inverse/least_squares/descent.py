@@ -156,7 +156,7 @@ def _local(memo: Memo, method: Squares, point: np.ndarray) -> End:
         journal.step(now.best, memo.vector(now.x), problem.samples, now.regularised)
 
     try:
-        found = method.minimise(
+        minimum = method.minimise(
             memo.residual,
             memo.jacobian,
             search.lower,
@@ -168,17 +168,17 @@ def _local(memo: Memo, method: Squares, point: np.ndarray) -> End:
         )
     except SolveError as error:
         return replace(best, message=f"the sensitivities could not be computed: {error}")
-    reasons = [] if np.isfinite(found.misfit) else journal.failures[-1:]
-    message = ": ".join([found.message, *reasons])
-    kept = memo.known(memo.vector(found.x))
+    reasons = [] if np.isfinite(minimum.misfit) else journal.failures[-1:]
+    message = ": ".join([minimum.message, *reasons])
+    kept = memo.known(memo.vector(minimum.x))
     return End(
-        found.x,
-        found.misfit,
-        found.success,
+        minimum.x,
+        minimum.misfit,
+        minimum.success,
         message,
-        found.stationary,
+        minimum.stationary,
         kept,
-        rough=found.rough,
+        rough=minimum.rough,
         begun=begun,
-        left_out=found.left_out,
+        left_out=minimum.left_out,
     )

@@ -40,17 +40,17 @@ def suspect_delays(residuals: Residuals) -> tuple[tuple[SuspectDelay, ...], Resi
     Data that are late by τ leave the residuals R(t) − R(t − τ) ≈ τ dR/dt. The part of W^½ dR/dt that no parameter makes
     up for is the column d; τ = dᵀr/dᵀd. Its deviation allows for the correlation of the residuals that are left.
     """
-    found: list[SuspectDelay] = []
+    suspects: list[SuspectDelay] = []
     rates = _rates(residuals)
     while rates:
         estimates = filter(None, (_estimated(residuals, name, rate) for name, rate in rates.items()))
         best = max(estimates, key=lambda item: item.gain, default=None)
         if best is None or not best.accepted:
             break
-        found.append(best.suspect)
+        suspects.append(best.suspect)
         residuals = best.left
         rates = {name: rate for name, rate in rates.items() if name and best.suspect.channel not in ("", name)}
-    return tuple(found), residuals
+    return tuple(suspects), residuals
 
 
 def delay_findings(delays: tuple[SuspectDelay, ...], time: str) -> Iterator[Finding]:
@@ -86,20 +86,20 @@ class _Estimated:
 
 def _rates(residuals: Residuals) -> dict[str, np.ndarray]:
     """W^½ dR/dt (values,) by channel, the same in all experiments, 0 in the others; of all channels by ``""``."""
-    found: dict[str, np.ndarray] = {}
+    rates: dict[str, np.ndarray] = {}
     weights = np.sqrt(residuals.problem.weights).ravel()
-    for own in residuals.series:
-        if own.unit == TIME and len(own.rows) > 2:
-            column = found.setdefault(own.channel, np.zeros(len(weights)))
-            column[own.rows] = weights[own.rows] * _rate(residuals, own)
-    return {**found, "": sum(found.values(), np.zeros(len(weights)))} if len(found) > 1 else found
+    for signal in residuals.series:
+        if signal.unit == TIME and len(signal.rows) > 2:
+            column = rates.setdefault(signal.channel, np.zeros(len(weights)))
+            column[signal.rows] = weights[signal.rows] * _rate(residuals, signal)
+    return {**rates, "": sum(rates.values(), np.zeros(len(weights)))} if len(rates) > 1 else rates
 
 
-def _rate(residuals: Residuals, own: Series) -> np.ndarray:
-    response = residuals.at.response.ravel()[own.rows]
-    if residuals.problem.data.wrapping[own.rows[0] % residuals.at.response.shape[1]]:
+def _rate(residuals: Residuals, signal: Series) -> np.ndarray:
+    response = residuals.at.response.ravel()[signal.rows]
+    if residuals.problem.data.wrapping[signal.rows[0] % residuals.at.response.shape[1]]:
         response = np.unwrap(response)
-    return np.gradient(response, own.along)
+    return np.gradient(response, signal.along)
 
 
 def _estimated(residuals: Residuals, name: str, rate: np.ndarray) -> _Estimated | None:
@@ -115,7 +115,7 @@ def _estimated(residuals: Residuals, name: str, rate: np.ndarray) -> _Estimated 
     if not gain > SIGNIFICANT**2 * least:
         return _Estimated(SuspectDelay(name, delay, np.nan, share), left, gain, accepted=False)
     deviation = float(np.sqrt(left.spread(column[:, None])[0, 0])) / size
-    white = not any(np.any(rate[own.rows]) for own in left.correlated)
+    white = not any(np.any(rate[signal.rows]) for signal in left.correlated)
     explains = share >= EXPLAINS or white
     accepted = explains and abs(delay) >= SIGNIFICANT * deviation
     return _Estimated(SuspectDelay(name, delay, deviation, share), left, gain, accepted)

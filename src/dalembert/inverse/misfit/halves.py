@@ -77,21 +77,21 @@ def halves(residuals: Residuals) -> Halves | None:
     apart = apart - residuals.basis @ (residuals.basis.T @ apart)
     deviation = np.sqrt(np.diag(_spread(residuals, apart)))
     guess = (parameters.upper - parameters.lower)[free] / np.sqrt(12)
-    made = partial(_halves, free, sizes, deviation, np.array(known) & (sizes < guess))
+    estimate = partial(_halves, free, sizes, deviation, np.array(known) & (sizes < guess))
     stepped = at.vector[free] + np.array([-residuals.values @ columns for columns in maps])
-    if np.any(made(stepped, refitted=False).drifting):
+    if np.any(estimate(stepped, refitted=False).drifting):
         again = [_refitted(problem, mask, at.vector) for mask in (first, second)]
         if all(values is not None for values in again):
-            return made(np.array(again)[:, free], refitted=True)
-    return made(np.clip(stepped, parameters.lower[free], parameters.upper[free]), refitted=False)
+            return estimate(np.array(again)[:, free], refitted=True)
+    return estimate(np.clip(stepped, parameters.lower[free], parameters.upper[free]), refitted=False)
 
 
 def _masks(residuals: Residuals) -> tuple[np.ndarray, np.ndarray]:
     """Masks (values,) of the values in the first and in the second half of each record."""
     first, second = (np.zeros(len(residuals.values), dtype=bool) for _ in range(2))
-    for own in residuals.series:
-        early = own.along <= (own.along[0] + own.along[-1]) / 2
-        first[own.rows[early]], second[own.rows[~early]] = True, True
+    for signal in residuals.series:
+        early = signal.along <= (signal.along[0] + signal.along[-1]) / 2
+        first[signal.rows[early]], second[signal.rows[~early]] = True, True
     return first, second
 
 
@@ -106,14 +106,14 @@ def _step(slopes: np.ndarray, largest: float, scale: np.ndarray) -> tuple[np.nda
 def _spread(residuals: Residuals, columns: np.ndarray) -> np.ndarray:
     """Covariance (columns, columns) of columnsᵀ · noise, for columns (values, columns)."""
     total, fitted = np.zeros((columns.shape[1], columns.shape[1])), dict(residuals.fitted)
-    for own in residuals.series:
-        rows, process = columns[own.rows], fitted.get(own)
+    for signal in residuals.series:
+        rows, process = columns[signal.rows], fitted.get(signal)
         if process is None:
-            total += residuals.variances[own.rows] * rows.T @ rows
-        elif residuals.processes[own.name].systematic:
-            total += residuals.noise(own) ** 2 * rows.T @ rows
+            total += residuals.variances[signal.rows] * rows.T @ rows
+        elif residuals.processes[signal.name].systematic:
+            total += residuals.noise(signal) ** 2 * rows.T @ rows
         else:
-            total += process.product(own, rows)
+            total += process.product(signal, rows)
     return total
 
 

@@ -63,8 +63,8 @@ class Residuals:
     def variance(self) -> float:
         """Variance of a weighted residual: from the residuals, but at least 1 where it is known."""
         freedom = self.problem.compared - self.basis.shape[1]
-        own = float(self.values @ self.values) / freedom if freedom > 0 else np.nan
-        return max(own, 1.0) if self.known else own
+        variance = float(self.values @ self.values) / freedom if freedom > 0 else np.nan
+        return max(variance, 1.0) if self.known else variance
 
     @cached_property
     def variances(self) -> np.ndarray:
@@ -93,20 +93,20 @@ class Residuals:
     @cached_property
     def processes(self) -> dict[str, NoiseProcess]:
         """What is known of these processes, by the series' name."""
-        found = summaries(self.correlated, self.fitted, self.at.response, *self.tested)
-        return {item.channel: item for item in found}
+        processes = summaries(self.correlated, self.fitted, self.at.response, *self.tested)
+        return {item.channel: item for item in processes}
 
-    def noise(self, own: Series) -> float:
+    def noise(self, signal: Series) -> float:
         """Return the standard deviation of a weighted residual of a series by noise alone.
 
         Where it is not known it follows from neighbouring residuals and from rounding of the data.
         """
         if self.known:
             return 1.0
-        rows, columns = np.divmod(own.rows, self.at.response.shape[1])
+        rows, columns = np.divmod(signal.rows, self.at.response.shape[1])
         weights, data = (table[rows, columns[0]] for table in (self.problem.weights, self.problem.data.values))
         rounding = quantum(data) * np.sqrt(np.mean(weights) / 12)
-        return max(local_deviation(own.along, self.values[own.rows]), rounding, float(np.finfo(float).tiny))
+        return max(local_deviation(signal.along, self.values[signal.rows]), rounding, float(np.finfo(float).tiny))
 
     def spread(self, columns: np.ndarray) -> np.ndarray:
         """Return the covariance (columns, columns) of columnsᵀ · noise, for columns (values, columns).

@@ -13,11 +13,15 @@ from dalembert.inverse.noise.correlation.series import Series
 
 def clipped(record: FittedRecord) -> Iterator[Mistake]:
     """Yield the mistake for all series with several values at their largest or smallest value."""
-    ends = {own: there for own in record.series if np.any(there := plateaus(record.data_of(own)))}
+    ends = {
+        signal: clipped_values for signal in record.series if np.any(clipped_values := plateaus(record.data_of(signal)))
+    }
     if ends:
-        rows = np.concatenate([own.rows[there] for own, there in ends.items()])
-        counts = [int(np.count_nonzero(there)) for there in ends.values()]
-        levels = [float(np.max(np.abs(record.data_of(own)[there]))) for own, there in ends.items()]
+        rows = np.concatenate([signal.rows[clipped_values] for signal, clipped_values in ends.items()])
+        counts = [int(np.count_nonzero(clipped_values)) for clipped_values in ends.values()]
+        levels = [
+            float(np.max(np.abs(record.data_of(signal)[clipped_values]))) for signal, clipped_values in ends.items()
+        ]
         finding = partial(_finding, list(ends), counts, levels)
         yield Mistake(partial(without, rows), finding, NONE, blamed=rows, visible=True)
 

@@ -34,12 +34,12 @@ class Clock:
 
     @cached_property
     def rows(self) -> np.ndarray:
-        return np.concatenate([own.rows for own in self.series])
+        return np.concatenate([signal.rows for signal in self.series])
 
     @property
     def length(self) -> float:
         """Duration of the longest record."""
-        return max(own.length for own in self.series)
+        return max(signal.length for signal in self.series)
 
     def read(
         self, response: np.ndarray, time: Callable[[np.ndarray], np.ndarray], rows: np.ndarray | None = None
@@ -51,44 +51,44 @@ class Clock:
         if not self.last or self.last[0][0] is not response:
             from scipy.interpolate import CubicSpline  # fits without mistakes start without it
 
-            splines = [CubicSpline(own.along, response[own.rows], extrapolate=False) for own in self.series]
+            splines = [CubicSpline(signal.along, response[signal.rows], extrapolate=False) for signal in self.series]
             self.last[:] = [(response, splines)]
         shown = response.copy() if rows is None else response[rows]
-        for own, spline in zip(self.series, self.last[0][1], strict=True):
-            where, along = (own.rows, own.along) if rows is None else self._placed(own, rows)
+        for signal, spline in zip(self.series, self.last[0][1], strict=True):
+            where, along = (signal.rows, signal.along) if rows is None else self._placed(signal, rows)
             shown[where] = spline(time(along))
         return shown
 
-    def _placed(self, own: Series, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _placed(self, signal: Series, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Where values of a series are among rows, and their times; remembered for the last rows."""
         if self.placed.get("rows") is not rows:
             self.placed.clear()
             self.placed["rows"] = rows
-        if own.name not in self.placed:
-            index = np.minimum(np.searchsorted(own.rows, rows), len(own.rows) - 1)
-            where = np.flatnonzero(own.rows[index] == rows)
-            self.placed[own.name] = where, own.along[index[where]]
-        return self.placed[own.name]
+        if signal.name not in self.placed:
+            index = np.minimum(np.searchsorted(signal.rows, rows), len(signal.rows) - 1)
+            where = np.flatnonzero(signal.rows[index] == rows)
+            self.placed[signal.name] = where, signal.along[index[where]]
+        return self.placed[signal.name]
 
 
 def clocks(record: FittedRecord, *, channels: bool) -> Iterator[Clock]:
     """Yield the clock of each experiment, that of all, and with ``channels`` that of each channel of an experiment."""
-    known = [own for own in record.series if own.unit == TIME and len(own.rows) >= FEWEST]
-    names = dict.fromkeys(own.experiment for own in known)
-    groups = [(name, [own for own in known if own.experiment == name]) for name in names]
+    known = [signal for signal in record.series if signal.unit == TIME and len(signal.rows) >= FEWEST]
+    names = dict.fromkeys(signal.experiment for signal in known)
+    groups = [(name, [signal for signal in known if signal.experiment == name]) for name in names]
     if len(groups) > 1:
         groups.append(("", known))
     if channels and len(known) > len(names):
-        groups += [(own.name, [own]) for own in known]
+        groups += [(signal.name, [signal]) for signal in known]
     for name, series in groups:
-        period = min((_period(record, own) for own in series), default=0.0)
+        period = min((_period(record, signal) for signal in series), default=0.0)
         if period > 0:
             yield Clock(name, tuple(series), period)
 
 
-def _period(record: FittedRecord, own: Series) -> float:
+def _period(record: FittedRecord, signal: Series) -> float:
     """2π rms/rms of the rate, of the data's response; infinite where it does not move."""
-    response = record.response_of(own)
-    rate = np.gradient(response, own.along)
+    response = record.response_of(signal)
+    rate = np.gradient(response, signal.along)
     size = np.sqrt(np.mean((response - response.mean()) ** 2) / max(np.mean(rate**2), np.finfo(float).tiny))
-    return max(2 * np.pi * float(size), 4 * own.step)
+    return max(2 * np.pi * float(size), 4 * signal.step)

@@ -13,10 +13,10 @@ from dalembert.inverse.noise.correlation.series import Series
 
 def dropouts(record: FittedRecord) -> Iterator[Mistake]:
     """Yield the mistake for all series with zeros."""
-    lost = {own: record.data_of(own) == 0 for own in record.series}
-    zeros = {own: zero for own, zero in lost.items() if FEWEST <= np.count_nonzero(zero) < len(zero)}
+    lost = {signal: record.data_of(signal) == 0 for signal in record.series}
+    zeros = {signal: zero for signal, zero in lost.items() if FEWEST <= np.count_nonzero(zero) < len(zero)}
     if zeros:
-        rows = np.concatenate([own.rows[zero] for own, zero in zeros.items()])
+        rows = np.concatenate([signal.rows[zero] for signal, zero in zeros.items()])
         counts = [int(np.count_nonzero(zero)) for zero in zeros.values()]
         yield Mistake(partial(without, rows), partial(_finding, list(zeros), counts), NONE, blamed=rows, visible=True)
 

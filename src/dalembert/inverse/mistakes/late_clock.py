@@ -37,7 +37,7 @@ def _late(clock: Clock, response: np.ndarray, delay: float, rows: np.ndarray | N
 
 def _finding(clock: Clock, verdict: Verdict) -> Finding:
     late, size = verdict.number > 0, f"{abs(verdict.number):.3g}"
-    several = len({own.experiment for own in clock.series}) > 1
+    several = len({signal.experiment for signal in clock.series}) > 1
     whose = f"of {clock.name!r}" if clock.name else "of all records" if several else "of the record"
     return Finding(
         "suspect-clock",

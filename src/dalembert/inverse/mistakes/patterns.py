@@ -28,10 +28,10 @@ def plateaus(data: np.ndarray) -> np.ndarray:
     first, clipped = runs(data), np.zeros(len(data), dtype=bool)
     repeats = first != np.arange(len(data))
     for end in (data.min(), data.max()):
-        there = data == end
-        others = np.abs(data[~there] - end)
-        if np.count_nonzero(there) < FEWEST or not len(others) or np.min(others) >= NEAR * np.ptp(data):
+        at_end = data == end
+        distances = np.abs(data[~at_end] - end)
+        if np.count_nonzero(at_end) < FEWEST or not len(distances) or np.min(distances) >= NEAR * np.ptp(data):
             continue
-        if len(set(first[there])) > 1 or not np.any(repeats & ~there & (data != 0)):
-            clipped |= there
+        if len(set(first[at_end])) > 1 or not np.any(repeats & ~at_end & (data != 0)):
+            clipped |= at_end
     return clipped

@@ -34,8 +34,8 @@ class FittedRecord:
     @cached_property
     def experiments(self) -> dict[str, tuple[Series, ...]]:
         """The series of each experiment; the name of a single one is empty."""
-        names = dict.fromkeys(own.experiment for own in self.series)
-        return {name: tuple(own for own in self.series if own.experiment == name) for name in names}
+        names = dict.fromkeys(signal.experiment for signal in self.series)
+        return {name: tuple(signal for signal in self.series if signal.experiment == name) for name in names}
 
     @cached_property
     def residual(self) -> np.ndarray:
@@ -64,13 +64,13 @@ class FittedRecord:
             apart = np.where(wraps, apart - 2 * np.pi * np.rint(apart / (2 * np.pi)), apart)
         return np.sqrt(self.problem.weights.ravel()[rows]) * apart
 
-    def data_of(self, own: Series) -> np.ndarray:
+    def data_of(self, signal: Series) -> np.ndarray:
         """Data of a series (values,), without jumps by whole turns."""
-        return self.problem.data.continuous.ravel()[own.rows]
+        return self.problem.data.continuous.ravel()[signal.rows]
 
-    def response_of(self, own: Series) -> np.ndarray:
+    def response_of(self, signal: Series) -> np.ndarray:
         """Response of a series (values,)."""
-        return self.at.response.ravel()[own.rows]
+        return self.at.response.ravel()[signal.rows]
 
 
 @dataclass(frozen=True)

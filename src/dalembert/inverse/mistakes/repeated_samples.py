@@ -13,11 +13,11 @@ from dalembert.inverse.noise.correlation.series import Series
 
 def repeated_samples(record: FittedRecord) -> Iterator[Mistake]:
     """Yield the mistake for all series with repeated values."""
-    repeats = {own: _repeats(record.data_of(own)) for own in record.series}
-    firsts = {own: first for own, first in repeats.items() if _count(first) >= FEWEST}
+    repeats = {signal: _repeats(record.data_of(signal)) for signal in record.series}
+    firsts = {signal: first for signal, first in repeats.items() if _count(first) >= FEWEST}
     if firsts:
-        rows = np.concatenate([own.rows for own in firsts])
-        sources = np.concatenate([own.rows[first] for own, first in firsts.items()])
+        rows = np.concatenate([signal.rows for signal in firsts])
+        sources = np.concatenate([signal.rows[first] for signal, first in firsts.items()])
         finding = partial(_finding, list(firsts), list(map(_count, firsts.values())))
         yield Mistake(partial(_kept, rows, sources), finding, NONE, visible=True)
 

@@ -56,8 +56,10 @@ class Supposed:
     def better_than(self, other: "Supposed") -> float:
         """Gain in log-likelihood over another mistake, by the values that both compare."""
         common = np.isfinite(self.squares) & np.isfinite(other.squares)
-        own, its = (max(float(np.sum(one.squares[common])), np.finfo(float).tiny) for one in (self, other))
-        return np.count_nonzero(common) / 2 * np.log(its / own) - self.by_chance + other.by_chance
+        squares_here, squares_of_other = (
+            max(float(np.sum(mistake.squares[common])), np.finfo(float).tiny) for mistake in (self, other)
+        )
+        return np.count_nonzero(common) / 2 * np.log(squares_of_other / squares_here) - self.by_chance + other.by_chance
 
 
 def linear(record: FittedRecord, mistake: Mistake, at: Linearisation) -> Supposed:
@@ -83,9 +85,9 @@ def linear(record: FittedRecord, mistake: Mistake, at: Linearisation) -> Suppose
         # Normal equations are exact enough to rank mistakes, and ten times as fast as singular values of the rows.
         step = np.linalg.lstsq(rows.T @ rows, -rows.T @ residual, rcond=1e-12)[0]
         step = np.clip(point + step, search.lower, search.upper) - point
-        found = _ratio(before[kept | blamed], residual + rows @ step, int(np.count_nonzero(kept)), len(places))
-        if found < best.ratio:
-            best = Supposed(mistake, at, float(number), found, record.problem.compared, np.zeros(0))
+        ratio = _ratio(before[kept | blamed], residual + rows @ step, int(np.count_nonzero(kept)), len(places))
+        if ratio < best.ratio:
+            best = Supposed(mistake, at, float(number), ratio, record.problem.compared, np.zeros(0))
     return best
 
 
@@ -97,7 +99,9 @@ def refitted(record: FittedRecord, supposed: Supposed) -> Supposed:
     spacing = float(np.min(np.diff(mistake.numbers))) if numbered else 0.0
     numbers = supposed.number + spacing * np.array([-1.0, 0.0, 1.0]) if numbered else np.array([np.nan])
     reach = supposed.number + (1 + STEP) * (numbers - supposed.number) if numbered else numbers
-    kept = np.all([_kept(record, mistake.shown(supposed.at.response.ravel(), float(one))) for one in reach], axis=0)
+    kept = np.all(
+        [_kept(record, mistake.shown(supposed.at.response.ravel(), float(number_at))) for number_at in reach], axis=0
+    )
     known: dict[bytes, Linearisation] = {search.points(supposed.at.vector).tobytes(): supposed.at}
 
     def at(point: np.ndarray) -> Linearisation:
@@ -115,8 +119,8 @@ def refitted(record: FittedRecord, supposed: Supposed) -> Supposed:
             now = at(point)
         except SolveError:
             return np.full(np.count_nonzero(kept) + problem.priors, np.nan)
-        own, _ = _compared(record, mistake.shown(now.response.ravel()[:, None], number(point)), kept)
-        return np.concatenate([own, prior_residual(problem.model.parameters, now.vector)])
+        compared, _ = _compared(record, mistake.shown(now.response.ravel()[:, None], number(point)), kept)
+        return np.concatenate([compared, prior_residual(problem.model.parameters, now.vector)])
 
     def jacobian(point: np.ndarray) -> np.ndarray:
         now = at(point)
@@ -139,13 +143,13 @@ def refitted(record: FittedRecord, supposed: Supposed) -> Supposed:
     method = LeastSquares(trials=TRIALS, gain=GAIN)
     scale = np.concatenate([np.ones(count), [spacing] if numbered else []])
     try:
-        found = method.minimise(residual, jacobian, lower, upper, start, scale=scale)
-        end = at(found.x)
+        minimum = method.minimise(residual, jacobian, lower, upper, start, scale=scale)
+        end = at(minimum.x)
     except SolveError:
         return replace(supposed, ratio=np.inf)
     finally:
         record.problem.journal.simulations += problem.journal.simulations
-    left = residual(found.x)
+    left = residual(minimum.x)
     before = kept.copy()
     before[mistake.blamed] = record.problem.weights.ravel()[mistake.blamed] > 0
     total = int(np.count_nonzero(record.problem.weights))
@@ -153,7 +157,7 @@ def refitted(record: FittedRecord, supposed: Supposed) -> Supposed:
     squares = np.full(kept.shape, np.nan)
     squares[kept] = left[: np.count_nonzero(kept)] ** 2
     squares[mistake.blamed] = 0.0
-    return Supposed(mistake, end, number(found.x), ratio, problem.compared, squares)
+    return Supposed(mistake, end, number(minimum.x), ratio, problem.compared, squares)
 
 
 def _kept(record: FittedRecord, shown: np.ndarray) -> np.ndarray:

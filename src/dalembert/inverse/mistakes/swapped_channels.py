@@ -20,11 +20,11 @@ def swapped_channels(record: FittedRecord) -> Iterator[Mistake]:
     for several in record.experiments.values():
         if len(several) > MOST:
             continue
-        for one, other in combinations(several, 2):
-            if np.array_equal(one.along, other.along):
-                pairs.setdefault((one.channel, other.channel), []).append((one, other))
-                yield _mistake([(one, other)])
-    yield from (_mistake(found) for found in pairs.values() if len(found) > 1)
+        for first, second in combinations(several, 2):
+            if np.array_equal(first.along, second.along):
+                pairs.setdefault((first.channel, second.channel), []).append((first, second))
+                yield _mistake([(first, second)])
+    yield from (_mistake(pair) for pair in pairs.values() if len(pair) > 1)
 
 
 def _mistake(pairs: Sequence[tuple[Series, Series]]) -> Mistake:
@@ -39,18 +39,18 @@ def _swapped(first: np.ndarray, second: np.ndarray, response: np.ndarray, _: flo
 
 
 def _finding(pairs: Sequence[tuple[Series, Series]], verdict: Verdict) -> Finding:
-    one, other = pairs[0]
-    where = f" of experiment {one.experiment!r}" if one.experiment and len(pairs) == 1 else ""
+    first, second = pairs[0]
+    where = f" of experiment {first.experiment!r}" if first.experiment and len(pairs) == 1 else ""
     return Finding(
         "suspect-swap",
         "warning",
         {
-            "channel": one.channel,
-            "other": other.channel,
-            "experiment": one.experiment if len(pairs) == 1 else "",
+            "channel": first.channel,
+            "other": second.channel,
+            "experiment": first.experiment if len(pairs) == 1 else "",
             "explained": verdict.explained,
         },
-        f"The data of {one.channel!r} and {other.channel!r}{where} seem to be swapped. {verdict.sentence}",
-        f"Check the columns of the file. If they are swapped, swap the columns of {one.channel!r} and "
-        f"{other.channel!r} in columns{where}.",
+        f"The data of {first.channel!r} and {second.channel!r}{where} seem to be swapped. {verdict.sentence}",
+        f"Check the columns of the file. If they are swapped, swap the columns of {first.channel!r} and "
+        f"{second.channel!r} in columns{where}.",
     )

@@ -12,16 +12,16 @@ from dalembert.inverse.noise.correlation.series import Series
 
 def wrong_sign(record: FittedRecord) -> Iterator[Mistake]:
     """Yield the mistake for each channel of each experiment, and for each channel in all experiments."""
-    for own in record.series:
-        yield _mistake([own])
-    for channel in dict.fromkeys(own.channel for own in record.series):
-        several = [own for own in record.series if own.channel == channel]
+    for signal in record.series:
+        yield _mistake([signal])
+    for channel in dict.fromkeys(signal.channel for signal in record.series):
+        several = [signal for signal in record.series if signal.channel == channel]
         if len(several) > 1:
             yield _mistake(several)
 
 
 def _mistake(series: Sequence[Series]) -> Mistake:
-    rows = np.concatenate([own.rows for own in series])
+    rows = np.concatenate([signal.rows for signal in series])
     return Mistake(partial(_negated, rows), partial(_finding, series), NONE)
 
 

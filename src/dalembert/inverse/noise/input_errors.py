@@ -102,8 +102,8 @@ def input_errors(
     return InputErrors(parameters, np.asarray(basis))
 
 
-def _increasing(given: ArrayLike | Sequence[float], what: str) -> np.ndarray:
-    values = samples_of(given, "input_errors", what)
+def _increasing(numbers: ArrayLike | Sequence[float], what: str) -> np.ndarray:
+    values = samples_of(numbers, "input_errors", what)
     if len(values) < 2 or not np.all(np.diff(values) > 0):
-        raise InputError(f"input_errors: {what} are {shown(given)}; expected at least two increasing numbers")
+        raise InputError(f"input_errors: {what} are {shown(numbers)}; expected at least two increasing numbers")
     return values

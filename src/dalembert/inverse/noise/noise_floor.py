@@ -38,13 +38,19 @@ def noise_floor(problem: MisfitProblem, smooth: np.ndarray | None = None) -> Noi
     millionth of its channel's spread.
     """
     data, weights = problem.data, problem.weights
-    given = np.zeros(len(data.channels)) if data.deviations is None else data.deviations
-    given = given if smooth is None else smooth
-    quanta = np.array([quantum(column[there]) for column, there in zip(data.values.T, data.present.T, strict=True)])
+    deviations = np.zeros(len(data.channels)) if data.deviations is None else data.deviations
+    deviations = deviations if smooth is None else smooth
+    quanta = np.array([quantum(column[present]) for column, present in zip(data.values.T, data.present.T, strict=True)])
     spread = _filled(problem).std(axis=0)
-    expected = float(np.sum(weights * (given**2 + quanta**2 / 12 + (1e-6 * spread) ** 2))) + problem.priors
+    expected = float(np.sum(weights * (deviations**2 + quanta**2 / 12 + (1e-6 * spread) ** 2))) + problem.priors
     source = (
-        "smoothed" if smooth is not None else "given" if given.any() else "rounded" if quanta.any() else "arithmetic"
+        "smoothed"
+        if smooth is not None
+        else "given"
+        if deviations.any()
+        else "rounded"
+        if quanta.any()
+        else "arithmetic"
     )
     return NoiseFloor(
         expected * float(chdtri(problem.compared, 0.001)) / problem.compared,
@@ -62,11 +68,11 @@ def signal(problem: MisfitProblem) -> float:
 def _filled(problem: MisfitProblem) -> np.ndarray:
     """Data without jumps by whole turns, their gaps filled with the channel's mean."""
     data = problem.data
-    values, there = data.continuous, data.present
-    if np.all(there):
+    values, present = data.continuous, data.present
+    if np.all(present):
         return values
-    mean = np.sum(np.where(there, values, 0.0), axis=0) / np.maximum(1, np.sum(there, axis=0))
-    return np.where(there, values, mean)
+    mean = np.sum(np.where(present, values, 0.0), axis=0) / np.maximum(1, np.sum(present, axis=0))
+    return np.where(present, values, mean)
 
 
 def quantum(column: np.ndarray) -> float:

@@ -28,15 +28,15 @@ def smoothed(data: Measurements) -> Smoothed:
     along, values = data.coordinate.values, data.continuous
     rates, deviations, errors = np.full(values.shape, np.nan), np.zeros(values.shape[1]), np.ones(values.shape[1])
     for column, name in enumerate(data.channels):
-        there = data.present[:, column]
-        values[:, column] = np.interp(along, along[there], values[there, column])
+        present = data.present[:, column]
+        values[:, column] = np.interp(along, along[present], values[present, column])
         try:
-            found = derivative(data, name)
+            rate = derivative(data, name)
         except DataError:  # too few samples beside each other
             continue
-        known = np.isfinite(found.values)
-        rates[:, column] = np.interp(along, along[known], found.values[known])
-        deviations[column], errors[column] = found.deviation, max(found.error, 1e-12)
+        known = np.isfinite(rate.values)
+        rates[:, column] = np.interp(along, along[known], rate.values[known])
+        deviations[column], errors[column] = rate.deviation, max(rate.error, 1e-12)
     return Smoothed(values, rates, deviations, errors)
 
 
@@ -51,8 +51,8 @@ def smooth_noise(data: Measurements, parts: Sequence[ExperimentPart]) -> np.ndar
     of the channel.
     """
     found = np.zeros(len(data.channels))
-    for own, columns in [(part.data(data), part.columns) for part in parts] or [(data, np.arange(len(found)))]:
-        seen = smoothed(own)
+    for part_data, columns in [(part.data(data), part.columns) for part in parts] or [(data, np.arange(len(found)))]:
+        seen = smoothed(part_data)
         spread = np.std(seen.values, axis=0)
         noise = np.where(seen.deviations > 0, np.maximum(seen.deviations, LEAST * spread), spread)
         found[columns] = np.where(noise > 0, noise, 1.0)

@@ -95,8 +95,8 @@ def short_time_findings(data: Measurements, respond: Respond) -> tuple[Finding, 
     [1000.0]
     """
     for column, name in enumerate(data.channels):
-        there = data.present[:, column]
-        values, stamps = data.continuous[there, column], data.coordinate.values[there]
+        present = data.present[:, column]
+        values, stamps = data.continuous[present, column], data.coordinate.values[present]
         thin = -(-len(values) // MOST) or 1
         values, stamps = values[::thin], stamps[::thin]
         if len(values) < FEWEST or not _is_smooth(values):
@@ -143,8 +143,8 @@ def time_unit_findings(data: Measurements, times: np.ndarray, response: np.ndarr
     ['suspect-time-unit']
     """
     for column, name in enumerate(data.channels):
-        there = data.present[:, column]
-        values, stamps = data.continuous[there, column], data.coordinate.values[there]
+        present = data.present[:, column]
+        values, stamps = data.continuous[present, column], data.coordinate.values[present]
         if len(values) < FEWEST or not _is_smooth(values):
             continue
         step = _step(stamps)

@@ -48,12 +48,12 @@ def suspect_units(problem: MisfitProblem, response: np.ndarray) -> tuple[Suspect
     Channels that are constant but for rounding, and data that are mostly noise, are not judged.
     """
     units = {channel.name: channel.unit for channel in problem.model.channels}
-    found = []
+    suspects = []
     for series in series_of(problem):
         ratio = _ratio(problem, response, series)
         factors = (factor for factor in _factors(units.get(series.name, "")) if is_like(ratio, factor))
-        found += [SuspectUnit(series.name, factor, ratio) for factor in islice(factors, 1)]
-    return tuple(found)
+        suspects += [SuspectUnit(series.name, factor, ratio) for factor in islice(factors, 1)]
+    return tuple(suspects)
 
 
 def first_unit_findings(model: ForwardModel, data: Measurements) -> tuple[Finding, ...]:

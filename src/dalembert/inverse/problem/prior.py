@@ -29,16 +29,16 @@ def prior_residual(parameters: Parameters, vectors: np.ndarray) -> np.ndarray:
     Those of correlated parameters are whitened by the Cholesky factor of their covariance.
     """
     known = parameters.square_priors
-    found = np.zeros((*vectors.shape[:-1], len(known)))
+    residual = np.zeros((*vectors.shape[:-1], len(known)))
     if not len(known):
-        return found
+        return residual
     for row, k in enumerate(known):
         prior = parameters.items[k].distribution
         if isinstance(prior, SquarePrior):
-            found[..., row] = prior.residual(vectors[..., k])
+            residual[..., row] = prior.residual(vectors[..., k])
     for joint, columns in joint_priors(parameters):
-        found[..., np.searchsorted(known, columns)] = (vectors[..., columns] - joint.mean) @ joint.whitening().T
-    return found
+        residual[..., np.searchsorted(known, columns)] = (vectors[..., columns] - joint.mean) @ joint.whitening().T
+    return residual
 
 
 def prior_slopes(parameters: Parameters, vector: np.ndarray, unit: np.ndarray) -> np.ndarray:
@@ -117,12 +117,12 @@ def _many(names: Sequence[str], weak: np.ndarray) -> Finding:
     largest = np.max(np.abs(weak), axis=0)
     among = [name for name, part in zip(names, largest.tolist(), strict=True) if part > 0.3]
     shown = [repr(name) for name in among[:MANY]]
-    others = [] if len(among) <= MANY else [counted(len(among) - MANY, "other")]
+    rest = [] if len(among) <= MANY else [counted(len(among) - MANY, "other")]
     return Finding(
         "prior-dominates",
         "warning",
         {"parameters": ", ".join(among), "combinations": len(weak)},
-        f"The data add little to the priors of {len(weak)} combinations of the parameters {listed([*shown, *others])}.",
+        f"The data add little to the priors of {len(weak)} combinations of the parameters {listed([*shown, *rest])}.",
         "This is usual for the coefficients of an unknown history. For other parameters, measure a quantity that "
         "depends on them.",
     )

@@ -172,7 +172,7 @@ class MisfitProblem:
         """Response (samples, channels), and the gradients of its weighted sums (parameters,) by the adjoint."""
         self.journal.simulations += ADJOINT_COST
         with failing_at(self.model, self.journal, vector):
-            response, pull_whole = pullback(self.model, vector, ADJOINT)
+            response, pull_model = pullback(self.model, vector, ADJOINT)
             if not np.all(np.isfinite(response)):
                 raise SolveError("the response is not finite")
         if self.journal.first is None:
@@ -181,7 +181,7 @@ class MisfitProblem:
         def pull(cotangent: np.ndarray) -> np.ndarray:
             whole = np.zeros_like(response)
             np.add.at(whole.T, self.columns, cotangent.T)
-            return pull_whole(whole)
+            return pull_model(whole)
 
         return response[:, self.columns], pull
 

@@ -48,22 +48,22 @@ def explained(
     data = problem.data
     values, residual = data.continuous.ravel(), (np.sqrt(weights) * problem.unweighted_residual(response)).ravel()
     series = list(series_of(problem, weights))
-    found = []
-    for own in series:
-        left, here, size = residual[own.rows], values[own.rows], weights.ravel()[own.rows]
+    shares = []
+    for signal in series:
+        left, here, size = residual[signal.rows], values[signal.rows], weights.ravel()[signal.rows]
         variation = float(np.sum(size * (here - np.average(here, weights=size)) ** 2))
         squares = float(left @ left)
-        found.append(
+        shares.append(
             Explained(
-                record=own.experiment,
-                channel=own.channel,
+                record=signal.experiment,
+                channel=signal.channel,
                 share=1 - squares / variation if variation > 0 else np.nan,
                 variation=variation,
                 ratio=float(np.sqrt(squares / len(left)) / fitted) if fitted > 0 else np.inf,
-                white=p_value(own, left, np.zeros((len(left), 1))) >= LEVEL / len(series),
+                white=p_value(signal, left, np.zeros((len(left), 1))) >= LEVEL / len(series),
             )
         )
-    return tuple(found)
+    return tuple(shares)
 
 
 def record_shares(shares: Sequence[Explained]) -> dict[str, float]:
@@ -72,22 +72,22 @@ def record_shares(shares: Sequence[Explained]) -> dict[str, float]:
     >>> record_shares([Explained("a", "x", 0.5, 3.0, 1.0, True), Explained("a", "y", 1.0, 1.0, 1.0, True)])
     {'a': 0.625}
     """
-    found = {}
+    by_record = {}
     for record in dict.fromkeys(item.record for item in shares):
-        own = [item for item in shares if item.record == record and item.variation > 0]
-        total = sum(item.variation for item in own)
-        found[record] = sum(item.share * item.variation for item in own) / total if total > 0 else np.nan
-    return found
+        of_record = [item for item in shares if item.record == record and item.variation > 0]
+        total = sum(item.variation for item in of_record)
+        by_record[record] = sum(item.share * item.variation for item in of_record) / total if total > 0 else np.nan
+    return by_record
 
 
 def percentages(shares: Sequence[Explained]) -> str:
     """Return the shares of records and channels as a sentence; empty without any."""
     parts = []
     for record, share in record_shares(shares).items():
-        own = [item for item in shares if item.record == record]
+        of_record = [item for item in shares if item.record == record]
         lead = f"{percent(share)} of {record!r}" if record else percent(share)
-        channels = [f"{item.channel!r} {percent(item.share)}" for item in own]
-        parts.append(f"{lead} ({', '.join(channels)})" if len(own) > 1 else lead)
+        channels = [f"{item.channel!r} {percent(item.share)}" for item in of_record]
+        parts.append(f"{lead} ({', '.join(channels)})" if len(of_record) > 1 else lead)
     return f"Explained there of the data's variation: {'; '.join(parts)}." if parts else ""
 
 

@@ -49,16 +49,16 @@ class Validation:
 
     @property
     def _compared(self) -> str:
-        told = f"Not fitted: {self.what}. There the weighted residuals are {self.misfit:.3g} in the root mean square"
+        text = f"Not fitted: {self.what}. There the weighted residuals are {self.misfit:.3g} in the root mean square"
         if self.fitted == 0:
-            return f"{told}, those of the fit 0."
+            return f"{text}, those of the fit 0."
         ratio = self.misfit / self.fitted
         advice = (
             "; the model lacks something that shows there, or the fitted data do not determine all parameters"
             if ratio > WORSE
             else ""
         )
-        return f"{told}, {ratio:.3g} times those of the fit{advice}."
+        return f"{text}, {ratio:.3g} times those of the fit{advice}."
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,21 +80,21 @@ class Split:
         weights = np.where(self.fitted, 0.0, self.whole.weights)
         squares = self.whole.unweighted_residual(response) ** 2
         of_fit = self.whole.weights - weights
-        misfit, fitted = (_rms(squares, own) for own in (weights, of_fit))
+        misfit, fitted = (_rms(squares, weights_here) for weights_here in (weights, of_fit))
         return Validation(self.what, weights, misfit, fitted, explained(self.whole, response, weights, fitted))
 
     def whole_table(self, table: np.ndarray, missing: float) -> np.ndarray:
         """Return a table (samples, channels, ...) of the fitted part in one of the whole problem."""
         if self.part is self.whole:
             return table
-        whole = np.full((*self.whole.weights.shape, *table.shape[2:]), missing)
+        full = np.full((*self.whole.weights.shape, *table.shape[2:]), missing)
         columns = [self.whole.data.channels.index(name) for name in self.part.data.channels]
-        whole[: self.part.samples, columns] = table
-        return whole
+        full[: self.part.samples, columns] = table
+        return full
 
 
 def split(problem: MisfitProblem, validation: HeldOut) -> Split:
-    """A problem without a share of its samples at the end, or without some of its experiments after their first parts."""
+    """A problem without a share of its last samples, or without some of its experiments after their first parts."""
     everything = np.ones(problem.weights.shape, dtype=bool)
     if validation is None:
         return Split(problem, problem, everything, "nothing")
@@ -184,11 +184,11 @@ def _samples_until(part: ExperimentPart, length: float) -> int:
 def _in_words(model: JointModel, lengths: Mapping[str, float]) -> str:
     """What is not fitted."""
     units = {part.name: part.coordinate.unit for part in model.parts}
-    told = [
+    texts = [
         repr(name) + (f" after its first {length:g} {units[name]}" if length else "")
         for name, length in lengths.items()
     ]
-    return f"the experiment{'s' if len(told) > 1 else ''} {', '.join(told)}"
+    return f"the experiment{'s' if len(texts) > 1 else ''} {', '.join(texts)}"
 
 
 def _rms(squares: np.ndarray, weights: np.ndarray) -> float:

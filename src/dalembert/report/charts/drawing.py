@@ -28,8 +28,8 @@ def draw(
 
     ``style`` has further settings of the trace; those of the line, such as ``dash``, are named as ``line_dash``.
     """
-    own = {"mode": "lines", "line_color": colour, "line_width": width, **style}
-    figure.add_scatter(x=x, y=y, name=name or None, row=row, col=None if row is None else 1, **own)
+    style_here = {"mode": "lines", "line_color": colour, "line_width": width, **style}
+    figure.add_scatter(x=x, y=y, name=name or None, row=row, col=None if row is None else 1, **style_here)
 
 
 def colour_of(place: int) -> str:

@@ -34,19 +34,19 @@ class Axis:
     logarithmic: bool = False
 
     @classmethod
-    def of(cls, given: Any, series: Iterable[Any]) -> "Axis":
+    def of(cls, layout: Any, series: Iterable[Any]) -> "Axis":
         """Return the axis with the settings of a Plotly layout, which holds all values if it states no range."""
-        logarithmic = given.type == "log"
-        title = unescape(given.title.text or "")
-        if given.range is not None:
-            return cls(title, float(given.range[0]), float(given.range[1]), logarithmic)
+        logarithmic = layout.type == "log"
+        title = unescape(layout.title.text or "")
+        if layout.range is not None:
+            return cls(title, float(layout.range[0]), float(layout.range[1]), logarithmic)
         known = np.concatenate(
-            [np.zeros(0), *(np.asarray(one, dtype=float).ravel() for one in series if one is not None)]
+            [np.zeros(0), *(np.asarray(values, dtype=float).ravel() for values in series if values is not None)]
         )
         known = np.log10(known[known > 0]) if logarithmic else known
         known = known[np.isfinite(known)]
         low, high = (float(known.min()), float(known.max())) if len(known) else (0.0, 1.0)
-        if given.rangemode == "tozero" and not logarithmic:
+        if layout.rangemode == "tozero" and not logarithmic:
             low, high = min(low, 0.0), max(high, 0.0)
         margin = MARGIN * (high - low) or 0.5 * abs(high) or 0.5
         return cls(title, low - margin, high + margin, logarithmic)
@@ -80,7 +80,7 @@ class Axis:
         low, high = (10**self.low, 10**self.high) if self.logarithmic else (self.low, self.high)
         rough = (high - low) / max(most, 1)
         decade = 10.0 ** np.floor(np.log10(rough))
-        step = decade * next(one for one in STEPS if one * decade >= rough * (1 - 1e-9))
+        step = decade * next(factor for factor in STEPS if factor * decade >= rough * (1 - 1e-9))
         values = step * np.arange(np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9) + 1)
         return [(float(value), f"{round(float(value), 12) + 0.0:g}".replace("-", "−")) for value in values]
 
@@ -230,18 +230,18 @@ def _area(panel: Panel, trace: Any, pixels: np.ndarray, before: Any) -> np.ndarr
 
 def _markers(trace: Any, pixels: np.ndarray) -> list[str]:
     """Dots; crosses and open symbols as rings."""
-    own = trace.marker
-    colour = own.color if isinstance(own.color, str) else own.line.color or LIGHT.series[0]
+    marker = trace.marker
+    colour = marker.color if isinstance(marker.color, str) else marker.line.color or LIGHT.series[0]
     colour = colour if isinstance(colour, str) else LIGHT.series[0]
-    edge = own.line.color if isinstance(own.line.color, str) else None
-    cross = "thin" in str(own.symbol)
-    radius = 0.5 * float(own.size if isinstance(own.size, int | float) else 6)
+    edge = marker.line.color if isinstance(marker.line.color, str) else None
+    cross = "thin" in str(marker.symbol)
+    radius = 0.5 * float(marker.size if isinstance(marker.size, int | float) else 6)
     shown = pixels[np.isfinite(pixels).all(axis=1)]
     shown = shown[:: -(-len(shown) // MOST_MARKERS) or 1]
     if cross:
         arms = np.array([[-1, -1], [1, 1], [np.nan, np.nan], [-1, 1], [1, -1], [np.nan, np.nan]]) * radius
         return [_stroke((shown[:, None] + arms).reshape(-1, 2), edge or colour, 1.2)]
-    ring = f' stroke="{edge}" stroke-width="{own.line.width or 1:g}"' if edge else ""
+    ring = f' stroke="{edge}" stroke-width="{marker.line.width or 1:g}"' if edge else ""
     return [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius:g}" fill="{colour}"{ring}/>' for x, y in shown]
 
 

@@ -161,5 +161,7 @@ def _motion(result: Trajectory) -> go.Figure:
     """The mechanism at its start, with faint poses along its motion."""
     drawing = result.drawing()
     poses = np.unique(np.linspace(0, len(drawing.times) - 1, POSES).round().astype(int))
-    lines, joints = ({name: own[poses] for name, own in part.items()} for part in (drawing.lines, drawing.joints))
+    lines, joints = (
+        {name: lines_of_part[poses] for name, lines_of_part in part.items()} for part in (drawing.lines, drawing.joints)
+    )
     return mechanism(replace(drawing, times=drawing.times[poses], lines=lines, joints=joints))

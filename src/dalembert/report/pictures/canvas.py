@@ -21,7 +21,7 @@ def between(light: str, dark: str, share: float = 0.15) -> str:
     '#808080'
     """
     pairs = [(int(light[k : k + 2], 16), int(dark[k : k + 2], 16)) for k in (1, 3, 5)]
-    return "#" + "".join(f"{round(own + share * (other - own)):02x}" for own, other in pairs)
+    return "#" + "".join(f"{round(first + share * (other - first)):02x}" for first, other in pairs)
 
 
 INK = between(LIGHT.muted, DARK.muted, 0.3)
@@ -95,7 +95,7 @@ class Canvas:
 
     def polygons(self, pixels: Sequence[np.ndarray], fill: str, stroke: str = "none", width: float = 0.6) -> None:
         """Closed shapes in one path, each (corners, 2)."""
-        shapes = "".join(f"{path(one)}Z" for one in pixels)
+        shapes = "".join(f"{path(corners)}Z" for corners in pixels)
         self._lines.append(f'<path d="{shapes}" fill="{fill}" stroke="{stroke}" stroke-width="{width:g}"/>')
 
     def circle(self, pixel: np.ndarray, radius: float, fill: str, stroke: str = "none") -> None:
@@ -173,11 +173,11 @@ def path(pixels: np.ndarray) -> str:
     >>> path(np.array([[0, 0], [1.25, 2], [np.nan, 0], [3, 3], [4, 4]]))
     'M0 0L1.2 2M3 3L4 4'
     """
-    found, begun = [], False
+    commands, begun = [], False
     for x, y in np.asarray(pixels, dtype=float):
         if not (np.isfinite(x) and np.isfinite(y)):
             begun = False
             continue
-        found.append(f"{'L' if begun else 'M'}{round(x, 1):g} {round(y, 1):g}")
+        commands.append(f"{'L' if begun else 'M'}{round(x, 1):g} {round(y, 1):g}")
         begun = True
-    return "".join(found)
+    return "".join(commands)

@@ -71,7 +71,7 @@ class _Labels:
         """How much the words of a box would cover; what lies outside of the picture counts most."""
         size = np.array(self.canvas.size)
         outside = float(np.maximum(-box[:, 0], 0).sum() + np.maximum(box[:, 1] - size, 0).sum())
-        over = sum(float(np.prod(np.maximum(np.minimum(box[:, 1], one[:, 1]) - np.maximum(box[:, 0], one[:, 0]), 0)))
-                   for one in self.boxes)  # fmt: skip
+        sides = (np.minimum(box[:, 1], other[:, 1]) - np.maximum(box[:, 0], other[:, 0]) for other in self.boxes)
+        over = sum(float(np.prod(np.maximum(side, 0))) for side in sides)
         inside = (self.drawn > box[:, 0]) & (self.drawn < box[:, 1])
         return 100 * outside + over + 20 * int(inside.all(axis=1).sum())

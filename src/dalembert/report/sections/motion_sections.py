@@ -28,7 +28,7 @@ def mechanisms(
     if not moving:
         return []
     data = data or {}
-    plots = [_film(place, name, one, points, data.get(name)) for place, name, one in numbered("mechanism", moving)]
+    plots = [_film(place, name, item, points, data.get(name)) for place, name, item in numbered("mechanism", moving)]
     left_out = [] if "" in moving else [name for name in data if name and name not in moving]
     return [Section(HEADING, (*plots, f"Not drawn: {', '.join(left_out)}." if left_out else ""))]
 
@@ -56,13 +56,13 @@ def paths(trajectory: Trajectory, drawing: Drawing, points: tuple[str, ...]) -> 
     axes = _axes(drawing)
     if points:
         return {point: np.asarray(trajectory.channels([f"{point}.{axis}" for axis in axes])) for point in points}
-    held = list(drawing.joints.values())
+    joints = list(drawing.joints.values())
     last = {body.name: body.point_names[-1] for body in trajectory.system.bodies} if len(axes) == 3 else {}
     spans = [float(np.ptp(line.reshape(-1, len(axes)), axis=0).max()) for line in drawing.lines.values()]
     ends = {
         f"{name}.{last[name]}" if name in last else f"{name}'s end": line[:, -1]
         for name, line in drawing.lines.items()
-        if not any(np.allclose(line[:, -1], joint, atol=1e-6 * max(spans)) for joint in held)
+        if not any(np.allclose(line[:, -1], joint, atol=1e-6 * max(spans)) for joint in joints)
     }
     moving = {name: joint for name, joint in (ends or drawing.joints).items() if np.ptp(joint, axis=0).max() > 0}
     return dict(list(moving.items())[-MOST_PATHS:])
@@ -90,18 +90,18 @@ def _channels(point: str, axes: str) -> set[str]:
 def diagnostics(trajectories: Mapping[str, Trajectory]) -> Section:
     """Energy balance, constraint violations and Newton iterations, of each experiment's motion."""
     blocks: list[Block] = []
-    for place, experiment, one in numbered("", trajectories):
+    for place, experiment, item in numbered("", trajectories):
         drawn = (
-            ("energies", charts.energies(one), "Below, what the energy balance leaves over."),
-            ("violations", charts.violations(one), "Largest violation of any constraint."),
-            ("newton", charts.newton(one), "A rise shows where the motion is hard to follow."),
+            ("energies", charts.energies(item), "Below, what the energy balance leaves over."),
+            ("violations", charts.violations(item), "Largest violation of any constraint."),
+            ("newton", charts.newton(item), "A rise shows where the motion is hard to follow."),
         )
         if experiment:
             for _, figure, _ in drawn:
                 figure.update_layout(title_text=f"{plain(experiment)}: {figure.layout.title.text}")  # pyright: ignore[reportAttributeAccessIssue]
         plots = [Plot(f"{name}{place}", figure, how) for name, figure, how in drawn]
         blocks += [plots[0], Row(plots[1:])]
-    tables = Table.joined({experiment: one.tables()[0] for experiment, one in trajectories.items()})
+    tables = Table.joined({experiment: item.tables()[0] for experiment, item in trajectories.items()})
     return Section("Diagnostics of the simulation", (*blocks, tables))
 
 

@@ -82,17 +82,19 @@ def _samples(shown: Fit | ExperimentFit | RegularisedFit | CrossValidation, name
 
 def residuals(fit: Fit) -> list[Section]:
     """The section on residuals; none where no channel has ten values."""
-    found = fit.diagnostics()
-    if all(len(one.residuals) < LEAST for one in found.series):
+    diagnostics = fit.diagnostics()
+    if all(len(item.residuals) < LEAST for item in diagnostics.series):
         return []
-    drawn = doubted(found)
-    choose = " Click a name in the legend to show or hide a channel." if len(found.series) > 1 else ""
+    drawn = doubted(diagnostics)
+    choose = " Click a name in the legend to show or hide a channel." if len(diagnostics.series) > 1 else ""
     blocks = [
-        "" if found.tested else "The residuals are not tested: they are rounding errors, or not those of a minimum.",
+        ""
+        if diagnostics.tested
+        else "The residuals are not tested: they are rounding errors, or not those of a minimum.",
         f"The figure has the {len(drawn)} channels that the tests doubt most."
-        if len(found.series) > len(drawn)
+        if len(diagnostics.series) > len(drawn)
         else "",
-        Plot("residual-diagnostics", charts.residual_diagnostics(found), f"{DIAGNOSTICS_HOW}{choose}"),
-        *found.tables(),
+        Plot("residual-diagnostics", charts.residual_diagnostics(diagnostics), f"{DIAGNOSTICS_HOW}{choose}"),
+        *diagnostics.tables(),
     ]
     return [Section("Residuals", blocks)]

@@ -80,12 +80,12 @@ class Moments:
         """
         number = int(self.count[0])
         most = 1 - 2 / number
-        found, variances = levinson(self.covariances, most)
-        orders = np.arange(1, len(found) + 1)
+        coefficients, variances = levinson(self.covariances, most)
+        orders = np.arange(1, len(coefficients) + 1)
         criterion = number * np.log(variances) + 2 * (orders + 1) * number / (number - orders - 2)
         for place in np.argsort(criterion):
-            correlations = autocorrelations(found[place], len(self.basis))
-            process = Autoregression(found[place], self.covariances[0] * correlations)
+            correlations = autocorrelations(coefficients[place], len(self.basis))
+            process = Autoregression(coefficients[place], self.covariances[0] * correlations)
             if process.slowest < 1 and np.max(np.abs(correlations)) <= 1 + TINY:
                 return process
         raise AssertionError("a process of order 1 is stationary")
@@ -118,8 +118,8 @@ def moments(series: Series, values: np.ndarray, basis: np.ndarray) -> Moments:
     assert series.grid is not None
     count = pairs(series.grid, min(MOST, max(1, len(values) // 10)))
     lags = int(np.argmax(np.append(count, 0.0) < len(values) / 4)) - 1  # rare pairs say little
-    count, own = count[: max(1, lags) + 1], on_grid(series.grid, values)
-    sums = np.array([lagged(own, own, lag) for lag in range(len(count))])
+    count, on_grid_values = count[: max(1, lags) + 1], on_grid(series.grid, values)
+    sums = np.array([lagged(on_grid_values, on_grid_values, lag) for lag in range(len(count))])
     return Moments(series, on_grid(series.grid, basis), count, sums, sums / count)
 
 

@@ -43,9 +43,9 @@ def balanced(series: Sequence[Series], residual: np.ndarray, basis: np.ndarray) 
 
 def noise_of(series: Sequence[Series], residual: np.ndarray, basis: np.ndarray) -> np.ndarray:
     """Return the standard deviation of the noise of each value (values,), the same in a series; 1 outside of all."""
-    freedom = [max(len(own.rows) - float(np.sum(basis[own.rows] ** 2)), 1.0) for own in series]
-    found = np.array([np.linalg.norm(residual[own.rows]) for own in series]) / np.sqrt(freedom)
+    freedom = [max(len(signal.rows) - float(np.sum(basis[signal.rows] ** 2)), 1.0) for signal in series]
+    found = np.array([np.linalg.norm(residual[signal.rows]) for signal in series]) / np.sqrt(freedom)
     sizes = np.ones(len(residual))
-    for own, size in zip(series, np.maximum(found, LEAST * np.max(found)), strict=True):
-        sizes[own.rows] = size
+    for signal, size in zip(series, np.maximum(found, LEAST * np.max(found)), strict=True):
+        sizes[signal.rows] = size
     return sizes

@@ -70,20 +70,22 @@ def correlation(
     series = list(series_of(problem))
     equal = known or problem.loss is not None
     tested = (residual, basis) if equal else balanced(series, residual, basis)
-    found = correlated_series(series, *tested, WEAK)
-    if not found:
+    correlated = correlated_series(series, *tested, WEAK)
+    if not correlated:
         return None
-    fitted = fitted_processes(list(found), residual, basis, variance)
+    fitted = fitted_processes(list(correlated), residual, basis, variance)
     processes = tuple(
         replace(process, detected=process.p_value < LEVEL / len(series))
-        for process in summaries(found, fitted, response, *tested)
+        for process in summaries(correlated, fitted, response, *tested)
     )
     if slopes is None:
         nothing = unknown_estimate(number)
         return CorrelatedResiduals(processes, nothing.deviations, nothing.correlation, nothing.correlation)
     noise = noise_along(fitted, basis, variance)
-    for (own, process), told in zip(fitted, processes, strict=True):
-        noise += _remainder(process.product(own, basis[own.rows]), basis[own.rows], variance, told, known=known)
+    for (signal, process), summary in zip(fitted, processes, strict=True):
+        noise += _remainder(
+            process.product(signal, basis[signal.rows]), basis[signal.rows], variance, summary, known=known
+        )
     plain, corrected = estimate(slopes, scale, variance), estimate(slopes, scale, noise)
     if known and all(process.variance < SMALL * variance for _, process in fitted):
         seen = np.isfinite(plain.deviations)
@@ -99,23 +101,25 @@ def correlated_series(
 
     ``residual`` (values,) are weighted, ``basis`` (values, columns) is orthonormal and spans what was fitted.
     """
-    tested = {own: p_value(own, residual[own.rows], basis[own.rows]) for own in series}
-    return {own: p for own, p in tested.items() if p < level / len(tested)}
+    tested = {signal: p_value(signal, residual[signal.rows], basis[signal.rows]) for signal in series}
+    return {signal: p for signal, p in tested.items() if p < level / len(tested)}
 
 
 def fitted_processes(
     series: Sequence[Series], residual: np.ndarray, basis: np.ndarray, variance: float
 ) -> list[tuple[Series, Process]]:
     """Return a noise process for each series, from weighted residuals (values,); all others have ``variance``."""
-    parts = {own: (own, residual[own.rows], basis[own.rows]) for own in series}
-    even = {own: moments(*part) for own, part in parts.items() if own.grid is not None}
-    uneven = {own: ornstein_uhlenbeck(*part) for own, part in parts.items() if own.grid is None}
-    found: dict[Series, Process] = {own: uneven[own] if own in uneven else even[own].process for own in series}
+    parts = {signal: (signal, residual[signal.rows], basis[signal.rows]) for signal in series}
+    even = {signal: moments(*part) for signal, part in parts.items() if signal.grid is not None}
+    uneven = {signal: ornstein_uhlenbeck(*part) for signal, part in parts.items() if signal.grid is None}
+    processes: dict[Series, Process] = {
+        signal: uneven[signal] if signal in uneven else even[signal].process for signal in series
+    }
     for _ in range(ROUNDS):
-        common = noise_along(list(found.items()), basis, variance)
-        even = {own: table.corrected(common) for own, table in even.items()}
-        found |= {own: table.process for own, table in even.items()}
-    return list(found.items())
+        common = noise_along(list(processes.items()), basis, variance)
+        even = {signal: table.corrected(common) for signal, table in even.items()}
+        processes |= {signal: table.process for signal, table in even.items()}
+    return list(processes.items())
 
 
 def noise_along(
@@ -125,11 +129,11 @@ def noise_along(
 
     ``variance``, a number or (values,), is that of values without a process.
     """
-    others = np.ones(len(basis), dtype=bool)
-    for own, _ in processes:
-        others[own.rows] = False
-    total = np.broadcast_to(variance, len(basis))[others] * basis[others].T @ basis[others]
-    return total + sum(process.product(own, basis[own.rows]) for own, process in processes)
+    rest = np.ones(len(basis), dtype=bool)
+    for signal, _ in processes:
+        rest[signal.rows] = False
+    total = np.broadcast_to(variance, len(basis))[rest] * basis[rest].T @ basis[rest]
+    return total + sum(process.product(signal, basis[signal.rows]) for signal, process in processes)
 
 
 def _remainder(
@@ -149,33 +153,33 @@ def _remainder(
 
 
 def summaries(
-    found: Mapping[Series, float],
+    probabilities: Mapping[Series, float],
     fitted: Sequence[tuple[Series, Process]],
     response: np.ndarray,
     residual: np.ndarray,
     basis: np.ndarray,
 ) -> tuple[NoiseProcess, ...]:
-    """Return what is known of fitted processes; ``found`` has the series' probabilities to be white noise."""
-    told = []
-    for own, process in fitted:
-        first_order = is_first_order(own, process.first, residual[own.rows], basis[own.rows])
-        time = -own.step / np.log(process.first) if first_order else process.decay(own.step)
-        told.append(
+    """Return what is known of fitted processes; ``probabilities`` has the series' probabilities to be white noise."""
+    result = []
+    for signal, process in fitted:
+        first_order = is_first_order(signal, process.first, residual[signal.rows], basis[signal.rows])
+        time = -signal.step / np.log(process.first) if first_order else process.decay(signal.step)
+        result.append(
             NoiseProcess(
-                channel=own.name,
-                p_value=found[own],
+                channel=signal.name,
+                p_value=probabilities[signal],
                 first=process.first,
                 order=process.order,
-                even=own.grid is not None,
+                even=signal.grid is not None,
                 variance=process.variance,
-                time=float(min(time, own.length)),
-                period=period_of(own, response.ravel()[own.rows]),
-                unit=own.unit,
+                time=float(min(time, signal.length)),
+                period=period_of(signal, response.ravel()[signal.rows]),
+                unit=signal.unit,
                 first_order=first_order,
-                degrees=degrees_of_freedom(len(own.rows), process.first),
+                degrees=degrees_of_freedom(len(signal.rows), process.first),
             )
         )
-    return tuple(told)
+    return tuple(result)
 
 
 def degrees_of_freedom(number: int, first: float) -> float:

@@ -63,6 +63,6 @@ def ornstein_uhlenbeck(series: Series, values: np.ndarray, basis: np.ndarray) ->
         return (len(values) - lost) * np.log(variance) + np.sum(np.log1p(-(factors**2))) + share * size, variance
 
     bounds = np.log(np.min(intervals) / 10), np.log(series.length)
-    found: Any = minimize_scalar(lambda logarithm: of(logarithm)[0], bounds=bounds, method="bounded")
-    time = float(np.exp(found.x))
-    return OrnsteinUhlenbeck(of(found.x)[1], time, float(np.exp(-series.step / time)))
+    minimum: Any = minimize_scalar(lambda logarithm: of(logarithm)[0], bounds=bounds, method="bounded")
+    time = float(np.exp(minimum.x))
+    return OrnsteinUhlenbeck(of(minimum.x)[1], time, float(np.exp(-series.step / time)))

@@ -64,7 +64,7 @@ def series_of_record(
 
 def _of_record(
     experiment: str,
-    own: Measurements,
+    measured: Measurements,
     rows: np.ndarray,
     columns: np.ndarray,
     names: tuple[str, ...],
@@ -72,12 +72,12 @@ def _of_record(
     fewest: int,
 ) -> Iterator[Series]:
     """Yield the series of one record, which stands in ``rows`` and ``columns`` of the joint one."""
-    for column, channel in zip(columns, own.channels, strict=True):
+    for column, channel in zip(columns, measured.channels, strict=True):
         kept = weights[rows, column] > 0
         if np.count_nonzero(kept) >= fewest:
-            along, places = own.coordinate.values[kept], rows[kept] * len(names) + column
+            along, places = measured.coordinate.values[kept], rows[kept] * len(names) + column
             grid, step = even_grid(along)
-            yield Series(names[column], places, along, grid, step, own.coordinate.unit, experiment, channel)
+            yield Series(names[column], places, along, grid, step, measured.coordinate.unit, experiment, channel)
 
 
 def even_grid(along: np.ndarray) -> tuple[np.ndarray | None, float]:

@@ -91,8 +91,8 @@ def lagged(first: np.ndarray, second: np.ndarray, lag: int) -> float:
 
 def pairs(grid: np.ndarray, lags: int) -> np.ndarray:
     """Return the numbers of pairs of values that are 0 to ``lags`` places apart, shape (lags + 1,)."""
-    there = on_grid(grid, np.ones(len(grid)))
-    return np.array([lagged(there, there, lag) for lag in range(lags + 1)])
+    present = on_grid(grid, np.ones(len(grid)))
+    return np.array([lagged(present, present, lag) for lag in range(lags + 1)])
 
 
 def _squares_of_lags(series: Series, values: np.ndarray, basis: np.ndarray) -> np.ndarray:
@@ -100,11 +100,14 @@ def _squares_of_lags(series: Series, values: np.ndarray, basis: np.ndarray) -> n
     grid = series.grid
     assert grid is not None
     number, lags = len(values), min(LAGS, len(values) // 5)
-    own, along = on_grid(grid, values), on_grid(grid, basis)
+    on_grid_values, along = on_grid(grid, values), on_grid(grid, basis)
     count = pairs(grid, lags)[1:]
     left = number - np.sum(along**2)  # degrees of freedom of the squares
     excess = np.array(
-        [lagged(own, own, k) / np.sum(own**2) + lagged(along, along, k) / left for k in range(1, lags + 1)]
+        [
+            lagged(on_grid_values, on_grid_values, k) / np.sum(on_grid_values**2) + lagged(along, along, k) / left
+            for k in range(1, lags + 1)
+        ]
     )
     kept = count > 0
     return (number + 2) * number * excess[kept] ** 2 / count[kept]

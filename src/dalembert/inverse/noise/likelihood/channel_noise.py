@@ -55,8 +55,10 @@ class ChannelNoise:
                 white, logs = self.standardised(residual, response, values)
             else:
                 rows = [
-                    self.standardised(own, there, {name: value[k, 0] for name, value in values.items()})
-                    for k, (own, there) in enumerate(zip(residual, response, strict=True))
+                    self.standardised(
+                        residual_here, response_here, {name: value[k, 0] for name, value in values.items()}
+                    )
+                    for k, (residual_here, response_here) in enumerate(zip(residual, response, strict=True))
                 ]
                 white, logs = (np.array(part).reshape(residual.shape) for part in zip(*rows, strict=True))
             return -0.5 * white**2 - logs - HALF_LOG_2_PI
@@ -87,10 +89,10 @@ class ChannelNoise:
             return [_summed(densities, groups) for groups in groupings]
         found = np.empty((len(groupings), *residual.shape))
         with np.errstate(divide="ignore", invalid="ignore"):
-            for k, (own, there) in enumerate(zip(residual, response, strict=True)):
+            for k, (residual_here, response_here) in enumerate(zip(residual, response, strict=True)):
                 known = {name: value[k, 0] for name, value in values.items()}
-                sizes, matrix = self.model.deviations(there, self.given, known), self.whitening.matrix(known)
-                precision, pulled = (matrix.T @ matrix).tocoo(), matrix.T @ (matrix @ (own / sizes))
+                sizes, matrix = self.model.deviations(response_here, self.given, known), self.whitening.matrix(known)
+                precision, pulled = (matrix.T @ matrix).tocoo(), matrix.T @ (matrix @ (residual_here / sizes))
                 for number, groups in enumerate(groupings):
                     found[number, k] = _densities_of_groups(precision, pulled, groups) - np.log(sizes)
         return [_summed(found[number], groups) for number, groups in enumerate(groupings)]
@@ -128,12 +130,12 @@ class ChannelNoise:
         self, residual: np.ndarray, response: np.ndarray, values: Mapping[str, np.ndarray]
     ) -> dict[str, tuple[np.ndarray, np.ndarray]]:
         """Return ∂w and ∂l (values,) with respect to each noise parameter, by its full name, from complex steps."""
-        found = {}
+        slopes = {}
         for bare, full in self.names.items():
             moved = {**values, bare: values[bare] + 1j * STEP}
             white, logs = self.standardised(residual, response, moved)
-            found[full] = np.imag(white) / STEP, np.imag(logs) / STEP
-        return found
+            slopes[full] = np.imag(white) / STEP, np.imag(logs) / STEP
+        return slopes
 
     def simulated(
         self, response: np.ndarray, values: Mapping[str, np.ndarray], random: np.random.Generator
@@ -167,4 +169,4 @@ def _densities_of_groups(precision: "coo_array", pulled: np.ndarray, groups: np.
 def _summed(densities: np.ndarray, groups: np.ndarray) -> np.ndarray:
     """Return the sums (batch, groups) of densities (batch, values)."""
     count = int(np.max(groups, initial=-1)) + 1
-    return np.array([np.bincount(groups, own, count) for own in densities]).reshape(-1, count)
+    return np.array([np.bincount(groups, density, count) for density in densities]).reshape(-1, count)

@@ -58,23 +58,23 @@ def estimate_noise(problem: MisfitProblem, noise: Noise, at: Linearisation, *, k
     ``at``: at the plain minimum. ``known``: whether the weights of the problem are 1/variance.
     """
     _check_count(problem)
-    given, _ = picked_models(problem, noise, known=known)
-    picked = ordered(problem, given, at, known=known)
-    likelihood, found = _largest(problem, picked, at, known=known)
-    again = ordered(problem, given, found.expansion.at, known=known)
+    noise_by_name, _ = picked_models(problem, noise, known=known)
+    picked = ordered(problem, noise_by_name, at, known=known)
+    likelihood, optimum = _largest(problem, picked, at, known=known)
+    again = ordered(problem, noise_by_name, optimum.expansion.at, known=known)
     if again != picked:  # the residuals of the better fit have another order
         picked = again
-        likelihood, found = _largest(problem, picked, found.expansion.at, known=known)
+        likelihood, optimum = _largest(problem, picked, optimum.expansion.at, known=known)
     model = problem.model.parameters
     few = problem.compared + len(model.square_priors) <= len(model)  # no residual is left to estimate the noise from
     variance = np.nan if few and len(likelihood.noise_parameters) else 1.0
     return NoiseFit(
         likelihood,
-        found,
-        _noise(likelihood, found, picked),
-        estimate(_slopes(likelihood, found), model.scale, variance),
-        _weights(likelihood, found),
-        _table_of(likelihood, found),
+        optimum,
+        _noise(likelihood, optimum, picked),
+        estimate(_slopes(likelihood, optimum), model.scale, variance),
+        _weights(likelihood, optimum),
+        _table_of(likelihood, optimum),
     )
 
 
@@ -93,10 +93,12 @@ def _largest(
     problem: MisfitProblem, picked: Mapping[Series, NoiseModel], at: Linearisation, *, known: bool
 ) -> tuple[Likelihood, Maximum]:
     """Return the likelihood with these noise models, and its maximum near a linearised response."""
-    found = placed_likelihood(problem, picked, {own.name: model for own, model in picked.items()}, known=known)
-    _check_response(found, at)
-    start = guessed(found.channels, found.noise_parameters, problem, at.response)
-    return found, maximum(found, np.concatenate([at.vector, start]), at=at)
+    likelihood = placed_likelihood(
+        problem, picked, {signal.name: model for signal, model in picked.items()}, known=known
+    )
+    _check_response(likelihood, at)
+    start = guessed(likelihood.channels, likelihood.noise_parameters, problem, at.response)
+    return likelihood, maximum(likelihood, np.concatenate([at.vector, start]), at=at)
 
 
 def _check_response(likelihood: Likelihood, at: Linearisation) -> None:
@@ -113,16 +115,16 @@ def _check_response(likelihood: Likelihood, at: Linearisation) -> None:
             )
 
 
-def _slopes(likelihood: Likelihood, found: Maximum) -> np.ndarray:
+def _slopes(likelihood: Likelihood, optimum: Maximum) -> np.ndarray:
     """Return slopes S with the information SᵀS on p/scale that is left where the noise parameters are unknown too."""
     model = likelihood.problem.model.parameters
     count = len(model)
-    rows = _expected_rows(found.expansion, count)
-    own, noise = rows[:, :count] * model.scale, rows[:, count:]
+    rows = _expected_rows(optimum.expansion, count)
+    of_model, noise = rows[:, :count] * model.scale, rows[:, count:]
     size = np.linalg.norm(noise, axis=0)
     noise = noise[:, size > 0] / size[size > 0]
-    left = own - noise @ np.linalg.lstsq(noise, own, rcond=None)[0] if noise.size else own
-    return np.concatenate([left, prior_slopes(model, found.expansion.at.vector, model.scale)])
+    left = of_model - noise @ np.linalg.lstsq(noise, of_model, rcond=None)[0] if noise.size else of_model
+    return np.concatenate([left, prior_slopes(model, optimum.expansion.at.vector, model.scale)])
 
 
 def _expected_rows(expansion: Expansion, count: int) -> np.ndarray:
@@ -131,31 +133,31 @@ def _expected_rows(expansion: Expansion, count: int) -> np.ndarray:
     That is zero in expectation: a change of the noise changes the mean of a value in proportion to residuals before it.
     ``count`` is the number of the model's parameters.
     """
-    own, noise = expansion.means.copy(), expansion.means.copy()
-    own[:, count:], noise[:, :count] = 0.0, 0.0
-    return np.concatenate([own, noise, np.sqrt(2) * expansion.spreads])
+    of_model, noise = expansion.means.copy(), expansion.means.copy()
+    of_model[:, count:], noise[:, :count] = 0.0, 0.0
+    return np.concatenate([of_model, noise, np.sqrt(2) * expansion.spreads])
 
 
-def _noise(likelihood: Likelihood, found: Maximum, picked: Mapping[Series, NoiseModel]) -> EstimatedNoise:
+def _noise(likelihood: Likelihood, optimum: Maximum, picked: Mapping[Series, NoiseModel]) -> EstimatedNoise:
     parameters, count = likelihood.noise_parameters, len(likelihood.problem.model.parameters)
-    covariance = _noise_covariance(likelihood, found)
+    covariance = _noise_covariance(likelihood, optimum)
     deviations = np.sqrt(np.diag(covariance))
     width = len(likelihood.problem.data.channels)
     whitened = np.full(likelihood.problem.weights.size, np.nan)
-    whitened[np.concatenate([channel.series.rows for channel in likelihood.channels])] = found.expansion.white
+    whitened[np.concatenate([channel.series.rows for channel in likelihood.channels])] = optimum.expansion.white
     return EstimatedNoise(
-        models={own.name: model for own, model in picked.items()},
-        bases={own.name: base_of(own, model) for own, model in picked.items()},
+        models={signal.name: model for signal, model in picked.items()},
+        bases={signal.name: base_of(signal, model) for signal, model in picked.items()},
         parameters=parameters,
-        values=found.vector[count:],
+        values=optimum.vector[count:],
         deviations=deviations,
         correlation=covariance / (deviations[:, None] * deviations),
-        log_likelihood=found.expansion.value,
+        log_likelihood=optimum.expansion.value,
         whitened=whitened.reshape(-1, width),
     )
 
 
-def _noise_covariance(likelihood: Likelihood, found: Maximum) -> np.ndarray:
+def _noise_covariance(likelihood: Likelihood, optimum: Maximum) -> np.ndarray:
     """Return the covariance of the noise parameters, from the curvature of the restricted likelihood.
 
     Its curvature is −∂²ℓ/∂ν² − Cᵀ I⁻¹ C for the noise parameters ν, with C = −∂²ℓ/∂θ∂ν and the information I on the
@@ -164,41 +166,48 @@ def _noise_covariance(likelihood: Likelihood, found: Maximum) -> np.ndarray:
     """
     model = likelihood.problem.model.parameters
     count = len(model)
-    rows = _expected_rows(found.expansion, count)
-    prior = prior_slopes(model, found.vector[:count], np.ones(count))
+    rows = _expected_rows(optimum.expansion, count)
+    prior = prior_slopes(model, optimum.vector[:count], np.ones(count))
     rows = np.concatenate([rows, np.pad(prior, ((0, 0), (0, rows.shape[1] - count)))])
     expected = rows.T @ rows
-    observed = _curvature(likelihood, found)
-    for cross, own in ((observed[:count], observed[count:]), (expected[:count, count:], expected[count:, count:])):
+    observed = _curvature(likelihood, optimum)
+    for cross, diagonal_block in (
+        (observed[:count], observed[count:]),
+        (expected[:count, count:], expected[count:, count:]),
+    ):
         if not np.all(np.isfinite(cross)):
             continue
-        information = own - cross.T @ np.linalg.lstsq(expected[:count, :count], cross, rcond=1e-12)[0]
+        information = diagonal_block - cross.T @ np.linalg.lstsq(expected[:count, :count], cross, rcond=1e-12)[0]
         if not np.all(np.diag(information) > 0):
             continue
         size = np.sqrt(np.diag(information))
         scaled = information / (size[:, None] * size)
         if np.all(np.linalg.eigvalsh(scaled) > 1e-12):
             return np.linalg.inv(scaled) / (size[:, None] * size)
-    return np.full(own.shape, np.nan)
+    return np.full(diagonal_block.shape, np.nan)
 
 
-def _curvature(likelihood: Likelihood, found: Maximum) -> np.ndarray:
+def _curvature(likelihood: Likelihood, optimum: Maximum) -> np.ndarray:
     """Return negative second derivatives of the restricted likelihood by all and by the noise parameters.
 
     Shape (parameters, noise parameters).
     """
-    problem, count = likelihood.problem, len(found.expansion.at.vector)
-    objective = Objective(likelihood.parameters, problem.model.parameters, found.restriction)
-    ones = np.ones(len(found.vector))
-    columns = np.zeros((len(found.vector), len(found.vector) - count))
-    for place in range(count, len(found.vector)):
-        step = np.zeros(len(found.vector))
+    problem, count = likelihood.problem, len(optimum.expansion.at.vector)
+    objective = Objective(likelihood.parameters, problem.model.parameters, optimum.restriction)
+    ones = np.ones(len(optimum.vector))
+    columns = np.zeros((len(optimum.vector), len(optimum.vector) - count))
+    for place in range(count, len(optimum.vector)):
+        step = np.zeros(len(optimum.vector))
         item = likelihood.parameters.items[place]
-        step[place] = STEP * (abs(found.vector[place]) if item.log else item.upper - abs(found.vector[place]))
+        step[place] = STEP * (abs(optimum.vector[place]) if item.log else item.upper - abs(optimum.vector[place]))
         ends = [
             objective.slopes(
                 expanded(
-                    problem, likelihood.channels, likelihood.parameters, found.expansion.at, found.vector + way * step
+                    problem,
+                    likelihood.channels,
+                    likelihood.parameters,
+                    optimum.expansion.at,
+                    optimum.vector + way * step,
                 ),
                 ones,
             )[0]
@@ -210,9 +219,9 @@ def _curvature(likelihood: Likelihood, found: Maximum) -> np.ndarray:
     return columns
 
 
-def _weights(likelihood: Likelihood, found: Maximum) -> np.ndarray:
-    flat, response = np.zeros(likelihood.problem.weights.size), found.expansion.at.response.ravel()
-    known = likelihood.parameters.arguments(found.vector)
+def _weights(likelihood: Likelihood, optimum: Maximum) -> np.ndarray:
+    flat, response = np.zeros(likelihood.problem.weights.size), optimum.expansion.at.response.ravel()
+    known = likelihood.parameters.arguments(optimum.vector)
     for channel in likelihood.channels:
         places = channel.series.rows
         sizes = channel.model.deviations(response[places], channel.given, channel.values(known))
@@ -220,10 +229,10 @@ def _weights(likelihood: Likelihood, found: Maximum) -> np.ndarray:
     return flat.reshape(likelihood.problem.weights.shape)
 
 
-def _table_of(likelihood: Likelihood, found: Maximum) -> np.ndarray:
+def _table_of(likelihood: Likelihood, optimum: Maximum) -> np.ndarray:
     """Return whitened slopes of the mean, one row for each of (samples, channels), then one a prior."""
     model = likelihood.problem.model.parameters
     table = np.zeros((likelihood.problem.weights.size, len(model)))
     rows = np.concatenate([channel.series.rows for channel in likelihood.channels])
-    table[rows] = found.expansion.means[:, : len(model)] * model.scale
-    return np.concatenate([table, prior_slopes(model, found.expansion.at.vector, model.scale)])
+    table[rows] = optimum.expansion.means[:, : len(model)] * model.scale
+    return np.concatenate([table, prior_slopes(model, optimum.expansion.at.vector, model.scale)])

@@ -85,12 +85,14 @@ class EstimatedNoise:
 
     def whiten(self, series: Iterable[Series], table: np.ndarray) -> np.ndarray:
         """Return standardised rows (values, ...) of a flat table, each less its prediction from those before."""
-        found = np.array(table, dtype=float)
-        for own in series:
-            whitening = self.models[own.name].whitening(own)
+        whitened = np.array(table, dtype=float)
+        for signal in series:
+            whitening = self.models[signal.name].whitening(signal)
             if whitening is not None:
-                found[own.rows] = whitening.matrix(self.of_channel(own.name, self.estimates)) @ found[own.rows]
-        return found
+                whitened[signal.rows] = (
+                    whitening.matrix(self.of_channel(signal.name, self.estimates)) @ whitened[signal.rows]
+                )
+        return whitened
 
     def of_channel(self, channel: str, values: Mapping[str, float]) -> dict[str, np.ndarray]:
         """Return the noise parameters of a channel by their names within its model, out of ``values`` of all."""

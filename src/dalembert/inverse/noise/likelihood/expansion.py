@@ -60,16 +60,16 @@ def expanded(
     white, logs, means, spreads = [], [], [], []
     for channel in channels:
         places, values = channel.series.rows, channel.values(known)
-        own, sizes, slopes, spread = channel.slopes(residual[places], response[places], jacobian[places], values)
+        density, sizes, slopes, spread = channel.slopes(residual[places], response[places], jacobian[places], values)
         moves, changes = np.zeros((2, len(places), len(vector)))
         moves[:, :count], changes[:, :count] = slopes, spread
         for full, (move, change) in channel.noise_slopes(residual[places], response[places], values).items():
             if full in parameters.names:
                 moves[:, parameters.names.index(full)] = move
                 changes[:, parameters.names.index(full)] = change
-        white.append(own)
+        white.append(density)
         logs.append(sizes)
-        means.append(moves + own[:, None] * changes)
+        means.append(moves + density[:, None] * changes)
         spreads.append(changes)
     return Expansion(at, vector, *(np.concatenate(part) for part in (white, logs, means, spreads)))
 

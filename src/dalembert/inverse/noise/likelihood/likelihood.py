@@ -75,15 +75,19 @@ class Likelihood:
         width = len(self.problem.data.channels)
         rows = [channel.series.rows // width for channel in self.channels]
         experiments = [
-            np.full(len(own), channel.series.experiment) for own, channel in zip(rows, self.channels, strict=True)
+            np.full(len(channel_rows), channel.series.experiment)
+            for channel_rows, channel in zip(rows, self.channels, strict=True)
         ]
-        names = [np.full(len(own), channel.series.channel) for own, channel in zip(rows, self.channels, strict=True)]
+        names = [
+            np.full(len(channel_rows), channel.series.channel)
+            for channel_rows, channel in zip(rows, self.channels, strict=True)
+        ]
         return Places(np.concatenate(experiments), np.concatenate(names), np.concatenate(rows))
 
     def evaluate(self, vectors: ArrayLike) -> np.ndarray:
         """Return the log-likelihood (batch,) at vectors (batch, parameters); −inf where a simulation failed."""
-        found = np.sum(self.pointwise(vectors), axis=1)
-        return np.where(np.isnan(found), -np.inf, found)
+        values = np.sum(self.pointwise(vectors), axis=1)
+        return np.where(np.isnan(values), -np.inf, values)
 
     def pointwise(self, vectors: ArrayLike) -> np.ndarray:
         """Return the log density of each value after those before it in its channel, shape (batch, values).
@@ -96,11 +100,11 @@ class Likelihood:
         """Return :meth:`pointwise` from responses (batch, samples, channels) at vectors (batch, parameters)."""
         residuals, responses = self._compared(simulated)
         known = self._known(batch)
-        found = [
+        densities = [
             channel.log_densities(residuals[:, rows], responses[:, rows], channel.values(known))
             for channel, rows in self._placed
         ]
-        return np.concatenate(found, axis=1)
+        return np.concatenate(densities, axis=1)
 
     def left_out(self, vectors: ArrayLike, *groups: ArrayLike) -> tuple[np.ndarray, ...]:
         """Return the log density of each group of values after all others: what leave-one-out needs.
@@ -119,17 +123,17 @@ class Likelihood:
         """
         batch, simulated = self._simulated(vectors)
         residuals, responses = self._compared(simulated)
-        known, numbers = self._known(batch), [np.asarray(one) for one in groups]
-        found = [np.zeros((len(batch), int(np.max(one, initial=-1)) + 1)) for one in numbers]
+        known, numbers = self._known(batch), [np.asarray(group) for group in groups]
+        sums = [np.zeros((len(batch), int(np.max(group, initial=-1)) + 1)) for group in numbers]
         begin = 0
         for channel, rows in self._placed:
-            own = [np.unique(of_all[begin : begin + len(rows)], return_inverse=True) for of_all in numbers]
+            group_numbers = [np.unique(of_all[begin : begin + len(rows)], return_inverse=True) for of_all in numbers]
             values = residuals[:, rows], responses[:, rows], channel.values(known)
-            densities = channel.left_out(*values, [local for _, local in own])
-            for total, (mine, _), part in zip(found, own, densities, strict=True):
+            densities = channel.left_out(*values, [local for _, local in group_numbers])
+            for total, (mine, _), part in zip(sums, group_numbers, densities, strict=True):
                 total[:, mine] += part
             begin += len(rows)
-        return tuple(found)
+        return tuple(sums)
 
     @property
     def _placed(self) -> list[tuple[ChannelNoise, np.ndarray]]:
@@ -152,8 +156,8 @@ class Likelihood:
         """
         if self.problem.by_adjoint:
             return self._by_adjoint(self.parameters.real_vector(vector))  # pyright: ignore[reportArgumentType]
-        found = self.expansion(vector)
-        return found.value, found.gradient
+        expansion = self.expansion(vector)
+        return expansion.value, expansion.gradient
 
     def _by_adjoint(self, vector: np.ndarray) -> tuple[float, np.ndarray]:
         """The log-likelihood and its gradient, whose price does not grow with the number of the model's parameters."""
@@ -163,10 +167,10 @@ class Likelihood:
         residual = self.problem.unweighted_residual(response).ravel()
         for channel in self.channels:
             places = channel.series.rows
-            own, by_response, by_noise = channel.cotangent(
+            value, by_response, by_noise = channel.cotangent(
                 residual[places], response.ravel()[places], channel.values(known)
             )
-            total += own
+            total += value
             cotangent[places] += by_response
             for full, slope in by_noise.items():
                 if full in self.parameters.names:
@@ -208,13 +212,13 @@ class Likelihood:
         """Return responses with simulated noise (batch, samples, channels); NaN where no value is compared."""
         batch, responses = self._simulated(vectors)
         random = np.random.default_rng(seed)
-        found = np.full((len(batch), responses[0].size), np.nan)
-        for row, vector, response in zip(found, batch, responses.reshape(len(batch), -1), strict=True):
+        replicas = np.full((len(batch), responses[0].size), np.nan)
+        for row, vector, response in zip(replicas, batch, responses.reshape(len(batch), -1), strict=True):
             known = self.parameters.arguments(vector)
             for channel in self.channels:
                 places = channel.series.rows
                 row[places] = response[places] + channel.simulated(response[places], channel.values(known), random)
-        return found.reshape(responses.shape)
+        return replicas.reshape(responses.shape)
 
     @property
     def _split(self) -> int:
@@ -277,23 +281,23 @@ def likelihood(
     >>> np.allclose(found.evaluate([[2.0, 0.1]]), -5 * np.log(0.1 * np.sqrt(2 * np.pi)))
     True
     """
-    whole, measured, given, _ = joined("likelihood", placed(model, executor), data, weights)
-    problem = pose(whole, measured, given, Journal(len(measured.coordinate.values)), noise_known=True)
+    joint_model, measured, weights_of_data, _ = joined("likelihood", placed(model, executor), data, weights)
+    problem = pose(joint_model, measured, weights_of_data, Journal(len(measured.coordinate.values)), noise_known=True)
     return likelihood_of(problem, noise, weighted=weights is not None)
 
 
 def likelihood_of(problem: MisfitProblem, noise: Noise | None, *, weighted: bool = False) -> Likelihood:
     """Return the likelihood of a problem; ``weighted`` means that its weights are 1/variance."""
     known = weighted or problem.data.deviations is not None
-    picked, given = picked_models(problem, noise, known=known)
-    return placed_likelihood(problem, picked, given, known=known)
+    picked, noise_by_name = picked_models(problem, noise, known=known)
+    return placed_likelihood(problem, picked, noise_by_name, known=known)
 
 
 def placed_likelihood(
-    problem: MisfitProblem, picked: Mapping[Series, NoiseModel], given: Noise, *, known: bool
+    problem: MisfitProblem, picked: Mapping[Series, NoiseModel], noise: Noise, *, known: bool
 ) -> Likelihood:
     """Return the likelihood of a problem with a noise model for each of its series."""
-    channels, own = noises_of(problem, picked, known=known)
+    channels, noise_parameters_here = noises_of(problem, picked, known=known)
     model = problem.model.parameters
-    parameters = Parameters((*model.items, *own.items), (*model.fixed, *own.fixed))
-    return Likelihood(problem, given, parameters, channels)
+    parameters = Parameters((*model.items, *noise_parameters_here.items), (*model.fixed, *noise_parameters_here.fixed))
+    return Likelihood(problem, noise, parameters, channels)

@@ -74,23 +74,23 @@ class Objective:
     restriction: Restriction | None
     held: frozenset[int] = frozenset()
 
-    def value(self, found: Expansion) -> float:
+    def value(self, expansion: Expansion) -> float:
         """Return the objective at an expansion; −inf where it is not defined."""
-        prior = prior_residual(self.own, found.vector[: len(self.own)])
-        total = found.value - 0.5 * prior @ prior
-        total += 0.0 if self.restriction is None else self.restriction.value(found.vector)
+        prior = prior_residual(self.own, expansion.vector[: len(self.own)])
+        total = expansion.value - 0.5 * prior @ prior
+        total += 0.0 if self.restriction is None else self.restriction.value(expansion.vector)
         return float(total) if np.isfinite(total) else -np.inf
 
-    def slopes(self, found: Expansion, unit: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def slopes(self, expansion: Expansion, unit: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return gradient (parameters,) and information (parameters, parameters) with respect to p/unit."""
         count = len(self.own)
-        gradient = found.gradient
+        gradient = expansion.gradient
         if self.restriction is not None:
-            gradient = gradient + self.restriction.gradient(found.vector)
-        rows = np.zeros((len(prior := prior_slopes(self.own, found.vector[:count], np.ones(count))), len(unit)))
+            gradient = gradient + self.restriction.gradient(expansion.vector)
+        rows = np.zeros((len(prior := prior_slopes(self.own, expansion.vector[:count], np.ones(count))), len(unit)))
         rows[:, :count] = prior
-        gradient = gradient - rows.T @ prior_residual(self.own, found.vector[:count])
-        rows = np.concatenate([found.rows, rows]) * unit
+        gradient = gradient - rows.T @ prior_residual(self.own, expansion.vector[:count])
+        rows = np.concatenate([expansion.rows, rows]) * unit
         return gradient * unit, rows.T @ rows
 
 
@@ -114,15 +114,15 @@ def maximum(
     are so estimated together, and a costly model is simulated only once a round.
     """
     problem, parameters = likelihood.problem, likelihood.parameters
-    own, search = problem.model.parameters, SearchCoordinates(parameters)
-    count = len(own)
+    of_model, search = problem.model.parameters, SearchCoordinates(parameters)
+    count = len(of_model)
 
     def expansion(vector: np.ndarray) -> Expansion:
         at = problem.linearise(vector[:count])
         return expanded(problem, likelihood.channels, parameters, at, vector)
 
-    def restricted(there: Expansion) -> Restriction:
-        return restriction or Restriction(problem, likelihood.channels, parameters, there.at)
+    def restricted(expansion_there: Expansion) -> Restriction:
+        return restriction or Restriction(problem, likelihood.channels, parameters, expansion_there.at)
 
     start = parameters.clip(start)
     if at is not None and np.array_equal(at.vector, start[:count]):
@@ -132,7 +132,7 @@ def maximum(
     size = np.inf
     message, success = f"not settled after {ROUNDS} linearisations of the response", False
     for _ in range(ROUNDS):
-        objective = Objective(parameters, own, restricted(here), held)
+        objective = Objective(parameters, of_model, restricted(here), held)
         linear, gain = scored(here, objective, search, linear_expansion(likelihood, here.at))
         step = search.points(linear.vector) - search.points(here.vector)
         before, size = size, _size(objective, here, search, step)
@@ -147,7 +147,7 @@ def maximum(
             message, success = "the likelihood is largest", True
             break
     last = restricted(here)
-    value = Objective(parameters, own, last, held).value(here)
+    value = Objective(parameters, of_model, last, held).value(here)
     return Maximum(here.vector, value, here, last, success, message)
 
 
@@ -156,8 +156,8 @@ def linear_expansion(likelihood: Likelihood, at: Linearisation) -> Callable[[np.
     count = len(at.vector)
 
     def expansion(vector: np.ndarray) -> Expansion:
-        there = moved(at, vector[:count])
-        return expanded(likelihood.problem, likelihood.channels, likelihood.parameters, there, vector)
+        linearised = moved(at, vector[:count])
+        return expanded(likelihood.problem, likelihood.channels, likelihood.parameters, linearised, vector)
 
     return expansion
 
@@ -176,12 +176,12 @@ def _forward(
     origin = search.points(here.vector)
     for halving in range(HALVINGS):
         try:
-            there = expansion(search.vectors(origin + step / 2**halving))
+            trial = expansion(search.vectors(origin + step / 2**halving))
         except SolveError as error:
             reason = str(error)
             continue
-        if gain < FLAT or objective.value(there) > value:
-            return there
+        if gain < FLAT or objective.value(trial) > value:
+            return trial
     raise SolveError(reason)
 
 
@@ -203,10 +203,10 @@ def scored(
         step = _step(here, objective, search, slopes, damping)
         promised = 0.5 * float(step @ slopes[1] @ step)
         with np.errstate(all="ignore"):
-            there = expansion(search.vectors(search.points(here.vector) + step))
-            reached = objective.value(there)
+            trial = expansion(search.vectors(search.points(here.vector) + step))
+            reached = objective.value(trial)
         if reached > value or (promised < FLAT and np.isfinite(reached)):
-            here, value, slopes = there, max(value, reached), None
+            here, value, slopes = trial, max(value, reached), None
             damping = max(damping / 10, 1e-12)
         else:
             damping = 10 * damping
@@ -229,8 +229,8 @@ def _curved(
     for place in range(count, len(point)):
         move = np.zeros(len(point))
         move[place] = DIFFERENCE if point[place] < (search.lower + search.upper)[place] / 2 else -DIFFERENCE
-        there = expansion(search.vectors(point + move))
-        row = (gradient - objective.slopes(there, search.slope(there.vector))[0]) / move[place]
+        trial = expansion(search.vectors(point + move))
+        row = (gradient - objective.slopes(trial, search.slope(trial.vector))[0]) / move[place]
         matrix[place, :count] = matrix[:count, place] = row[:count]
         matrix[place, count:] = row[count:]
     matrix[count:, count:] = (matrix[count:, count:] + matrix[count:, count:].T) / 2

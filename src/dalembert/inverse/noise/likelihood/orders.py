@@ -43,12 +43,12 @@ def ordered(
     for series, model in picked.items():
         if isinstance(model, AutoregressiveNoise) and model.order is None:
             groups.setdefault(base_of(series, model), []).append(series)
-    found = dict(picked)
+    models = dict(picked)
     for alike in groups.values():
         model = picked[alike[0]]
         order = _best(problem, alike, model, at, known=known)
-        found.update({series: replace(picked[series], order=order) for series in alike})  # pyright: ignore[reportCallIssue]
-    return found
+        models.update({series: replace(picked[series], order=order) for series in alike})  # pyright: ignore[reportCallIssue]
+    return models
 
 
 def _best(problem: MisfitProblem, alike: Sequence[Series], model: NoiseModel, at: Linearisation, *, known: bool) -> int:
@@ -68,18 +68,22 @@ def _criteria(
     """Yield the corrected Akaike criterion (AICc) of the autoregressive orders 0 to ``most`` of some series."""
     number = sum(len(series.rows) for series in alike)
     for order in range(most + 1):
-        channels, own = noises_of(problem, {series: replace(model, order=order) for series in alike}, known=known)  # pyright: ignore[reportCallIssue]
-        count = len(at.vector) + len(own)
-        value = _largest(problem, channels, own, at)
+        channels, noise_parameters = noises_of(
+            problem, {series: replace(model, order=order) for series in alike}, known=known
+        )  # pyright: ignore[reportCallIssue]
+        count = len(at.vector) + len(noise_parameters)
+        value = _largest(problem, channels, noise_parameters, at)
         yield -2 * value + 2 * count + 2 * count * (count + 1) / max(number - count - 1, 1)
 
 
-def _largest(problem: MisfitProblem, channels: tuple[ChannelNoise, ...], own: Parameters, at: Linearisation) -> float:
+def _largest(
+    problem: MisfitProblem, channels: tuple[ChannelNoise, ...], noise_parameters: Parameters, at: Linearisation
+) -> float:
     """Return the largest log-likelihood of some channels over their noise parameters."""
     model = problem.model.parameters
-    parameters = Parameters((*model.items, *own.items), (*model.fixed, *own.fixed))
+    parameters = Parameters((*model.items, *noise_parameters.items), (*model.fixed, *noise_parameters.fixed))
     alone = Likelihood(problem, {}, parameters, channels)
     expansion = linear_expansion(alone, at)
-    here = expansion(np.concatenate([at.vector, guessed(channels, own, problem, at.response)]))
+    here = expansion(np.concatenate([at.vector, guessed(channels, noise_parameters, problem, at.response)]))
     objective = Objective(parameters, model, None, frozenset(range(len(model))))
     return scored(here, objective, SearchCoordinates(parameters), expansion)[0].value

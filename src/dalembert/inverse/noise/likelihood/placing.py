@@ -21,7 +21,7 @@ Noise: TypeAlias = NoiseModel | str | Mapping[str, NoiseModel | str] | Estimated
 
 
 def picked_models(
-    problem: MisfitProblem, given: Noise | None, *, known: bool
+    problem: MisfitProblem, noise: Noise | None, *, known: bool
 ) -> tuple[dict[Series, NoiseModel], NoiseModel | Mapping[str, NoiseModel]]:
     """Return the noise model of each channel with compared values, and the models by which it was chosen.
 
@@ -29,23 +29,23 @@ def picked_models(
     """
     usual = KnownNoise() if known else ConstantNoise()
     series = list(series_of(problem, fewest=1))
-    given = given.models if isinstance(given, EstimatedNoise) else given
-    if not isinstance(given, Mapping):
-        chosen = usual if given is None else noise_model(given)
+    noise = noise.models if isinstance(noise, EstimatedNoise) else noise
+    if not isinstance(noise, Mapping):
+        chosen = usual if noise is None else noise_model(noise)
         return dict.fromkeys(series, chosen), chosen
-    names = [name for own in series for name in (own.name, own.channel)]
-    for name in given:
+    names = [name for signal in series for name in (signal.name, signal.channel)]
+    for name in noise:
         if name not in names:
             raise InputError(unknown("channel", str(name), dict.fromkeys(names), "noise"))
-    several = {str(name): noise_model(one) for name, one in given.items()}
-    return {own: several.get(own.name, several.get(own.channel, usual)) for own in series}, several
+    several = {str(name): noise_model(entry) for name, entry in noise.items()}
+    return {signal: several.get(signal.name, several.get(signal.channel, usual)) for signal in series}, several
 
 
 def noises_of(
     problem: MisfitProblem, picked: Mapping[Series, NoiseModel], *, known: bool
 ) -> tuple[tuple[ChannelNoise, ...], Parameters]:
     """Return the noise of each series, and the parameters of all of them."""
-    channels = tuple(_channel_noise(problem, own, model, known=known) for own, model in picked.items())
+    channels = tuple(_channel_noise(problem, signal, model, known=known) for signal, model in picked.items())
     return channels, noise_parameters(problem, channels)
 
 
@@ -67,18 +67,18 @@ def base_of(series: Series, model: NoiseModel) -> str:
 
 def noise_parameters(problem: MisfitProblem, channels: tuple[ChannelNoise, ...]) -> Parameters:
     """Return the parameters of the noise of all channels; those of the same name are one, if they are alike."""
-    found: dict[str, tuple[NoiseModel, Extent, str]] = {}
+    by_name: dict[str, tuple[NoiseModel, Extent, str]] = {}
     for channel in channels:
         extent = _extent(problem, channel.series)
         for bare, full in channel.names.items():
-            model, before, _ = found.get(full, (channel.model, extent, bare))
+            model, before, _ = by_name.get(full, (channel.model, extent, bare))
             if model != channel.model:
                 raise InputError(
                     f"noise of channel {channel.series.channel!r}: experiments share its parameters, but have "
                     "different noise models; give all the same, or models with local=True"
                 )
-            found[full] = model, _joint(before, extent), bare
-    return Parameters(tuple(_named(name, *entry) for name, entry in found.items()))
+            by_name[full] = model, _joint(before, extent), bare
+    return Parameters(tuple(_named(name, *entry) for name, entry in by_name.items()))
 
 
 def _named(name: str, model: NoiseModel, extent: Extent, bare: str) -> Parameter:

@@ -42,11 +42,11 @@ class Restriction:
 
     def gradient(self, vector: np.ndarray) -> np.ndarray:
         """Return its gradient (parameters,), 0 for the model's parameters, by complex steps."""
-        found, known = np.zeros(len(vector)), self.parameters.arguments(vector)
+        gradient, known = np.zeros(len(vector)), self.parameters.arguments(vector)
         for place in range(len(self.at.vector), len(vector)):
             name = self.parameters.names[place]
-            found[place] = np.imag(self._of({**known, name: known[name] + 1j * STEP})) / STEP
-        return found
+            gradient[place] = np.imag(self._of({**known, name: known[name] + 1j * STEP})) / STEP
+        return gradient
 
     def _of(self, known: Mapping[str, Any]) -> complex:
         total = self._prior.astype(complex)

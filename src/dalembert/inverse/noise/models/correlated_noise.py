@@ -41,11 +41,11 @@ class CorrelatedNoise(NoiseModel):
     def parameters(self, extent: Extent) -> tuple[Parameter, ...]:
         return self.deviation.parameters(extent)
 
-    def deviations(self, response: np.ndarray, given: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
-        return self.deviation.deviations(response, given, values)
+    def deviations(self, response: np.ndarray, known: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
+        return self.deviation.deviations(response, known, values)
 
-    def slopes(self, response: np.ndarray, given: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
-        return self.deviation.slopes(response, given, values)
+    def slopes(self, response: np.ndarray, known: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
+        return self.deviation.slopes(response, known, values)
 
     def guess(self, series: Series, residual: np.ndarray, response: np.ndarray) -> dict[str, float]:
         return self.deviation.guess(series, residual, response)
@@ -88,7 +88,7 @@ class AutoregressiveNoise(CorrelatedNoise):
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.partial is not None:
-            wrong = next((one for one in self.partial if not -1 < one < 1), None)
+            wrong = next((number for number in self.partial if not -1 < number < 1), None)
             if wrong is not None:
                 raise InputError(f"AutoregressiveNoise: partial has {shown(wrong)}; expected numbers between -1 and 1")
             object.__setattr__(self, "partial", tuple(map(float, self.partial)))
@@ -130,15 +130,15 @@ class AutoregressiveNoise(CorrelatedNoise):
         return GridWhitening(series.grid, self.order, self._correlations) if self.order else None
 
     def guess(self, series: Series, residual: np.ndarray, response: np.ndarray) -> dict[str, float]:
-        found = super().guess(series, residual, response)
+        guesses = super().guess(series, residual, response)
         order = self.order or 0
         if self.partial is None and order and np.any(residual):
             assert series.grid is not None
-            count, own = np.maximum(pairs(series.grid, order), 1), on_grid(series.grid, residual)
-            covariances = np.array([lagged(own, own, lag) for lag in range(order + 1)]) / count
+            count, on_grid_values = np.maximum(pairs(series.grid, order), 1), on_grid(series.grid, residual)
+            covariances = np.array([lagged(on_grid_values, on_grid_values, lag) for lag in range(order + 1)]) / count
             rows, _ = levinson(covariances, STRONGEST)
-            found |= {f"partial{k}": float(row[-1]) for k, row in enumerate(rows, start=1)}
-        return found
+            guesses |= {f"partial{k}": float(row[-1]) for k, row in enumerate(rows, start=1)}
+        return guesses
 
     def _correlations(self, values: Mapping[str, np.ndarray], number: int) -> np.ndarray:
         return correlations_of([values[f"partial{k}"] for k in range(1, (self.order or 0) + 1)], number)
@@ -172,16 +172,16 @@ class OrnsteinUhlenbeckNoise(CorrelatedNoise):
 
     def parameters(self, extent: Extent) -> tuple[Parameter, ...]:
         bounds = extent.step / 10, max(extent.length, extent.step)
-        own = noise_parameter(self, "time", self.time, bounds, 2 * extent.step, extent.along, log=True)
-        return (*self.deviation.parameters(extent), own)
+        time = noise_parameter(self, "time", self.time, bounds, 2 * extent.step, extent.along, log=True)
+        return (*self.deviation.parameters(extent), time)
 
     def guess(self, series: Series, residual: np.ndarray, response: np.ndarray) -> dict[str, float]:
-        found = super().guess(series, residual, response)
+        guesses = super().guess(series, residual, response)
         squares = float(residual @ residual)
         if self.time is None and len(residual) > 1 and squares > 0:
             first = np.clip(float(residual[1:] @ residual[:-1]) / squares, 1 - STRONGEST, STRONGEST)
-            found["time"] = float(-series.step / np.log(first))
-        return found
+            guesses["time"] = float(-series.step / np.log(first))
+        return guesses
 
     def whitening(self, series: Series) -> Whitening | None:
         return DecayWhitening(np.diff(series.along)) if len(series.rows) > 1 else None

@@ -32,8 +32,8 @@ class KnownNoise(NoiseModel):
     def parameters(self, extent: Extent) -> tuple[Parameter, ...]:
         return ()
 
-    def deviations(self, response: np.ndarray, given: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
-        return np.broadcast_to(given, response.shape)
+    def deviations(self, response: np.ndarray, known: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
+        return np.broadcast_to(known, response.shape)
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class ConstantNoise(NoiseModel):
     def parameters(self, extent: Extent) -> tuple[Parameter, ...]:
         return (_deviation(self, self.deviation, extent),)
 
-    def deviations(self, response: np.ndarray, given: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
+    def deviations(self, response: np.ndarray, known: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
         return values["deviation"] + np.zeros_like(response)
 
     def guess(self, series: Series, residual: np.ndarray, response: np.ndarray) -> dict[str, float]:
@@ -96,10 +96,10 @@ class ProportionalNoise(NoiseModel):
     def parameters(self, extent: Extent) -> tuple[Parameter, ...]:
         return (_relative(self, self.relative),)
 
-    def deviations(self, response: np.ndarray, given: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
+    def deviations(self, response: np.ndarray, known: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
         return values["relative"] * response * np.sign(np.real(response))
 
-    def slopes(self, response: np.ndarray, given: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
+    def slopes(self, response: np.ndarray, known: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
         return values["relative"] * np.sign(np.real(response))
 
     def guess(self, series: Series, residual: np.ndarray, response: np.ndarray) -> dict[str, float]:
@@ -138,11 +138,11 @@ class MixedNoise(NoiseModel):
     def parameters(self, extent: Extent) -> tuple[Parameter, ...]:
         return _deviation(self, self.deviation, extent), _relative(self, self.relative)
 
-    def deviations(self, response: np.ndarray, given: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
+    def deviations(self, response: np.ndarray, known: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
         return np.sqrt(values["deviation"] ** 2 + (values["relative"] * response) ** 2)
 
-    def slopes(self, response: np.ndarray, given: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
-        return values["relative"] ** 2 * response / self.deviations(response, given, values)
+    def slopes(self, response: np.ndarray, known: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
+        return values["relative"] ** 2 * response / self.deviations(response, known, values)
 
     def guess(self, series: Series, residual: np.ndarray, response: np.ndarray) -> dict[str, float]:
         size = _root_mean_square(residual) / np.sqrt(2)

@@ -15,18 +15,18 @@ MODELS: dict[str, type[NoiseModel]] = {
 }
 
 
-def noise_model(given: object) -> NoiseModel:
+def noise_model(model: object) -> NoiseModel:
     """Return a noise model, from itself or from its name with its defaults."""
-    if isinstance(given, str):
-        require_known("noise model", given, MODELS, "noise")
-        return MODELS[given]()
-    if not isinstance(given, NoiseModel):
-        hint = f"; write {given.__name__}()" if isinstance(given, type) else ""
+    if isinstance(model, str):
+        require_known("noise model", model, MODELS, "noise")
+        return MODELS[model]()
+    if not isinstance(model, NoiseModel):
+        hint = f"; write {model.__name__}()" if isinstance(model, type) else ""
         raise InputError(
-            f"noise is {shown(given)}; expected a noise model such as ConstantNoise(), its name, or a mapping from "
+            f"noise is {shown(model)}; expected a noise model such as ConstantNoise(), its name, or a mapping from "
             f"channels to such models{hint}"
         )
-    return given
+    return model
 
 
 def as_table(model: NoiseModel) -> dict[str, Any]:

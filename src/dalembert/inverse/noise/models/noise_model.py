@@ -47,7 +47,7 @@ class NoiseModel(Checked):
         """Return the parameters of the noise, with their names within the channel."""
         raise NotImplementedError
 
-    def deviations(self, response: np.ndarray, given: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
+    def deviations(self, response: np.ndarray, known: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
         """Return the standard deviation of each value, shape (..., values).
 
         Parameters
@@ -60,7 +60,7 @@ class NoiseModel(Checked):
         """
         raise NotImplementedError
 
-    def slopes(self, response: np.ndarray, given: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
+    def slopes(self, response: np.ndarray, known: np.ndarray, values: Mapping[str, np.ndarray]) -> np.ndarray:
         """Return the derivative of :meth:`deviations` with respect to the response, of the same shape."""
         return np.zeros_like(response)
 

@@ -61,22 +61,22 @@ class GridWhitening:
     @cached_property
     def _groups(self) -> Sequence[tuple[np.ndarray, np.ndarray]]:
         """Lags to the values that one is predicted from, nearest first, and the rows that have these."""
-        found: dict[tuple[int, ...], list[int]] = {}
+        groups: dict[tuple[int, ...], list[int]] = {}
         run, complete = 0, 0  # places without a gap up to a value, and where the last m of them begin
         for row, place in enumerate(self.grid.tolist()):
             begin = max(complete, row - LONGEST)
-            found.setdefault(tuple((place - self.grid[begin:row][::-1]).tolist()), []).append(row)
+            groups.setdefault(tuple((place - self.grid[begin:row][::-1]).tolist()), []).append(row)
             run = run + 1 if row and place == self.grid[row - 1] + 1 else 1
             complete = row - self.order + 1 if run >= self.order else complete
-        return [(np.array(lags, dtype=int), np.array(rows)) for lags, rows in found.items()]
+        return [(np.array(lags, dtype=int), np.array(rows)) for lags, rows in groups.items()]
 
     @cached_property
     def _layout(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Order of the entries by row and column, columns and starts of rows."""
         from scipy.sparse import coo_array
 
-        rows = [np.repeat(own, 1 + len(lags)) for lags, own in self._groups]
-        columns = [(own[:, None] - np.arange(1 + len(lags))).ravel() for lags, own in self._groups]
+        rows = [np.repeat(group_rows, 1 + len(lags)) for lags, group_rows in self._groups]
+        columns = [(group_rows[:, None] - np.arange(1 + len(lags))).ravel() for lags, group_rows in self._groups]
         where = np.concatenate(rows), np.concatenate(columns)
         entries = coo_array((np.arange(1.0, 1 + len(where[0])), where), shape=(len(self.grid),) * 2).tocsr()
         return entries.data.astype(int) - 1, entries.indices, entries.indptr

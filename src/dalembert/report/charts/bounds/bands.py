@@ -18,7 +18,7 @@ from dalembert.tables import labelled
 Channels = Bands | Measurements | Prediction
 
 
-def bands(given: Bands | Prediction, channels: Sequence[str] | None = None, *, title: str = "Bounds") -> go.Figure:
+def bands(bounds: Bands | Prediction, channels: Sequence[str] | None = None, *, title: str = "Bounds") -> go.Figure:
     """A filled band between the lower and upper bounds of each channel; below, upper minus lower.
 
     Parameters
@@ -50,21 +50,21 @@ def bands(given: Bands | Prediction, channels: Sequence[str] | None = None, *, t
     ['x', 'x, upper', 'x, lower', 'x, width']
     """
     figure = stacked(0.72, 0.28, spacing=0.05)
-    chosen = selected(given, channels, "bands")
+    chosen = selected(bounds, channels, "bands")
     for place, name in enumerate(chosen):
-        column, colour = given.channels.index(name), colour_of(place)
-        draw_band(figure, given, column, colour)
-        width = given.upper[:, column] - given.lower[:, column]
-        draw_line(figure, given.coordinate.values, width, f"{plain(name)}, width", plain(name), colour, row=2)
-    return dressed(figure, given, chosen, title, below="width").update_yaxes(rangemode="tozero", row=2)
+        column, colour = bounds.channels.index(name), colour_of(place)
+        draw_band(figure, bounds, column, colour)
+        width = bounds.upper[:, column] - bounds.lower[:, column]
+        draw_line(figure, bounds.coordinate.values, width, f"{plain(name)}, width", plain(name), colour, row=2)
+    return dressed(figure, bounds, chosen, title, below="width").update_yaxes(rangemode="tozero", row=2)
 
 
-def selected(given: Channels, channels: Sequence[str] | None, where: str) -> tuple[str, ...]:
+def selected(owner: Channels, channels: Sequence[str] | None, where: str) -> tuple[str, ...]:
     """Names of the channels to draw, all if not given; InputError for one that there is not."""
-    chosen = given.channels if channels is None else tuple(channels)
+    chosen = owner.channels if channels is None else tuple(channels)
     for name in chosen:
-        if name not in given.channels:
-            raise InputError(unknown("channel", name, given.channels, where=where))
+        if name not in owner.channels:
+            raise InputError(unknown("channel", name, owner.channels, where=where))
     return chosen
 
 
@@ -115,15 +115,15 @@ def outline(at: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> tuple[np.nd
     >>> outline(np.arange(2.0), np.zeros(2), np.ones(2))[1].tolist()
     [0.0, 0.0, 1.0, 1.0, 0.0]
     """
-    there, back = thin(lower), thin(upper)[::-1]
-    x = np.concatenate([at[there], at[back], at[:1]])
-    return x, np.concatenate([lower[there], upper[back], lower[:1]])
+    forward, back = thin(lower), thin(upper)[::-1]
+    x = np.concatenate([at[forward], at[back], at[:1]])
+    return x, np.concatenate([lower[forward], upper[back], lower[:1]])
 
 
-def dressed(figure: go.Figure, given: Channels, chosen: Sequence[str], title: str, *, below: str) -> go.Figure:
+def dressed(figure: go.Figure, owner: Channels, chosen: Sequence[str], title: str, *, below: str) -> go.Figure:
     """The figure with its look and the labels of its two rows."""
-    units = dict(zip(given.channels, getattr(given, "units", ()), strict=False))
+    units = dict(zip(owner.channels, getattr(owner, "units", ()), strict=False))
     label = common((quantity(name, plain(units.get(name, ""))) for name in chosen), "response")
     y = (label, label.replace(label.partition(" (")[0], below))
-    x = labelled(given.coordinate.name, given.coordinate.unit)
+    x = labelled(owner.coordinate.name, owner.coordinate.unit)
     return themed(figure, title, 480, x=x, y=y, hovermode="x unified")

@@ -33,17 +33,17 @@ def methods(comparison: Comparison, *, title: str = "Error against runs") -> go.
     """
     figure = go.Figure()
     for kind, (colour, symbol) in KINDS.items():
-        own = [row for row in comparison.rows if row.kind == kind and row.method != comparison.reference]
+        rows_here = [row for row in comparison.rows if row.kind == kind and row.method != comparison.reference]
         figure.add_scatter(
-            x=[row.runs for row in own],
-            y=positive(np.array([row.largest for row in own])),
+            x=[row.runs for row in rows_here],
+            y=positive(np.array([row.largest for row in rows_here])),
             name=kind,
             mode="markers+text",
-            text=[plain(row.method) for row in own],
+            text=[plain(row.method) for row in rows_here],
             textposition="top center",
             cliponaxis=False,
             marker={"size": 11, "color": colour, "symbol": symbol},
-            showlegend=bool(own),
+            showlegend=bool(rows_here),
         )
     x = {"title": "runs of the model", **logarithmic(figure, "x")}
     return themed(figure, title, 400, x=x, y={"title": "largest error", **logarithmic(figure)})
@@ -65,10 +65,10 @@ def differences(comparison: Comparison, *, title: str = "Distance from the refer
     """
     figure, known = go.Figure(), comparison.reference_result
     along = known.coordinate
-    for place, one in enumerate(one for one in comparison.results if one is not known):
-        apart = positive(np.maximum(np.abs(one.lower - known.lower), np.abs(one.upper - known.upper)).max(axis=1))
+    for place, result in enumerate(result for result in comparison.results if result is not known):
+        apart = positive(np.maximum(np.abs(result.lower - known.lower), np.abs(result.upper - known.upper)).max(axis=1))
         x, y = thinned(along.values, apart)
         mode = "lines+markers" if len(x) <= FEW else "lines"
-        draw(figure, x, y, plain(one.method), colour_of(place), 1.5, mode=mode, marker_size=4)
+        draw(figure, x, y, plain(result.method), colour_of(place), 1.5, mode=mode, marker_size=4)
     y = {"title": "distance", **logarithmic(figure)}
     return themed(figure, title, 400, x=labelled(along.name, along.unit), y=y, showlegend=True)

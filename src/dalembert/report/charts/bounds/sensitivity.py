@@ -9,7 +9,7 @@ from dalembert.tables import labelled
 from dalembert.uncertainty import Screening, SensitivityIndices
 
 
-def effects(told: Screening, channel: str, *, title: str = "") -> go.Figure:
+def effects(screening: Screening, channel: str, *, title: str = "") -> go.Figure:
     """Each parameter as a point: mean absolute effect on the whole channel, and the spread of its effects.
 
     Parameters
@@ -22,14 +22,14 @@ def effects(told: Screening, channel: str, *, title: str = "") -> go.Figure:
     -------
     plotly.graph_objects.Figure
     """
-    column = told.channels.index(channel)
-    sizes, unit = told.aggregated_effects[column], told.units[column]
+    column = screening.channels.index(channel)
+    sizes, unit = screening.aggregated_effects[column], screening.units[column]
     figure = go.Figure()
     figure.add_scatter(
         x=sizes,
-        y=told.aggregated_spread[column],
-        error_x={"array": 2 * told.errors[column], "width": 4},
-        text=[plain(name) for name in told.box.names],
+        y=screening.aggregated_spread[column],
+        error_x={"array": 2 * screening.errors[column], "width": 4},
+        text=[plain(name) for name in screening.box.names],
         textposition="top center",
         mode="markers+text",
         marker={"color": LIGHT.series[0], "size": 9},
@@ -43,7 +43,7 @@ def effects(told: Screening, channel: str, *, title: str = "") -> go.Figure:
     )
 
 
-def indices(told: SensitivityIndices, channel: str, *, title: str = "") -> go.Figure:
+def indices(sensitivity: SensitivityIndices, channel: str, *, title: str = "") -> go.Figure:
     """Two charts: the indices of each parameter, and below them the standard deviation of the channel.
 
     Parameters
@@ -56,25 +56,25 @@ def indices(told: SensitivityIndices, channel: str, *, title: str = "") -> go.Fi
     -------
     plotly.graph_objects.Figure
     """
-    column, along = told.channels.index(channel), told.coordinate
+    column, along = sensitivity.channels.index(channel), sensitivity.coordinate
     title = title or f"Sobol indices of {plain(channel)}"
     if len(along.values) == 1:
-        return _bars(told, column, title)
+        return _bars(sensitivity, column, title)
     figure = stacked(0.68, 0.32)
-    for number, name in enumerate(told.box.names):
-        for word, values, dash in (("first-order", told.first, "solid"), ("total", told.total, "dot")):
+    for number, name in enumerate(sensitivity.box.names):
+        for word, values, dash in (("first-order", sensitivity.first, "solid"), ("total", sensitivity.total, "dot")):
             label, values = f"{plain(name)}, {word}", values[:, column, number]
             draw(figure, along.values, values, label, colour_of(number), row=1, line_dash=dash)
-    draw(figure, along.values, told.deviations[:, column], "", LIGHT.ink, 1.5, row=2, showlegend=False)
-    y = [{"title": "index", "range": [-0.02, 1.05]}, labelled("standard deviation", told.units[column])]
+    draw(figure, along.values, sensitivity.deviations[:, column], "", LIGHT.ink, 1.5, row=2, showlegend=False)
+    y = [{"title": "index", "range": [-0.02, 1.05]}, labelled("standard deviation", sensitivity.units[column])]
     return themed(figure, title, 520, x=labelled(along.name, along.unit), y=y)
 
 
-def _bars(told: SensitivityIndices, column: int, title: str) -> go.Figure:
+def _bars(sensitivity: SensitivityIndices, column: int, title: str) -> go.Figure:
     figure = go.Figure()
-    for word, values, opacity in (("first-order", told.first, 1.0), ("total", told.total, 0.45)):
+    for word, values, opacity in (("first-order", sensitivity.first, 1.0), ("total", sensitivity.total, 0.45)):
         figure.add_bar(
-            x=[plain(name) for name in told.box.names],
+            x=[plain(name) for name in sensitivity.box.names],
             y=np.nan_to_num(values[0, column]),
             name=word,
             marker={"color": LIGHT.series[0], "opacity": opacity},
@@ -82,7 +82,7 @@ def _bars(told: SensitivityIndices, column: int, title: str) -> go.Figure:
     return themed(figure, title, x="parameter", y={"title": "index", "range": [0, 1.05]}, barmode="group")
 
 
-def shares(told: SensitivityIndices, channel: str, *, title: str = "") -> go.Figure:
+def shares(sensitivity: SensitivityIndices, channel: str, *, title: str = "") -> go.Figure:
     """First-order indices of a channel as areas above each other; what is left up to 1 are interactions.
 
     Parameters
@@ -95,9 +95,9 @@ def shares(told: SensitivityIndices, channel: str, *, title: str = "") -> go.Fig
     -------
     plotly.graph_objects.Figure
     """
-    figure, along = go.Figure(), told.coordinate
-    parts = np.nan_to_num(told.first[:, told.channels.index(channel)])
-    for number, name in enumerate(told.box.names):
+    figure, along = go.Figure(), sensitivity.coordinate
+    parts = np.nan_to_num(sensitivity.first[:, sensitivity.channels.index(channel)])
+    for number, name in enumerate(sensitivity.box.names):
         colour = LIGHT.series[number % len(LIGHT.series)]
         figure.add_scatter(
             x=along.values,

@@ -159,7 +159,7 @@ def draw_loops(loops: Mapping[str, tuple[np.ndarray, np.ndarray]], title: str) -
 
 def rubbing(curve: FrequencyCurve, point: int) -> tuple[str, ...]:
     """The coordinates of contacts that take most energy at a point; the first tangential ones where none takes any."""
-    sizes = {name: float(curve.dissipated(name)[point]) for own in of_contacts(curve).values() for name in own}
+    sizes = {name: float(curve.dissipated(name)[point]) for names in of_contacts(curve).values() for name in names}
     most = max(sizes.values(), default=0.0)
     moving = {name: size for name, size in sizes.items() if size > NOTHING * most}
-    return foremost(moving or {own[0]: 0.0 for own in of_contacts(curve).values()})
+    return foremost(moving or {names[0]: 0.0 for names in of_contacts(curve).values()})

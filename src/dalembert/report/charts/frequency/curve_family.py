@@ -43,9 +43,9 @@ def curve_family(family: CurveFamily, dof: str, *, kind: str = "peak", title: st
     best, envelope = family.best(dof, kind), family.envelope(dof, kind)
     factor, unit = prefixed(float(np.nanmax(envelope.largest, initial=0.0)), unit_of(dof))
     figure = go.Figure()
-    found = [place for place, curve in enumerate(family.curves) if curve is not None]
-    coloured = _coloured(family, found, best)
-    for place in sorted(found, key=lambda place: place in coloured):
+    places = [place for place, curve in enumerate(family.curves) if curve is not None]
+    coloured = _coloured(family, places, best)
+    for place in sorted(places, key=lambda place: place in coloured):
         curve, value = family.curves[place], float(family.values[place])
         assert curve is not None
         size = np.where(curve.converged, factor * curve.amplitude(dof, kind), np.nan)
@@ -62,12 +62,12 @@ def curve_family(family: CurveFamily, dof: str, *, kind: str = "peak", title: st
     return themed(figure, title, 480, x="frequency (Hz)", y=y, showlegend=True)
 
 
-def _coloured(family: CurveFamily, found: list[int], best: float) -> dict[int, str]:
+def _coloured(family: CurveFamily, places: list[int], best: float) -> dict[int, str]:
     """Places of the curves in colour, and their colours."""
-    if len(found) <= len(LIGHT.series):
-        return dict(zip(found, LIGHT.series, strict=False))
-    lowest = next(place for place in found if family.values[place] == best)
-    return dict(zip(dict.fromkeys([found[0], found[-1], lowest]), LIGHT.series, strict=False))
+    if len(places) <= len(LIGHT.series):
+        return dict(zip(places, LIGHT.series, strict=False))
+    lowest = next(place for place in places if family.values[place] == best)
+    return dict(zip(dict.fromkeys([places[0], places[-1], lowest]), LIGHT.series, strict=False))
 
 
 DECADES = 100

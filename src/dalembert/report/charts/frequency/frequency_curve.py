@@ -84,22 +84,22 @@ def _path(figure: go.Figure, curve: FrequencyCurve, dof: str, size: np.ndarray, 
     """One degree of freedom: solid, and dashed where it is unstable; the two meet."""
     bad = unstable(curve)
     touched = binary_dilation(bad)  # and the neighbours
-    found = np.where(curve.converged, size, np.nan)
+    amplitudes = np.where(curve.converged, size, np.nan)
     few = "lines+markers" if len(size) <= FEW else "lines"
     style = {"legendgroup": plain(dof), "mode": few, "marker_size": 4, "hovertemplate": HOVER}
     for suffix, here, dash in (("", ~bad, None), (", unstable", touched, "dash")):
         if here.any():
-            x, y = thinned(curve.frequencies, np.where(here, found, np.nan))
+            x, y = thinned(curve.frequencies, np.where(here, amplitudes, np.nan))
             draw(figure, x, y, f"{plain(dof)}{suffix}", colour, line_dash=dash, **style)
 
 
 def _lost(figure: go.Figure, curve: FrequencyCurve, sizes: Mapping[str, np.ndarray]) -> None:
     """Crosses where points were not found, on the straight line between their neighbours."""
-    found, points = np.flatnonzero(curve.converged), np.flatnonzero(~curve.converged)
-    if not len(points) or not len(found):
+    converged, points = np.flatnonzero(curve.converged), np.flatnonzero(~curve.converged)
+    if not len(points) or not len(converged):
         return
     x = np.tile(curve.frequencies[points], len(sizes))
-    y = np.concatenate([np.interp(points, found, size[found]) for size in sizes.values()])
+    y = np.concatenate([np.interp(points, converged, size[converged]) for size in sizes.values()])
     marker = {"symbol": "x-thin", "size": 8, "line": {"width": 2, "color": LIGHT.series[1]}}
     figure.add_scatter(x=x, y=y, name="not found", mode="markers", marker=marker, hovertemplate="%{x:.6g} Hz")
 

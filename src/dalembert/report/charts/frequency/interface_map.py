@@ -58,7 +58,7 @@ def interface_map(shape: Deformation, *, title: str | None = None) -> go.Figure:
     figure.add_scatter(x=x, y=y, mode="markers", marker=marker, showlegend=False, **hover)
     last = len(STATES) + 1
     filled = [{"type": "scatter", "marker": {"color": colours[shape.states[:, phase]]}} for phase in phases]
-    figure.frames = [go.Frame(name=str(number), traces=[last], data=[one]) for number, one in enumerate(filled)]
+    figure.frames = [go.Frame(name=str(number), traces=[last], data=[trace]) for number, trace in enumerate(filled)]
     points = np.concatenate([shape.places[:, wide], shape.contact_places[:, wide]])
     low, high = points.min(axis=0), points.max(axis=0)
     margin = 0.06 * float((high - low).max())

@@ -33,7 +33,7 @@ def campbell(diagram: Campbell, *, title: str = "Campbell diagram") -> go.Figure
         draw(figure, speeds, frequencies, name, colour_of(number), **style)
     if diagram.frame == FIXED and len(speeds) > 1:
         draw(figure, speeds, speeds / (2.0 * np.pi), "rotation", LIGHT.muted, 1.0, mode="lines", line_dash="longdash")
-    critical = np.array([own.speed for own in diagram.critical_speeds])
+    critical = np.array([critical_speed.speed for critical_speed in diagram.critical_speeds])
     if len(critical):
         marker = {"color": LIGHT.ink, "size": 12, "symbol": "circle-open", "line": {"width": 2}}
         figure.add_scatter(x=critical, y=critical / (2.0 * np.pi), name="critical speed", mode="markers", marker=marker)

@@ -49,10 +49,10 @@ def _channel(figure: go.Figure, result: Prediction, column: int, colour: str) ->
         ("response", result.lower[:, column], result.upper[:, column], 0.3, "solid"),
     )
     for word, lower, upper, opacity, dash in bands:
-        there = np.isfinite(upper - lower)
-        if np.any(np.isinf(upper - lower)) or not there[0]:
+        finite = np.isfinite(upper - lower)
+        if np.any(np.isinf(upper - lower)) or not finite[0]:
             continue
-        at, lower, upper = along[there], lower[there], upper[there]  # a band may end before the response
+        at, lower, upper = along[finite], lower[finite], upper[finite]  # a band may end before the response
         legend = f"{name}, {100 * result.level:g} % of {word}"
         fill_band(figure, at, lower, upper, legend, name, colour, faint(colour, opacity))
         draw_line(figure, at, (upper - lower) / 2, f"{name}, ± {word}", name, colour, row=2, line_dash=dash)
@@ -84,13 +84,13 @@ def ranking(result: Designs, *, title: str = "Ranking") -> go.Figure:
     -------
     plotly.graph_objects.Figure
     """
-    told = np.flatnonzero(np.isfinite(result.scores))[:MOST]
-    rows = [f"{k + 1} · {named(result, k)}" for k in told]
-    texts = [shown(float(score), digits=3) for score in result.scores[told]]
-    figure = labelled_points(positive(result.scores[told]), rows, texts, "middle right", 10)
+    ranked = np.flatnonzero(np.isfinite(result.scores))[:MOST]
+    rows = [f"{k + 1} · {named(result, k)}" for k in ranked]
+    texts = [shown(float(score), digits=3) for score in result.scores[ranked]]
+    figure = labelled_points(positive(result.scores[ranked]), rows, texts, "middle right", 10)
     x = {"title": f"score ({result.criterion}), in parts of the scales", **logarithmic(figure, "x")}
     layout = {"showlegend": False, "margin_r": 72}
-    return themed(figure, title, 150 + 26 * max(2, len(told)), x=x, y={"autorange": "reversed"}, **layout)
+    return themed(figure, title, 150 + 26 * max(2, len(ranked)), x=x, y={"autorange": "reversed"}, **layout)
 
 
 def horizons(result: Designs, *, title: str = "What a longer measurement brings") -> go.Figure:
@@ -107,9 +107,9 @@ def horizons(result: Designs, *, title: str = "What a longer measurement brings"
     """
     figure = go.Figure()
     for chosen, colour in zip(dict.fromkeys(result.sensors), LIGHT.series, strict=False):
-        own = [k for k, sensors in enumerate(result.sensors) if sensors == chosen]
-        own.sort(key=lambda k: result.horizons[k])
-        x, y = result.horizons[own], positive(result.scores[own])
+        places = [k for k, sensors in enumerate(result.sensors) if sensors == chosen]
+        places.sort(key=lambda k: result.horizons[k])
+        x, y = result.horizons[places], positive(result.scores[places])
         draw(figure, x, y, plain(", ".join(chosen)), colour, mode="lines+markers")
     y = {"title": "score", **logarithmic(figure)}
     return themed(figure, title, 400, x=labelled(result.along, result.unit), y=y, showlegend=True)
@@ -168,8 +168,8 @@ def profile(result: Profiles, name: str, *, title: str = "") -> go.Figure:
     for number, (lower, upper) in enumerate(curve.elsewhere):
         legend = number == 0
         draw(figure, [lower, upper], height, "not contradicted either", LIGHT.series[0], 5, row=1, showlegend=legend)
-    others = [other for other in range(len(result.parameters)) if other != k]
-    for place, other in enumerate(others):
+    other_parameters = [other for other in range(len(result.parameters)) if other != k]
+    for place, other in enumerate(other_parameters):
         spread = result.deviations[other]
         unit = spread if np.isfinite(spread) and spread > 0 else result.parameters.scale[other]
         y = (curve.points[:, other] - result.values[other]) / unit

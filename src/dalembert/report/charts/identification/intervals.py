@@ -82,8 +82,8 @@ def _bar(figure: go.Figure, name: str, ends: np.ndarray, text: str, *, legend: b
         "cliponaxis": False,
         "hoverinfo": "text",
     }
-    x, own = [ends[0], ends.mean(), ends[1]], {"legendgroup": "identified", "showlegend": legend}
-    draw(figure, x, [name] * 3, "identified", LIGHT.series[0], 8, **own, **style)
+    x, legend_keys = [ends[0], ends.mean(), ends[1]], {"legendgroup": "identified", "showlegend": legend}
+    draw(figure, x, [name] * 3, "identified", LIGHT.series[0], 8, **legend_keys, **style)
 
 
 def _diamonds(figure: go.Figure, fit: BandFit, truth: Mapping[str, tuple[float, float]]) -> None:
@@ -137,8 +137,8 @@ def residual_bands(
 def _channel(figure: go.Figure, fit: BandFit, column: int, colour: str) -> None:
     at, name = fit.bands.coordinate.values, plain(fit.bands.channels[column])
     draw_band(figure, fit.bands, column, colour, legend=", given")
-    for side, found in fit.reproduced.items():
-        values, given = found[:, column], getattr(fit.bands, side)[:, column]
+    for side, reproduced in fit.reproduced.items():
+        values, bands = reproduced[:, column], getattr(fit.bands, side)[:, column]
         draw_line(figure, at, values, f"{name} reproduced, {side}", name, LIGHT.ink, row=1, line_dash="dash")
-        residual, dash = values - given, DASHES[side]
+        residual, dash = values - bands, DASHES[side]
         draw_line(figure, at, residual, f"{name} residual, {side}", name, colour, row=2, line_dash=dash)

@@ -48,7 +48,7 @@ def parameters(fit: Fit, *, title: str = "Parameters within their bounds") -> go
         "error_x": {**bars, "thickness": 2, "width": 6, "color": LIGHT.ink},
         "textposition": [f"top {side_of(at)}" for at in place],
         "cliponaxis": False,
-        "marker": {"size": 11, "symbol": [one for one, _ in symbols], "color": [colour for _, colour in symbols]},
+        "marker": {"size": 11, "symbol": [symbol for symbol, _ in symbols], "color": [colour for _, colour in symbols]},
     }
     figure.add_scatter(x=place, y=names, mode="markers+text", text=texts, **style, showlegend=False)
     x, y = {**BETWEEN, "range": [-0.1, 1.1]}, {"range": [len(box) - 0.5, -0.7], "showgrid": False}

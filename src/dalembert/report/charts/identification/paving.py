@@ -18,7 +18,7 @@ MOST_PLANES = 6
 
 
 def paving(
-    found: ParameterSet,
+    result: ParameterSet,
     plane: Sequence[str] | None = None,
     *,
     truth: Mapping[str, float] | None = None,
@@ -47,7 +47,7 @@ def paving(
     InputError
         For a parameter that the set does not have.
     """
-    names = found.parameters.names
+    names = result.parameters.names
     chosen = tuple(names[:2] if plane is None else plane)
     for name in chosen:
         if name not in names:
@@ -56,21 +56,21 @@ def paving(
     edge = 0.5 if len(names) <= 2 else 0
     figure = go.Figure()
     for word, boxes, colour, opacity in (
-        ("undecided", found.boundary, LIGHT.series[1], 0.22),
-        ("consistent", found.inside, LIGHT.series[0], 0.6),
+        ("undecided", result.boundary, LIGHT.series[1], 0.22),
+        ("consistent", result.inside, LIGHT.series[0], 0.6),
     ):
         name = f"{word} boxes" if len(names) <= 2 else f"{word}, projected"
         style: dict[str, Any] = {"fill": "toself", "fillcolor": faint(colour, opacity), "hoverinfo": "skip"}
         draw(figure, *rectangles(boxes[:, :, axes]), name, colour, edge, **style, showlegend=len(boxes) > 0)
-    for word, box, dash in (("outer box", found.outer, "dash"), ("inner box", found.inner, "solid")):
+    for word, box, dash in (("outer box", result.outer, "dash"), ("inner box", result.inner, "solid")):
         if box is not None:
             x, y = rectangles(np.stack([box.lower, box.upper])[None, :, axes])
             draw(figure, x, y, word, LIGHT.ink, line_dash=dash)
     _mark(figure, chosen, truth or {})
-    seen = [found.parameters.items[axis] for axis in axes]
+    seen = [result.parameters.items[axis] for axis in axes]
     settings = [
         {"title": labelled(plain(item.name), plain(item.unit)), "range": ends}
-        for item, ends in zip(seen, _ranges(found, axes), strict=True)
+        for item, ends in zip(seen, _ranges(result, axes), strict=True)
     ]
     x, y = [*settings, {"visible": False, "range": [-0.2, 1.2]}][:2]
     title = f"Set of {' and '.join(map(plain, chosen))}" if title is None else title
@@ -114,8 +114,8 @@ def _mark(figure: go.Figure, chosen: Sequence[str], truth: Mapping[str, float]) 
         figure.add_scatter(x=at[:1], y=at[1:], name="true", mode="markers", marker=marker)
 
 
-def _ranges(found: ParameterSet, axes: Sequence[int]) -> list[list[float]]:
+def _ranges(result: ParameterSet, axes: Sequence[int]) -> list[list[float]]:
     """Range of each axis: the outer box with a margin, or all that was searched where there is no set."""
-    box: Any = found.parameters if found.outer is None else found.outer
-    width = np.where(box.upper > box.lower, box.upper - box.lower, 1e-9 * found.parameters.scale)
+    box: Any = result.parameters if result.outer is None else result.outer
+    width = np.where(box.upper > box.lower, box.upper - box.lower, 1e-9 * result.parameters.scale)
     return [[float(box.lower[k] - MARGIN * width[k]), float(box.upper[k] + MARGIN * width[k])] for k in axes]

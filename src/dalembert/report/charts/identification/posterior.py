@@ -59,7 +59,7 @@ def marginal(result: Posterior, name: str, profiles: Profiles | None = None, *, 
     style = {"mode": "lines", "hoverinfo": "skip"}
     line = {"color": LIGHT.series[1], "dash": "dash", "width": 2}
     figure.add_scatter(x=at, y=linear, name="linearised", line=line, **style)
-    curve = None if profiles is None else {one.name: one for one in profiles.curves}.get(name)
+    curve = None if profiles is None else {curve_here.name: curve_here for curve_here in profiles.curves}.get(name)
     if curve is not None and len(curve.values) > 1:
         line = {"color": LIGHT.series[2], "width": 2}
         likely = np.exp(-0.5 * (curve.excess - np.min(curve.excess)))
@@ -193,11 +193,11 @@ def predictive(
     along = result.data.coordinate.values
     for place, channel in enumerate(chosen):
         column, colour, name = result.data.channels.index(channel), colour_of(place), plain(channel)
-        there = np.isfinite(lower[:, column])
-        at, low, high = along[there], lower[there, column], upper[there, column]
+        finite = np.isfinite(lower[:, column])
+        at, low, high = along[finite], lower[finite, column], upper[finite, column]
         middle = (low + high) / 2
         fill_band(figure, at, low, high, f"{name}, {100 * level:g} %", name, colour, faint(colour, 0.25))
-        measured = result.data.values[there, column]
+        measured = result.data.values[finite, column]
         size = 6 if len(at) <= FEW else 3
         style = {
             "legendgroup": name,

@@ -29,11 +29,11 @@ def l_curve(fit: Fit | BandFit, *, title: str = "L-curves") -> go.Figure:
     figure = go.Figure()
     bent = [number for number, step in enumerate(steps, 1) if step.chosen > step.weights[0]]
     for number, step in enumerate(steps, 1):
-        told = number == (bent[-1] if bent else len(steps))
+        is_last = number == (bent[-1] if bent else len(steps))
         x, y = (positive(np.asarray(norms, dtype=float)) for norms in (step.residual_norms, step.step_norms))
         text = [f"μ = {weight:.3g}" for weight in step.weights]
-        colour, width, opacity = (LIGHT.series[0], 2.5, 1) if told else (LIGHT.muted, 1, 0.6)
-        draw(figure, x, y, f"step {number}", colour, width, text=text, opacity=opacity, showlegend=told)
+        colour, width, opacity = (LIGHT.series[0], 2.5, 1) if is_last else (LIGHT.muted, 1, 0.6)
+        draw(figure, x, y, f"step {number}", colour, width, text=text, opacity=opacity, showlegend=is_last)
     for name, key, marker in (
         ("chosen", "chosen", {"color": LIGHT.series[1], "size": 9}),
         ("taken", "mu", {"color": LIGHT.ink, "size": 13, "symbol": "circle-open"}),
@@ -58,8 +58,8 @@ def steps(fit: Fit | BandFit, *, title: str = "Steps of the best start") -> go.F
     -------
     plotly.graph_objects.Figure
     """
-    own = accounts(fit)
-    number = np.arange(1, len(own) + 1)
+    accounts_here = accounts(fit)
+    number = np.arange(1, len(accounts_here) + 1)
     figure = stacked(1, 1, 1)
     for row, name, key, colour, symbol in (
         (1, "residual before the step", "residual", LIGHT.series[0], "circle"),
@@ -67,14 +67,14 @@ def steps(fit: Fit | BandFit, *, title: str = "Steps of the best start") -> go.F
         (2, "weight taken", "mu", LIGHT.ink, "circle-open"),
         (3, "agreement", "agreement", LIGHT.series[2], "circle"),
     ):
-        values = np.array([getattr(step, key) for step in own], dtype=float)
-        y, text = values if row == 3 else positive(values), [f"{step.trials} tried" for step in own]
+        values = np.array([getattr(step, key) for step in accounts_here], dtype=float)
+        y, text = values if row == 3 else positive(values), [f"{step.trials} tried" for step in accounts_here]
         marker = {"symbol": symbol, "size": 9 if symbol == "circle-open" else 6}
         draw(figure, number, y, name, colour, 1.5, row=row, mode="lines+markers", text=text, marker=marker)
     figure.add_hline(y=1, line={"color": LIGHT.muted, "dash": "dot"}, row=3, col=1)  # pyright: ignore[reportArgumentType]
     logarithmically = [{"title": label, "type": "log", "rangemode": "normal"} for label in ("residual", "weight μ")]
     y = (*logarithmically, {"title": "agreement", "type": "linear", "rangemode": "tozero"})
-    return themed(figure, title, 560, x={"title": "step", "dtick": max(1, len(own) // 10)}, y=y)
+    return themed(figure, title, 560, x={"title": "step", "dtick": max(1, len(accounts_here) // 10)}, y=y)
 
 
 def accounts(fit: Fit | BandFit) -> list[RegularisedStep]:
@@ -82,10 +82,10 @@ def accounts(fit: Fit | BandFit) -> list[RegularisedStep]:
     best: list[RegularisedStep] = []
     for start in ranked(fit.starts):
         steps = [step.regularised for step in fit.history if step.start == start]
-        own = [step for step in steps if step is not None]
-        if len(own) > 1:
-            return own
-        best = best or own
+        accounts_here = [step for step in steps if step is not None]
+        if len(accounts_here) > 1:
+            return accounts_here
+        best = best or accounts_here
     return best
 
 

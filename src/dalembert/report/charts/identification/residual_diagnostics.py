@@ -34,7 +34,7 @@ Draw = Callable[..., None]
 
 
 def residual_diagnostics(
-    found: ResidualDiagnostics, channels: Sequence[str] | None = None, *, title: str = "Residual diagnostics"
+    diagnostics: ResidualDiagnostics, channels: Sequence[str] | None = None, *, title: str = "Residual diagnostics"
 ) -> go.Figure:
     """Standardised residuals in six panels, a colour for each channel.
 
@@ -52,10 +52,12 @@ def residual_diagnostics(
     -------
     plotly.graph_objects.Figure
     """
-    chosen = doubted(found) if channels is None else [one for one in found.series if one.name in channels]
+    chosen = (
+        doubted(diagnostics) if channels is None else [item for item in diagnostics.series if item.name in channels]
+    )
     figure = make_subplots(2, 3, subplot_titles=_TITLES, horizontal_spacing=0.07, vertical_spacing=0.2)
-    for place, one in enumerate(chosen):
-        _series(figure, one, colour_of(place), shown=True if place < VISIBLE else "legendonly")
+    for place, item in enumerate(chosen):
+        _series(figure, item, colour_of(place), shown=True if place < VISIBLE else "legendonly")
     ends = [-3.0, 3.0]
     line = {"color": LIGHT.muted, "width": 1}
     figure.add_scatter(x=ends, y=ends, mode="lines", line=line, showlegend=False, hoverinfo="skip", row=1, col=2)
@@ -75,14 +77,14 @@ def residual_diagnostics(
     return figure
 
 
-def doubted(found: ResidualDiagnostics) -> list[SeriesResiduals]:
+def doubted(diagnostics: ResidualDiagnostics) -> list[SeriesResiduals]:
     """Return the channels that are drawn: the least probable ones, in their order."""
-    worst = sorted(found.series, key=lambda one: min(one.p_values.values(), default=1.0))[:MOST_SERIES]
-    return worst if len(worst) > VISIBLE else [one for one in found.series if one in worst]
+    worst = sorted(diagnostics.series, key=lambda item: min(item.p_values.values(), default=1.0))[:MOST_SERIES]
+    return worst if len(worst) > VISIBLE else [item for item in diagnostics.series if item in worst]
 
 
-def _series(figure: go.Figure, one: SeriesResiduals, colour: str, *, shown: bool | str) -> None:
-    name = plain(one.name)
+def _series(figure: go.Figure, item: SeriesResiduals, colour: str, *, shown: bool | str) -> None:
+    name = plain(item.name)
 
     def draw(row: int, column: int, x: Any, y: Any, *, legend: bool = False, **style: Any) -> None:
         kept_x, kept_y = thinned(np.asarray(x), np.asarray(y), MOST)
@@ -91,14 +93,14 @@ def _series(figure: go.Figure, one: SeriesResiduals, colour: str, *, shown: bool
 
     dots = {"mode": "markers", "marker": {"color": colour, "size": 4, "opacity": 0.7}}
     dotted = {"mode": "lines", "line": {"color": colour, "width": 1, "dash": "dot"}, "hoverinfo": "skip"}
-    lags, correlations, limits = one.autocorrelation()
+    lags, correlations, limits = item.autocorrelation()
     stems = {"mode": "lines+markers", "line": {"color": colour, "width": 1}, "marker": {"color": colour, "size": 4}}
     draw(1, 1, lags, correlations, legend=True, **stems)
     for side in (-1, 1):
         draw(1, 1, lags, side * limits, **dotted)
-    draw(1, 2, *one.normal_quantiles(), **dots)
-    draw(1, 3, *one.spectrum(), mode="lines", line={"color": colour, "width": 1})
-    draw(2, 1, one.series.along, one.standardised, **dots)
-    size = float(np.ptp(one.response)) or 1.0
-    draw(2, 2, (one.response - np.min(one.response)) / size, one.standardised, **dots)
-    draw(2, 3, one.leverage, one.standardised, **dots)
+    draw(1, 2, *item.normal_quantiles(), **dots)
+    draw(1, 3, *item.spectrum(), mode="lines", line={"color": colour, "width": 1})
+    draw(2, 1, item.series.along, item.standardised, **dots)
+    size = float(np.ptp(item.response)) or 1.0
+    draw(2, 2, (item.response - np.min(item.response)) / size, item.standardised, **dots)
+    draw(2, 3, item.leverage, item.standardised, **dots)

@@ -25,10 +25,10 @@ def convergence(fit: Fit | BandFit, *, title: str = "Convergence") -> go.Figure:
     starts = sorted({step.start for step in fit.history})
     best = winner(fit)
     figure = go.Figure()
-    others = [start for start in starts if start != best]
-    if others:
+    other_starts = [start for start in starts if start != best]
+    if other_starts:
         draw(figure, [None], [None], "the others", LIGHT.muted, 1, legendgroup="others")
-    for start in [*others, *(start for start in starts if start == best)]:
+    for start in [*other_starts, *(start for start in starts if start == best)]:
         steps = [step for step in fit.history if step.start == start]
         misfit = positive(np.array([step.best for step in steps], dtype=float))
         kept = thin(misfit, most=1000)
@@ -42,8 +42,8 @@ def convergence(fit: Fit | BandFit, *, title: str = "Convergence") -> go.Figure:
             "mode": "lines+markers" if len(steps) <= 60 else "lines",
         }
         name = f"start {start + 1}, the best" if won else f"start {start + 1}"
-        own = {"marker_size": size, "opacity": opacity, "showlegend": won}
-        draw(figure, iterations, misfit[kept], name, colour, width, **style, **own)
+        marks = {"marker_size": size, "opacity": opacity, "showlegend": won}
+        draw(figure, iterations, misfit[kept], name, colour, width, **style, **marks)
     y = {"title": "smallest misfit so far", **logarithmic(figure)}
     return themed(figure, title, 360, x="iteration", y=y, showlegend=True)
 

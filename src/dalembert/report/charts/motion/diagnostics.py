@@ -38,13 +38,13 @@ def energies(trajectory: Trajectory, *, title: str = "Energies") -> go.Figure:
     -------
     plotly.graph_objects.Figure
     """
-    times, given = np.asarray(trajectory.times), trajectory.energies
+    times, energy = np.asarray(trajectory.times), trajectory.energies
     figure = stacked(0.68, 0.32)
     for key, (word, colour) in ENERGIES.items():
-        if key in given:
-            draw(figure, *thinned(times, given[key]), word, colour, row=1)
-    if "balance" in given:
-        x, y = thinned(times, given["balance"])
+        if key in energy:
+            draw(figure, *thinned(times, energy[key]), word, colour, row=1)
+    if "balance" in energy:
+        x, y = thinned(times, energy["balance"])
         draw(figure, x, y, "balance", LIGHT.series[3], 1.5, row=2, showlegend=False)
     return themed(figure, title, 460, x="time (s)", y=("energy (J)", "balance (J)"), hovermode="x unified")
 
@@ -100,7 +100,7 @@ def newton(trajectory: Trajectory, *, title: str = "Newton iterations") -> go.Fi
 SYMBOLS = ("circle", "square", "diamond", "triangle-up", "x", "star", "cross", "pentagon")
 
 
-def work_precision(found: "WorkPrecision", *, title: str = "Error against run time") -> go.Figure:
+def work_precision(comparison: "WorkPrecision", *, title: str = "Error against run time") -> go.Figure:
     """Error of each run over its run time, both logarithmic, one line an integrator; no runs that ended early.
 
     Parameters
@@ -113,15 +113,15 @@ def work_precision(found: "WorkPrecision", *, title: str = "Error against run ti
     plotly.graph_objects.Figure
     """
     figure = go.Figure()
-    for place, method in enumerate(found.methods):
-        own = [row for row in found.rows if row.method == method and not row.failure]
-        seconds, errors = (positive(np.array([getattr(row, key) for row in own])) for key in ("seconds", "error"))
+    for place, method in enumerate(comparison.methods):
+        rows = [row for row in comparison.rows if row.method == method and not row.failure]
+        seconds, errors = (positive(np.array([getattr(row, key) for row in rows])) for key in ("seconds", "error"))
         marker = {"size": 8, "symbol": SYMBOLS[place % len(SYMBOLS)]}
         hover = "%{text}<br>%{x:.3g} s, error %{y:.2e}<extra></extra>"
-        style = {"text": [plain(row.settings) for row in own], "hovertemplate": hover, "marker": marker}
+        style = {"text": [plain(row.settings) for row in rows], "hovertemplate": hover, "marker": marker}
         draw(figure, seconds, errors, plain(method), colour_of(place), 1.5, mode="lines+markers", **style)
-    if found.apart > 0:
-        figure.add_hline(y=found.apart, line={"color": LIGHT.muted, "dash": "dot"})
+    if comparison.apart > 0:
+        figure.add_hline(y=comparison.apart, line={"color": LIGHT.muted, "dash": "dot"})
     x = {"title": "run time (s)", **logarithmic(figure, "x")}
     y = {"title": "largest error, relative to the range", **logarithmic(figure)}
     return themed(figure, title, 480, x=x, y=y, showlegend=True)

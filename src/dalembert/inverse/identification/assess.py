@@ -82,7 +82,7 @@ def assess(
         vector=vector,
         linearisation=at,
         response=response,
-        whole_response=full_response,
+        full_response=full_response,
         noise_is_known=known,
         estimate=estimated,
         correlated=correlated,

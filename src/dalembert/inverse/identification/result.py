@@ -29,7 +29,7 @@ def fit_of(optimum: Optimum, outcome: tuple[Finding, ...], findings: tuple[Findi
         values=optimum.vector,
         **vars(optimum.estimate),
         misfit=end.misfit,
-        response=optimum.whole_response,
+        response=optimum.full_response,
         data=whole.data,
         weights=np.where(split.fitted, split.whole_table(optimum.problem.weights, 0.0), 0.0),
         history=tuple(journal.history),

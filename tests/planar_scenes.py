@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 import dalembert.multibody as mb
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from mechanisms import SECTION
 
 TIMES = np.array([0.0, 0.02, 0.05, 0.08])

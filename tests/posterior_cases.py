@@ -8,7 +8,7 @@ import numpy as np
 
 from dalembert.forward import PythonModel
 from dalembert.inverse import Posterior, identify, profile, sample
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from dalembert.priors import Normal
 from posterior_models import DECAY, DECAYED, TIMES, line, measured
 from report_case import Case

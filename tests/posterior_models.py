@@ -4,7 +4,7 @@ import numpy as np
 
 from dalembert.data import Measurements
 from dalembert.forward import PythonModel
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from dalembert.priors import AnyPrior
 
 TIMES = np.linspace(0.0, 1.0, 11)

@@ -14,7 +14,7 @@ from dalembert.forward import Channel, PythonModel
 from dalembert.inverse import Experiment, GlobalSurrogate, design, identifiability, predict, profile
 from dalembert.multibody.spatial import Inertia, Orientation, RigidBody, SpatialSystem, SphericalJoint
 from dalembert.optimize import LeastSquares, Minimiser, ParticleSwarm, ResponseSensitivity
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from dalembert.study import load, run_study
 from dalembert.study.tasks.assessments import foreseen
 from dalembert.surrogate import Adaptive, Tensor, TotalDegree

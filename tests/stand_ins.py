@@ -9,7 +9,8 @@ import numpy as np
 from dalembert.forward import Coordinate
 from dalembert.inverse import BandFit, Fit, Identifiability, ParameterSet, ResidualDiagnostics
 from dalembert.multibody import Trajectory
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 from dalembert.study.tasks.sweep import Sweep
 from dalembert.uncertainty import Comparison, Propagation
 

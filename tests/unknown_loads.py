@@ -3,7 +3,7 @@
 import numpy as np
 
 import dalembert.multibody as mb
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from mechanisms import SECTION
 
 BETWEEN = np.array([0.0, 0.02, 0.0333, 0.08])  # s; the third lies between steps

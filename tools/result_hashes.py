@@ -79,7 +79,7 @@ def models() -> Iterator[tuple[str, object]]:
 def _spatial(build, fields: dict):
     import spatial_scenes
     from dalembert import multibody as mb
-    from dalembert.parameters import Parameter
+    from dalembert.parameter import Parameter
 
     parameters = {
         name: Parameter(name, value - abs(value) / 2, value + abs(value) / 2, scale=abs(value))

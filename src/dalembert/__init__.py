@@ -33,7 +33,8 @@ _MODULES = (
 
 _NAMES = {
     "errors": "DalembertError InputError ModelError SolveError ClusterError DataError StorageError",
-    "parameters": "Parameter Parameters",
+    "parameter": "Parameter",
+    "parameters": "Parameters",
     "priors": "CorrelatedNormal HalfNormal LogNormal LogUniform Normal Uniform",
     "intervals": "Box Interval",
     "findings": "Finding",

@@ -144,7 +144,7 @@ from dalembert.optimize import LeastSquares as LeastSquares
 from dalembert.optimize import Minimiser as Minimiser
 from dalembert.optimize import ParticleSwarm as ParticleSwarm
 from dalembert.optimize import ResponseSensitivity as ResponseSensitivity
-from dalembert.parameters import Parameter as Parameter
+from dalembert.parameter import Parameter as Parameter
 from dalembert.parameters import Parameters as Parameters
 from dalembert.priors import CorrelatedNormal as CorrelatedNormal
 from dalembert.priors import HalfNormal as HalfNormal

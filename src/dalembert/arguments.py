@@ -293,7 +293,7 @@ def array_of(value: Any) -> np.ndarray:
     return array if all(map(is_number, array.ravel().tolist())) else np.zeros(0)
 
 
-def is_whole(value: Any) -> bool:
+def is_integer(value: Any) -> bool:
     """Whether a value is a whole number, and not just equal to one."""
     return isinstance(value, int | np.integer) and not isinstance(value, bool)
 
@@ -318,7 +318,7 @@ _TESTS.update(
     {
         complex: is_number,
         float: is_real,
-        int: is_whole,
+        int: is_integer,
         bool: lambda value: isinstance(value, bool | np.bool_),
         np.ndarray: lambda value: True,
     }
@@ -355,74 +355,3 @@ def _words(kind: Any, value: Any, unit: str) -> str:
     if origin is Callable:
         return "a function"
     return _WORDS.get(kind) or getattr(kind, "IN_WORDS", None) or f"a {kind.__name__}"
-
-
-def names_of(entries: str | Iterable[str], owner: str, what: str) -> tuple[str, ...]:
-    """Names from a sequence of them, or from a single one.
-
-    Examples
-    --------
-    >>> names_of("rod.end.x", "TimeResponse", "channels"), names_of(["a", "b"], "TimeResponse", "channels")
-    (('rod.end.x',), ('a', 'b'))
-    """
-    if isinstance(entries, str):
-        return (str(entries),)
-    names = tuple(entries) if isinstance(entries, Iterable) else ()
-    if not isinstance(entries, Iterable) or not all(isinstance(name, str) for name in names):
-        wrong = next((name for name in names if not isinstance(name, str)), entries)
-        raise InputError(f"{owner}: {what} is {shown(wrong)}; expected names, such as ['AB.end.x', 'AB.end.y']")
-    return tuple(map(str, names))
-
-
-def numbers_of(numbers: Any, owner: str, what: str) -> np.ndarray:
-    """Real numbers as an array of floats.
-
-    >>> numbers_of([1, 2], "design", "deviations")
-    array([1., 2.])
-    >>> numbers_of("many", "design", "deviations")
-    Traceback (most recent call last):
-    dalembert.errors.InputError: design: deviations is 'many'; expected real numbers
-    """
-    try:
-        if numbers is not None and not isinstance(numbers, str | bytes):
-            return np.array(numbers, dtype=object).astype(float)
-    except (TypeError, ValueError):
-        pass
-    raise InputError(f"{owner}: {what} is {shown(numbers)}; expected real numbers")
-
-
-def samples_of(values: Any, owner: str, what: str) -> np.ndarray:
-    """Real numbers as an array (samples,) of at least one.
-
-    >>> samples_of(3.5, "PythonModel", "samples")
-    Traceback (most recent call last):
-    dalembert.errors.InputError: PythonModel: samples is 3.5; expected a list of real numbers
-    """
-    numbers = np.zeros(0) if np.ndim(values) != 1 else numbers_of(values, owner, what)
-    if not len(numbers):
-        raise InputError(f"{owner}: {what} is {shown(values)}; expected a list of real numbers")
-    return numbers
-
-
-def check_model(owner: str, model: Any) -> None:
-    """Raise unless something may be a forward model; its channels are not looked at, as they may take long.
-
-    >>> check_model("Sensors", 3.5)
-    Traceback (most recent call last):
-    dalembert.errors.InputError: Sensors: model is 3.5; expected a forward model, such as TimeResponse or PythonModel
-    """
-    if not (hasattr(type(model), "evaluate") and hasattr(model, "parameters")):
-        raise InputError(
-            f"{owner}: model is {shown(model)}; expected a forward model, such as TimeResponse or PythonModel"
-        )
-
-
-def check_whole(owner: str, name: str, value: Any, least: int) -> None:
-    """Raise unless a value is a whole number of at least ``least``.
-
-    >>> check_whole("identify", "starts", 2.5, 1)
-    Traceback (most recent call last):
-    dalembert.errors.InputError: identify: starts is 2.5; expected a whole number, at least 1
-    """
-    if not is_whole(value) or value < least:
-        raise InputError(f"{owner}: {name} is {shown(value)}; expected a whole number, at least {least}")

@@ -11,7 +11,7 @@ from dalembert.errors import DataError
 from dalembert.files import read_dataset, write_contents
 from dalembert.findings import Finding
 from dalembert.notebook_display import Displayed
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from dalembert.stored_fields import Source, Store, restore, store
 from dalembert.tables import Table, labelled, shown
 

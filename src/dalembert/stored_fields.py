@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Protocol, TypeVar, get_args, g
 import numpy as np
 
 from dalembert.intervals import Box
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -11,7 +11,7 @@ from typing import ClassVar
 import numpy as np
 
 from dalembert.intervals import Box
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 

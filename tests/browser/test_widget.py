@@ -6,7 +6,8 @@ import pytest
 
 from browser.visitor import wait_until
 from dalembert.multibody import RevoluteJoint, RigidBar, System
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 
 pytest.importorskip("anywidget")
 from dalembert.widget import sliders

@@ -13,7 +13,7 @@ from dalembert.errors import DalembertError
 from dalembert.forward import PythonModel
 from dalembert.inverse import Fit, identify, identify_bands, identify_set
 from dalembert.optimize import LeastSquares
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from dalembert.uncertainty import propagate
 
 TIMES = np.linspace(0.0, 1.0, 21)

@@ -24,7 +24,8 @@ from dalembert.inverse import (
     predict,
     profile,
 )
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 from dalembert.report import report
 from dalembert.study import Study, load, run_study
 from dalembert.uncertainty import Propagation, compare, propagate

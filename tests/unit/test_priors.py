@@ -8,7 +8,8 @@ from inline_snapshot import snapshot
 from scipy import stats
 
 from dalembert.errors import InputError
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 from dalembert.priors import CorrelatedNormal, HalfNormal, LogNormal, LogUniform, Normal, Prior, SquarePrior, Uniform
 from dalembert.stored_fields import encoded
 

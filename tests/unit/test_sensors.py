@@ -7,7 +7,7 @@ from dalembert.data import Measurements
 from dalembert.errors import InputError
 from dalembert.forward import Channel, ForwardModel, PythonModel, Sensor, Sensors
 from dalembert.inverse import identify
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from support import says
 
 FINE = np.linspace(0, 4, 401)

@@ -8,7 +8,8 @@ import pytest
 
 from dalembert.errors import InputError
 from dalembert.multibody import RevoluteJoint, RigidBar, System
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 from dalembert.study.template import begin
 from dalembert.widget import sliders
 from support import says

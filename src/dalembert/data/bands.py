@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.arguments import names_of
+from dalembert.argument_readers import names_of
 from dalembert.data.labels import by_name, check_labels, coordinate_of, cut, digest, real_numbers, table_of
 from dalembert.errors import DataError, shown
 from dalembert.forward import Coordinate

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from dalembert.arguments import is_real, is_whole
+from dalembert.arguments import is_integer, is_real
 from dalembert.data.record import TURN, Record, Recorded
 from dalembert.data.stretches import gaps, stretches
 from dalembert.errors import DataError
@@ -46,7 +46,7 @@ def filtered(data: Recorded, cutoff: float) -> Recorded:
 def decimated(data: Recorded, factor: int, cutoff: float | None) -> Recorded:
     """Every ``factor``-th sample of filtered measurements; see `Measurements.decimated`."""
     along = _times(data)
-    if not is_whole(factor) or factor < 1:
+    if not is_integer(factor) or factor < 1:
         raise DataError(f"every {factor}-th sample; expected a whole number of at least 1")
     if factor == 1 and cutoff is None:
         return data

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.arguments import names_of
+from dalembert.argument_readers import names_of
 from dalembert.data.derivatives import derivative
 from dalembert.data.filtering import decimated, filtered
 from dalembert.data.labels import by_name, coordinate_of, real_numbers, table_of

@@ -7,7 +7,7 @@ from typing import Self, TypeVar
 
 import numpy as np
 
-from dalembert.arguments import names_of
+from dalembert.argument_readers import names_of
 from dalembert.data.labels import check_labels, coordinate_of, cut, digest, real_numbers
 from dalembert.errors import DataError, unknown
 from dalembert.forward import Coordinate

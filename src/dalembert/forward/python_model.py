@@ -9,14 +9,15 @@ from functools import cached_property
 
 import numpy as np
 
-from dalembert.arguments import check_whole, samples_of
+from dalembert.argument_readers import check_integer, samples_of
 from dalembert.errors import DalembertError, InputError, SolveError, require_known, shown, told, users_place
 from dalembert.forward.builders import named
 from dalembert.forward.complex_steps import STEP, Compared, check_steps
 from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES, RELATIVE_STEP
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
 from dalembert.forward.responses import Responses
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 
 
 @dataclass(frozen=True)
@@ -75,7 +76,7 @@ class PythonModel:
         if not isinstance(channels, Iterable):
             raise InputError(f"PythonModel: channels is {shown(channels)}; expected names, such as ['x', 'y']")
         if kept is not None:
-            check_whole("PythonModel", "kept", kept, 0)
+            check_integer("PythonModel", "kept", kept, 0)
         samples = samples_of(samples, "PythonModel", "samples")
         outputs = tuple(Channel(entry) if isinstance(entry, str) else entry for entry in channels)
         along = Coordinate(coordinate, unit, samples[:kept])
@@ -137,7 +138,7 @@ class PythonModel:
 
     def first(self, samples: int) -> ForwardModel:
         """The same model, cut to its first ``samples`` samples."""
-        check_whole("PythonModel", "kept", samples, 0)
+        check_integer("PythonModel", "kept", samples, 0)
         shorter, along = copy(self), replace(self.coordinate, values=self.coordinate.values[:samples])
         vars(shorter).update(coordinate=along, kept=samples, _compared=self._compared)
         return shorter

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.arguments import check_model, samples_of
+from dalembert.argument_readers import check_model, samples_of
 from dalembert.errors import InputError, require_known, shown
 from dalembert.forward.adjoint import ADJOINT, Pull, pullback
 from dalembert.forward.complex_steps import check_derivatives
@@ -16,7 +16,8 @@ from dalembert.forward.model import Channel, Coordinate, ForwardModel
 from dalembert.forward.refinement import Refinement, refined
 from dalembert.forward.responses import Responses
 from dalembert.forward.wrapped import starting
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 
 START = "start time"  # parameter of the time stamp at which the motion begins
 # What a sensor may have, and what it is for a perfect one.

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from scipy.sparse import coo_array, csc_array
 
-from dalembert.arguments import is_number, is_whole
+from dalembert.arguments import is_integer, is_number
 from dalembert.errors import InputError, shown
 
 PACKAGES = {"skfem": "scikit-fem"}
@@ -36,7 +36,7 @@ def require_lengths(where: str, what: str, lengths: Sequence, count: int) -> Non
 
 def require_counts(where: str, counts: Sequence, count: int) -> None:
     """Refuse numbers of elements that are not ``count`` positive whole numbers."""
-    if len(counts) != count or not all(is_whole(number) and number > 0 for number in counts):
+    if len(counts) != count or not all(is_integer(number) and number > 0 for number in counts):
         raise InputError(f"{where}: elements is {shown(counts)}; expected {_COUNTS[count]} positive whole numbers")
 
 

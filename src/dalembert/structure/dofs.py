@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
-from dalembert.arguments import names_of
+from dalembert.argument_readers import names_of
 from dalembert.errors import InputError, unknown
 from dalembert.units import OF_DIRECTION
 

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from scipy.sparse import csc_array, issparse
 
-from dalembert.arguments import Checked, is_number, names_of
+from dalembert.argument_readers import names_of
+from dalembert.arguments import Checked, is_number
 from dalembert.errors import InputError, shown
 from dalembert.notebook_display import Displayed
 from dalembert.structure.damping import Modal, Rayleigh

@@ -1,6 +1,6 @@
 """What a notebook shows of a study."""
 
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from dalembert.report.notebook import Summary
 from dalembert.study.picture import picture_or_message
 from dalembert.study.run.runner import plan

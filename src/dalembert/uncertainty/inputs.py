@@ -11,7 +11,7 @@ from dalembert.errors import InputError, shown
 from dalembert.forward import ForwardModel
 from dalembert.intervals import Box, Interval
 from dalembert.latin_hypercube import latin_hypercube
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from dalembert.priors import CorrelatedNormal, Prior
 from dalembert.priors.prior import LEAST
 from dalembert.surrogate.orthonormal import Rule, uniform

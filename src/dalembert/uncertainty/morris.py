@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from dalembert.arguments import check_model, check_whole, takes_checked
+from dalembert.argument_readers import check_integer, check_model
+from dalembert.arguments import takes_checked
 from dalembert.errors import InputError, SolveError
 from dalembert.findings import Finding
 from dalembert.forward import Executor, ForwardModel, findings_at, on_cluster, takes_executor
@@ -79,9 +80,9 @@ def screen(
     (('a', 'b'), [1.0, 0.1])
     """
     check_model(NAME, model)
-    check_whole(NAME, "seed", seed, 0)
-    check_whole(NAME, "trajectories", trajectories, 2)
-    check_whole(NAME, "levels", levels, 2)
+    check_integer(NAME, "seed", seed, 0)
+    check_integer(NAME, "trajectories", trajectories, 2)
+    check_integer(NAME, "levels", levels, 2)
     if levels % 2:
         raise InputError(f"{NAME}: levels is {levels}; expected an even number, as 4")
     model = on_cluster(model, executor)

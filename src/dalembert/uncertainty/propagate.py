@@ -2,7 +2,8 @@
 
 from collections.abc import Mapping
 
-from dalembert.arguments import check_whole, takes_checked
+from dalembert.argument_readers import check_integer
+from dalembert.arguments import takes_checked
 from dalembert.errors import InputError
 from dalembert.findings import Finding
 from dalembert.forward import Executor, ForwardModel, clock, findings_at, on_cluster, takes_executor
@@ -69,7 +70,7 @@ def propagate(
     >>> bands.kind, bands.runs
     ('inner bound', 2)
     """
-    check_whole("propagate", "seed", seed, 0)
+    check_integer("propagate", "seed", seed, 0)
     model = on_cluster(model, executor)
     chosen, box = method_of(method), box_of(model, intervals)
     runs = Runs(model, box, label(chosen), on_event)

@@ -9,7 +9,7 @@ import numpy as np
 from dalembert.data import Bands
 from dalembert.findings import Finding
 from dalembert.forward.stored_coordinate import StoredCoordinate
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from dalembert.quantities import unit
 from dalembert.results import EndedResult
 from dalembert.stored_fields import Labels, OptionalTable, Over, StoredBox, Table

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from dalembert.arguments import check_model, check_whole, is_number, takes_checked
+from dalembert.argument_readers import check_integer, check_model
+from dalembert.arguments import is_number, takes_checked
 from dalembert.errors import InputError, SolveError, listed, shown
 from dalembert.findings import Finding
 from dalembert.forward import Executor, ForwardModel, findings_at, on_cluster, takes_executor
@@ -95,9 +96,9 @@ def global_sensitivity(
     [0.893, 0.107]
     """
     check_model(NAME, model)
-    check_whole(NAME, "seed", seed, 0)
+    check_integer(NAME, "seed", seed, 0)
     if checks is not None:
-        check_whole(NAME, "checks", checks, 2)
+        check_integer(NAME, "checks", checks, 2)
     if not is_number(tolerance) or not 0 < tolerance < 1:
         raise InputError(f"{NAME}: tolerance is {shown(tolerance)}; expected a number between 0 and 1")
     model = on_cluster(model, executor)

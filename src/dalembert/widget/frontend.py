@@ -10,7 +10,7 @@ import traitlets
 
 from dalembert.errors import DalembertError
 from dalembert.multibody import Trajectory
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from dalembert.report.player import BROWSER, LOOK, film_of
 from dalembert.report.sections.motion_sections import measured
 from dalembert.tables import shown

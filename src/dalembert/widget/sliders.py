@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dalembert.arguments import is_number, names_of
+from dalembert.argument_readers import names_of
+from dalembert.arguments import is_number
 from dalembert.errors import InputError, shown
 from dalembert.multibody import Trajectory, simulate
 from dalembert.parameters import Parameters

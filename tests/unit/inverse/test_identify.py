@@ -17,7 +17,7 @@ from dalembert.optimize import (
     ParticleSwarm,
     ResponseSensitivity,
 )
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from small_models import DECAY, LINE, TIMES, line, measured
 
 DESIGN = np.stack([line(1.0, 0.0), line(0.0, 1.0)], axis=-1).reshape(-1, 2)

@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 
 from dalembert.errors import InputError
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 from dalembert.report import charts
 from dalembert.report.charts.identification.intervals import end_deviations
 from dalembert.report.charts.identification.paving import planes, rectangles

@@ -5,7 +5,7 @@ import pytest
 from markupsafe import escape
 
 from dalembert.forward import PythonModel
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from dalembert.report import figures, report
 from dalembert.uncertainty import Propagation, global_sensitivity, propagate
 from pages import read_page

@@ -6,7 +6,8 @@ import pytest
 
 from dalembert.errors import InputError
 from dalembert.inverse import SearchIteration, StartEnd
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 from dalembert.report import charts
 from dalembert.report.charts.identification.identifiability import combination
 from dalembert.report.look import LIGHT

@@ -16,7 +16,8 @@ from dalembert.forward import PythonModel
 from dalembert.inverse import identify
 from dalembert.multibody import RevoluteJoint, RigidBar, System, simulate
 from dalembert.notebook_display import Displayed
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 from dalembert.report.look import themed
 from dalembert.report.notebook import Summary, shown_in_notebook
 from dalembert.report.notebook.figure import figure_svg

@@ -7,7 +7,8 @@ from functools import partial
 import numpy as np
 from scipy.special import chdtri, fdtri
 
-from dalembert.arguments import check_whole, names_of, takes_checked
+from dalembert.argument_readers import check_integer, names_of
+from dalembert.arguments import takes_checked
 from dalembert.data import Measurements
 from dalembert.errors import InputError
 from dalembert.forward import Executor, ForwardModel, check_derivatives, takes_executor
@@ -112,7 +113,7 @@ def profile(
     if fit is None:
         raise InputError("profile: no fit was given; give the one whose parameters are profiled, fit=...")
     fit.needs_one_run("profile")
-    check_whole("profile", "points", points, 4)
+    check_integer("profile", "points", points, 4)
     if "loss" in fit.provenance:
         raise InputError(
             f"profile: the fit has the loss {fit.provenance['loss']['name']!r}, whose minimum is no likelihood; fit "

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.arguments import numbers_of
+from dalembert.argument_readers import numbers_of
 from dalembert.errors import InputError, SolveError, StorageError, require_known, told
 from dalembert.forward import ForwardModel, check_derivatives
 from dalembert.inverse.problem.simulated import named

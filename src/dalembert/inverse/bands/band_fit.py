@@ -13,7 +13,7 @@ from dalembert.inverse.fit.stored_data import StoredBands
 from dalembert.inverse.fit.stored_search import History, Starts
 from dalembert.inverse.least_squares.estimate import Estimate, Identifiability
 from dalembert.inverse.least_squares.identifiable import unidentifiable
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from dalembert.quantities import unit
 from dalembert.results import EndedResult
 from dalembert.stored_fields import Labels, OptionalTable, Over, StoredBox, StoredParameters, Table

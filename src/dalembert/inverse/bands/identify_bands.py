@@ -6,7 +6,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.arguments import check_whole, takes_checked
+from dalembert.argument_readers import check_integer
+from dalembert.arguments import takes_checked
 from dalembert.data import Bands
 from dalembert.errors import InputError, require_known, shown
 from dalembert.forward import Executor, ForwardModel, clock, findings_at, on_cluster, takes_executor
@@ -108,7 +109,7 @@ def identify_bands(
     ([0.8], [1.2])
     """
     check_kinds("identify_bands", model, bands, Bands)
-    check_whole("identify_bands", "seed", seed, 0)
+    check_integer("identify_bands", "seed", seed, 0)
     began = clock(model)
     model, chosen = on_cluster(model, executor), _method(method)
     unknowns = unknowns_of(model.parameters, intervals)

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from dalembert.arguments import names_of
+from dalembert.argument_readers import names_of
 from dalembert.errors import InputError
 from dalembert.inverse.problem.search_coordinates import SearchCoordinates
 from dalembert.parameters import Parameters

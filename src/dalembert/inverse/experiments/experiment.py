@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dalembert.arguments import check_model, names_of
+from dalembert.argument_readers import check_model, names_of
 from dalembert.data import Measurements
 from dalembert.errors import InputError, require_known, shown
 from dalembert.forward import Coordinate, ForwardModel
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 
 
 @dataclass(frozen=True, eq=False)

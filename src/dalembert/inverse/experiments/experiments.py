@@ -29,7 +29,8 @@ from dalembert.forward import (
 )
 from dalembert.inverse.experiments.experiment import Experiment, ExperimentPart
 from dalembert.inverse.problem.matching import check_finite, check_samples, columns_of, weights_of
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 
 
 @dataclass(frozen=True, eq=False)

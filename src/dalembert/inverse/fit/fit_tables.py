@@ -11,7 +11,8 @@ from dalembert.inverse.fit.starts_table import starts_table
 from dalembert.inverse.misfit.halves import Halves
 from dalembert.inverse.problem.combinations import amounts
 from dalembert.inverse.problem.nodes import Nodes
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 from dalembert.tables import Cell, Table, cell, cells, counted, labelled, noted, shown
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.arguments import check_whole
+from dalembert.argument_readers import check_integer
 from dalembert.errors import InputError, SolveError, require_known, shown
 from dalembert.forward import check_derivatives
 from dalembert.inverse.identification.pose import PosedIdentification
@@ -80,14 +80,14 @@ def search_settings(
             f"method is {shown(method)}; expected LeastSquares(), ResponseSensitivity(), ParticleSwarm(), "
             f"ImprovedParticleSwarm(), Firefly(), or a Minimiser or its name{hint}"
         )
-    check_whole("identify", "seed", seed, 0)
+    check_integer("identify", "seed", seed, 0)
     squares = isinstance(method, Squares)
     if shooting is not None and not squares:
         raise InputError(
             f"shooting: method is {type(method).__name__}; multiple shooting is a way of least squares; leave one out"
         )
     starts = starts if starts is not None else 3 if shooting is not None else 8 if squares else 1
-    check_whole("identify", "starts", starts, 1)
+    check_integer("identify", "starts", starts, 1)
     if horizon is not None:
         require_known("horizon", str(horizon), HORIZONS)
     require_known("spread", str(spread), SPREADS)

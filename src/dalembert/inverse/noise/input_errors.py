@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.arguments import is_number, samples_of, takes_checked
+from dalembert.argument_readers import samples_of
+from dalembert.arguments import is_number, takes_checked
 from dalembert.errors import InputError, shown
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 
 WIDEST = 6.0
 """Bounds of an error, in standard deviations."""

@@ -17,7 +17,8 @@ from dalembert.inverse.noise.likelihood.likelihood import Likelihood, likelihood
 from dalembert.inverse.noise.likelihood.placing import Noise
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import pose
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 from dalembert.priors import AnyPrior, LogUniform
 
 

@@ -17,7 +17,8 @@ from dalembert.inverse.posterior.unbounded import UnboundedCoordinates
 from dalembert.inverse.problem.prior import ALONE
 from dalembert.inverse.problem.prior_conflicts import prior_conflicts
 from dalembert.inverse.problem.simulated import named
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 
 CLOSE = 0.02  # distance to a bound, relative to that of the bounds, that counts as at the bound
 PILED = 0.1  # part of the draws at a bound from which the bound decides; for a flat posterior it is 0.02

@@ -6,7 +6,7 @@ from threading import Lock
 
 from numpy.typing import ArrayLike
 
-from dalembert.arguments import check_whole
+from dalembert.argument_readers import check_integer
 from dalembert.data import Measurements
 from dalembert.forward import Executor, ForwardModel, takes_executor
 from dalembert.inverse.events import Drawn, OnEvent
@@ -141,7 +141,7 @@ def _length(chains: int, draws: int, warmup: int, seed: int, blocks: int) -> Len
     least = {"seed": 0, "blocks": 2}
     counts = {"chains": chains, "draws": draws, "warmup": warmup, "seed": seed, "blocks": blocks}
     for name, number in counts.items():
-        check_whole("sample", name, number, least.get(name, 1))
+        check_integer("sample", name, number, least.get(name, 1))
     return Length(chains, draws, warmup, seed)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.linalg import cho_factor, cho_solve, solve_triangular
 
-from dalembert.arguments import check_whole, names_of
+from dalembert.argument_readers import check_integer, names_of
 from dalembert.data import Measurements
 from dalembert.errors import InputError, SolveError, counted, listed, require_known
 from dalembert.findings import Finding
@@ -127,7 +127,7 @@ def regularise(
     penalty = differences(np.array([names.index(name) for name in chosen]), len(names), order)
     first = model.parameters.start if start is None else start
     vector = model.parameters.real_vector(first)  # pyright: ignore[reportArgumentType]
-    check_whole("regularise", "rounds", rounds, 1)
+    check_integer("regularise", "rounds", rounds, 1)
     return _identified(problem, vector, penalty, chosen, weight, rounds)
 
 

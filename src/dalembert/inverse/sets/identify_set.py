@@ -5,7 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.arguments import check_whole, numbers_of, takes_checked
+from dalembert.argument_readers import check_integer, numbers_of
+from dalembert.arguments import takes_checked
 from dalembert.data import Measurements
 from dalembert.errors import InputError, require_known
 from dalembert.forward import Executor, ForwardModel, clock, findings_at, on_cluster, takes_executor
@@ -102,8 +103,8 @@ def identify_set(
     rate [0.946996, 1.05604]
     """
     check_kinds("identify_set", model, data)
-    check_whole("identify_set", "seed", seed, 0)
-    check_whole("identify_set", "most_boxes", most_boxes, 1)
+    check_integer("identify_set", "seed", seed, 0)
+    check_integer("identify_set", "most_boxes", most_boxes, 1)
     began = clock(model)
     model = on_cluster(model, executor)
     columns = columns_of(model, data)

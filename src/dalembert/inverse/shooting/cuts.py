@@ -11,7 +11,8 @@ from dalembert.forward import StateChart, restarted
 from dalembert.inverse.experiments.tracks import Track
 from dalembert.inverse.problem.problem import MisfitProblem
 from dalembert.inverse.shooting.segments import Piece, Segments, ShootingState
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 
 TURN = 2 * np.pi
 

@@ -9,7 +9,7 @@ from scipy.optimize import root_scalar
 from scipy.special import chdtrc, chdtri
 
 import dalembert
-from dalembert.arguments import names_of
+from dalembert.argument_readers import names_of
 from dalembert.errors import InputError, listed, require_known, shown
 from dalembert.findings import Finding
 from dalembert.inverse.fit.fit import Fit, check_level

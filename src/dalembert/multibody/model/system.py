@@ -3,7 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar, TypeVar
 
-from dalembert.arguments import is_number, names_of
+from dalembert.argument_readers import names_of
+from dalembert.arguments import is_number
 from dalembert.errors import InputError, ModelError, require_known, shown
 from dalembert.findings import Finding
 from dalembert.multibody.components.base_body import BaseBody

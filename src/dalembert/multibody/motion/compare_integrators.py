@@ -10,7 +10,8 @@ from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
-from dalembert.arguments import names_of, takes_checked
+from dalembert.argument_readers import names_of
+from dalembert.arguments import takes_checked
 from dalembert.errors import DalembertError, InputError
 from dalembert.forward import Checkpoint
 from dalembert.multibody.integrators.shared.integrator import Integrator

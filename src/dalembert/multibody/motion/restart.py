@@ -17,7 +17,8 @@ from dalembert.multibody.model.fingerprint import fingerprint
 from dalembert.multibody.model.lowered import Lowered, scales
 from dalembert.multibody.motion.local_coordinates import LocalCoordinates, coordinate_names
 from dalembert.multibody.motion.motion_model import BuiltModel, MotionModel
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 
 _ANGLES_FIRST = 4.0
 """Weight of angles among the coordinates that are chosen: a pendulum's is independent at each of its positions."""

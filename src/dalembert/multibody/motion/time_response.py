@@ -9,7 +9,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.arguments import names_of
+from dalembert.argument_readers import names_of
 from dalembert.errors import InputError, ModelError, SolveError, require_known
 from dalembert.findings import Finding
 from dalembert.forward import Refinement, StateChart, error_factor
@@ -28,7 +28,8 @@ from dalembert.multibody.motion.skipped_samples import late_samples, skipped_sam
 from dalembert.multibody.motion.slip_rates import rubbing
 from dalembert.multibody.start.assemble import assembled
 from dalembert.multibody.start.start_findings import joined, start_findings
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 
 _MOST_STEPS = 1e9  # hours, even of the smallest mechanisms
 _QUICK_STEPS = 1e5  # of a motion at other times, which only shows how fast it is

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from dalembert.arguments import names_of
+from dalembert.argument_readers import names_of
 from dalembert.contents import Contents
 from dalembert.errors import require_known
 from dalembert.files import write_contents

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dalembert.arguments import names_of
+from dalembert.argument_readers import names_of
 from dalembert.kernels.preparation import prepare
 from dalembert.multibody.model.drawing import Drawing, draw
 from dalembert.multibody.model.lowered import Lowered

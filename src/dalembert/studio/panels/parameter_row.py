@@ -8,7 +8,7 @@ from html import escape
 from nicegui import events, ui
 
 from dalembert.errors import InputError
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from dalembert.report.charts.drawing import colour_of
 from dalembert.studio.editor.entries import DIGITS
 from dalembert.units import is_quantity, si

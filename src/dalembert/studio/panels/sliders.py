@@ -8,7 +8,7 @@ from typing import Any
 
 from nicegui import background_tasks, ui
 
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from dalembert.studio.editor.chosen_values import unit_in, use_as_start, use_as_value
 from dalembert.studio.editor.draft import Draft
 from dalembert.studio.frame import button, complaints

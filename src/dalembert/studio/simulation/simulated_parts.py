@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dalembert.errors import InputError, require_known
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 
 if TYPE_CHECKING:
     from dalembert.data import Measurements

@@ -17,13 +17,13 @@ from pydantic import (
     WrapValidator,
 )
 
-from dalembert.arguments import is_whole
+from dalembert.arguments import is_integer
 from dalembert.data.known_formats import known_formats
 from dalembert.data.record import FIRST, beginning
 from dalembert.errors import repeated, unknown
 from dalembert.forward import Sensor
 from dalembert.forward.sensors import START
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from dalembert.study.tables.sensor_table import SensorTable, reads
 from dalembert.study.text.numbers import Number, Samples, Seconds, fixed, pair, read_number
 from dalembert.study.text.table import Context, Read, StudyTable, alternative, checked, problem
@@ -54,7 +54,7 @@ def is_universal(file: Path, form: str | None) -> bool:
 
 
 def _read_column(value: Any) -> str | int:
-    if isinstance(value, str) or (is_whole(value) and value >= 1):
+    if isinstance(value, str) or (is_integer(value) and value >= 1):
         return value
     raise problem(f"{value!r} was given; expected the name of a column in quotes, or its number from 1")
 

@@ -8,7 +8,8 @@ from typing import Any
 from pydantic import Field, ValidationInfo
 
 from dalembert.errors import InputError
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 from dalembert.study.tables.priors import CorrelationTable, PriorTable, prior
 from dalembert.study.text.expressions import OF_BOUNDS, RESERVED, Expression, kind_of
 from dalembert.study.text.numbers import read_number

@@ -9,7 +9,7 @@ import numpy as np
 from dalembert.errors import DataError, InputError
 from dalembert.forward import ForwardModel, Sensor, Sensors
 from dalembert.forward.sensors import QUANTITIES, reading_parameter
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from dalembert.study.tables.data_table import DataTable
 from dalembert.study.tables.sensor_table import SensorTable
 from dalembert.study.tables.study import Study

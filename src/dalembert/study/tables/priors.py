@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field
 
 from dalembert.errors import unknown
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from dalembert.priors import CorrelatedNormal, HalfNormal, LogNormal, LogUniform, Normal, Prior, Uniform
 from dalembert.study.text.table import StudyTable
 

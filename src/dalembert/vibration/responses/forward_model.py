@@ -8,14 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from dalembert.arguments import names_of, samples_of
+from dalembert.argument_readers import names_of, samples_of
 from dalembert.errors import InputError, ModelError, SolveError, require_known, told
 from dalembert.findings import Finding
 from dalembert.forward import Channel, Coordinate, Refinement, Responses, ensemble, error_factor
 from dalembert.forward.builders import built, check_function, cores, inexact, restructured
 from dalembert.forward.complex_steps import Compared
 from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES, central_differences
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 from dalembert.threads import single_thread
 from dalembert.units import unit_of
 from dalembert.vibration.balance.equations import Equations, equations

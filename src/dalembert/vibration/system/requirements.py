@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dalembert.arguments import numbers_of
+from dalembert.argument_readers import numbers_of
 from dalembert.errors import InputError
 from dalembert.structure import Structure
 

@@ -19,7 +19,7 @@ from dalembert.inverse import (
     identifiability,
     identify,
 )  # fmt: skip
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from small_models import LINE, TIMES, measured
 from support import says
 

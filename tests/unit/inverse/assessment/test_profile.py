@@ -13,7 +13,7 @@ from dalembert.data import Measurements
 from dalembert.errors import InputError
 from dalembert.forward import PythonModel
 from dalembert.inverse import Experiment, Profiles, identify, profile
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from small_models import DECAY, LINE, TIMES, measured
 from support import says
 

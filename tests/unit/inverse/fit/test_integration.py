@@ -6,7 +6,7 @@ import pytest
 from dalembert.data import Measurements
 from dalembert.forward import Checkpoint, PythonModel, Recorded, Sensor, Sensors
 from dalembert.inverse import Experiment, Fit, MultipleShooting, ShootingState, identify
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from stepped_models import STEPPED_BOX, TIMES, TRUTH, Stepped, decay_in_steps, exact, failing, marked, quick_in_steps
 
 

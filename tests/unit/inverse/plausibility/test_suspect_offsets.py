@@ -6,7 +6,8 @@ import pytest
 from dalembert.data import Measurements
 from dalembert.forward import Channel, PythonModel
 from dalembert.inverse.plausibility.suspect_offsets import first_findings
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 
 TIMES = np.linspace(0, 4, 81)
 SWING = 0.5 * np.exp(-0.2 * TIMES) * np.cos(3 * TIMES)

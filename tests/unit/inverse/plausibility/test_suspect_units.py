@@ -9,7 +9,7 @@ import dalembert as da
 from dalembert.data import Measurements
 from dalembert.forward import Channel, PythonModel
 from dalembert.inverse import Experiment, identify
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 
 TIMES = np.linspace(0, 4, 81)
 DEGREE = np.pi / 180

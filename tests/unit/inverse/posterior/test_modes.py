@@ -10,7 +10,7 @@ from inline_snapshot import snapshot
 from dalembert.data import Measurements
 from dalembert.forward import Checkpoint, PythonModel, Recorded
 from dalembert.inverse import NUTS, AffineInvariant, DelayedAcceptance, Posterior, identify, sample
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from dalembert.priors import Normal
 from dalembert.surrogate import TotalDegree
 from posterior_models import DECAY, DECAYED

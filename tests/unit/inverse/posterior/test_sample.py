@@ -25,7 +25,7 @@ from dalembert.inverse import (
     sample,
 )  # fmt: skip
 from dalembert.inverse.posterior.convergence import convergence, ended
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from dalembert.priors import CorrelatedNormal, Normal, Uniform
 from dalembert.surrogate import TotalDegree
 from posterior_models import DECAY, DECAYED, DESIGN, SIGMA, TIMES, line, measured

@@ -8,7 +8,8 @@ from dalembert.inverse.posterior.posed import with_priors
 from dalembert.inverse.posterior.prior_density import PriorDensity
 from dalembert.inverse.posterior.target import Target
 from dalembert.inverse.posterior.unbounded import UnboundedCoordinates
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 from dalembert.priors import CorrelatedNormal, HalfNormal, LogNormal, LogUniform, Normal
 from posterior_models import DECAY, measured
 

@@ -10,7 +10,8 @@ from dalembert.errors import InputError
 from dalembert.forward import PythonModel
 from dalembert.inverse import identify
 from dalembert.inverse.problem.prior import prior_residual, prior_slopes
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 from dalembert.priors import AnyPrior, CorrelatedNormal, HalfNormal, LogNormal, Normal, Uniform
 
 TIMES = np.linspace(0.0, 1.0, 6)

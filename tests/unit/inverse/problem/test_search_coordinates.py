@@ -5,7 +5,8 @@ import pytest
 
 from dalembert.errors import InputError
 from dalembert.inverse.problem.search_coordinates import SearchCoordinates
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 
 BOX = Parameters(
     (

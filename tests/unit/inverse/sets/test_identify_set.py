@@ -11,7 +11,7 @@ from dalembert.errors import DataError, InputError
 from dalembert.findings import Finding
 from dalembert.forward import PythonModel
 from dalembert.inverse import ParameterSet, as_record, identify_set
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from dalembert.surrogate import Adaptive, Tensor
 from small_models import DECAY, LINE, TIMES, measured
 from support import says

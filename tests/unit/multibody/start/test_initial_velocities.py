@@ -6,7 +6,7 @@ import pytest
 import dalembert.multibody as mb
 from dalembert.errors import ModelError
 from dalembert.multibody.start.assemble import assembled
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 
 AT_START = np.array([0.0, 1e-3])
 

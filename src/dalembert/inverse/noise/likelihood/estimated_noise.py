@@ -9,7 +9,8 @@ import numpy as np
 from dalembert.inverse.noise.correlation.series import Series
 from dalembert.inverse.noise.models.noise_catalogue import as_table, from_table
 from dalembert.inverse.noise.models.noise_model import NoiseModel
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 from dalembert.stored_fields import Over, Source, Store, encoded
 
 

@@ -14,7 +14,8 @@ from dalembert.inverse.noise.models.independent_noise import ConstantNoise, Know
 from dalembert.inverse.noise.models.noise_catalogue import noise_model
 from dalembert.inverse.noise.models.noise_model import Extent, NoiseModel
 from dalembert.inverse.problem.problem import MisfitProblem
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameter import Parameter
+from dalembert.parameters import Parameters
 
 Noise: TypeAlias = NoiseModel | str | Mapping[str, NoiseModel | str] | EstimatedNoise
 """One noise model for all channels, one for each by name, or those of a fit, whose orders are chosen."""

@@ -13,7 +13,7 @@ from dalembert.inverse.noise.correlation.whiteness import lagged, on_grid, pairs
 from dalembert.inverse.noise.models.independent_noise import ConstantNoise
 from dalembert.inverse.noise.models.noise_model import Extent, Known, NoiseModel, check_known, noise_parameter
 from dalembert.inverse.noise.models.whitening import DecayWhitening, GridWhitening, Whitening, correlations_of
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 
 LARGEST = 0.9999
 """Largest partial autocorrelation."""

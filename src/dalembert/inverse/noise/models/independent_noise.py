@@ -8,7 +8,7 @@ import numpy as np
 
 from dalembert.inverse.noise.correlation.series import Series
 from dalembert.inverse.noise.models.noise_model import Extent, Known, NoiseModel, check_known, noise_parameter
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 
 BOUNDS = 1e-9, 10.0
 """Bounds of a deviation, relative to the size of the data or of the response."""

@@ -10,7 +10,7 @@ from dalembert.arguments import Checked
 from dalembert.errors import InputError, shown
 from dalembert.inverse.noise.correlation.series import Series
 from dalembert.inverse.noise.models.whitening import Whitening
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 
 Known = float | tuple[float, float] | None
 """A parameter of the noise: its value, its bounds, or None for bounds that follow from the data."""

@@ -8,7 +8,7 @@ import pytest
 import dalembert.multibody as mb
 import dalembert.multibody.spatial as sp
 from dalembert.multibody.model.lowering import lower
-from dalembert.parameters import Parameter
+from dalembert.parameter import Parameter
 from slopes import errors
 from spatial_scenes import SCENES, fields_of, numbers_of
 

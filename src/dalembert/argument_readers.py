@@ -1,0 +1,80 @@
+"""Readers of single arguments: names, numbers, samples, models and counts, each with its error."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from dalembert.arguments import is_integer
+from dalembert.errors import InputError, shown
+
+
+def names_of(entries: str | Iterable[str], owner: str, what: str) -> tuple[str, ...]:
+    """Names from a sequence of them, or from a single one.
+
+    Examples
+    --------
+    >>> names_of("rod.end.x", "TimeResponse", "channels"), names_of(["a", "b"], "TimeResponse", "channels")
+    (('rod.end.x',), ('a', 'b'))
+    """
+    if isinstance(entries, str):
+        return (str(entries),)
+    names = tuple(entries) if isinstance(entries, Iterable) else ()
+    if not isinstance(entries, Iterable) or not all(isinstance(name, str) for name in names):
+        wrong = next((name for name in names if not isinstance(name, str)), entries)
+        raise InputError(f"{owner}: {what} is {shown(wrong)}; expected names, such as ['AB.end.x', 'AB.end.y']")
+    return tuple(map(str, names))
+
+
+def numbers_of(numbers: Any, owner: str, what: str) -> np.ndarray:
+    """Real numbers as an array of floats.
+
+    >>> numbers_of([1, 2], "design", "deviations")
+    array([1., 2.])
+    >>> numbers_of("many", "design", "deviations")
+    Traceback (most recent call last):
+    dalembert.errors.InputError: design: deviations is 'many'; expected real numbers
+    """
+    try:
+        if numbers is not None and not isinstance(numbers, str | bytes):
+            return np.array(numbers, dtype=object).astype(float)
+    except (TypeError, ValueError):
+        pass
+    raise InputError(f"{owner}: {what} is {shown(numbers)}; expected real numbers")
+
+
+def samples_of(values: Any, owner: str, what: str) -> np.ndarray:
+    """Real numbers as an array (samples,) of at least one.
+
+    >>> samples_of(3.5, "PythonModel", "samples")
+    Traceback (most recent call last):
+    dalembert.errors.InputError: PythonModel: samples is 3.5; expected a list of real numbers
+    """
+    numbers = np.zeros(0) if np.ndim(values) != 1 else numbers_of(values, owner, what)
+    if not len(numbers):
+        raise InputError(f"{owner}: {what} is {shown(values)}; expected a list of real numbers")
+    return numbers
+
+
+def check_model(owner: str, model: Any) -> None:
+    """Raise unless something may be a forward model; its channels are not looked at, as they may take long.
+
+    >>> check_model("Sensors", 3.5)
+    Traceback (most recent call last):
+    dalembert.errors.InputError: Sensors: model is 3.5; expected a forward model, such as TimeResponse or PythonModel
+    """
+    if not (hasattr(type(model), "evaluate") and hasattr(model, "parameters")):
+        raise InputError(
+            f"{owner}: model is {shown(model)}; expected a forward model, such as TimeResponse or PythonModel"
+        )
+
+
+def check_integer(owner: str, name: str, value: Any, least: int) -> None:
+    """Raise unless a value is a whole number of at least ``least``.
+
+    >>> check_integer("identify", "starts", 2.5, 1)
+    Traceback (most recent call last):
+    dalembert.errors.InputError: identify: starts is 2.5; expected a whole number, at least 1
+    """
+    if not is_integer(value) or value < least:
+        raise InputError(f"{owner}: {name} is {shown(value)}; expected a whole number, at least {least}")

@@ -7,7 +7,7 @@ import numpy as np
 from dalembert.errors import SolveError
 from dalembert.findings import Finding
 from dalembert.inverse.identification.assess import Optimum
-from dalembert.inverse.misfit.delays import delay_findings
+from dalembert.inverse.misfit.delays import SuspectDelay, delay_findings
 from dalembert.inverse.mistakes.clocks import RESOLUTION, clocks
 from dalembert.inverse.mistakes.hypotheses import HYPOTHESES
 from dalembert.inverse.mistakes.record import NONE, FittedRecord, Mistake, Verdict
@@ -62,8 +62,10 @@ def record_mistakes(optimum: Optimum) -> Iterator[Finding]:
     mistakes = tuple(mistake_findings(record, vectors))
     late = [finding for finding in mistakes if finding.code in CLOCKS]
     if late:
-        linear_range = min(clock.period for clock in clocks(record, channels=False)) / RESOLUTION
+        period = min(clock.period for clock in clocks(record, channels=False))
+        linear_range = period / RESOLUTION
         left = min((1 - item.explained for item in causes.delays if abs(item.delay) < linear_range), default=np.inf)
+        late = [finding for finding in late if not _is_alias(finding, causes.delays, period)]
         if any(1 - finding.values["explained"] < BETTER * left for finding in late):
             delays = ()
         else:
@@ -102,6 +104,13 @@ def mistake_findings(record: FittedRecord, vectors: Sequence[np.ndarray]) -> Ite
         if np.isfinite(supposed.number) and abs(supposed.number) < supposed.mistake.least:
             continue
         yield supposed.mistake.finding(Verdict(supposed.number, 1 - supposed.ratio))
+
+
+def _is_alias(finding: Finding, delays: Sequence[SuspectDelay], period: float) -> bool:
+    """Return True if a shift of the times differs by whole periods from a delay that explains the residuals."""
+    shift = finding.values.get("delay", np.nan)
+    periods = [(shift - item.delay) / period for item in delays if item.explained > EXPLAINS]
+    return any(abs(number - round(number)) < 1 / RESOLUTION for number in periods if abs(number) > 0.5)
 
 
 def _explains(supposed: Supposed, usual: float) -> bool:

@@ -94,7 +94,7 @@ class Split:
 
 
 def split(problem: MisfitProblem, validation: HeldOut) -> Split:
-    """A problem without a share of its last samples, or without some of its experiments after their first parts."""
+    """A problem without a share of its last samples, or without some experiments after their first parts."""
     everything = np.ones(problem.weights.shape, dtype=bool)
     if validation is None:
         return Split(problem, problem, everything, "nothing")

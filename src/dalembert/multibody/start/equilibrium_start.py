@@ -82,10 +82,11 @@ def resting_place(lowered: Lowered) -> tuple[np.ndarray, int]:
                     total += iterations
                     if x is not None:
                         return x, total
+                loaded = lowered.structure.owners[int(np.argmax(np.abs(start[: lowered.structure.n])))]
                 raise lowered.failures.after(0.0) or SolveError(
-                    f"no equilibrium was found: Newton's method stopped at {100 * reached:.3g} % of the loads. A "
-                    "motion may be free of stiffness (add a joint or a spring), or the first placement is far from "
-                    "the equilibrium"
+                    f"no equilibrium was found: Newton's method stopped at {100 * reached:.3g} % of the loads, the "
+                    f"largest of which acts on {loaded!r}. A motion may be free of stiffness (add a joint or a "
+                    "spring), or the first placement is far from the equilibrium"
                 )
             continue
         x, reached, fraction = found, aim, 2 * fraction

@@ -144,7 +144,7 @@ def test_a_stated_velocity_contradicts_rest() -> None:
 def test_a_body_without_support_has_no_rest() -> None:
     system = System(start="equilibrium")
     system.add(PointMass("bob", mass=1.0, position=(0.0, 0.0)))
-    with pytest.raises(SolveError, match="no equilibrium was found.*largest of which acts on 'bob'"):
+    with pytest.raises(SolveError, match=r"no equilibrium was found.*largest of which acts on 'bob'"):
         simulate(system, 1.0)
 
 

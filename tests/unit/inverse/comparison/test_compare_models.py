@@ -58,13 +58,17 @@ def test_the_model_of_the_data_predicts_best():
     assert found.akaike_weights[0] > 0.99
     assert found.difference[1] < -2 * found.difference_deviation[1]
     assert found.summary() == snapshot("""\
-model     parameters  rms        AICc      BIC       elpd      difference  ± deviation
-──────────────────────────────────────────────────────────────────────────────────────
-parabola  4           0.0944369  -143.897  -134.846  70.3005
-line      3           0.176296   -44.9856  -38.114   -8.46516  -78.8       23.6
+model     parameters  rms residual  AIC       AICc      BIC       elpd      difference  deviation of the difference
+───────────────────────────────────────────────────────────────────────────────────────────────────────────────────
+parabola  4           0.0944369     −144.423  −143.897  −134.846  70.3005   0           0
+line      3           0.176296      −45.2973  −44.9856  −38.114   −8.46516  −78.77      24
 
-elpd         leave-out predictions of the linearised models; left out: blocks of neighbouring samples
-values       81
+best               parabola
+models             2
+values             81
+elpd               leave-out predictions of the linearised models
+left out together  blocks of neighbouring samples
+
 'parabola' predicts best: its log predictive density is larger than that of the next, 'line', by 78.8 ± 23.6.
 The residuals of 'line' are correlated. AIC, AICc and BIC take values for independent, so their differences are too large.
 Only 5 groups were left out: the standard deviation of a difference is uncertain. Leave out more, smaller groups.\

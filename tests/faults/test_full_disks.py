@@ -109,17 +109,14 @@ ROOMS = {
 
 @pytest.mark.parametrize(
     "room",
-    [
-        scratch if scratch == "for a part of the checkpoint" else pytest.param(scratch, marks=pytest.mark.slow)
-        for scratch in ROOMS
-    ],
+    [room if room == "for a part of the checkpoint" else pytest.param(room, marks=pytest.mark.slow) for room in ROOMS],
 )
-def test_without_room_there_is_a_sentence_and_a_way_on(scratch, tmp_path, undisturbed):
-    size, name, reason = ROOMS[scratch]
+def test_without_room_there_is_a_sentence_and_a_way_on(room, tmp_path, undisturbed):
+    size, name, reason = ROOMS[room]
     written(tmp_path)
     limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))  # noqa: E731
     code, said = command(tmp_path, "run", "study.toml", "--out", "run", before=limit)
-    told = NOT_BEGUN if scratch == "for nothing" else TOLD
+    told = NOT_BEGUN if room == "for nothing" else TOLD
     assert (code, said) == (1, name + told.format(reason=reason))
     ends_as(tmp_path, undisturbed)
 

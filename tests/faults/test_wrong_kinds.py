@@ -135,8 +135,8 @@ CASES: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
             **dict(name="k", lower=0.0, upper=1.0, unit="m", scale=None, start=None, log=None, deviation=None),
         },
     ),
-    "Parameters.of": (da.Parameters.of, {"given": {"k": (0.0, 1.0)}}),
-    "Experiment": (da.Experiment, {"name": "A", "model": MODEL, "data": DATA, "own": ()}),
+    "Parameters.of": (da.Parameters.of, {"parameters": {"k": (0.0, 1.0)}}),
+    "Experiment": (da.Experiment, {"name": "A", "model": MODEL, "data": DATA, "local": ()}),
     "Sensors": (da.Sensors, {"model": MODEL, "sensors": {"x": da.Sensor(gain=(0.5, 2.0))}, "times": None}),
     "Measurements.of": (
         da.Measurements.of,
@@ -145,7 +145,7 @@ CASES: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
     "Bands.of": (da.Bands.of, {"coordinate": TIMES, "channels": {"x": (decay(1.4), decay(1.2))}}),
     "Interval": (da.Interval, {"lower": 0.0, "upper": 1.0}),
     "Interval.about": (da.Interval.about, {"middle": 1.0, "radius": 0.1}),
-    "Box.of": (da.Box.of, {"given": BOX}),
+    "Box.of": (da.Box.of, {"intervals": BOX}),
     "evaluate": (MODEL.evaluate, {"vectors": [[1.0]]}),
     "jacobian": (MODEL.jacobian, {"vector": [1.0]}),
     "evaluate a motion": (MOTION.evaluate, {"vectors": [[1.0]]}),
@@ -165,10 +165,10 @@ CASES: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
 }
 OTHER_WORDS = {
     "Bands.of: coordinate": ("the time", "one value a time"),
-    "Box.of: given": ("intervals are",),
+    "Box.of: intervals": ("intervals are",),
     "GeneralizedAlpha: newton_tolerance": ("Newton's iteration did not converge",),  # so large a tolerance
     "Measurements.of: coordinate": ("the time", "one value a time"),
-    "Parameters.of: given": ("parameters are",),
+    "Parameters.of: parameters": ("parameters are",),
     "TimeResponse: builder": ("the model's function",),
     "compare: reference": ("method",),
     "equilibrium: system": ("the mechanism",),

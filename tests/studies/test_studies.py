@@ -35,7 +35,7 @@ def found(study: Study, outcome: Outcome, row: dict[str, Any]) -> float:
     quantity = row["quantity"]
     match study.task:
         case "identify" if "of" in row:
-            population = getattr(outcome, "told")["population"]  # noqa: B009
+            population = getattr(outcome, "further_results")["population"]  # noqa: B009
             return float(getattr(population, quantity)[population.names.index(row["of"])])
         case "identify" if quantity.startswith("noise."):
             return getattr(outcome, "result").noise.estimates[quantity]  # noqa: B009

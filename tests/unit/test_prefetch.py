@@ -15,7 +15,7 @@ import pytest
 import dalembert as da
 from dalembert.errors import InputError
 from dalembert.forward import PythonModel, ensembles, prefetch, prefetched
-from dalembert.forward.cluster import Sender, packed
+from dalembert.forward.cluster import Received, Sender, packed
 from dalembert.study import RunFolder, load, run_study
 from dalembert.threads import with_threads
 from faults.kills import content, kinds
@@ -223,7 +223,7 @@ def test_sums_are_ordered_on_a_worker_as_they_are_here(model):
         with with_threads(number):
             wanted = np.array([1.0, numbers @ numbers * 1e-9])
             sender = Sender()
-        asked_there = partial(prefetch._answers, packed((work, answering, [answers])))
+        asked_there = Received(packed(partial(prefetch._answers, packed((work, answering, [answers])))))
         ((asked,),) = ensembles._done(asked_there, numbers, sender)
         assert asked == ("linearise", len(TIMES), wanted.tobytes())
     assert not answers

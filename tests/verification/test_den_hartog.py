@@ -91,7 +91,7 @@ def test_the_reference_is_den_hartogs_closed_form_where_nothing_stops(friction: 
 def test_the_amplitude_is_right_to_half_a_percent_or_refused(record_evidence, kind: str) -> None:
     accepted, errors = 0, []
     for friction, ratio in GRID:
-        curve = response(friction, ratio, Rigid(kind=kind))
+        curve = response(friction, ratio, Rigid(prediction=kind))
         if curve.success:
             accepted += 1
             errors.append(abs(curve.amplitude("m")[0] / exact(friction, ratio)[0] - 1))

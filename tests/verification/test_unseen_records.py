@@ -9,7 +9,11 @@ from unseen_records import CASES, MOTIONS, row, table
 
 TOPIC = "Statistics of estimates"
 SOURCE = "synthetic records drawn by seed, tests/unseen_records.py"
-FEW = [("right", seed) for seed in range(4)] + [(case, seed) for case in ("unit", "delay", "model") for seed in (2, 9)] + [("delay", 6)]
+FEW = (
+    [("right", seed) for seed in range(4)]
+    + [(case, seed) for case in ("unit", "delay", "model") for seed in (2, 9)]
+    + [("delay", 6)]
+)
 
 
 def judged(record_evidence, rows):

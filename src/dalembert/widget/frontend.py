@@ -11,7 +11,8 @@ import traitlets
 from dalembert.errors import DalembertError
 from dalembert.multibody import Trajectory
 from dalembert.parameter import Parameter
-from dalembert.report.player import BROWSER, LOOK, film_of
+from dalembert.report.player import BROWSER, LOOK
+from dalembert.report.player.film import film_of
 from dalembert.report.sections.motion_sections import measured
 from dalembert.tables import shown
 from dalembert.widget.sliders import Source

@@ -13,7 +13,7 @@ from dalembert.arguments import is_number
 from dalembert.errors import InputError, shown
 from dalembert.multibody import Trajectory, simulate
 from dalembert.parameters import Parameters
-from dalembert.report.player import frames
+from dalembert.report.player.film import frames
 from dalembert.studio.simulation.simulated_parts import last_time
 from dalembert.study import load
 from dalembert.study.tables.study import Study

@@ -9,7 +9,7 @@ import pytest
 import dalembert.multibody.spatial as sp
 from dalembert.multibody.motion.sketch import sketch
 from dalembert.report.pictures.svg import scene_picture
-from dalembert.report.player import encoded
+from dalembert.report.player.film import encoded
 from dalembert.report.scene.mechanism import mechanism_scene
 from dalembert.report.scene.scene import MOST_LABELS, Label, readable
 from dalembert.report.scene.structure import structure_scene

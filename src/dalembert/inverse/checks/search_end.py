@@ -41,7 +41,10 @@ def search_end(optimum: Optimum) -> Iterator[Finding]:
         yield Finding("starts-at-best", "note", {"at_best": at_best, "starts": len(misfits)}, message)
     if (nodes := best.nodes) is not None:
         values = {"segments": nodes.segments, "gap": nodes.gap, "growth": nodes.growth}
-        yield Finding("segments-merged" if nodes.segments == 1 else "segments-separate", "note", values, str(nodes))
+        if nodes.segments == 1:
+            yield Finding("segments-merged", "note", values, str(nodes))
+        else:
+            yield Finding("segments-separate", "note", values, str(nodes))
     yield from failed_simulations(problem.journal.failures)
     if problem.loss is not None:
         plain = (np.sqrt(problem.weights) * problem.unweighted_residual(response)).ravel()

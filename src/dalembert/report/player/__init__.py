@@ -3,11 +3,8 @@
 from pathlib import Path
 
 from dalembert.report.pictures.canvas import COLOURS, INK
-from dalembert.report.player.film import encoded, film_of, frames
 
 LOOK = {"series": list(COLOURS), "ink": INK, "paper": "#fffffe"}
 """Colours of the player, readable on a light and on a dark page."""
 BROWSER = Path(__file__).with_name("browser")
 """Folder of the JavaScript: ``index.js`` plays, ``space.js`` draws a scene in space."""
-
-__all__ = ["BROWSER", "LOOK", "encoded", "film_of", "frames"]

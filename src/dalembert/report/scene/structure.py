@@ -1,13 +1,15 @@
 """The scene of a structure: its mesh with forces and contacts, or a row of masses and springs."""
 
 from collections.abc import Container, Iterator, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.sparse import issparse
 
 from dalembert.report.scene.scene import Label, Primitive, Scene, readable
-from dalembert.vibration import FrictionContact, VibrationSystem
+
+if TYPE_CHECKING:
+    from dalembert.vibration import VibrationSystem
 
 MOST_MASSES = 12
 """Masses of a row."""
@@ -16,7 +18,7 @@ SHARP = 0.8
 """Cosine of the angle between the normals of two faces below which their common edge is drawn."""
 
 
-def structure_scene(system: VibrationSystem, channels: Sequence[str] = ()) -> Scene | None:
+def structure_scene(system: "VibrationSystem", channels: Sequence[str] = ()) -> Scene | None:
     """Return the scene of a structure; None where neither positions of nodes nor few masses are known.
 
     ``channels`` are degrees of freedom or nodes that are observed.
@@ -28,7 +30,7 @@ def structure_scene(system: VibrationSystem, channels: Sequence[str] = ()) -> Sc
     return _row(system, masses, channels) if len(masses) <= MOST_MASSES else None
 
 
-def _mesh(system: VibrationSystem, channels: Sequence[str]) -> Scene:
+def _mesh(system: "VibrationSystem", channels: Sequence[str]) -> Scene:
     """Faces and sharp edges of a structure, or its nodes; contacts, springs, observed nodes and forces at nodes."""
     nodes = system.structure.nodes
     assert nodes is not None
@@ -62,7 +64,7 @@ def _mesh(system: VibrationSystem, channels: Sequence[str]) -> Scene:
     return Scene(tuple(shapes), readable(labels))
 
 
-def _row(system: VibrationSystem, masses: list[str], channels: Sequence[str]) -> Scene:
+def _row(system: "VibrationSystem", masses: list[str], channels: Sequence[str]) -> Scene:
     """Springs between masses and to the ground (one point), elements, masses, observed masses and forces on masses."""
     at = {name: np.array([float(number), 0.0]) for number, name in enumerate(masses)}
     shapes = []
@@ -101,10 +103,12 @@ def ends_of(element: Any, known: Container[str]) -> list[str]:
 
 def role_of(element: Any) -> str:
     """Return the role of an element in the scene."""
+    from dalembert.vibration import FrictionContact
+
     return "contact" if isinstance(element, FrictionContact) else "spring"
 
 
-def _connections(system: VibrationSystem, masses: list[str]) -> Iterator[tuple[str, str | None]]:
+def _connections(system: "VibrationSystem", masses: list[str]) -> Iterator[tuple[str, str | None]]:
     """Pairs of masses with stiffness between them, and masses with stiffness to the ground."""
     stiffness = system.structure.stiffness
     signed = np.real(stiffness.toarray() if issparse(stiffness) else np.asarray(stiffness))

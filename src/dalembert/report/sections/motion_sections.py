@@ -1,13 +1,13 @@
 """A motion: the mechanism, its outputs, and how well it was computed."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from dalembert.data import Measurements
 from dalembert.forward import Coordinate
-from dalembert.multibody import Drawing, Trajectory, WorkPrecision
+from dalembert.multibody import Drawing, Trajectory
 from dalembert.quantities import by_quantity
 from dalembert.report import charts
 from dalembert.report.headline import headline_of
@@ -16,6 +16,9 @@ from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Block, Plot, Row, Section, numbered, samples
 from dalembert.tables import Table
+
+if TYPE_CHECKING:
+    from dalembert.multibody import WorkPrecision
 
 HEADING = "Mechanism"
 MOST_PATHS = 3
@@ -148,8 +151,8 @@ def sweep(result: Any, options: ReportOptions) -> list[Section]:
     return [headline_of(result), Section("Sweep", (Row(plots), *result.tables()))]
 
 
-@sections_of(WorkPrecision)
-def work_precision(result: WorkPrecision, options: ReportOptions) -> list[Section]:
+@sections_of("dalembert.multibody.motion.compare_integrators.WorkPrecision")  # whose module loads every integrator
+def work_precision(result: "WorkPrecision", options: ReportOptions) -> list[Section]:
     """Error, run time and constraint violations of each integrator with each of its settings."""
     how = "Further down is more exact, further left is faster. Below the dotted line nothing is known."
     plot = Plot("work-precision", charts.work_precision(result), how)

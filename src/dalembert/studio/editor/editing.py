@@ -134,10 +134,10 @@ def value_of(text: str, field: TableField) -> Any:
 
     Examples
     --------
-    >>> number, names = Field("length", "number"), Field("channels", "list")
+    >>> number, names = TableField("length", "number"), TableField("channels", "list")
     >>> value_of("0.4", number), value_of("400 mm", number), value_of("", number), value_of("A.x, A.y", names)
     (0.4, '400 mm', None, ['A.x', 'A.y'])
-    >>> value_of("[0, '2 m']", Field("at", "text"))
+    >>> value_of("[0, '2 m']", TableField("at", "text"))
     [0, '2 m']
     """
     text = text.strip()

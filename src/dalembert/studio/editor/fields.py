@@ -67,7 +67,7 @@ class TableField:
 
         Examples
         --------
-        >>> Field("angle", "number", unit="rad", default=0.0).facts
+        >>> TableField("angle", "number", unit="rad", default=0.0).facts
         'in rad, default 0'
         """
         unit = f"in {self.unit}" if self.unit else ""

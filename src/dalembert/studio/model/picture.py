@@ -178,7 +178,7 @@ def _structure(study: "Study", system: Any, places: dict[str, Place]) -> Picture
 def _drawn(scene: "Scene", label: str, places: dict[str, Place], channels: Iterable[str], **state: Any) -> Picture:
     """Picture of a scene; ``channels`` have a mark, which they may share."""
     from dalembert.report.pictures.svg import scene_picture
-    from dalembert.report.player import encoded
+    from dalembert.report.player.film import encoded
 
     svg = scene_picture(scene, label, SIZE, box=state.get("box"), choosable=True, labels=True)
     absent = absent_parts(places, scene.parts | {f"channel {name}" for name in channels})

@@ -10,7 +10,6 @@ import numpy as np
 
 from dalembert.errors import SolveError
 from dalembert.report.look import plain
-from dalembert.report.player import film_of, frames
 from dalembert.studio.editor.reading import study_of
 from dalembert.studio.simulation.curves import Curves, curves, on_page
 from dalembert.studio.simulation.simulated_parts import OVER_FREQUENCY, NothingToSimulateError, StudyMotion, part
@@ -184,6 +183,7 @@ def _motion(own: StudyMotion, values: Mapping[str, float]) -> "tuple[np.ndarray 
     The motion has its frames in some of its rows.
     """
     from dalembert.multibody import TimeResponse
+    from dalembert.report.player.film import frames
 
     model, shown = own.model, frames(own.end)
     if not isinstance(model, TimeResponse):
@@ -197,6 +197,7 @@ def _motion(own: StudyMotion, values: Mapping[str, float]) -> "tuple[np.ndarray 
 
 
 def _film(own: StudyMotion, trajectory: "Trajectory", rows: np.ndarray) -> dict[str, Any]:
+    from dalembert.report.player.film import film_of
     from dalembert.report.sections.motion_sections import measured
 
     axes = "xyz"[: len(trajectory.system.AXES)]

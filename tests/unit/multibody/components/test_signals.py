@@ -133,7 +133,7 @@ def test_a_prescribed_motion_is_followed(motion: mb.Signal) -> None:
         ),
         (
             lambda: mb.Table([0.0, 1.0], [1.0, 2.0], "cubical"),
-            "Table: unknown kind 'cubical'; did you mean 'cubic'?",
+            "Table: unknown interpolation 'cubical'; did you mean 'cubic'?",
         ),
     ],
 )

@@ -17,7 +17,7 @@ from slopes import errors
 #: Arguments that are no numbers.
 OTHERS = {
     "name", "a", "b", "at", "against", "anchor", "law", "elements", "coordinate", "follower", "function", "rate",
-    "second", "kind", "formulation", "integrals",
+    "second", "interpolation", "formulation", "integrals",
 }  # fmt: skip
 #: Times of jumps and of tables, which are fixed numbers.
 FIXED = {(mb.Step, "start"), (mb.Step, "end"), (mb.Table, "times"), (mb.BSpline, "start"), (mb.BSpline, "end")}

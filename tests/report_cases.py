@@ -842,17 +842,17 @@ CASES: dict[str, Case] = {
     "integrators": Case(
         lambda: _integrators(1e-4),
         (
-            "2 runs of 1 integrators to 1 s beside GeneralizedAlpha(step=0.0001), which is itself known to about",
+            "The reference is GeneralizedAlpha(step=0.0001); by a second one it is known to about",
             "compared",
         ),
         ("work-precision",),
     ),
     "integrators of which some end early": Case(
         lambda: _integrators(1e-4, most_steps=2),
-        ("1 of 3 runs ended early, see the table", "reached most_steps = 2"),
+        ("1 of 3 runs ended early; the table has the reasons.", "reached most_steps = 2"),
     ),
     "integrators beside a reference that is exact": Case(
-        lambda: replace(_integrators(1e-4), apart=0.0), ("beside a second one it is known to rounding",)
+        lambda: replace(_integrators(1e-4), apart=0.0), ("by a second one it is known to rounding",)
     ),
     "integrators that all end early": Case(
         lambda: replace(found := _integrators(1e-4, most_steps=2), rows=found.rows[-1:]), ("not compared",)

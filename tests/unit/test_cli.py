@@ -51,7 +51,9 @@ def dalembert(tmp_path):
 
 def test_run_list_report(dalembert, tmp_path):
     ran = dalembert("run", "decay.toml")
-    assert (ran.returncode, ran.stdout) == (0, "4 points along rate\nreport: runs/decay/report.html\n")
+    assert ran.returncode == 0
+    status = "Responses at time 0.5 s, one parameter varied at a time: rate. 4 points."
+    assert ran.stdout == f"values of rate  4\n\n{status}\nreport: runs/decay/report.html\n"
     assert (tmp_path / "runs/decay/report.html").stat().st_size > 100_000
     again = dalembert("run", "decay.toml", "--force")
     assert (again.returncode, again.stdout) == (0, ran.stdout)
@@ -143,7 +145,7 @@ def test_exit_code_1_if_the_solver_could_not(dalembert, tmp_path):
     (tmp_path / "decay.toml").write_text(SWEEP.replace("2 1/s", "3 1/s"))
     ran = dalembert("run", "decay.toml")
     assert ran.returncode == 1
-    assert ran.stdout.startswith("4 points along rate; 1 of them failed, see events.jsonl\n")
+    assert "rate. 4 points; 1 of them failed, see events.jsonl.\n" in ran.stdout
     assert "failed" in dalembert("list").stdout
 
 

@@ -2,6 +2,7 @@
 
 import ast
 import re
+from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import fields
 from inspect import signature
@@ -57,6 +58,15 @@ SOURCES = [
     "study/tasks/assessments.py",
 ]
 GAP = ".{0,200}?"
+#: Sentences that tests of these results provoke by the codes of their findings, or as texts.
+ELSEWHERE = defaultdict(tuple)
+ELSEWHERE["inverse/bands/band_fit.py"] = ("a single number (given)",)
+ELSEWHERE["inverse/sets/set_findings.py"] = (
+    "2 consistent runs lie outside of the set: the surrogate misses a component.",
+    "Give a scheme with a smaller tolerance, or bounds close around the component.",
+    " along 'p0', as at a kink or a step",
+    "The coefficients do not decay along 'p0'.",
+)
 NO_SENTENCE = re.compile(r"dalembert \w+ \d+")  # the name of a file's format
 
 
@@ -132,8 +142,8 @@ def test_a_study_provokes_its_sentences_and_figures(name, told):
 
 def test_no_sentence_is_left_that_nothing_provokes(told):
     everything = "\n".join(told(name)[0] for name in CASES)
-    dead = [f"{file}: {text}" for file, text in _sentences() if not re.search(text.removeprefix(GAP), everything)]
-    assert dead == []
+    dead = {(file, text) for file, text in _sentences() if not re.search(text.removeprefix(GAP), everything)}
+    assert {(file, text) for file, text in dead if not any(re.search(text, said) for said in ELSEWHERE[file])} == set()
 
 
 def test_no_figure_is_left_that_nothing_provokes(told):

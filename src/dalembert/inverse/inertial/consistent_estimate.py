@@ -153,9 +153,17 @@ class ConsistentInertias(EndedResult):
             "prior": cells(self.prior),
             "unit": map(inertial_unit, self.names),
         }
+        others = {
+            "other parameter": self.names[count:],
+            "value": map(cell, self.values[count:], self.deviations[count:]),
+            "standard deviation": cells(self.deviations[count:], 2),
+            "prior": cells(self.prior[count:]),
+            "unit": map(inertial_unit, self.names[count:]),
+        }
         caption = "Smallest eigenvalue of each pseudo-inertia, relative to the prior one: positive for a possible body"
         return (
             Table.of("links", caption, links),
+            *([Table.of("others", "Parameters of the joints", others)] if len(self.names) > count else []),
             Table.of("parameters", "All parameters", parameters, detail=True),
             base_table(self.base, self.base_values, self.base_deviations),
             noise_table(self.joints, self.noise, self.noise_is_known, **{"rms residual": self.residual}),

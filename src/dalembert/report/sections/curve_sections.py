@@ -27,7 +27,7 @@ def frequency_curve(curve: FrequencyCurve, options: ReportOptions) -> list[Secti
     """The response, its contacts and harmonics, and what was computed beside it."""
     shown_of = options.dofs, options.amplitude
     tables = by_name(curve.tables(*shown_of))
-    sections: list[Section] = [headline_of(curve, facts=curve.facts(*shown_of))]
+    sections: list[Section] = [headline_of(curve, facts=curve.facts(*shown_of), success=bool(curve.converged.all()))]
     if curve.converged.any():
         look = Look.of(curve, *shown_of)
         listed = (table for name in ("peaks", "marked-points", "not-found") for table in tables[name])
@@ -102,7 +102,8 @@ def _friction_sentences(look: Look, lead: str, at: str) -> tuple[str, ...]:
     curve, point = look.curve, look.point
     where = f"the point of the curve where {look.dof} is largest, {at}"
     if not curve.contacts:
-        return (f"{lead}drawn for {where}." if lead else f"Drawn for {where}.",)
+        sentence = f"Drawn for {where}."
+        return (f"{lead}{sentence[0].lower()}{sentence[1:]}" if lead else sentence,)
     part = {name: float(share.mean()) for name, share in state_shares(curve.states[point]).items()}
     states = (
         f"{f'{lead}at' if lead else 'At'} {where}, the contacts are stuck for {percent(part['stuck'])} of the period, "

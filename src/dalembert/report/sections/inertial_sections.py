@@ -26,6 +26,8 @@ def torque_prediction(result: TorquePrediction, options: ReportOptions) -> list[
     }
     sections = consistent(result, options)
     for name, (times, measured, predicted) in records.items():
+        if not len(times):
+            continue
         noise = result.inertias.noise.tolist()
         plots = [
             Plot(
@@ -36,7 +38,7 @@ def torque_prediction(result: TorquePrediction, options: ReportOptions) -> list[
             for k, joint in enumerate(result.inertias.joints)
         ]
         tables = by_name(result.tables())["prediction"] if name == "unseen" else []
-        sections += [Section(f"Torques of the {name} motion", (*plots, *tables))] if len(times) else []
+        sections.append(Section(f"Torques of the {name} motion", (*plots, *tables)))
     return sections
 
 

@@ -236,6 +236,6 @@ def test_the_identified_values_become_the_start():
 
 def test_the_changes_of_a_run():
     finding = {"code": "model-misfit", "severity": "warning", "message": "x", "advice": "y"}
-    state = {"findings": [finding, {**finding, "values": {}}, {**finding, "code": "other", "values": {}}]}
+    state = {"findings": [{**finding, "values": {}}, {**finding, "code": "other", "values": {}}]}
     assert [change.label for change in changes_of(state, tomlkit.parse(PENDULUM))] == ["Use 8 starts"]
     assert changes_of({}, tomlkit.parse(PENDULUM)) == []

@@ -121,7 +121,7 @@ def test_a_failed_point_is_marked_and_the_rest_returns(study):
     study.write_text(SWEEP.replace('"2 1/s"', '"3 1/s"'))
     folder, outcome = run_study(load(study))
     assert not outcome.success
-    assert outcome.status == "6 points along rate, height; 1 of them failed, see events.jsonl"
+    assert outcome.status.endswith("rate, height. 6 points; 1 of them failed, see events.jsonl.")
     assert folder.state()["state"] == "failed"
     failures = [event["failure"] for event in read_events(folder.events) if event.get("failure")]
     assert failures == ["ValueError: too fast (decay.py, line 12)"]

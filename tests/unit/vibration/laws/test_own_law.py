@@ -96,5 +96,5 @@ def test_a_law_in_one_file_serves_everywhere(tmp_path: Path) -> None:
     (about / "entry_points.txt").write_text("[dalembert.components]\nown_wearing = own_wearing\n")
     (tmp_path / "study.toml").write_text(STUDY)
     run(tmp_path, "-c", CODE)
-    assert "11 of 11 points" in run(tmp_path, "-m", "dalembert.cli", "run", "study.toml", "--out", "run")
+    assert "All 11 points between" in run(tmp_path, "-m", "dalembert.cli", "run", "study.toml", "--out", "run")
     assert "mount" in (tmp_path / "run" / "report.html").read_text()

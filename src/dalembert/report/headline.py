@@ -40,7 +40,7 @@ def headline_of(result: Summarised, facts: Mapping[str, str] | None = None, **ch
     content: dict[str, Any] = {
         "title": result.title,
         "verdict": result.verdict,
-        "success": getattr(result, "success", True),
+        "success": getattr(result, "complete", getattr(result, "success", True)),
         "status": getattr(result, "status", ""),
     }
     known = {**result.key_values(), **(result.facts() if facts is None else facts)}

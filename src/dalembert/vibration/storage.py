@@ -70,6 +70,15 @@ class ConvergedResult(VibrationResult):
         """Whether every point is converged, and no finding is an error."""
         return bool(self.converged.all()) and all(finding.severity != "error" for finding in self.findings)
 
+    @property
+    def complete(self) -> bool:
+        """Whether every point is converged, and a path came to its end."""
+        return bool(self.converged.all()) and all(finding.code != "end-not-reached" for finding in self.findings)
+
+    @property
+    def verdict(self) -> str:
+        return self.VERDICTS[0 if self.complete else 1]
+
 
 def versions() -> dict[str, str]:
     """Versions of the programs that a result comes from."""

@@ -192,7 +192,7 @@ class BandFit(EndedResult):
     def _note(self, k: int, item: Parameter) -> str:
         """Return whether an interval is a single number, as far as the bands show."""
         if item.name not in self.intervals:
-            return "a single number (given)"
+            return "given number"
         if self.radius[k] <= ZERO * (item.upper - item.lower):
             return "a single number"
         return "possibly a single number" if self.radius[k] <= 2 * self.radius_deviations[k] else ""

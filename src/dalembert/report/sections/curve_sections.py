@@ -27,7 +27,7 @@ def frequency_curve(curve: FrequencyCurve, options: ReportOptions) -> list[Secti
     """The response, its contacts and harmonics, and what was computed beside it."""
     shown_of = options.dofs, options.amplitude
     tables = by_name(curve.tables(*shown_of))
-    sections: list[Section] = [headline_of(curve, facts=curve.facts(*shown_of), success=bool(curve.converged.all()))]
+    sections: list[Section] = [headline_of(curve, facts=curve.facts(*shown_of))]
     if curve.converged.any():
         look = Look.of(curve, *shown_of)
         listed = (table for name in ("peaks", "marked-points", "not-found") for table in tables[name])

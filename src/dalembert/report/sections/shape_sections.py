@@ -19,7 +19,7 @@ STEADY = 1e-3
 @sections_of(Backbone)
 def backbone(mode: Backbone, options: ReportOptions) -> list[Section]:
     """The mode alone."""
-    return [headline_of(mode, success=mode.complete), nonlinear_mode(mode)]
+    return [headline_of(mode), nonlinear_mode(mode)]
 
 
 def nonlinear_mode(mode: Backbone) -> Section:

@@ -85,15 +85,6 @@ class Backbone(ConvergedResult):
         return Amplitude(kind, self.orders).of(self.shapes[:, observed_column(self.dofs, dof)])
 
     @property
-    def complete(self) -> bool:
-        """Whether all motions were found, and a path reached its end."""
-        return bool(self.converged.all()) and all(finding.code != "end-not-reached" for finding in self.findings)
-
-    @property
-    def verdict(self) -> str:
-        return self.VERDICTS[0 if self.complete else 1]
-
-    @property
     def status(self) -> str:
         """How many motions were found, and how far a path came that did not reach its end."""
         count = int(self.converged.sum())

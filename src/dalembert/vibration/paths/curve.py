@@ -180,7 +180,7 @@ class FrequencyCurve(ConvergedResult):
 
     @property
     def verdict(self) -> str:
-        return "computed" if self.converged.all() else "incomplete" if self.converged.any() else "not found"
+        return super().verdict if self.converged.any() else "not found"
 
     @property
     def status(self) -> str:

@@ -31,14 +31,14 @@ MARGIN = (0.5, 0.02)  # how far around: parts of the answer's radius and of the 
 
 @dataclass(frozen=True)
 class GlobalSurrogate(CheckedArguments):
-    """Least squares over middles and radii, on one surrogate of the model over the whole search box.
+    """Least squares over the middles and radii of the intervals, on one surrogate over the whole search box.
 
     Parameters
     ----------
     scheme : Adaptive, Tensor or TotalDegree
-        Of the surrogate over the search box: it has to lead near the answer.
+        Of the surrogate over the search box. It must be accurate enough to lead near the answer.
     local : Adaptive, Tensor or TotalDegree
-        Of another one around the answer, which is made where the first one is far off there.
+        Of a second surrogate around the answer. It is made only if the first one is too inaccurate there.
     starts : int
         Fewest descents, from the best of many scattered boxes. Up to 32 are made until two reach the best end, unless
         ``starts`` is 1; they make no runs of the model.
@@ -47,7 +47,7 @@ class GlobalSurrogate(CheckedArguments):
         the last they correct the surrogate; where it is far off, it is made again around the answer. 0 for none.
     tolerance : float
         An answer is refused when the surrogate is wrong by more than this part of a channel's range: at the true runs
-        of the last check, or without one anywhere in the search box.
+        of the last check, or by its estimated error over the search box if ``checks`` is 0.
     held_out : int
         Runs of the model that only test the surrogate.
 
@@ -58,10 +58,10 @@ class GlobalSurrogate(CheckedArguments):
 
     Notes
     -----
-    The bounds of a polynomial on a box change with the box as the polynomial does where they are taken (envelope
-    theorem), so the jacobian is exact. A few true runs check all bounds, since most are taken at the same corners. The
-    checks end when surrogate and true runs agree to 1e-7 of a channel's range. This limits the accuracy of the answer
-    if the bands have no noise; the deviations do not include it.
+    A bound is the value of the polynomial at its extreme point in the box. Its derivative by the box is that of the
+    polynomial there (envelope theorem), so the jacobian is exact. A few true runs check all bounds, since most are
+    taken at the same corners. The checks end when surrogate and true runs agree to 1e-7 of a channel's range. This
+    limits the accuracy of the answer if the bands have no noise; the deviations do not include it.
     """
 
     scheme: Scheme = field(default_factory=lambda: Adaptive(tolerance=1e-2, cautious=False))

@@ -62,7 +62,7 @@ class Cut:
         return len(self.nodes) + 1
 
     def merged(self) -> "Cut":
-        """The same with every second node, or the middle one of three."""
+        """Return the cut with every second node; of three nodes the middle one is left."""
         return self if len(self.nodes) < 2 else replace(self, nodes=self.nodes[1::2])
 
     def piece(self, begin: SegmentNode | None, end: SegmentNode | None, own: np.ndarray, after: np.ndarray) -> Piece:

@@ -13,7 +13,7 @@ from dalembert.vibration.interface.lowering import lower
 STUDY = Path(__file__).parents[2] / "studies" / "patched-plate" / "plate.py"
 TOPIC = "Friction in frequency"
 SOURCE = "Ma, Li, Fan, Wu: Friction damping analysis by an accelerated dynamic Lagrangian method (2019)"
-CHOSEN = f"{SOURCE}; its patches and forces are not described, ours are chosen"
+CHOSEN = f"{SOURCE}; with other patches and forces"
 
 
 @pytest.fixture(scope="module")

@@ -74,6 +74,8 @@ def typed_number(text: str | None, unit: str = "", size: float = 1.0) -> float:
     --------
     >>> typed_number("-2,5", "mm", 1e-3), typed_number("400 mN/m", "N/m"), typed_number("3")
     (-0.0025, 0.4, 3.0)
+    >>> typed_number("0,5 rad", "deg", 0.0174533), typed_number("2 cm", "mm", 1e-3)
+    (0.5, 0.02)
     >>> typed_number("1,234.5")
     Traceback (most recent call last):
     dalembert.errors.InputError: Enter a number with one decimal point or comma, and no other separators
@@ -83,7 +85,7 @@ def typed_number(text: str | None, unit: str = "", size: float = 1.0) -> float:
         raise InputError("Enter a number with one decimal point or comma, and no other separators")
     written = written.replace(",", ".")
     try:
-        return si(written, unit or None) * size if is_quantity(written) else si(written, "") * size
+        return si(written, unit or None) if is_quantity(written) else si(written, "") * size
     except InputError:
         example = f"2.5, or 2.5 {unit} with its unit" if unit else "2.5"
         raise InputError(f"{text!r} is not a number in this unit. Enter a number such as {example}") from None

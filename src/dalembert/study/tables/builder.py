@@ -71,12 +71,13 @@ class SystemBuilder:
 
     def _system(self, options: dict[str, Any]) -> "BaseSystem":
         if self.model.space:
-            from dalembert.multibody.spatial import SpatialSystem
-
-            return SpatialSystem(**options)
-        from dalembert.multibody import System
-
-        return System(**options)
+            from dalembert.multibody.spatial import SpatialSystem as System
+        else:
+            from dalembert.multibody import System
+        try:
+            return System(**options)
+        except InputError as error:
+            raise InputError(f"[model]: {error}") from None
 
 
 def robot_of(robot: RobotTable, values: Values, signals: Values, options: Mapping[str, Any]) -> "SpatialSystem":

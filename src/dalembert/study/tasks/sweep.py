@@ -180,7 +180,10 @@ class SweepTask(ResultTask):
 
 
 def _model(study: Study) -> ForwardModel:
-    return study.forward(study.table.channels, np.array([study.table.at]))
+    try:
+        return study.forward(study.table.channels, np.array([study.table.at]))
+    except InputError as error:
+        raise InputError(f"[sweep], at: {error}") from None
 
 
 def _instant(model: ForwardModel, at: float) -> str:

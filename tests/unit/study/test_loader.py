@@ -386,6 +386,18 @@ def test_models_that_are_functions(write, change, messages):
         assert plan(load(path)).startswith("sweeps")
 
 
+@pytest.mark.parametrize(
+    ("at", "sentence"),
+    [
+        ("-1", "times: the first is -1 s, but the motion begins at 0 s; give times from 0 s on"),
+        ("0", "TimeResponse: the last of the times is 0 s; expected a motion of some duration"),
+    ],
+)
+def test_an_instant_before_the_motion_names_its_key(write, at, sentence):
+    sweep = f"[sweep]\nat = {at}\nchannels = ['rod.end.x']\nover.theta = [0.6]\n"
+    assert mistakes(write(PENDULUM.replace('[simulate]\nend = "1 s"\n', sweep))) == [f"[sweep], at: {sentence}"]
+
+
 def test_an_error_in_the_users_file_is_placed(write, tmp_path):
     (tmp_path / "broken.py").write_text("x = 1\ny = 1 / 0\n")
     (tmp_path / "garbled.py").write_text("x = 1\ny = (\n")

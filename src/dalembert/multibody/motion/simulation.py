@@ -191,7 +191,9 @@ def checked(times: ArrayLike, end: float = np.inf) -> np.ndarray:
         raise InputError(f"times is {shown(times)}; expected a list of increasing numbers of seconds") from None
     if times.ndim != 1 or len(times) == 0 or not np.all(np.diff(times) > 0):
         raise InputError("times: expected a list of increasing numbers of seconds")
-    if times[0] < 0 or times[-1] > end * (1 + 1e-12):
+    if times[0] < 0:
+        raise InputError(f"times: the first is {times[0]:g} s, but the motion begins at 0 s; give times from 0 s on")
+    if times[-1] > end * (1 + 1e-12):
         raise InputError(
             f"times: they reach from {times[0]:g} to {times[-1]:g} s, but the motion ends at {end:g} s; expected times "
             "within"

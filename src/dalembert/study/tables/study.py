@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -238,7 +239,8 @@ class Study(Displayed):
                 _refuse_outside(self._measured_in, samples)
             if len(samples):
                 self.require_inputs(float(samples[-1]))
-            response: Any = TimeResponse(self.builder, self.parameters, channels, samples, solver=self.solver)
+            with placed(f"[{self.task}], at") if getattr(self.table, "at", None) is not None else nullcontext():
+                response: Any = TimeResponse(self.builder, self.parameters, channels, samples, solver=self.solver)
             return response
         if self.file.vibrates:
             from dalembert.vibration import FrequencyResponse

@@ -180,10 +180,7 @@ class SweepTask(ResultTask):
 
 
 def _model(study: Study) -> ForwardModel:
-    try:
-        return study.forward(study.table.channels, np.array([study.table.at]))
-    except InputError as error:
-        raise InputError(f"[sweep], at: {error}") from None
+    return study.forward(study.table.channels, np.array([study.table.at]))
 
 
 def _instant(model: ForwardModel, at: float) -> str:

@@ -59,7 +59,7 @@ def found(study: Study, outcome: Outcome, row: dict[str, Any]) -> float:
             assert curve.frequencies[point] == pytest.approx(row["at"], abs=1e-9)
             return float(curve.amplitude(quantity, row["amplitude"])[point])
         case "frequency_response" if quantity == "largest difference in time":
-            return float(np.abs(getattr(outcome, "told")["time_comparison"].differences).max())  # noqa: B009
+            return float(np.abs(getattr(outcome, "further_results")["time_comparison"].differences).max())  # noqa: B009
         case "frequency_response" | "backbone" | "track_resonance":
             return outcome.best["values"][quantity]
         case "regularise" if quantity == "rms of history":

@@ -72,13 +72,10 @@ def residual_diagnostics(fit: "Fit") -> ResidualDiagnostics:
 
     Where noise was estimated, they are of whitened residuals.
     """
-    residual = np.where(fit.weights > 0, np.sqrt(fit.weights) * np.nan_to_num(fit.residuals), 0.0).ravel()
-    slopes, free = _slopes(fit), off_bounds(fit.parameters, fit.values)
-    tested, everything = _tested(fit), list(series_of_record(fit.data, fit.weights, fit.parts))
-    if fit.noise is not None:
-        residual = np.nan_to_num(fit.noise.whitened).ravel()
-        slopes = None if slopes is None else fit.noise.whiten(everything, slopes)
-    robust = "loss" in fit.provenance
+    robust, tested = "loss" in fit.provenance, _tested(fit)
+    everything = list(series_of_record(fit.data, fit.weights, fit.parts))
+    residual, slopes = _weighted(fit, everything)
+    free = off_bounds(fit.parameters, fit.values)
     variance = _variance(residual[fit.weights.ravel() > 0]) if robust and not _given(fit) else fit.residual_variance
     freedom = None if fit.noise_is_known or robust else float(fit.degrees_of_freedom)
     known = _unknown(fit) if slopes is None else influence(slopes, residual, free, variance, freedom)
@@ -93,19 +90,32 @@ def residual_diagnostics(fit: "Fit") -> ResidualDiagnostics:
         standardised = _standardised(
             fit, signal, left[signal.rows], used[signal.rows], known, robust=robust, process=correlated.get(signal.name)
         )
-        judged = tested and len(signal.rows) >= LEAST and not (fit.noise_is_known and standardised.deviation**2 < SMALL)
-        tests = _tests(standardised, left, basis) if judged else {}
+        tests = _tests(standardised, left, basis) if tested and _can_be_tested(fit, standardised) else {}
         results.append(replace(standardised, p_values=tests))
-    outliers = _outliers(fit, results, robust=robust) if tested else ()
-    plain = fit.noise is None and not robust and fit.nodes is None
-    findings = (
-        diagnostic_findings(fit.parameters.names, results, outliers, robust=robust, plain=plain) if tested else ()
-    )
-    judged = [one for one in results if one.p_values]
+    outliers, findings = (), ()
+    if tested:
+        plain = fit.noise is None and not robust and fit.nodes is None
+        outliers = _outliers(fit, results, robust=robust)
+        findings = diagnostic_findings(fit.parameters.names, results, outliers, robust=robust, plain=plain)
+    judged = [item for item in results if item.p_values]
     pairs = correlated_pairs(judged, left, basis, fit.weights.shape[1], correlated, LEVEL)
     grown = _grown(pairs, judged, None if slopes is None else slopes[:, free], fit.weights.shape)
     findings = (*findings, *pair_findings(pairs, grown))
     return ResidualDiagnostics(fit.parameters.names, tuple(results), outliers, findings, tested)
+
+
+def _weighted(fit: "Fit", series: Sequence[Series]) -> tuple[np.ndarray, np.ndarray | None]:
+    """Weighted residuals (values,) and slopes (values + priors, parameters), whitened where noise was estimated."""
+    slopes = _slopes(fit)
+    if fit.noise is None:
+        return np.where(fit.weights > 0, np.sqrt(fit.weights) * np.nan_to_num(fit.residuals), 0.0).ravel(), slopes
+    return np.nan_to_num(fit.noise.whitened).ravel(), None if slopes is None else fit.noise.whiten(series, slopes)
+
+
+def _can_be_tested(fit: "Fit", standardised: SeriesResiduals) -> bool:
+    """Whether a series has enough values, which are not far below a noise that is known."""
+    enough = len(standardised.series.rows) >= LEAST
+    return enough and not (fit.noise_is_known and standardised.deviation**2 < SMALL)
 
 
 def _grown(

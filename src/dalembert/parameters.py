@@ -52,7 +52,7 @@ class Parameters:
                 raise InputError(f"parameters: {shown(item)} was given; expected a Parameter, or a mapping to bounds")
         object.__setattr__(self, "fixed", (*self.fixed, *(item for item in self.items if item.is_fixed)))
         object.__setattr__(self, "items", tuple(item for item in self.items if not item.is_fixed))
-        if several := repeated(item.name for item in self.declared):
+        if several := repeated([item.name for item in self.declared]):
             raise InputError(f"parameter names must differ; repeated: {', '.join(several)}")
         for item in self.items:
             self._check_joint(item)

@@ -93,7 +93,7 @@ def expanded(tables: list[ExperimentTable]) -> list[ExperimentTable]:
 def wrong_experiments(file: Any) -> list[str]:
     """Sentences about experiments and sensors that do not fit to the rest of the file."""
     wrong = []
-    if several := repeated(table.name for table in file.experiments):
+    if several := repeated([table.name for table in file.experiments]):
         wrong.append(f"[[experiments]]: {', '.join(several)} is given more than once; expected different names")
     if file.experiments and file.data is not None:
         wrong.append("[data] and [[experiments]] are both given; expected one of them")

@@ -258,7 +258,7 @@ def kind_of_number(value: object, known: Kinds) -> Unit | None:
 def require_kind(expression: Expression, unit: str, known: Kinds) -> None:
     """Refuse an expression that measures something else than a unit does."""
     unit_here, wanted = kind_of(expression, known), _unit(unit)
-    if unit_here is None or wanted is None:
+    if unit_here is None or wanted is None or unit_here == wanted:
         return
     reason = difference(unit_here, wanted)
     if reason is not None:

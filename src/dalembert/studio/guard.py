@@ -26,13 +26,7 @@ class Guard:
 
     A page of another site cannot reach the studio through its user's browser: the host and the origin that the browser
     names must be the studio's own (a name that was made to point here is refused, too). Beyond this machine a token is
-    needed as well, once in the address, then as a cookie.
-
-    Parameters
-    ----------
-    app : ASGI application
-    token : str
-        None needed if empty.
+    needed as well, once in the address, then as a cookie; none is needed if ``token`` is empty.
     """
 
     app: Callable[[Scope, Receive, Send], Awaitable[None]]

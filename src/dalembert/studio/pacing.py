@@ -10,18 +10,9 @@ from nicegui import background_tasks
 
 
 class Latest:
-    """Does one thing at a time; requests that come meanwhile become one more turn after it.
-
-    Parameters
-    ----------
-    work : coroutine function
-        Reads the newest state when it begins.
-    pause : float
-        Seconds without a request after which it begins.
-
-    Examples
-    --------
-    ``draft.follow("study", Latest(redraw))`` redraws after changes, and skips those that came too fast.
+    """Does one thing at a time; requests that come meanwhile become one more turn after it. ``work`` reads the newest
+    state when it begins; it begins after ``pause`` seconds without a request. ``draft.follow("study", Latest(redraw))``
+    redraws after changes, and skips those that came too fast.
     """
 
     def __init__(self, work: Callable[[], Awaitable[object]], pause: float = 0.0) -> None:
@@ -48,15 +39,7 @@ class Latest:
 
 @dataclass
 class Throttle:
-    """Repeated work that takes at most a part of the time.
-
-    Parameters
-    ----------
-    part : float
-        Of the time.
-    clock : function
-        Time in seconds.
-    """
+    """Repeated work that takes at most ``part`` of the time by ``clock`` (s)."""
 
     part: float = 0.05
     clock: Callable[[], float] = time.monotonic

@@ -9,15 +9,8 @@ from dalembert.studio.workspace import Workspace
 
 @dataclass(frozen=True)
 class PageServices:
-    """Where the page of a study lives.
-
-    Parameters
-    ----------
-    workspace : Workspace
-    jobs : Jobs
-        Runs that this studio started.
-    worker : Worker
-        Computes for this page, in a process that ends with it.
+    """Where the page of a study lives. ``jobs`` are the runs that this studio started. ``worker`` computes for this
+    page, in a process that ends with it.
     """
 
     workspace: Workspace

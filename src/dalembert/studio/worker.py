@@ -28,13 +28,7 @@ Cause = Literal["failed", "ended", "time", "memory"]
 
 
 class WorkerError(DalembertError):
-    """A computation that failed, or whose process ended.
-
-    Parameters
-    ----------
-    message : str
-    cause : {"failed", "ended", "time", "memory"}
-    """
+    """A computation that failed, or whose process ended."""
 
     def __init__(self, message: str, cause: Cause = "failed") -> None:
         super().__init__(message)
@@ -43,14 +37,8 @@ class WorkerError(DalembertError):
 
 @dataclass(frozen=True)
 class Limits:
-    """What one process may use.
-
-    Parameters
-    ----------
-    seconds : float
-        Time of one request; kernels that are not compiled yet are compiled within it.
-    bytes : int
-        Memory. Windows and macOS do not limit it.
+    """What one process may use. ``seconds`` limits one request; kernels that are not compiled yet are compiled within
+    it. ``bytes`` limits the memory, except on Windows and macOS.
     """
 
     seconds: float = 180.0
@@ -81,17 +69,9 @@ class Kept:
 
 
 class Worker:
-    """A process that answers requests in their order, and of each subject the newest alone.
-
-    Parameters
-    ----------
-    limits : Limits
-    spares : bool
-        Whether the process leaves the processors to others that have work.
-
-    Notes
-    -----
-    The process starts with :meth:`start`, and again with the first request after it has ended.
+    """A process that answers requests in their order, and of each subject only the newest. It starts with
+    :meth:`start`, and again with the first request after it has ended. With ``spares`` it leaves the processors to
+    others that have work.
     """
 
     def __init__(self, limits: Limits | None = None, *, spares: bool = False) -> None:
@@ -115,24 +95,9 @@ class Worker:
     async def ask(
         self, subject: str, function: Callable[Concatenate[Kept, P], T], *arguments: P.args, **named: P.kwargs
     ) -> T | None:
-        """Return ``function(kept, *arguments)``, computed in the process.
-
-        Parameters
-        ----------
-        subject : str
-            What is asked for. A request that waits is dropped when a newer one of its subject comes.
-        function : callable
-            Of a module, so that the process finds it. Its first argument keeps things between requests.
-
-        Returns
-        -------
-        any
-            None if the request was dropped, as all are once :meth:`stop` was called.
-
-        Raises
-        ------
-        WorkerError
-            If the function failed, took too long, or ended its process.
+        """Return ``function(kept, *arguments)``, computed in the process; None if the request was dropped. A request
+        that waits is dropped when a newer one of its subject comes, and all are once :meth:`stop` was called. The
+        function is one of a module, so that the process finds it. ``kept`` keeps things between requests.
         """
         if self._stopped:
             return None

@@ -29,12 +29,7 @@ OF_A_MODEL = frozenset(("model", "constants"))
 
 @dataclass(frozen=True)
 class Workspace:
-    """Studies in ``studies/NAME/*.toml`` and runs in ``runs/NAME`` below a folder.
-
-    Parameters
-    ----------
-    root : Path
-    """
+    """Studies in ``studies/NAME/*.toml`` and runs in ``runs/NAME`` below a folder."""
 
     root: Path
     _known: set[Path] = field(default_factory=set, init=False, repr=False, compare=False)
@@ -98,13 +93,7 @@ class Workspace:
 
     def create(self, name: str, content: str, beside: Callable[[Path], object] = lambda folder: None) -> str:
         """Make a new study with its text and the schema beside it; return its name as :meth:`studies` gives it.
-
-        Parameters
-        ----------
-        name : str
-        content : str
-        beside : callable
-            Writes further files into the folder. If it fails, there is no new study.
+        ``beside`` writes further files into the folder. If it fails, there is no new study.
         """
         name = checked(name)
         folder = self.root / "studies" / name
@@ -127,15 +116,8 @@ class Workspace:
         write_text(path, content)
 
     def put(self, study: str, name: str, content: bytes) -> Path:
-        """Write a file, such as measured data, into the folder of a study; return its path.
-
-        Parameters
-        ----------
-        study : str
-            ``"folder/file"``, as :meth:`studies` lists it.
-        name : str
-            File name. A file of this name is replaced.
-        content : bytes
+        """Write a file, such as measured data, into the folder of a study; return its path. ``study`` is
+        ``"folder/file"``, as :meth:`studies` lists it. A file of this name is replaced.
         """
         name = checked(name)
         if Path(name).suffix.lower() in (".py", ".pyc", ".so", ".toml"):

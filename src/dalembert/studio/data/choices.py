@@ -36,29 +36,12 @@ OF_FILE = (
 
 @dataclass(frozen=True)
 class Choices:
-    """How the columns of a file are to be used.
-
-    Parameters
-    ----------
-    file : str
-        Name of the file, beside the study.
-    time : str or int, optional
-        Column of the times.
-    separator, decimal : str
-        Marks of a text file, or ``"auto"``.
-    units : mapping of str or int to str
-        Units of columns that were chosen; the others are guessed.
-    channels : mapping of str to (str or int)
-        Column of each channel.
-    start : number, "first" or other, optional
-        When the motion begins, as in `[data]`.
-    missing : {"refuse", "leave-out"}, or list of words that stand for missing values
-    wraps : tuple of str
-    decimate : int, optional
-    between : (float, float), optional
-        Times (s) between which samples are kept.
-    sampling : number or str, optional
-        Samples a second of a file without a column of times.
+    """How the columns of a file are to be used. ``file`` is a name beside the study, ``time`` the column of the times.
+    ``units`` has only the units that were chosen; the others are guessed. ``channels`` has the column of each channel.
+    ``start`` is the time of the file at which the motion begins, as in `[data]`: a number (s), ``"first"`` or another
+    entry. ``missing`` is ``"refuse"``, ``"leave-out"``, or a list of words that stand for missing values. ``between``
+    are the times (s) between which samples are kept. ``sampling`` gives the samples per second of a file without a
+    column of times.
     """
 
     file: str
@@ -127,17 +110,9 @@ class Choices:
 
 
 def guessed(preview: Preview, channels: Mapping[str, str], before: Choices | None = None) -> Choices:
-    """Return how a file is probably to be used.
-
-    Times that do not begin at 0 count from the first sample. A column is used for the channel of its name.
-
-    Parameters
-    ----------
-    found : Preview
-    channels : mapping of str to str
-        Channels of the model, and their SI units.
-    before : Choices, optional
-        Choices on another file: the use of its columns is kept if this file has columns of the same names.
+    """Return how a file is probably to be used. ``channels`` maps the channels of the model to their SI units. Times
+    that do not begin at 0 count from the first sample. A column is used for the channel of its name. The use of columns
+    in ``before``, choices on another file, is kept if this file has columns of the same names.
     """
     time = time_column(preview)
     names = {column.key: column.key for column in preview.columns if column.key != time and column.key in channels}
@@ -221,18 +196,10 @@ SET = (
 
 
 def write(document: TOMLDocument, table: Mapping[str, Any], place: tuple[str | int, ...] = ("data",)) -> None:
-    """Write the keys of a `[data]` table into a study; comments, order and other keys stay.
-
-    Keys that go with another file, such as its trial, are removed with it, and deviations of channels that the data no
-    longer have.
-
-    Parameters
-    ----------
-    document : tomlkit document
-    table : mapping
-        As :func:`table_of` gives it.
-    place : tuple
-        ``("data",)``, or an experiment, ``("experiments", 0)``.
+    """Write the keys of a `[data]` table, as :func:`table_of` returns it, into a study; comments, order and other keys
+    stay. ``place`` is the table to write: ``("data",)``, or an experiment such as ``("experiments", 0)``. Keys that
+    belong to another file, such as its trial, are removed. Deviations of channels that the data no longer have are
+    removed, too.
     """
     if place == ("data",) and "data" not in document:
         document["data"] = tomlkit.table()
@@ -264,14 +231,7 @@ def _item(value: Any) -> Any:
 
 @dataclass(frozen=True)
 class Fix:
-    """What a button beside a problem does.
-
-    Parameters
-    ----------
-    label : str
-    change : function of (Choices, finding's values)
-        Returns the changed choices.
-    """
+    """What a button beside a problem does: ``change`` returns new choices from choices and the finding's values."""
 
     label: str
     change: Callable[[Choices, Mapping[str, Any]], Choices]

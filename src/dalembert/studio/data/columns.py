@@ -32,14 +32,9 @@ CELL = "px-2 py-0.5 text-left align-top border-t"
 
 
 class ColumnTable:
-    """The table. It is rebuilt for another file, and else updated, so that the focus stays.
-
-    Parameters
-    ----------
-    choose : function of Choices
-        Called when a menu was changed.
-    pick : coroutine function of str, sequence of str and function
-        Asks for a channel of a column in the drawing, and calls the function with it.
+    """The table. It is rebuilt for another file, and otherwise updated, so that the focus stays. ``choose`` is called
+    with the choices when a menu was changed. ``pick`` asks in the drawing for the channel of a column: it takes the
+    column, the channels, and the function to call with the chosen channel.
     """
 
     def __init__(self, choose: Callable[[Choices], object], pick: Pick) -> None:

@@ -26,21 +26,10 @@ MOST_SAMPLES = 20_000
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """A column over the times.
-
-    Parameters
-    ----------
-    key : str or int
-    unit : Unit
-        Chosen, or guessed.
-    along, values : array, shape (points,)
-        Time in s from the beginning of the motion, or number of the row where neither a column nor a sampling rate
-        gives the times; the column as it is
-        in the file. Thinned so that peaks stay.
-    far : array, shape (2, points)
-        The same of outliers.
-    missing : int
-        Cells without a value.
+    """A column over the times, with its chosen or guessed unit. ``along`` and ``values`` (points,) are thinned so that
+    peaks stay. ``along`` is the time in s from the beginning of the motion. It is the number of the row where neither a
+    column nor a sampling rate gives the times. ``values`` is the column as it is in the file. ``far`` (2, points) has
+    times and values of outliers. ``missing`` is the number of cells without a value.
     """
 
     key: Key
@@ -53,30 +42,10 @@ class Curve:
 
 @dataclass(frozen=True, eq=False)
 class Examined:
-    """A file as it is read with some choices.
-
-    Parameters
-    ----------
-    choices : Choices
-        The given ones, or the guessed ones.
-    channels : mapping of str to str
-        Channels of the model, and their SI units.
-    layout : str
-        What a text file was taken to be, in words.
-    separator, decimal : str
-        Marks that were found or given; ``""`` where the file is no text.
-    first : tuple of rows
-        Cells of the first rows.
-    samples : int
-    curves : tuple of Curve
-        One a column.
-    begins : float
-        First time (s) of the file.
-    findings : tuple of Finding
-    table : mapping
-        The `[data]` table; empty if it lacks something.
-    lacks : str
-        What the table lacks, in words.
+    """A file as it is read with some choices, which may be guessed. ``channels`` maps the channels of the model to
+    their SI units. ``layout`` describes the layout of a text file in words. ``separator`` and ``decimal`` are ``""``
+    where the file is no text. ``first`` has the cells of the first rows, ``begins`` is the first time (s) of the file.
+    ``table`` is the `[data]` table; it is empty if it lacks something, and ``lacks`` says what.
     """
 
     choices: Choices
@@ -94,20 +63,9 @@ class Examined:
 
 
 def examine(kept: Kept, study: Path, text: str, file: str, choices: Choices | None, before: Choices | None) -> Examined:
-    """Return how a file is read with some choices, or with guessed ones.
-
-    Parameters
-    ----------
-    kept : Kept
-        Keeps the file and the study that were read last.
-    study : Path
-    text : str
-        Of the study.
-    file : str
-        Name of the file, beside the study.
-    choices : Choices, optional
-    before : Choices, optional
-        Of another file, which are kept if this one has the same columns.
+    """Return how a file is read with some choices, or with guessed ones. ``kept`` keeps the file and the study that
+    were read last. ``text`` is that of the study, ``file`` a name beside the study. ``before`` are choices of another
+    file, which are kept if this one has the same columns.
     """
     channels = kept.newest("channels", text, lambda: _channels(kept, study, text))
     marks = (AUTO, AUTO, ()) if choices is None else (choices.separator, choices.decimal, tuple(choices.absent))

@@ -27,27 +27,10 @@ LARGE = 1.345
 
 
 class DataGuide:
-    """What is chosen for a file, and what it gives.
-
-    Parameters
-    ----------
-    draft : Draft
-    worker : Worker
-
-    Attributes
-    ----------
-    place : tuple
-        The table that is written: ``("data",)``, or one of the experiments.
-    file : str
-        Name of the file; empty if none is chosen.
-    choices : Choices or None
-        None until the file was read once.
-    examined : Examined or None
-        What the file and the choices gave last.
-    suspects : tuple of Finding
-        What the response at the first guesses makes suspect.
-    error : str
-        Why the file cannot be read.
+    """What is chosen for a file, and the result. ``place`` is the table that is written: ``("data",)``, or one of the
+    experiments. ``file`` is empty if none is chosen. ``choices`` is None until the file was read once. ``examined`` is
+    the last result of the file and the choices. ``suspects`` are findings from the response at the first guesses.
+    ``error`` says why the file cannot be read.
     """
 
     def __init__(self, draft: Draft, worker: Worker) -> None:

@@ -74,13 +74,7 @@ def channels_of_part(part: str, channels: Iterable[str]) -> list[str]:
 
 
 class ChannelPicker:
-    """A dialog with the drawing, which the keyboard reaches too, and the channels of the part that was chosen.
-
-    Parameters
-    ----------
-    draft : Draft
-    services : PageServices
-    """
+    """A dialog with the drawing, which the keyboard reaches too, and the channels of the part that was chosen."""
 
     def __init__(self, draft: Draft, services: PageServices) -> None:
         self._draft, self._services = draft, services

@@ -22,19 +22,10 @@ TASK = "Task"
 
 @dataclass(frozen=True)
 class Addition:
-    """Something that can be added.
-
-    Parameters
-    ----------
-    label : str
-    place : tuple of str or int
-        Of the table or list of tables that it is added to; empty for one of the tables of ``kinds``.
-    kinds : dict of str to str
-        Kinds, or tables, with their meanings; empty where a name is asked for instead.
-    names : str
-        What the name is one of: "channel" where it must be that of a channel; empty for a new name.
-    elsewhere : str
-        Where it must be added instead, as a sentence; empty if it can be added here.
+    """Something that can be added. ``place`` is the table or list of tables to add it to, empty for one of the tables
+    of ``kinds``. ``kinds`` maps kinds, or tables, to their meanings; it is empty where a name is requested instead.
+    ``names`` is ``"channel"`` where the name must be that of a channel, and empty for a new name. ``elsewhere`` is a
+    sentence that says where it must be added instead, empty if it can be added here.
     """
 
     label: str
@@ -45,17 +36,7 @@ class Addition:
 
 
 def additions(text: str, only: Collection[str] = ()) -> tuple[Addition, ...]:
-    """Return what can be added to a study, or to a file that may have ``only`` some of its tables.
-
-    Examples
-    --------
-    >>> [one.label for one in additions("[[model.mass]]")]
-    ['Mass', 'Spring', 'Force', 'Contact', 'Parameter', 'Constant', 'Sensor', 'Input', 'Task', 'Table']
-    >>> additions("")[1].kinds["RevoluteJoint"]
-    'A pin: both points coincide.'
-    >>> [one.label for one in additions("", ["model", "constants"])]
-    ['Body', 'Joint', 'Force', 'Constant', 'Table']
-    """
+    """Return what can be added to a study, or to a file that may have ``only`` some of its tables."""
     document = tolerant(text)
     parts = _STRUCTURE if model_kind(document) == "structure" else _MECHANISM
     elsewhere = model_elsewhere(document)
@@ -80,22 +61,8 @@ def _within(addition: Addition, tables: Collection[str]) -> Addition | None:
 
 
 def added(text: str, addition: Addition, what: str) -> tuple[str, Place]:
-    """Return the text with an addition, and its place.
-
-    A task replaces the one that there is, as a study has one.
-
-    Parameters
-    ----------
-    text : str
-    addition : Addition
-    what : str
-        One of its kinds, or a name.
-
-    Examples
-    --------
-    >>> text, place = added("", additions("")[0], "PointMass")
-    >>> place, text
-    (('model', 'body', 0), '[[model.body]]\\nkind = "PointMass"\\nname = "body1"\\n')
+    """Return the text with an addition, and its place. ``what`` is one of the addition's kinds, or a name. A task
+    replaces the one that there is, as a study has one.
     """
     document = tolerant(text)
     if addition.place == ("constants",):

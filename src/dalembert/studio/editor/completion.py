@@ -19,18 +19,9 @@ _REST = re.compile(r"[\w-]*")
 
 @dataclass(frozen=True)
 class Option:
-    """One of several completions.
-
-    Parameters
-    ----------
-    label : str
-        What is shown, and what is compared with what is typed.
-    insert : str
-        What replaces the typed text.
-    detail : str
-        Unit and default, shown beside the label.
-    info : str
-        The meaning, shown while the completion is selected.
+    """One of several completions. ``label`` is shown and compared with what is typed; ``insert`` replaces the typed
+    text. ``detail`` (unit and default) is shown after the label. ``info`` is the meaning, shown while the completion is
+    selected.
     """
 
     label: str
@@ -42,24 +33,9 @@ class Option:
 def completions(
     text: str, position: int, more: Names | None = None, tables: Collection[str] = ()
 ) -> tuple[int, tuple[Option, ...]]:
-    """Return where the completed text begins, and the completions at a position in a study's text.
-
-    Parameters
-    ----------
-    text : str
-    position : int
-        In characters from the beginning.
-    more : mapping, optional
-        Names that the text does not say, such as the channels of the mechanism.
-    tables : collection of str
-        The tables that the file may have; all if empty.
-
-    Examples
-    --------
-    >>> text = '[[model.joint]]\\nkind = "Revo'
-    >>> start, options = completions(text, len(text))
-    >>> text[start:], options[0].label, options[0].info
-    ('Revo', 'RevoluteJoint', 'A pin: both points coincide.')
+    """Return where the completed text begins, and the completions at a position in a study's text (characters from its
+    beginning). ``more`` has names that the text does not contain, such as the channels of the mechanism. ``tables`` are
+    those that the file may have; all if empty.
     """
     cursor = cursor_at(text, position)
     if cursor is None:
@@ -80,15 +56,7 @@ def completions(
 
 
 def explanation(text: str, position: int) -> Option | None:
-    """Return what the word at a position means: a key with unit and default, a kind, or a table.
-
-    Examples
-    --------
-    >>> text = '[[model.body]]\\nkind = "RigidBar"\\nangle = 0\\n'
-    >>> explanation(text, text.index("angle") + 2)
-    Option(label='angle', insert='', detail='in rad, default 0', info="Initial angle from the x axis, rad. Expected: \
-an angle such as '45 deg' or 0.785398 in rad.")
-    """
+    """Return what the word at a position means: a key with unit and default, a kind, or a table."""
     end = position + len(_REST.match(text, position)[0])  # type: ignore[index]
     cursor, document = cursor_at(text, end), tolerant(text)
     if cursor is None or not cursor.typed:

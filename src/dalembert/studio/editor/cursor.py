@@ -14,19 +14,9 @@ _PIECES = re.compile(r"""\"[^"\n]*"?|'[^'\n]*'?|\#[^\n]*|[^\s"'\#=\[\]{},]+|\n|.
 
 @dataclass(frozen=True)
 class Cursor:
-    """A position in a text.
-
-    Parameters
-    ----------
-    where : "header", "key" or "value"
-    place : tuple of str or int
-        Of the table that a key belongs to, or of the key that has the value.
-    typed : str
-        What stands before the position of the header, the key, the text in quotes, or the number or word.
-    quoted : bool
-        Whether the position is within quotes.
-    given : dict of str to str
-        Keys that an inline table has before the position, and their texts.
+    """A position in a text. ``place`` is the table that a key belongs to, or the key that has the value. ``typed`` is
+    the part before the position of the header, the key, the text in quotes, or the number or word. ``quoted`` is True
+    within quotes. ``given`` maps the keys that an inline table has before the position to their texts.
     """
 
     where: Literal["header", "key", "value"]
@@ -39,11 +29,6 @@ class Cursor:
 def cursor_at(text: str, position: int) -> Cursor | None:
     """Return where a position (characters from the beginning) is; None in a comment.
 
-    Examples
-    --------
-    >>> text = '[[model.joint]]\\nkind = "Rev'
-    >>> cursor_at(text, len(text))
-    Cursor(where='value', place=('model', 'joint', 0, 'kind'), typed='Rev', quoted=True, given={})
     >>> cursor_at("[parameters]\\nd = { lower = 0, up", 32)
     Cursor(where='key', place=('parameters', 'd'), typed='up', quoted=False, given={'lower': ''})
     """
@@ -95,13 +80,7 @@ def _parts(key: str) -> list[str]:
 
 
 def tolerant(text: str) -> dict[str, Any]:
-    """Return the document of a text; of one that is not valid TOML, the lines that are.
-
-    Examples
-    --------
-    >>> tolerant('[[model.body]]\\nkind = "RigidBar"\\nname = \\n')
-    {'model': {'body': [{'kind': 'RigidBar'}]}}
-    """
+    """Return the document of a text; of one that is not valid TOML, the lines that are."""
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError):

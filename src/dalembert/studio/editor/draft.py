@@ -28,33 +28,14 @@ class ChangedOnDiskError(InputError):
 
 
 class Draft:
-    """The state of one open study. Panels follow its topics.
+    """The state of one open study. Panels follow its topics. Text typed within a short time by ``clock`` (s) is undone
+    in one step.
 
-    Parameters
-    ----------
-    path : Path
-        The study file.
-    clock : function
-        Time (s) by which typing is put together to steps that can be undone.
-
-    Attributes
-    ----------
-    text : str
-    reading : Reading
-        What a text of it was as a study when it was last checked, see :meth:`check`.
-    good : Outline or None
-        The last study that had no mistakes.
-    values : dict of str to float
-        Current values of parameters in SI units, at first their start values; those of a single experiment and those of
-        sensors have the names of a fit: ``"trial.angle"`` and ``"AB.end.x delay"``.
-    starts : dict of str to float
-        First guesses of the same parameters.
-    selection : tuple of str or int, or None
-        A place in the file, such as ``("model", "body", 0)``.
-    disk : "same", "changed" or "gone"
-        What the file is, compared with what was read or saved.
-    beside : WatchedFiles
-        The files that the text names; :meth:`check_files` tells "files" after changes of them.
+    ``reading`` is the text as a study when it was last checked; ``good`` is the last study without mistakes. ``values``
+    are current values of parameters in SI units, at first their start values; ``starts`` are their first guesses. Local
+    parameters and those of sensors have the names of a fit: ``"trial.angle"``, ``"AB.end.x delay"``. ``selection`` is a
+    place in the file, such as ``("model", "body", 0)``. ``disk`` compares the file with what was read or saved.
+    ``watched_files`` are the files that the text names; :meth:`check_files` reports "files" after changes of them.
     """
 
     def __init__(self, path: Path, clock: Callable[[], float] = time.monotonic) -> None:
@@ -124,13 +105,8 @@ class Draft:
         self._tell("text")
 
     def restore(self, text: str, saved: str) -> None:
-        """Show a text that was not saved when its page was lost.
-
-        Parameters
-        ----------
-        text : str
-        saved : str
-            The text of the file that it was based on. If the file has another one, it was changed by somebody else.
+        """Show a text that was not saved when its page was lost. ``saved`` is the text of the file that it was based
+        on. If the file has another one, somebody else changed it.
         """
         if saved != self._saved:
             self._saved, self._digest = saved, sha256(saved.encode()).digest()

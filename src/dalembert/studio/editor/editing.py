@@ -18,22 +18,7 @@ from dalembert.studio.editor.lines import Place, is_within, tables
 
 
 def with_value(text: str, place: Place, value: Any) -> str:
-    """Return the text with a value at a key; a table without a header becomes an inline table.
-
-    Parameters
-    ----------
-    text : str
-    place : tuple of str or int
-        Of the key.
-    value : text, number, bool, list or dict
-
-    Examples
-    --------
-    >>> print(with_value("[solver]\\nstep = 1.0  # s\\n# end\\n", ("solver", "step"), "2 ms"), end="")
-    [solver]
-    step = "2 ms"  # s
-    # end
-    """
+    """Return the text with a value at a key; a table without a header becomes an inline table."""
     table = _table_with(text, place)
     if table is None:
         *holder, key = place
@@ -51,16 +36,7 @@ def with_value(text: str, place: Place, value: Any) -> str:
 
 
 def without(text: str, place: Place) -> str:
-    """Return the text without a key, or without a table and the tables in it.
-
-    Examples
-    --------
-    >>> text = '[[model.body]]\\nname = "A"\\n# of B\\n[[model.body]]\\nname = "B"\\n[solver]\\n'
-    >>> print(without(without(text, ("model", "body", 0)), ("model", "body", 0, "name")), end="")
-    # of B
-    [[model.body]]
-    [solver]
-    """
+    """Return the text without a key, or without a table and the tables in it."""
     lines = [f"{line}\n" for line in text.splitlines()]
     blocks = [(first, end) for table, first, end in _blocks(text) if is_within(table, place)]
     if blocks:
@@ -84,28 +60,8 @@ def without(text: str, place: Place) -> str:
 
 
 def with_table(text: str, place: Place, values: Mapping[str, Any]) -> tuple[str, Place]:
-    """Return the text with a further table, and its place.
-
-    Parameters
-    ----------
-    text : str
-    place : tuple of str or int
-        Of a table, ``("identify",)``, or with any number at its end that of a list, ``("model", "body", 0)``.
-    values : mapping
-
-    Examples
-    --------
-    >>> text, place = with_table('[model]\\n\\n# the end\\n[simulate]\\n', ("model", "body", 0), {"name": "A"})
-    >>> place
-    ('model', 'body', 0)
-    >>> print(text, end="")
-    [model]
-    <BLANKLINE>
-    [[model.body]]
-    name = "A"
-    <BLANKLINE>
-    # the end
-    [simulate]
+    """Return the text with a further table, and its place. ``place`` is that of a table, ``("identify",)``, or of an
+    entry of a list, ``("model", "body", 0)``: any number at its end stands for the next free one.
     """
     blocks, is_entry = _blocks(text), isinstance(place[-1], int)
     if is_entry:
@@ -132,13 +88,9 @@ def with_table(text: str, place: Place, values: Mapping[str, Any]) -> tuple[str,
 def value_of(text: str, field: TableField) -> Any:
     """Return the value that a text in a form stands for, by the shape of its field; None if it is empty.
 
-    Examples
-    --------
     >>> number, names = TableField("length", "number"), TableField("channels", "list")
-    >>> value_of("0.4", number), value_of("400 mm", number), value_of("", number), value_of("A.x, A.y", names)
-    (0.4, '400 mm', None, ['A.x', 'A.y'])
-    >>> value_of("[0, '2 m']", TableField("at", "text"))
-    [0, '2 m']
+    >>> value_of("0.4", number), value_of("400 mm", number), value_of("A.x, A.y", names)
+    (0.4, '400 mm', ['A.x', 'A.y'])
     """
     text = text.strip()
     if not text:
@@ -158,10 +110,8 @@ def value_of(text: str, field: TableField) -> Any:
 def text_of(value: Any) -> str:
     """Return a value of a study as a form shows it; :func:`value_of` reads it back.
 
-    Examples
-    --------
-    >>> text_of("400 mm"), text_of(0.4), text_of([0, "2 m"]), text_of({"end": 2.0})
-    ('400 mm', '0.4', '[0, "2 m"]', '{ end = 2.0 }')
+    >>> text_of("400 mm"), text_of([0, "2 m"]), text_of({"end": 2.0})
+    ('400 mm', '[0, "2 m"]', '{ end = 2.0 }')
     """
     return "" if value is None else value if isinstance(value, str) else _item(value).as_string()
 

@@ -63,18 +63,9 @@ def unit_among(entries: Iterable[object]) -> tuple[str, float]:
 
 
 def like(entry: object, number: float, table: Mapping[str, Any] | None = None) -> str | float:
-    """Return a number in SI units as an entry with the unit of another one.
+    """Return a number in SI units as an entry with the unit of another entry. If ``entry`` has no unit, the first entry
+    of ``table`` with a unit gives it.
 
-    Parameters
-    ----------
-    given : str, float or None
-        An entry.
-    number : float
-    table : mapping, optional
-        Others of its entries give the unit if ``entry`` has none.
-
-    Examples
-    --------
     >>> like("1 ms", 0.0005), like(0.001, 0.0005), like(0, 1.0, {"lower": 0, "upper": "90 deg"})
     ('0.5 ms', 0.0005, '57.2958 deg')
     """

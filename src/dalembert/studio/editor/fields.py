@@ -32,24 +32,10 @@ _OF_KEYS = {"columns": "channel", "deviations": "channel", "weights": "channel",
 
 @dataclass(frozen=True)
 class TableField:
-    """A key of a table.
-
-    Parameters
-    ----------
-    key : str
-    shape : str
-        What a value of it is.
-    meaning : str
-        With what is expected.
-    unit : str, optional
-        Of a number; empty where it has none.
-    default : optional
-        None where the key has no default, or one that depends on others.
-    required : bool
-    choices : tuple of str
-        Texts that are allowed, such as kinds.
-    names : str
-        What a text, or each text of a list, is the name of: a "point", "joint", "channel" and so on.
+    """A key of a table. ``shape`` says what a value of it is, ``meaning`` includes what is expected. ``unit`` is that
+    of a number; it is None or empty where the number has none. ``default`` is None where the key has no default, or one
+    that depends on others. ``choices`` are texts that are allowed, such as kinds. ``names`` says what a text, or each
+    text of a list, is the name of: a "point", "joint", "channel" and so on.
     """
 
     key: str
@@ -65,8 +51,6 @@ class TableField:
     def facts(self) -> str:
         """Unit and default in a few words.
 
-        Examples
-        --------
         >>> TableField("angle", "number", unit="rad", default=0.0).facts
         'in rad, default 0'
         """
@@ -76,19 +60,8 @@ class TableField:
 
 
 def fields_at(document: Any, place: Place) -> tuple[TableField, ...]:
-    """Return the keys of the table at a place of a document; none where there is no table with known keys.
-
-    Parameters
-    ----------
-    document : mapping
-        The study as TOML reads it. Its kinds, and whether it is in space, choose among tables.
-    place : tuple of str or int
-
-    Examples
-    --------
-    >>> study = {"model": {"joint": [{"kind": "RevoluteJoint"}]}}
-    >>> [field.key for field in fields_at(study, ("model", "joint", 0))][:5]
-    ['kind', 'name', 'a', 'b', 'viscous']
+    """Return the keys of the table at a place of a document; none where there is no table with known keys. The kinds of
+    the document, and whether its model is in space, choose among tables.
     """
     tables = _tables_at(document, place)
     chosen = _chosen(tables, child(document, place)) or {}
@@ -112,13 +85,7 @@ def field_at(document: Any, place: Place) -> TableField | None:
 
 
 def kinds_at(document: Any, place: Place) -> dict[str, str]:
-    """Return the kinds that the table at a place may be of, with what each is.
-
-    Examples
-    --------
-    >>> kinds_at({}, ("model", "joint", 0))["RevoluteJoint"]
-    'A pin: both points coincide.'
-    """
+    """Return the kinds that the table at a place may be of, with what each is."""
     return _kinds(_tables_at(document, place))
 
 
@@ -145,13 +112,7 @@ def tables_of(document: Any) -> dict[Place, str]:
 
 
 def child(value: Any, place: Sequence[str | int]) -> Any:
-    """Return what is at a place of a document, None if nothing is.
-
-    Examples
-    --------
-    >>> child({"a": [{"b": 1}]}, ("a", 0, "b")), child({"a": [1]}, ("a", 3))
-    (1, None)
-    """
+    """Return what is at a place of a document, None if nothing is."""
     for step in place:
         try:
             value = value[step]

@@ -17,16 +17,7 @@ AXES = ("x", "y", "z")
 
 @dataclass(frozen=True)
 class FormRow:
-    """A key of a form.
-
-    Parameters
-    ----------
-    field : Field
-    value : any
-        None if the key is not given.
-    mistakes : tuple of str
-        What is wrong with the value.
-    """
+    """A key of a form. ``value`` is None if the key is not given. ``mistakes`` say what is wrong with the value."""
 
     field: TableField
     value: Any = None
@@ -50,18 +41,7 @@ class FormRow:
 
 @dataclass(frozen=True)
 class Form:
-    """A table that is edited.
-
-    Parameters
-    ----------
-    place : tuple of str or int
-    title : str
-    meaning : str
-        Of its kind.
-    rows : tuple of Row
-    mistakes : tuple of str
-        What is wrong with the table as a whole.
-    """
+    """A table that is edited, with the meaning of its kind and the mistakes of the table as a whole."""
 
     place: Place
     title: str
@@ -75,21 +55,8 @@ class Form:
 
 
 def form_at(text: str, selection: Place | None, mistakes: Iterable[Mistake] = (), *, inner: Place = ()) -> Form | None:
-    """Return the form of the table that a selection is in; None if there is no table with known keys.
-
-    Parameters
-    ----------
-    text : str
-    selection : tuple of str or int, optional
-    mistakes : iterable of Mistake
-    inner : tuple of str
-        The way from this table to one within it.
-
-    Examples
-    --------
-    >>> form = form_at('[[model.body]]\\nkind = "RigidBar"\\nname = "rod"\\n', ("model", "body", 0, "name"))
-    >>> form.title, form.meaning, form.rows[1].text
-    ("body 'rod'", 'A rigid bar from its start to its end.', 'rod')
+    """Return the form of the table that a selection is in; None if there is no table with known keys. ``inner`` is the
+    way from this table to one within it.
     """
     document = tolerant(text)
     place = (*_table_in(document, text, selection or ()), *inner)

@@ -12,12 +12,6 @@ MOST = 500
 class History:
     """Texts in their order, and which of them is the present one.
 
-    Parameters
-    ----------
-    first : str
-
-    Examples
-    --------
     >>> history = History("a")
     >>> history.add("ab", 0.0)
     >>> history.add("abc", 0.2)

@@ -12,16 +12,7 @@ Place = tuple[str | int, ...]
 
 
 def line_of(text: str, place: Sequence[str | int]) -> int:
-    """Number of the line, from 1, of the longest beginning of a place that stands in the text.
-
-    Examples
-    --------
-    >>> text = '[model]\\ngravity = [0, 0]\\n[[model.body]]\\nname = "A"\\n[[model.body]]\\nname = "B"\\n'
-    >>> line_of(text, ("model", "gravity", 1)), line_of(text, ("model", "body", 1, "name"))
-    (2, 6)
-    >>> line_of(text, ("identify", "starts"))
-    1
-    """
+    """Number of the line, from 1, of the longest beginning of a place that is in the text; 1 if none is."""
     known = dict(reversed(list(_places(text))))  # the first of each
     for length in range(len(place), 0, -1):
         if tuple(place[:length]) in known:
@@ -30,14 +21,7 @@ def line_of(text: str, place: Sequence[str | int]) -> int:
 
 
 def place_at(text: str, line: int) -> Place:
-    """Return the key, or the table, that a line is part of; an empty place above the first.
-
-    Examples
-    --------
-    >>> text = '[model]\\n[[model.body]]\\nname = "A"\\n'
-    >>> place_at(text, 2), place_at(text, 3)
-    (('model', 'body', 0), ('model', 'body', 0, 'name'))
-    """
+    """Return the key, or the table, that a line is part of; an empty place above the first."""
     table: Place = ()
     for place, number in _places(text):
         if number > line:
@@ -47,35 +31,19 @@ def place_at(text: str, line: int) -> Place:
 
 
 def is_within(place: Place | None, table: Place) -> bool:
-    """Whether a place is a table, or lies in it.
-
-    Examples
-    --------
-    >>> is_within(("model", "body", 0, "name"), ("model", "body", 0)), is_within(None, ("model",))
-    (True, False)
-    """
+    """Whether a place is a table, or lies in it; None lies in no table."""
     return place is not None and place[: len(table)] == table
 
 
 def table_of(text: str, place: Place) -> Place:
-    """Return the table with a header of its own that a place is, or lies in; an empty one if there is none.
-
-    Examples
-    --------
-    >>> table_of('[model]\\ngravity = 1\\n', ("model", "gravity", 1))
-    ('model',)
-    """
+    """Return the innermost table with a header that a place is, or lies in; an empty one if there is none."""
     within = [table for table, _ in tables(text) if is_within(place, table)]
     return max(within, key=len, default=())
 
 
 def lines_of(text: str, table: Place) -> range:
-    """Return the lines of a table from its header to the last line before the next one; empty if it is not there.
-
-    Examples
-    --------
-    >>> lines_of('[model]\\n[[model.body]]\\nname = "A"\\n\\n[solver]\\n', ("model", "body", 0))
-    range(2, 4)
+    """Return the lines of a table from its header to the last line before the next one; empty if it is not there. Blank
+    lines at its end are left out.
     """
     lines = text.splitlines()
     headers = [*tables(text), ((), len(lines) + 1)]

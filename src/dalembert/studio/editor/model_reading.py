@@ -20,15 +20,8 @@ _AT_FILE = "[model], file: "
 
 
 def model_reading(kept: Kept, study: Path, text: str) -> Reading:
-    """Read a text as the model of a study, in the process of the model's page.
-
-    Parameters
-    ----------
-    kept : Kept
-    study : Path
-        The study file, as it is on the disk.
-    text : str
-        Of the model file, which is not written.
+    """Read a text as the model of a study, in the process of the model's page. ``study`` is the study file, as it is on
+    the disk; ``text`` is that of the model file, which is not written.
     """
     for kind in OF_FILES:
         kept.drop(kind)
@@ -37,12 +30,8 @@ def model_reading(kept: Kept, study: Path, text: str) -> Reading:
 
 
 def study_with_model(kept: Kept, study: Path, text: str, used: dict[str, Path] | None = None) -> "Study":
-    """Return a study with the text of its model file, read once.
-
-    Parameters
-    ----------
-    used : dict of str to Path, optional
-        Takes the other files that the study names, if it is read now.
+    """Return a study with the text of its model file, read once. ``used`` takes the other files that the study names,
+    if it is read now.
     """
     from dalembert.study import load
 

@@ -12,15 +12,7 @@ Names = Mapping[str, tuple[str, ...]]
 def names_in(document: Mapping[str, Any]) -> dict[str, tuple[str, ...]]:
     """Return the names that the tables of a document give, by what they are names of.
 
-    Parameters
-    ----------
-    document : mapping
-        As TOML reads it.
-
-    Examples
-    --------
-    >>> bar = {"kind": "RigidBar", "name": "rod"}
-    >>> names = names_in({"model": {"body": [bar]}, "parameters": {"drag": {}}})
+    >>> names = names_in({"model": {"body": [{"kind": "RigidBar", "name": "rod"}]}, "parameters": {"drag": {}}})
     >>> names["point"], names["parameter"]
     (('ground', 'rod.start', 'rod.end', 'rod.centre'), ('drag',))
     """

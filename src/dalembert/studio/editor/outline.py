@@ -15,22 +15,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Outline:
-    """A study without its model, which may be the user's code and take some time.
-
-    Parameters
-    ----------
-    text : str
-    name : str
-        Of its runs.
-    task : str
-    parameters : Parameters
-    parts : mapping of str to tuple of Parameter
-        What can be simulated: an experiment, or one with an empty name where there are none. Each has the parameters
-        that act on it, those of sensors too.
-    channels : tuple of str
-        All channels of a mechanism; none of another model, or where it cannot be built.
-    files : mapping of str to Path
-        The other files that it names.
+    """A study without its model, which may be the user's code and take some time. ``name`` is that of its runs.
+    ``parts`` are what can be simulated: experiments, or one part with an empty name where there are none. Each has the
+    parameters that act on it, those of sensors too. ``channels`` are all channels of a mechanism; none of another
+    model, or where it cannot be built. ``files`` are the other files that the study names.
     """
 
     text: str

@@ -29,15 +29,8 @@ OF_FILES = ("study", "channels", "comparison", "measured positions")
 
 @dataclass(frozen=True)
 class Mistake:
-    """What is wrong at a place of a study's text.
-
-    Parameters
-    ----------
-    place : tuple of str or int
-        Tables, keys and numbers of entries; empty if only the line is known.
-    line : int
-        From 1.
-    sentence : str
+    """What is wrong at a place of a study's text. ``place`` has tables, keys and numbers of entries; it is empty if
+    only the line, from 1, is known.
     """
 
     place: Place
@@ -47,20 +40,9 @@ class Mistake:
 
 @dataclass(frozen=True)
 class Reading:
-    """A text and the study that it is.
-
-    Parameters
-    ----------
-    text : str
-    study : Outline, optional
-        None if there are mistakes.
-    does : str
-        What a run of the study does, as a sentence; empty if there are mistakes.
-    findings : tuple of Finding
-        About the model.
-    mistakes : tuple of Mistake
-    files : mapping of Path to Stamp
-        The other files that the text names, also one with mistakes, as they were.
+    """A text and the study that it is, None if there are mistakes. ``does`` is a sentence that says what a run of the
+    study does; it is empty if there are mistakes. ``findings`` are about the model. ``files`` are the other files that
+    the text names, also a text with mistakes, with their stamps when it was read.
     """
 
     text: str
@@ -104,12 +86,8 @@ def _read(kept: Kept, path: Path, text: str, used: dict[str, Path]) -> Reading:
 
 
 def study_of(kept: Kept, path: Path, text: str, used: dict[str, Path] | None = None) -> "Study":
-    """Return the study of a text, read once as long as the files that it names are the same.
-
-    Parameters
-    ----------
-    used : dict of str to Path, optional
-        Takes the other files that the text names, if it is read now.
+    """Return the study of a text, read once as long as the files that it names are the same. ``used`` takes the other
+    files that the text names, if it is read now.
     """
     study, stamps = kept.newest("study", (path, text), lambda: _loaded(path, text, used))
     if stamps != _stamps(study):
@@ -132,11 +110,8 @@ def _stamps(study: "Study") -> dict[Path, int]:
 
 def mistake(text: str, place: Place, sentence: str) -> Mistake:
     """Return a mistake at the place that its sentence begins with, such as ``[[model.joint]] 'pin', b``, or at a place.
-
     A mistake of a model in a separate file is at the key that names the file.
 
-    Examples
-    --------
     >>> mistake('[model]\\n[[model.joint]]\\nname = "pin"\\nb = 1\\n', ("model",), "[[model.joint]] 'pin', b: wrong")
     Mistake(place=('model', 'joint', 0, 'b'), line=4, sentence="[[model.joint]] 'pin', b: wrong")
     """

@@ -18,21 +18,10 @@ _MOST = 200
 
 
 class StudyEditor(ui.codemirror, component="study_editor.js", esm={"dalembert-codemirror": _NICEGUI}):
-    """An editor of a study's text.
-
-    Parameters
-    ----------
-    text : str
-    names : function
-        Coroutine function that returns names that the text does not say, such as channels.
-    late : function
-        Called with a text that was typed when the browser had not yet received the present one.
-    kept : function
-        Called with a text that the browser kept when its page was lost, and the saved text that it was based on.
-    label : str
-        What a screen reader says.
-    tables : collection of str
-        The tables that the file may have; all if empty.
+    """An editor of a study's text. ``names`` returns names that the text does not contain, such as channels. ``late``
+    is called with a text that was typed when the browser had not yet received the present one. ``kept`` takes a text
+    that the browser kept when its page was lost, and the saved text that it was based on. ``label`` is for screen
+    readers. ``tables`` are those that the file may have; all if empty.
     """
 
     def __init__(
@@ -99,15 +88,8 @@ _MOVE = """
 
 
 class TextEditor:
-    """An editor that shows a draft: typing changes it, and what changes it elsewhere is shown.
-
-    Parameters
-    ----------
-    draft : Draft
-    label : str
-        What a screen reader says.
-    tables : collection of str
-        The tables that the file may have; all if empty.
+    """An editor that shows a draft: typing changes it, and what changes it elsewhere is shown. ``label`` is for screen
+    readers. ``tables`` are those that the file may have; all if empty.
     """
 
     def __init__(self, draft: Draft, label: str = "The study as text", tables: Collection[str] = ()) -> None:

@@ -42,19 +42,8 @@ def place_of(places: Mapping[str, Place], part: str) -> Place:
 
 
 def parts_at(places: Mapping[str, Place], place: Place | None, drawn: Collection[str] = ()) -> list[str]:
-    """Return the parts whose tables a place lies in, or that lie in it: all joints in ``("model", "joint")``.
-
-    In the table of a robot or a function these are the drawn parts without tables: the one that a key names, or all.
-
-    Examples
-    --------
-    >>> parts_at({"body rod": ("model", "body", 0), "joint pin": ("model", "joint", 0)}, ("model", "body", 0, "mass"))
-    ['body rod']
-    >>> robot = {"": ("model", "robot")}
-    >>> parts_at(robot, ("model", "robot", "positions", "elbow"), ["body arm", "joint elbow"])
-    ['joint elbow']
-    >>> parts_at(robot, ("model", "robot"), ["body arm", "joint elbow"])
-    ['body arm', 'joint elbow']
+    """Return the parts whose tables a place lies in, or that lie in it: all joints in ``("model", "joint")``. In the
+    table of a robot or a function these are the drawn parts without tables: the one that a key names, or all.
     """
     if place is None or len(place) < 2:
         return []
@@ -68,14 +57,7 @@ def parts_at(places: Mapping[str, Place], place: Place | None, drawn: Collection
 
 
 def absent_parts(places: Mapping[str, Place], drawn: Collection[str]) -> list[str]:
-    """Return parts of the model that have tables and are not drawn; one of those that share a table.
-
-    Examples
-    --------
-    >>> places = {"body rod": ("model", "body", 0), "load stop": ("model", "load", 0), "gravity gravity": ("model",)}
-    >>> absent_parts(places, ["body rod"])
-    ['load stop']
-    """
+    """Return parts of the model that have tables and are not drawn; one of those that share a table."""
     shown = {place for part, place in places.items() if part in drawn and not part.startswith("channel ")}
     absent = {
         part if part.startswith("channel ") else place: part

@@ -67,26 +67,13 @@ NOTHING = "This model is a Python function of its parameters alone. It has no sh
 
 @dataclass(frozen=True)
 class Picture:
-    """A model as a page draws it.
+    """A model as a page draws it. ``svg`` is empty if there is nothing to draw. ``scene`` is the same in three
+    dimensions, of a model in space, as :func:`~dalembert.report.player.film.encoded` returns it.
 
-    Parameters
-    ----------
-    svg : str
-        Empty if there is nothing to draw.
-    scene : dict, optional
-        The same in three dimensions, of a model in space, as :func:`~dalembert.report.player.film.encoded` gives it.
-    parts : tuple of str
-        Roles and names of the parts that are drawn.
-    places : dict of str to tuple
-        Places in the text by the parts of the drawing, as :func:`~dalembert.studio.model.parts.places_of` gives them.
-    box : array, shape (2, 2), optional
-        Corners of what is drawn, m.
-    absent : tuple of str
-        Parts of the model that have tables and no shape.
-    message : str
-        What to know about the drawing.
-    mistake : str
-        What is wrong with the model; empty if nothing is.
+    ``parts`` are roles and names of the parts that are drawn. ``places`` are places in the text by the parts of the
+    drawing, see :func:`~dalembert.studio.model.parts.places_of`. ``box`` (2, 2) has the corners of what is drawn, m.
+    ``absent`` are parts of the model that have tables and no shape. ``message`` is about the drawing, ``mistake`` about
+    the model; it is empty if nothing is wrong.
     """
 
     svg: str = ""
@@ -107,19 +94,9 @@ def model_picture(
     box: np.ndarray | None = None,
     read: Reader = study_of,
 ) -> Picture:
-    """Draw the model of a text at values of its parameters.
-
-    Parameters
-    ----------
-    kept : Kept
-    path : Path
-        Of the study.
-    text : str
-        Of the study, or what ``read`` takes instead.
-    values : mapping of str to float
-    box : array, shape (2, 2), optional
-        Corners of an earlier drawing, kept if the model fits into it: a drawing that follows a slider stands still.
-    read : Reader
+    """Draw the model of a text at values of its parameters. ``text`` is that of the study at ``path``, or what ``read``
+    takes instead. ``box`` (2, 2) has the corners of an earlier drawing, m. It is kept if the model fits into it, so
+    that a drawing that follows a slider stands still.
     """
     try:
         study = read(kept, path, text)

@@ -14,12 +14,7 @@ Choose = Callable[[str | None], object]
 
 
 class ModelView(Element):
-    """What both elements share.
-
-    Parameters
-    ----------
-    on_choose : function
-    """
+    """What both elements share."""
 
     def __init__(self, on_choose: Choose) -> None:
         super().__init__()
@@ -52,14 +47,7 @@ class ModelDrawing(ModelView, component="drawing.js"):
 
 
 class ModelSpace(ModelView, component="space.js", esm={"dalembert-player": str(BROWSER)}):
-    """A view in three dimensions, which the pointer turns.
-
-    Parameters
-    ----------
-    on_choose : function
-    on_unable : function
-        Called if the browser cannot draw in three dimensions.
-    """
+    """A view in three dimensions, which the pointer turns. ``on_unable`` is called if the browser cannot draw it."""
 
     def __init__(self, on_choose: Choose, on_unable: Callable[[], object]) -> None:
         super().__init__(on_choose)
@@ -72,13 +60,7 @@ class ModelSpace(ModelView, component="space.js", esm={"dalembert-player": str(B
 
 
 class Viewer(ui.element):
-    """Both elements that show a model, one of which is visible.
-
-    Parameters
-    ----------
-    on_choose : function
-        Called with the part that was chosen.
-    """
+    """Both views of a model, one of which is visible. ``on_choose`` is called with the chosen part."""
 
     def __init__(self, on_choose: Choose) -> None:
         super().__init__("div")

@@ -17,19 +17,9 @@ from dalembert.studio.page_services import PageServices
 
 
 class FormField:
-    """A key with its label, unit, default and mistakes.
-
-    Parameters
-    ----------
-    row : Row
-    names : sequence of str
-        What the study offers for the value.
-    commit : function
-        Takes the key's row and the text that is written for it.
-    explain : function
-        Takes the row when the element gets the focus.
-    enter : function, optional
-        Opens the form of the value where it is or may be a table.
+    """A key with its label, unit, default and mistakes. ``names`` are what the study offers for the value. ``commit``
+    takes the row and the text that is written for it. ``explain`` takes the row when the element gets the focus.
+    ``enter`` opens the form of the value where it is or may be a table.
     """
 
     def __init__(

@@ -32,16 +32,8 @@ def show(draft: Draft, services: PageServices) -> None:
 
 
 class ModelPanel:
-    """The drawing, what to know about it, and buttons to look closer.
-
-    Parameters
-    ----------
-    draft : Draft
-    worker : Worker
-    path : Path
-        Of the study.
-    read : Reader
-        Returns the study from the text of the draft.
+    """The drawing, messages about it, and buttons to zoom. ``path`` is that of the study. ``read`` returns the study
+    from the text of the draft.
     """
 
     def __init__(self, draft: Draft, worker: Worker, path: Path, read: Reader = study_of) -> None:

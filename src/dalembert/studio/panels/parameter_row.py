@@ -21,12 +21,6 @@ STEPS = 1000
 class SliderScale:
     """Positions of a slider, from 0 to :data:`STEPS`, and values of a parameter.
 
-    Parameters
-    ----------
-    item : Parameter
-
-    Examples
-    --------
     >>> angle, modulus = SliderScale(Parameter("angle", 0.6, 1.0)), SliderScale(Parameter("E", 1e6, 1e9))
     >>> angle.value(500), modulus.value(500), modulus.position(1e8)
     (0.8, 31622800.0, 667)
@@ -60,22 +54,11 @@ _MINUS = "\N{MINUS SIGN}"
 
 
 def typed_number(text: str | None, unit: str = "", size: float = 1.0) -> float:
-    """Return the number of a text in SI units.
+    """Return the number of a text in SI units. ``unit`` is that of the field, for a text without a unit, and ``size``
+    its size in SI units.
 
-    Parameters
-    ----------
-    text : str, optional
-    unit : str
-        Of the field, for a text without one.
-    size : float
-        Of that unit in SI units.
-
-    Examples
-    --------
-    >>> typed_number("-2,5", "mm", 1e-3), typed_number("400 mN/m", "N/m"), typed_number("3")
-    (-0.0025, 0.4, 3.0)
-    >>> typed_number("0,5 rad", "deg", 0.0174533), typed_number("2 cm", "mm", 1e-3)
-    (0.5, 0.02)
+    >>> typed_number("-2,5", "mm", 1e-3), typed_number("2 cm", "mm", 1e-3), typed_number("3")
+    (-0.0025, 0.02, 3.0)
     >>> typed_number("1,234.5")
     Traceback (most recent call last):
     dalembert.errors.InputError: Enter a number with one decimal point or comma, and no other separators
@@ -125,19 +108,9 @@ class Way(ui.element, component="way.js"):
 
 
 class ParameterRow:
-    """A parameter on a page.
-
-    Parameters
-    ----------
-    item : Parameter
-    value : float
-        Current value, SI.
-    chosen : function
-        Called with a value that the user chose.
-    kept : mapping of str to function
-        What can be done with the value, by its text in the menu.
-    unit : tuple of (str, float)
-        In which the value is shown, and its size in SI units.
+    """A parameter on a page. ``value`` is the current one, in SI units. ``chosen`` is called with a value that the user
+    chose. ``kept`` has what can be done with the value, by its text in the menu. ``unit`` is the unit in which the
+    value is shown, and its size in SI units.
     """
 
     def __init__(

@@ -36,13 +36,7 @@ def show(draft: Draft, services: PageServices) -> None:
 
 
 class Sliders:
-    """The panel of one draft.
-
-    Parameters
-    ----------
-    draft : Draft
-    services : PageServices
-    """
+    """The panel of one draft."""
 
     def __init__(self, draft: Draft, services: PageServices) -> None:
         self._draft, self._services = draft, services

@@ -19,16 +19,8 @@ _STARTS = {"least-squares": 8, "response-sensitivity": 8}
 
 @dataclass(frozen=True)
 class Change:
-    """A change to a study.
-
-    Parameters
-    ----------
-    code : str
-        Of the finding that advises it.
-    label : str
-        What it does, as the text of a button.
-    apply : callable
-        ``apply(document)`` changes a document of tomlkit. Comments and order stay.
+    """A change to a study. ``code`` is that of the finding that advises it. ``label`` says what it does, as the text of
+    a button. ``apply(document)`` changes a document of tomlkit; comments and order stay.
     """
 
     code: str
@@ -37,14 +29,8 @@ class Change:
 
 
 def changes_of(state: Mapping[str, Any], document: TOMLDocument) -> list[Change]:
-    """Return the changes that the findings of a run advise, in their order, each once.
-
-    Parameters
-    ----------
-    state : mapping
-        Of the run, as :meth:`~dalembert.study.run.folder.RunFolder.state` returns it.
-    document : TOMLDocument
-        The study of the run. It is not changed.
+    """Return the changes that the findings of a run advise, in their order, each once. ``state`` is that of the run, as
+    :meth:`~dalembert.study.run.folder.RunFolder.state` returns it. ``document``, the study of the run, is not changed.
     """
     best = (state.get("best") or {}).get("values") or {}
     findings = state.get("findings") or []
@@ -52,25 +38,8 @@ def changes_of(state: Mapping[str, Any], document: TOMLDocument) -> list[Change]
 
 
 def changes(code: str, values: Values, document: TOMLDocument, best: Best) -> list[Change]:
-    """Return the changes that a finding advises; none where its advice is no change to this study.
-
-    Parameters
-    ----------
-    code : str
-    values : mapping
-        Of the finding.
-    document : TOMLDocument
-    best : mapping
-        Identified values by the names of their parameters, in SI units.
-
-    Examples
-    --------
-    >>> import tomlkit
-    >>> document = tomlkit.parse('[solver] # implicit\\nstep = "1 ms" # fixed\\n')
-    >>> (change,) = changes("integration-bias", {}, document, {})
-    >>> change.apply(document)
-    >>> change.label, tomlkit.dumps(document)
-    ('Use half the step, 0.5 ms', '[solver] # implicit\\nstep = "0.5 ms" # fixed\\n')
+    """Return the changes that a finding advises; none where its advice is no change to this study. ``values`` are those
+    of the finding. ``best`` has identified values by the names of their parameters, in SI units.
     """
     advise = _ADVICE.get(code)
     return [] if advise is None else [Change(code, *made) for made in advise(values, document, best)]

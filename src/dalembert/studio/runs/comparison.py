@@ -33,14 +33,8 @@ _FACTS = ("study", "task", "state", "misfit", "duration", "date", "findings", "t
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """A response of a run.
-
-    Parameters
-    ----------
-    channel, along : str
-        Name of the channel and of the coordinate, with units.
-    at, values : array, shape (samples,)
-    measured : bool
+    """A response of a run: ``at`` and ``values`` (samples,). ``channel`` and ``along`` name the channel and the
+    coordinate, with units.
     """
 
     channel: str
@@ -52,12 +46,7 @@ class Curve:
 
 @dataclass(frozen=True, eq=False)
 class RunComparison:
-    """Runs of which the first is the reference for the differences of studies.
-
-    Parameters
-    ----------
-    folders : sequence of RunFolder
-    """
+    """Runs of which the first is the reference for the differences of studies."""
 
     folders: Sequence[RunFolder]
 

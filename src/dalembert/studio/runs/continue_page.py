@@ -17,17 +17,9 @@ from dalembert.study.run.folder import RunFolder
 
 
 def continue_page(workspace: Workspace, name: str, code: str = "", number: int = 0) -> None:
-    """Show the study that follows from a run, to be confirmed.
-
-    Parameters
-    ----------
-    workspace : Workspace
-    name : str
-        Of the run.
-    code : str
-        Of the finding whose advice changes the study; empty for none.
-    number : int
-        Which of the changes that :func:`~dalembert.studio.runs.advice.changes_of` returns for that code.
+    """Show the study that follows from a run, to be confirmed. ``code`` is that of the finding whose advice changes the
+    study; empty for none. ``number`` chooses among the changes of that code that
+    :func:`~dalembert.studio.runs.advice.changes_of` returns.
     """
     with frame(f"Continue {name}"):
         try:

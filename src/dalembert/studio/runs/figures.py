@@ -47,15 +47,9 @@ def wandering(
     names: Sequence[str],
     units: Mapping[str, tuple[str, float]] | None = None,
 ) -> go.Figure:
-    """Parameters over the simulations, each in a row, a line for each start.
-
-    Parameters
-    ----------
-    visited : sequence of (simulations, start, values)
-    names : sequence of str
-        Of the parameters.
-    units : mapping of str to (str, float), optional
-        Units in which they are drawn, and their sizes in SI units.
+    """Parameters over the simulations, each in a row, a line for each start. ``visited`` has simulations, start and
+    values of each point, ``names`` those of the parameters. ``units`` are the units in which they are drawn, and their
+    sizes in SI units.
     """
     rows = min(len(names), MOST_ROWS)
     shown = [(units or {}).get(name, ("", 1.0)) for name in names]
@@ -75,14 +69,7 @@ def wandering(
 
 
 def followed(points: Sequence[tuple[float, float]], axes: tuple[str, str]) -> go.Figure:
-    """A path as far as it has come, with its last point marked.
-
-    Parameters
-    ----------
-    points : sequence of (place, size)
-    axes : (str, str)
-        What they are called.
-    """
+    """A path as far as it has come, points of (place, size), with its last point marked."""
     figure = go.Figure()
     x, y = np.array(points, dtype=float).reshape(-1, 2).T
     figure.add_scatter(x=x, y=y, mode="lines", line={"color": LIGHT.series[0], "width": 2})

@@ -15,14 +15,8 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class FitSoFar:
-    """The fit to one experiment.
-
-    Parameters
-    ----------
-    experiments : tuple of str
-        Names of all; one that is empty for a single record.
-    figure : dict
-        As Plotly's JSON holds it.
+    """The fit to one experiment, a figure as Plotly's JSON. ``experiments`` has the names of all; an empty one for a
+    single record.
     """
 
     experiments: tuple[str, ...]

@@ -25,12 +25,8 @@ class Remaining:
 
     Only a stage whose amount of work is settled beforehand has a remaining time: draws of a sampler, values of a sweep,
     simulations of a swarm. A least-squares method stops where it converges, so nothing is said of it. What follows the
-    stage, such as profiles and the report, is not part of the number.
-
-    Parameters
-    ----------
-    planned : int or None
-        Simulations that the search of an identification takes, where they are settled beforehand.
+    stage, such as profiles and the report, is not part of the number. ``planned`` are the simulations that the search
+    of an identification takes; None where they are not settled beforehand.
     """
 
     planned: int | None = None
@@ -96,20 +92,9 @@ POINTS = 1000
 
 @dataclass
 class Live:
-    """Events of a run, read as they come.
-
-    Parameters
-    ----------
-    path : Path
-        ``events.jsonl``.
-
-    Attributes
-    ----------
-    followed, axes : list of (float, float), (str, str)
-        Amplitudes along what is followed so far, in its order, and what the axes are called.
-    visited : list of (float, int, list of float)
-        Simulations, number of the start, and values of the unknowns, of each iteration.
-    remaining : Remaining
+    """Events of a run (``events.jsonl``), read as they come. ``followed`` has the points (along, amplitude) of a path
+    so far, in its order, ``axes`` the names of both. ``visited`` has simulations, number of the start, and values of
+    the unknowns, of each iteration.
     """
 
     path: Path

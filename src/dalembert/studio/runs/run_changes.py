@@ -72,21 +72,8 @@ def empty_trash(workspace: Workspace) -> int:
 
 
 def continued(workspace: Workspace, folder: RunFolder, name: str, text: str) -> str:
-    """Make a new study with copies of the files that a run used.
-
-    Parameters
-    ----------
-    workspace : Workspace
-    folder : RunFolder
-    name : str
-        Of the new study.
-    text : str
-        Its text: that of the run, or a changed one.
-
-    Returns
-    -------
-    str
-        ``"folder/file"``, as :meth:`Workspace.studies` lists it.
+    """Make a new study with copies of the files that a run used; return ``"folder/file"``, as :meth:`Workspace.studies`
+    lists it. ``text`` is that of the run, or a changed one.
     """
     kept = _kept(folder)
     places = {given: _beside(given) for given in kept["files"]}

@@ -100,19 +100,11 @@ _CHANGED = f"""params => {{
 
 
 class RunGrid:
-    """The table.
-
-    Parameters
-    ----------
-    rows : list
-        From :class:`~dalembert.studio.runs.run_list.RunList`, the newest first. The table begins with the first ones,
-        so that the page is small; :meth:`show` adds the others.
-    on_select : callable
-        Called with the names of the selected runs.
-    on_key : callable
-        Called with ``"Enter"`` or ``"Delete"`` and the ``id`` of the focused row, whose run may just have been renamed.
-    on_change : callable
-        Called with a run, ``"run"``, ``"tags"`` or ``"note"``, and the text that the user entered there.
+    """The table. ``rows`` are those of :class:`~dalembert.studio.runs.run_list.RunList`, the newest first. The table
+    begins with the first ones, so that the page is small; :meth:`show` adds the others. ``on_select`` is called with
+    the names of the selected runs. ``on_key`` is called with ``"Enter"`` or ``"Delete"`` and the ``id`` of the focused
+    row, whose run may just have been renamed. ``on_change`` is called with a run, ``"run"``, ``"tags"`` or ``"note"``,
+    and the text that the user entered there.
     """
 
     def __init__(

@@ -25,13 +25,6 @@ _WATCHED = ("state.json", NOTE)
 class RunList:
     """The runs of a folder as rows.
 
-    Parameters
-    ----------
-    root : Path
-        The folder with the runs.
-
-    Notes
-    -----
     A row has ``id``, which stays when the run is renamed, ``run``, ``study``, ``title``, ``task``, ``state``,
     ``message``, ``findings`` (text), ``severity`` (a number to sort by), ``doubts`` (messages), ``values`` (text),
     ``misfit``, ``duration`` (s), ``date`` (UTC), ``tags`` and ``note``. A number that is not known is None.

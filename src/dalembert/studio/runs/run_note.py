@@ -15,13 +15,7 @@ LONGEST = 2000
 
 @dataclass(frozen=True)
 class Note:
-    """What a user wrote about a run.
-
-    Parameters
-    ----------
-    text : str
-    tags : tuple of str
-    """
+    """What a user wrote about a run."""
 
     text: str = ""
     tags: tuple[str, ...] = ()

@@ -49,16 +49,7 @@ def run_page(workspace: Workspace, jobs: Jobs, watcher: Worker, name: str) -> No
 
 
 class _Page:
-    """What changes on the page of a run.
-
-    Parameters
-    ----------
-    workspace : Workspace
-    folder : RunFolder
-    jobs : Jobs
-    watcher : Worker
-        Where the best fit so far is computed.
-    """
+    """What changes on the page of a run. ``watcher`` computes the best fit so far."""
 
     def __init__(self, workspace: Workspace, folder: RunFolder, jobs: Jobs, watcher: Worker) -> None:
         self.workspace, self.folder, self.jobs, self.watcher = workspace, folder, jobs, watcher

@@ -31,8 +31,6 @@ def run_units(folder: RunFolder, names: Iterable[str]) -> dict[str, Unit]:
 def value_unit(document: Mapping[str, Any], name: str) -> Unit:
     """Return the unit of a value: that in which the study writes the parameter, or the SI unit that it states.
 
-    Examples
-    --------
     >>> parameters = {"angle": {"lower": "-60 deg", "upper": 0, "unit": "rad"}, "drag": {"lower": 0, "unit": "N*s"}}
     >>> study = {"parameters": parameters, "experiments": [{"name": "high", "local": ["drag"]}]}
     >>> value_unit(study, "angle")[0], value_unit(study, "drag"), value_unit(study, "high.drag")

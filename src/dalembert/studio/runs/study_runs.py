@@ -22,18 +22,7 @@ class LastRun:
 
 
 def last_runs(root: Path) -> dict[tuple[Path, str], LastRun]:
-    """Return the newest run of each study.
-
-    Parameters
-    ----------
-    root : Path
-        The folder with the runs.
-
-    Returns
-    -------
-    dict of (folder, name) to LastRun
-        By the folder and the name of the study that ran.
-    """
+    """Return the newest run of each study in the folder of runs, by the folder and the name of the study."""
     newest: dict[tuple[Path, str], tuple[int, Path]] = {}
     for path in root.glob("*/state.json"):
         try:

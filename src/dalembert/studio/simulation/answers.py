@@ -32,15 +32,7 @@ LONG = 5.0
 
 @dataclass(frozen=True)
 class Source:
-    """What a study is made of.
-
-    Parameters
-    ----------
-    path : Path
-    text : str
-    stamps : tuple of (str, int)
-        The other files that it names, with the times of their last changes.
-    """
+    """What a study is made of. ``stamps`` are the other files that it names, with the times of their last changes."""
 
     path: Path
     text: str
@@ -55,23 +47,11 @@ class Source:
 
 @dataclass(frozen=True)
 class Simulated:
-    """A simulation as a page shows it.
-
-    Parameters
-    ----------
-    film : dict, optional
-        Of a mechanism, as :func:`~dalembert.report.player.film.film_of` gives it.
-    curves : tuple of Curves
-    misfit : float, optional
-        Weighted sum of squares of the residuals; None without data.
-    residuals : dict of str to float
-        Root mean square of each channel's.
-    units : dict of str to str
-        Of these channels.
-    seconds, computed : float
-        Time of the simulation, and with film and curves.
-    hint : str
-        Why nothing is simulated, though the study is in order.
+    """A simulation as a page shows it. ``film`` is that of a mechanism, see
+    :func:`~dalembert.report.player.film.film_of`. ``misfit`` is the weighted sum of squares of the residuals, None
+    without data. ``residuals`` are root mean squares by channel, in ``units``. ``seconds`` is the time of the
+    simulation, ``computed`` that with film and curves. ``hint`` says why nothing is simulated, though the study is
+    valid.
     """
 
     film: dict[str, Any] | None = None
@@ -86,14 +66,8 @@ class Simulated:
 
 @dataclass(frozen=True)
 class Influences:
-    """How strongly parameters act on channels, to first order.
-
-    Parameters
-    ----------
-    channels : tuple of str
-    effects : dict of str to list of float
-        Of each parameter on each channel: root mean square of the change from its lower to its upper bound, relative to
-        the range of the channel.
+    """How strongly parameters act on channels, to first order. ``effects`` maps each parameter to its effect on each
+    channel: root mean square of the change from its lower to its upper bound, relative to the range of the channel.
     """
 
     channels: tuple[str, ...]
@@ -103,12 +77,8 @@ class Influences:
 def simulated(
     kept: Kept, source: Source, name: str, values: Mapping[str, float], *, figures: bool = False
 ) -> Simulated:
-    """Simulate a part of a study at values of its parameters by name.
-
-    Parameters
-    ----------
-    figures : bool
-        Whether to make the figures of the curves too, not their lines alone.
+    """Simulate a part of a study at values of its parameters by name. ``figures`` makes the figures of the curves too,
+    not their lines alone.
     """
     try:
         own = _part(kept, source, name)

@@ -19,14 +19,8 @@ HEIGHT = 320
 
 @dataclass(frozen=True)
 class Curves:
-    """A figure, or the lines of it that changed.
-
-    Parameters
-    ----------
-    lines : dict of int to tuple of list
-        Abscissae and ordinates by the number of the trace.
-    figure : dict
-        As Plotly's JSON; empty where only lines changed.
+    """A figure, or the lines of it that changed. ``lines`` has abscissae and ordinates by the number of the trace.
+    ``figure`` is Plotly's JSON; it is empty where only lines changed.
     """
 
     lines: dict[int, tuple[list[float], list[float]]] = field(default_factory=dict)

@@ -8,16 +8,9 @@ from dalembert.report.player import BROWSER, LOOK
 
 
 class Player(ui.element, component="player.js", esm={"dalembert-player": str(BROWSER)}):
-    """Plays films. A newer film continues where the older one was; it plays to its end after each change.
-
-    Parameters
-    ----------
-    label : str
-        For screen readers.
-
-    Notes
-    -----
-    It emits ``shown`` when it appears on the page, also again, and ``hidden`` when it disappears.
+    """Plays films. A newer film continues where the older one was; it plays to its end after each change. ``label`` is
+    for screen readers. The player emits ``shown`` when it appears on the page, also again, and ``hidden`` when it
+    disappears.
     """
 
     def __init__(self, label: str) -> None:

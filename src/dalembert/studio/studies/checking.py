@@ -18,16 +18,8 @@ PATIENCE = 3.0
 
 
 class Checking:
-    """Reads the text of a draft at first, and after changes of it or of a file that it names.
-
-    Parameters
-    ----------
-    draft : Draft
-    worker : Worker
-    function : callable
-        Reads a text, as :func:`reading` does.
-    path : Path, optional
-        Of the study; that of the draft if not given.
+    """Reads the text of a draft at first, and after changes of it or of a file that it names. ``function`` reads a
+    text, as :func:`reading` does. ``path`` is that of the study, by default that of the draft.
     """
 
     def __init__(

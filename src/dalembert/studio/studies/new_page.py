@@ -17,15 +17,8 @@ from dalembert.study.template import Template, templates
 def template_cards(
     workspace: Workspace, name: Callable[[], str], shown: Callable[[Template], bool] = lambda template: True
 ) -> None:
-    """A card for each template, with a button that begins a study from it.
-
-    Parameters
-    ----------
-    workspace : Workspace
-    name : callable
-        Returns the name of the study; the template's, with a number if it is taken, if empty.
-    shown : callable
-        Says whether a template is shown.
+    """A card for each template that is ``shown``, with a button that begins a study from it. ``name`` returns the name
+    of the study. If it is empty, the study has the name of the template, with a number if that is taken.
     """
     with ui.element("div").classes("grid grid-cols-1 sm:grid-cols-2 lg:grid-cols-3 gap-4 w-full").props("role=list"):
         for template in filter(shown, templates().values()):

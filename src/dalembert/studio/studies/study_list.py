@@ -19,16 +19,8 @@ _MARKED = re.compile(r"\[([^]]+)\]\([^)]*\)|\*(\S[^*]*)\*|`([^`]*)`")
 
 @dataclass(frozen=True)
 class Entry:
-    """A study file.
-
-    Parameters
-    ----------
-    name : str
-        ``"folder/file"``.
-    title, description, task : str
-        Empty if the file does not say them.
-    last : LastRun, optional
-        None if it was never run.
+    """A study file, ``"folder/file"``. Title, description and task are empty if the file has none; ``last`` is None if
+    it was never run.
     """
 
     name: str
@@ -45,16 +37,8 @@ class Entry:
 
 @dataclass(frozen=True)
 class StudyFolder:
-    """A folder with studies, the one that stands for them first.
-
-    Parameters
-    ----------
-    name : str
-    title, description : str
-        Those of its ``README.md``, or else of its first study.
-    entries : tuple of Entry
-    example : bool
-        Whether its results are known.
+    """A folder with studies, the one that stands for them first. Title and description are those of its ``README.md``,
+    or of its first study. ``example`` is True if its results are known.
     """
 
     name: str

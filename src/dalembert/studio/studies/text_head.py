@@ -19,15 +19,8 @@ SAYS = {
 
 
 def disk_notice(draft: Draft, copied: Callable[[], object]) -> None:
-    """Build the notice, which is hidden while the file is what was read or saved.
-
-    A text without unsaved changes follows the file; undo brings the earlier text back.
-
-    Parameters
-    ----------
-    draft : Draft
-    copied : callable
-        Saves the text as a copy.
+    """Build the notice, which is hidden while the file is what was read or saved. A text without unsaved changes
+    follows the file; undo brings the earlier text back. ``copied`` saves the text as a copy.
     """
     with ui.row().classes("w-full items-center gap-2 p-2 rounded border disk-notice").props("role=alert") as notice:
         ui.icon("sync_problem", size="sm")
@@ -70,16 +63,8 @@ SLOW = 1.0
 
 
 def text_head(draft: Draft, editor: TextEditor, first: Callable[[], object], copied: Callable[[], object]) -> None:
-    """Build the buttons, what the text does, and its mistakes.
-
-    Parameters
-    ----------
-    draft : Draft
-    editor : TextEditor
-    first : callable
-        Builds what comes before the buttons.
-    copied : callable
-        Saves the text as a copy, after a conflict.
+    """Build the buttons, what the text does, and its mistakes. ``first`` builds what comes before the buttons.
+    ``copied`` saves the text as a copy, after a conflict.
     """
     with ui.row().classes("gap-2 items-center"):
         first()

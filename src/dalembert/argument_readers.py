@@ -10,13 +10,7 @@ from dalembert.errors import InputError, shown
 
 
 def names_of(entries: str | Iterable[str], owner: str, what: str) -> tuple[str, ...]:
-    """Names from a sequence of them, or from a single one.
-
-    Examples
-    --------
-    >>> names_of("rod.end.x", "TimeResponse", "channels"), names_of(["a", "b"], "TimeResponse", "channels")
-    (('rod.end.x',), ('a', 'b'))
-    """
+    """Return names from a sequence of them, or from a single one: ``"x"`` gives ``("x",)``."""
     if isinstance(entries, str):
         return (str(entries),)
     names = tuple(entries) if isinstance(entries, Iterable) else ()

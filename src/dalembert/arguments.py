@@ -219,21 +219,8 @@ def _holds(test: Callable[[Any], bool], value: Any) -> bool:
 
 
 def takes_checked(*but: str) -> Callable[[Function], Function]:
-    """Decorator of a function whose arguments are checked by their annotations, as those of :class:`Checked` are.
-
-    Parameters
-    ----------
-    but : str
-        Names of arguments that are not checked here, because the function checks them with a more detailed message.
-
-    Examples
-    --------
-    >>> @takes_checked()
-    ... def repeated(word: str, times: int = 2) -> str:
-    ...     return word * times
-    >>> repeated("a", 2.5)
-    Traceback (most recent call last):
-    dalembert.errors.InputError: repeated: times is 2.5; expected a whole number
+    """Return a decorator of functions whose arguments are checked by their annotations, as those of :class:`Checked`
+    are. The function itself checks the arguments ``but``, with a more detailed message.
     """
 
     def checking(function: Function) -> Function:

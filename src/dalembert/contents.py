@@ -19,17 +19,8 @@ if TYPE_CHECKING:
 class Contents:
     """Arrays with named dimensions, and attributes: what a result consists of.
 
-    Parameters
-    ----------
-    variables, coordinates : mapping of str to tuple
-        Name of the dimension, or a tuple of names; values; attributes, which may be left out.
-    attributes : mapping of str to str, int or float
-
-    Examples
-    --------
-    >>> ramp = Contents({"x": ("time", [0.0, 1.0], {"units": "m"})}, {"time": ("time", [0.0, 0.5])}, {"title": "ramp"})
-    >>> ramp.to_xarray()["x"].sel(time=0.5).item()
-    1.0
+    ``variables`` and ``coordinates`` have the name of the dimension (or a tuple of names), the values and, if there are
+    any, attributes: ``{"x": ("time", [0.0, 1.0], {"units": "m"})}``. Values of ``attributes`` are str, int or float.
     """
 
     variables: Mapping[str, tuple]

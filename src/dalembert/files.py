@@ -23,17 +23,8 @@ _STORAGE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EACCES, 
 
 @contextmanager
 def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """A temporary path beside ``path`` to write to; it becomes ``path`` when the block ends without an error.
-
-    The content is on the disk before the name is, so that not even a power cut leaves half a file.
-
-    Examples
-    --------
-    >>> folder = Path(tempfile.mkdtemp())
-    >>> with replacing(folder / "a.txt") as temporary:
-    ...     _ = temporary.write_text("whole")
-    >>> (folder / "a.txt").read_text(), len(list(folder.iterdir()))
-    ('whole', 1)
+    """Yield a temporary path beside ``path`` to write to; it becomes ``path`` when the block ends without an error. The
+    content is on the disk before the name is, so that not even a power cut leaves half a file.
     """
     path = Path(path)
     if not path.parent.is_dir():
@@ -66,15 +57,7 @@ def free_path(path: Path, taken: Callable[[Path], bool] = Path.exists) -> Path:
 
 
 def set_aside(path: Path, *suffixes: str) -> Path:
-    """Rename a damaged file, and files with suffixes beside it, to ``NAME.damaged-1`` or the next free number.
-
-    Examples
-    --------
-    >>> folder = Path(tempfile.mkdtemp())
-    >>> _ = (folder / "a").write_text("garbage")
-    >>> set_aside(folder / "a").name, (folder / "a").exists()
-    ('a.damaged-1', False)
-    """
+    """Rename a damaged file, and files with suffixes beside it, to ``NAME.damaged-1`` or the next free number."""
     number = 1
     while (aside := path.with_name(f"{path.name}.damaged-{number}")).exists():
         number += 1

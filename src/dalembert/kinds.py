@@ -38,12 +38,8 @@ def derived_dataclasses(*bases: type) -> Iterator[type]:
 
 
 def distinct(kinds: Iterable[type], key: Callable[[type], str] = attrgetter("__name__")) -> dict[str, type]:
-    """One kind of each name: the newest definition of a file, as a notebook or a reload makes several.
-
-    Raises
-    ------
-    InputError
-        For two kinds of one name from different files.
+    """Return one kind of each name: the newest definition of a file, as a notebook or a reload makes several. Two kinds
+    of one name from different files are an error.
     """
     by_name: dict[str, type] = {}
     for kind in kinds:
@@ -58,21 +54,9 @@ def distinct(kinds: Iterable[type], key: Callable[[type], str] = attrgetter("__n
 
 
 def named(package: str, *bases: type, plugins: str = PLUGINS) -> dict[str, type]:
-    """Concrete classes that derive from some bases, or are one of them, by their attribute ``name``.
-
-    They come from all modules of a package, and from other packages that are imported or that an entry point of the
-    group ``plugins`` names. So one file in the folder of the package is all that a new kind needs.
-
-    Raises
-    ------
-    InputError
-        For two classes of one name from different files.
-
-    Examples
-    --------
-    >>> from dalembert.optimize import Swarm
-    >>> sorted(named("dalembert.optimize", Swarm))
-    ['improved-swarm', 'standard-swarm']
+    """Return the concrete classes that derive from some bases, or are one of them, by their attribute ``name``. They
+    come from all modules of a package, and from other packages that are imported or that an entry point of the group
+    ``plugins`` names. So one file in the folder of the package is all that a new kind needs.
     """
     load_modules(package)
     load_plugins(plugins)

@@ -10,13 +10,6 @@ def latin_hypercube(directions: int, points: int, rng: np.random.Generator) -> n
     ``scipy.stats.qmc.LatinHypercube`` with the same generator; loading `scipy.stats` takes as long as a small study.
 
     Source: McKay, Beckman and Conover, Technometrics 21 (1979), 239-245.
-
-    Examples
-    --------
-    >>> points = latin_hypercube(2, 4, np.random.default_rng(0))
-    >>> np.sort(np.floor(4 * points), axis=0).T
-    array([[0., 1., 2., 3.],
-           [0., 1., 2., 3.]])
     """
     (rng,) = rng.spawn(1)  # as SciPy does
     within = rng.uniform(size=(points, directions))

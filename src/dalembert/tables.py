@@ -17,18 +17,9 @@ SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def shown(value: float | None, deviation: float | None = None, digits: int = 6) -> str:
-    """Text of a number.
+    """Return the text of a number. With its standard ``deviation``, it ends with the second digit of that; otherwise it
+    has ``digits`` significant digits, trailing zeros dropped.
 
-    Parameters
-    ----------
-    value : float or None
-    deviation : float, optional
-        Standard deviation; the text then ends with the second digit of it.
-    digits : int
-        Significant digits where there is no deviation, trailing zeros dropped.
-
-    Examples
-    --------
     >>> shown(0.78539816, 1.2e-5), shown(2e8, 3e5), shown(41), shown(1.65e-8), shown(float("nan"))
     ('0.785398', '2.0000 × 10⁸', '41', '1.65 × 10⁻⁸', '–')
     """
@@ -54,13 +45,7 @@ def shown(value: float | None, deviation: float | None = None, digits: int = 6) 
 
 
 def with_deviation(value: float, deviation: float) -> str:
-    """Text of a number and its standard deviation, to the same decimal.
-
-    Examples
-    --------
-    >>> with_deviation(0.78539816, 1.2e-5), with_deviation(2e8, 3e5), with_deviation(0.5, float("nan"))
-    ('0.785398 ± 0.000012', '(2.0000 ± 0.0030) × 10⁸', '0.5')
-    """
+    """Return the text of a number and its standard deviation, to the same decimal: ``(2.0000 ± 0.0030) × 10⁸``."""
     if not (math.isfinite(deviation) and deviation > 0):
         return shown(value)
     mantissa, _, power = shown(value, deviation).partition(" × ")
@@ -70,35 +55,17 @@ def with_deviation(value: float, deviation: float) -> str:
 
 
 def interval(lower: float, upper: float) -> str:
-    """Text of an interval; one number where its ends are the same.
-
-    Examples
-    --------
-    >>> interval(0.74613, 0.8247), interval(0.5, 0.5)
-    ('[0.74613, 0.8247]', '0.5')
-    """
+    """Return the text of an interval; one number where its ends are the same."""
     return shown(float(lower)) if lower == upper else f"[{shown(float(lower))}, {shown(float(upper))}]"
 
 
 def counted(number: int) -> str:
-    """Text of a whole number, in groups of three digits.
-
-    Examples
-    --------
-    >>> counted(41), counted(4000)
-    ('41', '4 000')
-    """
+    """Return the text of a whole number, in groups of three digits."""
     return f"{number:,}".replace(",", " ")
 
 
 def percent(part: float, digits: int = 3) -> str:
-    """Text of a part of a whole in percent.
-
-    Examples
-    --------
-    >>> percent(0.12345)
-    '12.3 %'
-    """
+    """Return the text of a part of a whole in percent."""
     return f"{shown(100 * float(part), digits=digits)} %"
 
 
@@ -116,10 +83,8 @@ SMALLEST = {"m": (-9, 0), "N": (0, 6), "J": (-9, 6)}
 
 
 def prefixed(largest: float, unit: str) -> tuple[float, str]:
-    """Factor from a unit to one in which the largest of some values lies between 1 and 1000, and its name.
+    """Return the factor from a unit to one in which the largest of some values lies between 1 and 1000, and its name.
 
-    Examples
-    --------
     >>> prefixed(2.5e-5, "m"), prefixed(1200.0, "N"), prefixed(3e-5, "rad"), prefixed(1e4, "m")
     ((1000000.0, 'µm'), (0.001, 'kN'), (1.0, 'rad'), (1.0, 'm'))
     """
@@ -131,13 +96,7 @@ def prefixed(largest: float, unit: str) -> tuple[float, str]:
 
 
 def in_words(value: float, unit: str, digits: int = 6) -> str:
-    """Text of a number with the prefix of its unit that makes it easy to read.
-
-    Examples
-    --------
-    >>> in_words(1.8883e-4, "m"), in_words(2.5, "rad")
-    ('188.83 µm', '2.5 rad')
-    """
+    """Return the text of a number with the prefix of its unit that makes it easy to read."""
     factor, prefixed_unit = prefixed(abs(value), unit)
     return f"{shown(factor * value, digits=digits)} {prefixed_unit}"
 

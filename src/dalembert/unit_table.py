@@ -14,18 +14,8 @@ BASE = ("kg", "m", "s", "A", "K", "rad", "cycle", "count")
 
 @dataclass(frozen=True)
 class Unit:
-    """A multiple of SI units.
-
-    Parameters
-    ----------
-    scale : Fraction
-        Number of SI units, without its power of π.
-    turns : int or Fraction
-        Power of π in it.
-    exponents : tuple of int or Fraction
-        Of :data:`BASE`.
-    offset : Fraction
-        What is added to a number of this unit before it is scaled; of temperatures alone.
+    """A multiple of SI units: ``scale`` π^``turns`` times the product of the units :data:`BASE` to the powers
+    ``exponents``. ``offset``: added to a number of this unit before it is scaled; of temperatures alone.
     """
 
     scale: Fraction = Fraction(1)
@@ -145,11 +135,6 @@ _POWER = re.compile(r"(?:\s*(?:\^|\*\*)\s*)?([+-]?\d(?:\.\d)?)(?!\d|\.)")
 def readings(text: str) -> tuple[Unit, ...]:
     """Return the units that a text may be, the usual one first; none if it is no product of powers of known units.
 
-    Examples
-    --------
-    >>> (newton_metre,) = readings("Nm")
-    >>> newton_metre == readings("N*m")[0] == readings("kg m^2 s^-2")[0]
-    True
     >>> [unit.factor for unit in readings("g")], readings("potato")
     ([0.001, 9.80665], ())
     """

@@ -10,18 +10,8 @@ def spread(
 ) -> dict[str, np.ndarray]:
     """Return the columns of arrays by name; a matrix with as many columns as the times gives its rows.
 
-    Parameters
-    ----------
-    arrays : mapping of str to array
-    time : str or None
-        Array of the times.
-    first : int
-        Number of the first column.
-    brackets : str
-        Around numbers of columns.
+    ``time``: array of the times; ``first``: number of the first column; ``brackets``: around numbers of columns.
 
-    Examples
-    --------
     >>> list(spread({"t": np.zeros(3), "q": np.zeros((2, 3))}, "t"))
     ['t', 'q[0,:]', 'q[1,:]']
     """

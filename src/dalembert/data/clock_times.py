@@ -32,14 +32,8 @@ def clock_seconds(cells: Sequence[str]) -> np.ndarray | None:
     A time of day that is half a day before its predecessor is one of the next day. Of the dates ``1/2/2024`` the larger
     number is the day, and the first one where no date decides.
 
-    Examples
-    --------
-    >>> clock_seconds(["23:59:59,5", "00:00:00,25"]).tolist()
-    [0.0, 0.75]
-    >>> clock_seconds(["2024-02-28 12:00:00", "2024-03-01 12:00:00"]).tolist()
-    [0.0, 172800.0]
-    >>> clock_seconds(["12:00:00 AM", "01:00:00 PM"]).tolist(), clock_seconds(["1.5", "10:00"])
-    ([0.0, 46800.0], None)
+    >>> clock_seconds(["23:59:59,5", "00:00:00,25"]).tolist(), clock_seconds(["12:00:00 AM", "01:00:00 PM"]).tolist()
+    ([0.0, 0.75], [0.0, 46800.0])
     """
     matches = [_CLOCK.fullmatch(cell.strip()) for cell in cells]
     if not cells or not all(match is not None and (match["hour"] or match["date"]) for match in matches):

@@ -93,12 +93,7 @@ class Columns:
 class Trial:
     """One of the trials in a file: the samples at which a column has a value.
 
-    Parameters
-    ----------
-    column : str or int
-        Column that numbers the trials.
-    label : str
-        Its value as text: ``"3"`` for 3 and 3.0.
+    ``column``: column that numbers the trials; ``label``: its value as text, ``"3"`` for 3 and 3.0.
     """
 
     column: str | int

@@ -11,12 +11,8 @@ from dalembert.errors import DataError
 
 
 def guarded(path: Path, what: str, module: str, function: str, **options: Any) -> Any:
-    """``module.function(path, **options)``.
-
-    Parameters
-    ----------
-    what : str
-        The kind of the file, for messages.
+    """Return ``module.function(path, **options)``, computed in another process; ``what``: kind of the file, for
+    messages.
     """
     command = [sys.executable, "-c", _READER, module, function, str(path), json.dumps(options)]
     done = subprocess.run(command, capture_output=True, check=False)

@@ -21,14 +21,10 @@ Source = Literal["file", "name", "steps", ""]
 
 @dataclass(frozen=True)
 class Unit:
-    """A unit that a column probably has.
+    """A unit that a column probably has; ``name``: ``""`` where nothing gives it.
 
-    Parameters
-    ----------
-    name : str
-        ``""`` where nothing gives it.
-    source : {"file", "name", "steps", ""}
-        The file names it; the name of the column ends in it; the steps of the times are usual in it; nothing gives it.
+    ``source``: ``"file"`` (the file names it), ``"name"`` (the name of the column ends in it), ``"steps"`` (the steps
+    of the times are usual in it) or ``""`` (nothing gives it).
     """
 
     name: str

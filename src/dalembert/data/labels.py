@@ -53,14 +53,7 @@ def coordinate_of(coordinate: Coordinate | ArrayLike) -> Coordinate:
 
 
 def real_numbers(values: Any, what: str) -> np.ndarray:
-    """Array of floats from anything like an array.
-
-    Examples
-    --------
-    >>> real_numbers([1.0, "2,5"], "channel 'x'")
-    Traceback (most recent call last):
-    dalembert.errors.DataError: channel 'x', sample 1: '2,5'; expected a number
-    """
+    """Return an array of floats from anything like an array."""
     try:
         array = np.asarray(values)
     except ValueError:  # rows of unequal length

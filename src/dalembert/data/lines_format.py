@@ -55,27 +55,14 @@ def columns_of(
     trial: Trial | None = None,
     absent: Iterable[str] = (),
 ) -> Columns:
-    """Times and columns by their names in the file, or by their numbers from 1.
+    """Return times and columns by their names in the file, or by their numbers from 1.
 
-    Parameters
-    ----------
-    path : Path
-    lines : sequence of (line number, text)
-    time : str, int or None
-        Column of the times, which must grow, or are times of day; the first one of a file without a header if it is
-        ``"t"``. None numbers the samples.
-    names : iterable of str or int, optional
-        Columns wanted; all but the times if not given.
-    missing : {"refuse", "leave-out"}
-        Whether an empty cell, NA or NaN is a defect, or becomes a NaN.
-    separator : str
-        ``"auto"``, or the character; a blank stands for any number of blanks and tabs.
-    decimal : {"auto", ".", ","}
-        What stands before the decimals of a number.
-    trial : Trial, optional
-        The one trial whose lines are read.
-    absent : iterable of str
-        Further words for a cell without a value.
+    ``lines``: (line number, text). ``time``: column of the times, which must grow, or are times of day; the first one
+    of a file without a header if it is ``"t"``. None numbers the samples. ``names``: columns wanted; all but the times
+    if None. ``missing``: ``"refuse"`` an empty cell, NA or NaN, or ``"leave-out"``, which makes it a NaN.
+    ``separator``: ``"auto"``, or the character; a blank stands for any number of blanks and tabs. ``decimal``:
+    ``"auto"``, or the mark before the decimals. ``trial``: the one trial whose lines are read. ``absent``: further
+    words for a cell without a value.
     """
     _refuse_marks(path, separator, decimal)
     if not lines:

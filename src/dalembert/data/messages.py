@@ -19,13 +19,7 @@ STAMPS = (("sec", "nanosec"), ("secs", "nsecs"), ("seconds", "nanos"), ("sec", "
 
 
 class Decoders:
-    """Functions that decode messages, by the numbers of their schemas.
-
-    Parameters
-    ----------
-    path : Path
-        The file, for messages.
-    """
+    """Functions that decode messages, by the numbers of their schemas; ``path``: the file, for messages."""
 
     def __init__(self, path: Path) -> None:
         self._path = path

@@ -20,20 +20,11 @@ SHOWN = 5
 
 @dataclass(frozen=True, eq=False)
 class PreviewColumn:
-    """A column of a file.
+    """A column of a file: its ``values`` (samples,) as they are in the file, NaN where a cell has no number.
 
-    Parameters
-    ----------
-    key : str or int
-        What `[data]` calls it: its name, or its number from 1 where the file has no name that no other column has.
-    unit : str
-        The unit that the file names; ``""`` if it names none.
-    values : array, shape (samples,)
-        As they are in the file; NaN where a cell has no number.
-    missing : int
-        Cells without a value.
-    wrong : (int, str), optional
-        Line, or sample, and content of the first cell that is neither a number nor empty.
+    ``key``: what `[data]` calls it, its name, or its number from 1 where the file has no name that no other column has;
+    ``unit``: named by the file, ``""`` if it names none; ``missing``: number of cells without a value; ``wrong``: line,
+    or sample, and content of the first cell that is neither a number nor empty.
     """
 
     key: str | int
@@ -47,19 +38,9 @@ class PreviewColumn:
 class Preview:
     """What a file is taken to hold.
 
-    Parameters
-    ----------
-    path : Path
-    format : str
-    columns : tuple of PreviewColumn
-    first : tuple of rows
-        Cells of the first rows.
-    layout : str
-        What a text file was taken to be, in words.
-    separator, decimal : str
-        Marks of a text file, as they were found or given; ``""`` of another file.
-    uneven : (int, int), optional
-        Line and number of cells of the first line of a text file that has another number of cells.
+    ``first``: cells of the first rows; ``layout``: what a text file was taken to be, in words; ``separator``,
+    ``decimal``: marks of a text file, as detected or given, ``""`` of another file; ``uneven``: line and number of
+    cells of the first line of a text file that has another number of cells.
     """
 
     path: Path
@@ -82,27 +63,8 @@ class Preview:
 
 
 def preview(path: Path, separator: str = AUTO, decimal: str = AUTO, absent: Sequence[str] = ()) -> Preview:
-    """Return what a file is taken to hold.
-
-    Parameters
-    ----------
-    path : Path
-    separator, decimal : str
-        Marks of a text file; ``"auto"`` to find them from its lines.
-    absent : sequence of str
-        Further words for a cell without a value in a text file.
-
-    Examples
-    --------
-    >>> from tempfile import TemporaryDirectory
-    >>> with TemporaryDirectory() as folder:
-    ...     file = Path(folder) / "own.txt"
-    ...     _ = file.write_text("time_ms angle_deg\\n1500 20.5\\n1510 20.4\\n1520 error\\n")
-    ...     found = preview(file)
-    >>> found.layout, [column.key for column in found.columns]
-    ('cells separated by blanks, names in line 1', ['time_ms', 'angle_deg'])
-    >>> found.columns[1].values.tolist(), found.columns[1].wrong
-    ([20.5, 20.4, nan], (4, 'error'))
+    """Return what a file is taken to hold. ``separator``, ``decimal``: marks of a text file, ``"auto"`` to detect them
+    from its lines; ``absent``: further words for a cell without a value in a text file.
     """
     name = format_of(path)
     form = known_formats()[name]()

@@ -37,22 +37,10 @@ FLAT = 1e-9
 class Use:
     """How the columns of a file are to be used.
 
-    Parameters
-    ----------
-    time : str or int, optional
-        Column of the times.
-    units : mapping of str or int to Unit
-        Of columns; SI where there is none.
-    channels : mapping of str to (str or int, str)
-        Column of each channel, and SI unit of the channel (``""`` if it is not known).
-    start : float or "first", optional
-        Time (s) of the file at which the motion begins.
-    missing : {"refuse", "leave-out"}
-    wraps : tuple of str
-        Channels that are angles known up to whole turns.
-    between : (float, float), optional
-        Times (s) from the beginning of the motion between which samples are used.
-    decimate : int, optional
+    ``time``: column of the times; ``units``: of columns, SI where there is none; ``channels``: column of each channel,
+    and SI unit of the channel (``""`` if it is not known); ``start``: time (s) of the file at which the motion begins,
+    or ``"first"``; ``missing``: ``"refuse"`` or ``"leave-out"``; ``wraps``: channels that are angles known up to whole
+    turns; ``between``: times (s) from the beginning of the motion between which samples are used.
     """
 
     time: str | int | None = None
@@ -74,21 +62,7 @@ class Use:
 
 
 def problems(preview: Preview, use: Use) -> list[Finding]:
-    """Return what is wrong or doubtful in the times and in the columns of channels, errors first.
-
-    Parameters
-    ----------
-    found : Preview
-    use : Use
-
-    Examples
-    --------
-    >>> from pathlib import Path
-    >>> times = PreviewColumn("t", "", np.array([1.5, 1.6, 1.7]))
-    >>> found = Preview(Path("a.csv"), "csv", (times, PreviewColumn("x", "", np.array([2.0, 2.0, 2.0]))), ())
-    >>> [finding.code for finding in problems(found, Use("t", channels={"AB.end.x": ("x", "m")}))]
-    ['late-times', 'constant-column']
-    """
+    """Return what is wrong or doubtful in the times and in the columns of channels, errors first."""
     times = None if use.time is None else preview.column(use.time)
     listed = [*_of_lines(preview)]
     if times is not None:
@@ -285,27 +259,12 @@ def _of_channel(
 
 
 def outliers(values: np.ndarray) -> np.ndarray:
-    """Return the samples whose values lie far from those around them.
+    """Return the samples whose ``values`` (samples,), all finite, lie far from those around them.
 
-    A value is far if it differs from the median of the values around it, and from a cubic polynomial through the two
-    on each side, by more than ten standard deviations of the scatter about such polynomials (1.4826 times the median
-    of the absolute differences there), the change over three usual steps there, and 2 % of the range of the values.
-
-    Parameters
-    ----------
-    values : array, shape (samples,)
-        Finite. Fewer than 25 are not judged.
-
-    Returns
-    -------
-    array of int
-
-    Examples
-    --------
-    >>> values = np.sin(np.arange(200) / 10)
-    >>> values[77] = 3.0
-    >>> outliers(values).tolist()
-    [77]
+    A value is far if it differs from the median of the values around it, and from a cubic polynomial through the two on
+    each side, by more than ten standard deviations of the scatter about such polynomials (1.4826 times the median of
+    the absolute differences there), the change over three usual steps there, and 2 % of the range of the values. Fewer
+    than 25 values are not judged.
     """
     if len(values) < LOCAL:
         return np.zeros(0, dtype=int)

@@ -35,19 +35,9 @@ _FOLLOW = 3  # lines of numbers that begin them
 class Layout:
     """What the lines of a text file are.
 
-    Parameters
-    ----------
-    separator, decimal : str
-        A blank stands for any number of blanks and tabs.
-    header : tuple of str
-        Names of the columns; their numbers from 1 where the file has none.
-    units : tuple of str
-        One a column, ``""`` where none is named.
-    rows : list of (line number, cells)
-    named : int or None
-        Line of the names; None where there is none.
-    measured : int or None
-        Line of the units.
+    ``separator``: a blank stands for any number of blanks and tabs; ``header``: names of the columns, their numbers
+    from 1 where the file has none; ``units``: one a column, ``""`` where none is named; ``rows``: (line number, cells);
+    ``named``, ``measured``: line of the names, and of the units, None where there is none.
     """
 
     separator: str
@@ -68,32 +58,18 @@ class Layout:
 
 
 def layout(lines: Sequence[Line], time: str | int | None, separator: str = AUTO, decimal: str = AUTO) -> Layout:
-    """Return the layout of lines that are not blank.
+    """Return the layout of ``lines`` (line number, text) that are not blank.
 
     All pairs of a separator and a decimal mark are tried on the lines in the middle. The pair is taken that leaves the
-    fewest cells that are not numbers; of several, the one that gives the most columns. There is always a result: it
-    has no rows if no line has numbers.
+    fewest cells that are not numbers; of several, the one that gives the most columns. There is always a result: it has
+    no rows if no line has numbers.
 
-    Parameters
-    ----------
-    lines : sequence of (line number, text)
-    time : str, int or None
-        Name of the column of times, or its number from 1, if there is one. A first line with a cell of this name is a
-        header, even if all its cells are numbers.
-    separator, decimal : str
-        ``"auto"``, or the separator (a blank stands for any number of blanks and tabs) and the decimal mark.
+    ``time``: name of the column of times, or its number from 1; a first line with a cell of this name is a header, even
+    if all its cells are numbers. ``separator``, ``decimal``: ``"auto"``, or the mark; a blank separator stands for any
+    number of blanks and tabs.
 
-    Returns
-    -------
-    Layout
-
-    Examples
-    --------
-    >>> found = layout([(1, "% rig 7"), (2, "time;angle"), (3, "s;deg"), (4, "0,0;1,5"), (5, "0,1;1,4")], "time")
-    >>> str(found)
+    >>> str(layout([(1, "% rig 7"), (2, "time;angle"), (3, "s;deg"), (4, "0,0;1,5"), (5, "0,1;1,4")], "time"))
     'cells separated by semicolons, decimal commas, names in line 2, units in line 3'
-    >>> found.rows[0]
-    (4, ['0,0', '1,5'])
     """
     plain = [line for line in lines if not line[1].lstrip().startswith(COMMENTS)]
     sample = [text for _, text in plain[len(plain) // 2 :]][:_SAMPLE]

@@ -19,17 +19,7 @@ def lines_of_numbers(lines: Sequence[Line], text_layout: Layout) -> list[Line]:
 
 
 def quick_numbers(lines: Sequence[Line], text_layout: Layout) -> np.ndarray | None:
-    """Return the numbers (lines, columns) of lines; None if a cell is no finite number, or a line of another length.
-
-    Examples
-    --------
-    >>> from dalembert.data.text_layout import layout
-    >>> lines = [(1, "t;x"), (2, "0,5;1"), (3, "1,5;2")]
-    >>> quick_numbers(lines[1:], layout(lines, "t")).tolist()
-    [[0.5, 1.0], [1.5, 2.0]]
-    >>> quick_numbers([(1, "0;")], layout(lines, "t")) is None
-    True
-    """
+    """Return the numbers (lines, columns) of lines; None if a cell is no finite number, or a line of another length."""
     texts, width = [text for _, text in lines], len(text_layout.header)
     if text_layout.decimal == ",":
         if any("." in text for text in texts):  # which may divide thousands

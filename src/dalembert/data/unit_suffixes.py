@@ -45,16 +45,9 @@ def suffix(name: str) -> str:
 
 
 def sure_suffix(name: str, along: str = "") -> str:
-    """Return the unit at the end of a name that needs no confirmation; ``""`` if there is none.
+    """Return the unit at the end of a name that needs no confirmation; ``""`` if there is none. ``along``: SI unit of
+    the samples' coordinate if the name is that of its column, ``"s"`` or ``"Hz"``.
 
-    Parameters
-    ----------
-    name : str
-    along : str
-        SI unit of the samples' coordinate if it is their column, ``"s"`` or ``"Hz"``.
-
-    Examples
-    --------
     >>> sure_suffix("angle_deg"), sure_suffix("x_cm"), sure_suffix("t_ms"), sure_suffix("t_ms", "s")
     ('deg', '', '', 'ms')
     """

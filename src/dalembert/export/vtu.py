@@ -17,15 +17,9 @@ from dalembert.files import replacing, write_text
 class Mesh:
     """Points, cells between them, and fields.
 
-    Parameters
-    ----------
-    points : array, shape (points, 3)
-        m.
-    cells : sequence of (kind, array of int, shape (cells, corners))
-        Kinds as meshio calls them: ``"vertex"``, ``"line"``, ``"triangle"``, ``"quad"``.
-    fields : mapping of str to array, shape (points,) or (points, 3)
-    marks : mapping of str to sequence of array, shape (cells,)
-        Numbers of the cells, an array for each entry of ``cells``.
+    ``points`` (points, 3): m; ``cells``: kind as meshio calls it (``"vertex"``, ``"line"``, ``"triangle"`` or
+    ``"quad"``), and corners (cells, corners); ``fields`` (points,) or (points, 3); ``marks``: numbers of the cells, an
+    array (cells,) for each entry of ``cells``.
     """
 
     points: np.ndarray

@@ -47,18 +47,8 @@ class Lost(NamedTuple):
 
 
 def lost_step(numbers: Callable[[complex], np.ndarray], scale: float) -> Lost | None:
-    """The number that loses a complex step most, None if all carry it.
-
-    ``numbers``: ``numbers(shift)`` -> vector of the numbers where the parameter is moved by a real or an imaginary
-        ``shift``.
-    ``scale``: typical size of the parameter.
-
-    Examples
-    --------
-    >>> lost_step(lambda shift: np.array([(2.0 + shift) ** 2]), 1.0) is None
-    True
-    >>> lost_step(lambda shift: np.array([abs(2.0 + shift) + 1j * 0]), 1.0)
-    Lost(entry=0, by_step=0.0, by_differences=1.0)
+    """Return the number that loses a complex step most, None if all carry it. ``numbers(shift)``: vector of the numbers
+    where the parameter is moved by a real or an imaginary shift; ``scale``: typical size of the parameter.
     """
     here, by_step = _complex_step(numbers, 0.0, scale)
     slope, error = _differences(numbers, here, DIFFERENCE * scale)
@@ -100,21 +90,8 @@ def _contradicted(
 
 @np.errstate(all="ignore")
 def stepped(numbers: Callable[[complex], np.ndarray], scale: float, scratch: tuple[float, float]) -> Lost | None:
-    """A number that follows a parameter in steps, as after rounding; None if there is none.
-
-    Parameters
-    ----------
-    numbers, scale
-        As of :func:`lost_step`.
-    workspace : (least, most)
-        Shifts of the parameter up to its bounds.
-
-    Examples
-    --------
-    >>> stepped(lambda shift: np.array([np.round(1.2 + shift, 3)]), 1.0, (-0.5, 0.5))
-    Lost(entry=0, by_step=0.0, by_differences=1.0)
-    >>> stepped(lambda shift: np.array([np.tanh(1e3 * shift)]), 1.0, (-0.5, 0.5)) is None
-    True
+    """Return a number that follows a parameter in steps, as after rounding; None if there is none. ``numbers``,
+    ``scale``: as of :func:`lost_step`; ``scratch``: least and largest shift of the parameter, up to its bounds.
     """
     span = scratch[1] - scratch[0]
     wide = _Intervals.around(numbers, scale, scratch, span, 1)

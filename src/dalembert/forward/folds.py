@@ -19,25 +19,9 @@ class Fold:
     A checkpoint that kept the responses of 5,000 samples would take gigabytes; the method needs only what it has made
     of them, such as the smallest and the largest. The responses of the batch at work are kept until its end.
 
-    Parameters
-    ----------
-    model : ForwardModel
-        Without a checkpoint nothing is kept.
-    name : str
-        Of the method.
-    points : ndarray
-        Parameter vectors of all batches, (n, parameters).
-    state : tuple of ndarray
-        Before the first batch.
-
-    Attributes
-    ----------
-    done : int
-        Batches that earlier processes used.
-    state : tuple of ndarray
-        After these.
-    notes : list of list of str
-        What was noted of each batch.
+    ``model``: without a checkpoint nothing is kept; ``name``: of the method; ``points`` (n, parameters): parameter
+    vectors of all batches; ``state``: before the first batch. Attributes: ``done``, number of batches that earlier
+    processes used; ``state``, after these; ``notes``, what was noted of each batch.
     """
 
     def __init__(self, model: ForwardModel, name: str, points: np.ndarray, state: Arrays) -> None:

@@ -16,33 +16,17 @@ _SHORT = 1.0  # length relative to T below which moments are taken by quadrature
 def lagged(
     spline: "BSpline", knots: np.ndarray, at: np.ndarray, constant: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return lagged columns, their rate, and their derivative by the time constant.
+    """Return lagged columns, their rate, and their derivative by the time constant, each (samples, columns).
 
-    Parameters
-    ----------
-    spline : BSpline of columns (columns,)
-        R; its polynomials change at knots only. y = R at the first knot.
-    knots : array, shape (knots,)
-    at : array, shape (samples,)
-        From the first to the last knot.
-    constant : float
-        T, in the unit of the knots; zero is no lag.
+    ``spline`` (columns,): R; its polynomials change at knots only. y = R at the first knot. ``at`` (samples,): from the
+    first to the last knot; ``constant``: T, in the unit of the knots; zero is no lag.
 
-    Returns
-    -------
-    values, rates, by_constant : array, shape (samples, columns)
-
-    Notes
-    -----
     On a piece that begins at s = 0 with y_0, y(s) = exp(-s/T) y_0 + sum_k c_k s^k m_k(s/T) with R = sum_k c_k s^k and
     m_k(z) = z int_0^1 exp(-z v) (1 - v)^k dv. A bidiagonal system gives y at all knots.
 
-    Examples
-    --------
     >>> from scipy.interpolate import make_interp_spline
     >>> knots = np.linspace(0.0, 1.0, 11)
-    >>> ramp = make_interp_spline(knots, knots[:, None], k=5)
-    >>> values, rates, _ = lagged(ramp, knots, np.array([0.35]), 0.1)
+    >>> values, *_ = lagged(make_interp_spline(knots, knots[:, None], k=5), knots, np.array([0.35]), 0.1)
     >>> np.allclose(values, 0.35 - 0.1 * (1 - np.exp(-3.5)))
     True
     """

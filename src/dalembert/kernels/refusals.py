@@ -27,13 +27,7 @@ _NOISE = re.compile(r"^(Failed in nopython|During:|File |\s*\^|\s*<source elided
 
 @contextmanager
 def refusals(function: Callable) -> Iterator[None]:
-    """Translate Numba's errors about a kernel's source into a short message.
-
-    Raises
-    ------
-    ModelError
-        Where the function, or one that it calls, does what a kernel cannot do.
-    """
+    """Translate Numba's errors about a kernel, or about a function that it calls, into a short message."""
     # Numba compiles `raise`, but the C function of a kernel ignores the status that the native function returns.
     _refuse_statements(function)
     try:

@@ -12,8 +12,6 @@ from dalembert.optimize.tikhonov import Regularised
 class LinearModel:
     """Residuals r + S d of a step d with down ≤ d ≤ up.
 
-    Examples
-    --------
     What meets a bound stays there, and the others are chosen anew: clipped, the free step (3, 2) would be (3, 1).
 
     >>> slopes = np.array([[2.0, 1.0], [1.0, -1.0]])

@@ -69,19 +69,10 @@ def dark(figure: go.Figure) -> go.Figure:
 def themed(
     figure: go.Figure, title: str = "", height: int = 420, *, x: Axis = "", y: Axis | Sequence[Axis] = "", **layout: Any
 ) -> go.Figure:
-    """The figure in our look, with its title and those of its axes.
+    """Return the figure in our look, with its title and those of its axes.
 
-    Parameters
-    ----------
-    figure : plotly.graph_objects.Figure
-    title : str
-    height : int
-        In pixels.
-    x, y : str or mapping, or for ``y`` a sequence of them
-        Title of an axis, or its settings. Of rows below each other, ``y`` has one entry for each row, and ``x`` belongs
-        to the lowest.
-    **layout
-        Further settings of the layout.
+    ``height``: pixels; ``x``, ``y``: title of an axis, or its settings. Of rows below each other, ``y`` has one entry
+    for each row, and ``x`` belongs to the lowest. ``layout``: further settings of the layout.
     """
     rows = [y] if isinstance(y, str | Mapping) else y
     for row, axis in enumerate(rows, start=1):
@@ -95,24 +86,12 @@ def _settings(axis: Axis) -> dict[str, Any]:
 
 
 def faint(colour: str, opacity: float = 0.22) -> str:
-    """A colour of the palette for the inside of a band: what lies under it shines through, in the dark too.
-
-    Examples
-    --------
-    >>> faint(LIGHT.series[0])
-    '#0069ab38'
-    """
+    """Return a colour of the palette for the inside of a band: what lies under it shines through, in the dark too."""
     return f"{colour}{round(255 * opacity):02x}"
 
 
 def plain(text: object) -> str:
-    """A user's text for a label: shown as it stands, where Plotly would read tags in it.
-
-    Examples
-    --------
-    >>> plain("<b>AB</b>.end")
-    '&lt;b&gt;AB&lt;/b&gt;.end'
-    """
+    """Return a user's text for a label: shown as it stands, where Plotly would read tags in it."""
     return escape(str(text), quote=False)
 
 

@@ -15,20 +15,8 @@ Kind = TypeVar("Kind")
 class ReportOptions:
     """The options of a report: what it shows with a result.
 
-    Parameters
-    ----------
-    supplements : tuple
-        Other results, mappings of str to results (one for each experiment), and sections.
-    title : str, optional
-    notes : sequence of str
-        Paragraphs.
-    study : str, optional
-        Text of the study file.
-    points, channels, dofs : tuple of str
-    truth : mapping
-    amplitude : str
-    findings : sequence of Finding
-        About the run, before those of the result.
+    ``supplements``: other results, mappings of str to results (one for each experiment), and sections; ``notes``:
+    paragraphs; ``study``: text of the study file; ``findings``: about the run, before those of the result.
     """
 
     supplements: tuple[Any, ...] = ()

@@ -4,23 +4,8 @@ import numpy as np
 
 
 def thin(values: np.ndarray, most: int = 4000) -> np.ndarray:
-    """Indices of at most ``most`` samples of a series that keep the lowest and the highest of each stretch.
-
-    Parameters
-    ----------
-    values : array, shape (samples,)
-
-    Returns
-    -------
-    array of int, increasing; all indices where the series is short enough
-
-    Examples
-    --------
-    >>> spike = np.zeros(100_000)
-    >>> spike[77_777] = 1.0
-    >>> kept = thin(spike)
-    >>> len(kept) <= 4000, 77_777 in kept
-    (True, True)
+    """Return increasing indices of at most ``most`` samples of ``values`` (samples,) that keep the lowest and the
+    highest of each stretch; all indices where the series is short enough.
     """
     values = np.asarray(values, dtype=float)
     if len(values) <= most:
@@ -38,14 +23,9 @@ def thinned(along: np.ndarray, values: np.ndarray, most: int = 4000) -> tuple[np
 
 
 def largest_of_stretches(times: np.ndarray, values: np.ndarray, most: int = 200) -> tuple[np.ndarray, np.ndarray]:
-    """Ends of at most ``most`` stretches of a series, and the largest value of each; NaN where all are NaN.
+    """Return the ends of at most ``most`` stretches of a series (samples,), and the largest value of each; NaN where
+    all are NaN.
 
-    Parameters
-    ----------
-    times, values : array, shape (samples,)
-
-    Examples
-    --------
     >>> largest_of_stretches(np.arange(6.0), np.array([1.0, 5.0, 2.0, np.nan, 3.0, 4.0]), most=3)
     (array([1., 3., 5.]), array([5., 2., 4.]))
     """

@@ -35,13 +35,8 @@ class SpeedModes(NamedTuple):
 class CriticalSpeed(NamedTuple):
     """A speed at which a mode has the frequency of the rotation.
 
-    Parameters
-    ----------
-    speed : float
-        rad/s, interpolated between the speeds of the diagram.
-    mode : int
-        Number of the mode, from 1 on.
-    direction : {"forward", "backward", ""}
+    ``speed``: rad/s, interpolated between the speeds of the diagram; ``mode``: its number, from 1 on; ``direction``:
+    ``"forward"``, ``"backward"`` or ``""``.
     """
 
     speed: float

@@ -46,13 +46,7 @@ def whirl(shapes: np.ndarray, mass: np.ndarray, turn: np.ndarray) -> np.ndarray:
 
     A shape that whirls forward on circles lags by a quarter of a turn behind itself turned by 90 degrees about the
     axis, J phi = i phi. So the direction is Im(phi^H M J phi) / (phi^H M phi), which weighs bodies by their inertia.
-
-    Parameters
-    ----------
-    shapes : complex array, shape (freedoms, modes)
-    mass : array, shape (freedoms, freedoms)
-    turn : array, shape (freedoms, freedoms)
-        M J.
+    ``shapes`` (freedoms, modes): complex; ``mass``, ``turn`` (freedoms, freedoms): M and M J.
     """
     spin = np.imag(np.einsum("im,ij,jm->m", shapes.conj(), (turn - turn.T) / 2, shapes))
     size = np.real(np.einsum("im,ij,jm->m", shapes.conj(), mass, shapes))

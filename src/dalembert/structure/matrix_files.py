@@ -148,13 +148,7 @@ READERS: dict[str, Callable[[Path], Matrices]] = {
 
 
 def matrices(path: Path) -> Matrices:
-    """All square matrices of a file, by its suffix.
-
-    Raises
-    ------
-    DataError
-        For a missing or damaged file, or one of no known kind.
-    """
+    """Return all square matrices of a file, by name; its suffix decides how it is read."""
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         raise DataError(

@@ -53,20 +53,9 @@ def lumped(masses: Mapping[str, float | complex], springs: Sequence[Spring]) -> 
 
 
 def with_springs(structure: Structure, springs: Sequence[Spring]) -> Structure:
-    """Add springs and dampers between degrees of freedom of a structure, or between one and the ground.
-
-    Parameters
-    ----------
-    structure : Structure
-    springs : sequence of (first, second, stiffness, damping) or (first, second, stiffness, damping, loss factor)
-        Degrees of freedom (None for the ground), N/m and N s/m; the loss factor η of hysteretic damping is 0 if not
-        given.
-
-    Examples
-    --------
-    >>> from dalembert.structure import lumped
-    >>> with_springs(lumped({"a": 1.0, "b": 1.0}, []), [("a", "b", 5.0, 0.0)]).stiffness.tolist()
-    [[5.0, -5.0], [-5.0, 5.0]]
+    """Return the structure with springs and dampers between degrees of freedom, or between one and the ground.
+    ``springs``: (first, second, stiffness, damping) or (first, second, stiffness, damping, loss factor): degrees of
+    freedom (None for the ground), N/m and N s/m; the loss factor η of hysteretic damping is 0 if not given.
     """
     if not springs:
         return structure

@@ -23,14 +23,8 @@ from dalembert.units import is_quantity
 
 
 class StudyError(InputError):
-    """A study file with mistakes.
-
-    Parameters
-    ----------
-    message : str
-        One line a mistake.
-    mistakes : list of (tuple of str or int, str)
-        The place of each, by its tables, keys and numbers of entries, and its sentence.
+    """A study file with mistakes: ``message`` has one line a mistake. ``mistakes``: the place of each, by its tables,
+    keys and numbers of entries, and its sentence.
     """
 
     def __init__(self, message: str, mistakes: list[tuple[tuple[str | int, ...], str]]) -> None:

@@ -26,15 +26,9 @@ def picture_or_message(path: Path) -> str:
 
 
 def study_picture(study: Study, label: str | None = None) -> str | None:
-    """Return the picture of a study's model as SVG; None for a model that has no shape, such as a Python function.
-
-    The mechanism is assembled at the starts of the parameters. A structure is drawn before it is reduced.
-
-    Parameters
-    ----------
-    study : Study
-    label : str, optional
-        Description for screen readers.
+    """Return the picture of a study's model as SVG; None for a model that has no shape, such as a Python function. The
+    mechanism is assembled at the starts of the parameters. A structure is drawn before it is reduced. ``label``:
+    description for screen readers.
     """
     if study.file.model.forward is not None:
         return None

@@ -14,16 +14,8 @@ TEMPLATES = files("dalembert.study") / "templates"
 
 @dataclass(frozen=True)
 class Template:
-    """A study to begin with.
-
-    Parameters
-    ----------
-    name : str
-        What a study made from it is called, unless it is given another name.
-    title, description : str
-    text : str
-    files : dict of str to str
-        Files beside it.
+    """A study to begin with; ``name``: what a study made from it is called, unless it is given another name; ``files``:
+    texts of the files beside it, by name.
     """
 
     name: str

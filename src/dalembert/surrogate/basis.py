@@ -7,22 +7,11 @@ import numpy as np
 
 
 def chebyshev(eta: np.ndarray, degrees: np.ndarray, derivative: int = 0) -> list[np.ndarray]:
-    """T_0 … T_m of each coordinate, or their first or second derivatives: a list of d arrays of shape (n, m_k + 1).
+    """Return T_0 … T_m of each coordinate, or their first or second derivatives: a list of d arrays of shape
+    (n, m_k + 1).
 
     By the recurrences T_{m+1} = 2η T_m − T_{m−1} and its derivatives, T'_{m+1} = 2 T_m + 2η T'_m − T'_{m−1} and so on.
-
-    Parameters
-    ----------
-    eta : array, shape (n, d)
-    degrees : array of int, shape (d,)
-        Highest degree m_k of each direction.
-
-    Examples
-    --------
-    >>> chebyshev(np.array([[0.5]]), np.array([3]))[0].tolist()
-    [[1.0, 0.5, -0.5, -1.0]]
-    >>> chebyshev(np.array([[0.5]]), np.array([3]), derivative=1)[0].tolist()
-    [[0.0, 1.0, 2.0, 0.0]]
+    ``eta`` (n, d); ``degrees`` (d,): highest degree m_k of each direction.
     """
     return [_ladder(eta[:, k], int(degree), derivative) for k, degree in enumerate(degrees)]
 

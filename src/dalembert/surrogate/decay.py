@@ -34,15 +34,10 @@ def _sums(degrees: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
 
 
 def tail(shells: np.ndarray) -> np.ndarray:
-    """Estimate of what the degrees above the last one would add, shape (outputs,), from shells (order + 1, outputs).
+    """Estimate what the degrees above the last one would add, shape (outputs,), from shells (order + 1, outputs).
 
     With a the sum of the last two shells (one of them may vanish by symmetry) and r their decay a degree,
     a r²/(1 − r²): what is left of a geometric series.
-
-    Examples
-    --------
-    >>> tail(10.0 ** -np.arange(6)[:, None]).round(9).tolist()
-    [1.111e-06]
     """
     # Σ_{m≥1} a r^{2m} of pairs of shells two degrees apart.
     decay = _ratio(shells, len(shells) - 1)
@@ -71,12 +66,6 @@ def slow_tail(shells: np.ndarray) -> np.ndarray:
     to the last degree n. The coefficients of a kink oscillate, so that p may be too large: no more than ``STEEPEST`` is
     taken. Zero where p is too large for a kink, or where the coefficients clearly decay geometrically: :func:`tail`
     holds there.
-
-    Examples
-    --------
-    >>> kink = np.append(1.0, np.arange(1.0, 41.0) ** -2)[:, None]
-    >>> slow_tail(kink / CAUTION).round(3).tolist()  # the sum from degree 41 on is 0.0247
-    [0.025]
     """
     order, p = len(shells) - 1, power(shells)
     if order < SHORT:
@@ -113,16 +102,13 @@ def _misfit(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def needed_order(shells: np.ndarray, tolerance: np.ndarray) -> tuple[int, bool]:
-    """Lowest order that leaves less than ``tolerance`` (outputs,) out, if the coefficients go on as they decay.
-
-    And whether they decay at all.
+    """Return the lowest order that leaves less than ``tolerance`` (outputs,) out, if the decay of the coefficients
+    continues, and whether they decay at all.
 
     From degree p on, degree q is taken to decay by r (p/q)^α: α = 0 for a geometric series, as of a function with a
-    pole, α = 1 for that of an entire function such as a sine; the last shells tell which. Where no decay is seen
-    yet, nothing tells how far it is; twice the order is named, as the next one to try.
+    pole, α = 1 for that of an entire function such as a sine; the last shells determine which. Where no decay is seen
+    yet, twice the order is returned, as the next one to try.
 
-    Examples
-    --------
     >>> needed_order(10.0 ** -np.arange(6)[:, None], np.array([1e-9]))
     (9, True)
     """

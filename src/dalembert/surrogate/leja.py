@@ -25,17 +25,8 @@ def leja(number: int) -> np.ndarray:
 def hierarchical(number: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the polynomials h_j(x) = Π_{i<j} (x − ζ_i)/(ζ_j − ζ_i), whose largest magnitude on [−1, 1] is 1.
 
-    Returns
-    -------
-    values : array, shape (number, number)
-        h_j(ζ_i) in row j and column i: zero for i < j and one for i = j.
-    coefficients : array, shape (number, number)
-        Of T_0, T_1 … in h_j, a row for each j.
-
-    Examples
-    --------
-    >>> hierarchical(3)[1][2].round(12).tolist()  # x (x − 1)/2 = (1 − 2x + (2x² − 1))/4
-    [0.25, -0.5, 0.25]
+    The values (number, number) have h_j(ζ_i) in row j and column i: zero for i < j and one for i = j. The coefficients
+    (number, number) of T_0, T_1 … have a row for each h_j.
     """
     values, coefficients = _tables(_workspace(number))
     return values[:number, :number], coefficients[:number, :number]

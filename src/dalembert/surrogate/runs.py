@@ -12,13 +12,8 @@ Function = Callable[[np.ndarray], np.ndarray]
 
 
 class Runs:
-    """A function over its box, asked at coordinates η in [−1, 1]^f of the directions that have a width.
-
-    Parameters
-    ----------
-    lower, upper : array, shape (d,)
-    on_runs : callable, optional
-        Called with the number of runs so far, after each batch.
+    """A function over its box, evaluated at coordinates η in [−1, 1]^f of the directions that have a width. ``lower``,
+    ``upper`` (d,); ``on_runs``: called with the number of runs so far, after each batch.
     """
 
     def __init__(

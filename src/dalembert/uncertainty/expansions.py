@@ -82,24 +82,8 @@ class Expansions:
 
 
 def maxima(slope: np.ndarray, hessian: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
-    """Where g·u + u·H u/2 is largest in the boxes lower ≤ u ≤ upper, by one coordinate after the other.
-
-    Parameters
-    ----------
-    slope : array, shape (n, f)
-    hessian : array, shape (n, f, f)
-    lower, upper : array, shape (n, f)
-
-    Returns
-    -------
-    array, shape (n, f)
-        A local maximum, from where the slope points.
-
-    Examples
-    --------
-    >>> bowl = -np.array([[[2.0, 0.0], [0.0, 4.0]]])
-    >>> maxima(np.array([[1.0, 8.0]]), bowl, -np.ones((1, 2)), np.ones((1, 2))).tolist()
-    [[0.5, 1.0]]
+    """Return where g·u + u·H u/2 is largest in the boxes lower ≤ u ≤ upper, (n, f): a local maximum, from where the
+    slope points. ``slope``, ``lower``, ``upper`` (n, f): g and the ends of the boxes; ``hessian`` (n, f, f): H.
     """
     # Coordinate ascent: each pass solves f one-dimensional problems in closed form, for all boxes at once.
     # It never falls, and ends at a local maximum.

@@ -15,16 +15,7 @@ def methods_by_name() -> dict[str, type[Method]]:
 
 
 def method_of(method: Method | str) -> Method:
-    """A method itself, or the one of that name with its usual settings.
-
-    Examples
-    --------
-    >>> method_of("scan")
-    Scan(points_each=21, most_runs=1000000)
-    >>> method_of("vertices")
-    Traceback (most recent call last):
-    dalembert.errors.InputError: unknown method 'vertices'; did you mean 'vertex'?
-    """
+    """Return a method itself, or the one of that name with its usual settings."""
     known = methods_by_name()
     if isinstance(method, str):
         require_known("method", method, known)

@@ -11,14 +11,6 @@ class Fourier:
     r"""Harmonics :math:`x(\tau) = X_0 + \sum_h X_{ch} \cos h\tau + X_{sh} \sin h\tau` and samples of a period.
 
     ``orders``: harmonics that are kept, in ascending order; 0 is the mean; ``samples``: samples of a period.
-
-    Examples
-    --------
-    >>> series = Fourier((0, 1), 4)
-    >>> (series.synthesis @ [1.0, 2.0, 0.0]).round(12).tolist()
-    [3.0, 1.0, -1.0, 1.0]
-    >>> (series.analysis @ [3.0, 1.0, -1.0, 3.0]).round(12).tolist()
-    [1.5, 2.0, -1.0]
     """
 
     orders: tuple[int, ...]

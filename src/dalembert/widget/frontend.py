@@ -32,12 +32,7 @@ def script() -> str:
 
 
 class MechanismSliders(anywidget.AnyWidget):
-    """A mechanism in motion with a slider for each parameter.
-
-    Parameters
-    ----------
-    source : Source
-    """
+    """A mechanism in motion with a slider for each parameter."""
 
     _esm = script()
     look = traitlets.Dict(LOOK).tag(sync=True)

@@ -26,17 +26,8 @@ if TYPE_CHECKING:
 class Source:
     """What a widget simulates: a motion from values of parameters.
 
-    Parameters
-    ----------
-    parameters : Parameters
-    motion : callable
-        Returns the motion of a parameter vector (parameters,) at times, s.
-    end : float
-        s.
-    channels : tuple of str
-        Drawn over time.
-    data : Measurements, optional
-        Drawn with the channels of the same names.
+    ``motion``: returns the motion of a parameter vector (parameters,) at times, s; ``end``: s; ``channels``: drawn over
+    time; ``data``: drawn with the channels of the same names.
     """
 
     parameters: Parameters

@@ -16,19 +16,8 @@ from dalembert.parameters import Parameters
 class Unknowns:
     """Vectors x = (middles of all d parameters, radii of the k intervals), in search coordinates.
 
-    Notes
-    -----
     A box with middle m and radius r is cut at the bounds: its ends are max(m − r, lower) and min(m + r, upper). So
     every middle between the bounds goes with every radius up to half of their distance.
-
-    Examples
-    --------
-    >>> unknowns = Unknowns(Parameters.of({"a": (0.0, 1.0), "b": (-1.0, 1.0)}), ("b",))
-    >>> unknowns.names
-    ('a middle', 'b middle', 'b radius')
-    >>> lower, upper = unknowns.ends(np.array([0.5, 0.75, 0.5]))
-    >>> lower.tolist(), upper.tolist()
-    ([0.5, 0.25], [0.5, 1.0])
     """
 
     parameters: Parameters

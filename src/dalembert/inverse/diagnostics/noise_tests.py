@@ -13,20 +13,12 @@ FEW = 10
 def runs(values: np.ndarray) -> tuple[int, float, float]:
     """Return the number of runs of equal signs, the number that independent noise has, and the probability.
 
-    Notes
-    -----
     With n₁ positive and n₂ negative values, independent noise has μ = 2 n₁ n₂/n + 1 runs with the variance
     (μ − 1) (μ − 2)/(n − 1). The probability is that of a number at least as far from μ; it is 1 where there are fewer
     than ten values of a sign.
 
     Source: A. Wald, J. Wolfowitz, On a test whether two samples are from the same population, Annals of Mathematical
     Statistics 11 (1940).
-
-    Examples
-    --------
-    >>> count, expected, probability = runs(np.repeat([1.0, -1.0], 20))
-    >>> count, expected, probability < 1e-8
-    (2, 21.0, True)
     """
     signs = values[values != 0] > 0
     total, above = len(signs), int(np.count_nonzero(signs))
@@ -39,19 +31,10 @@ def runs(values: np.ndarray) -> tuple[int, float, float]:
 
 
 def normality(values: np.ndarray) -> float:
-    """Return the probability of values (values,) at least as far from a normal distribution of unknown mean and width.
-
-    Notes
-    -----
-    The Anderson–Darling test.
+    """Return the probability of values (values,) at least as far from a normal distribution of unknown mean and width:
+    the Anderson–Darling test.
 
     Source: R. B. D'Agostino, M. A. Stephens, Goodness-of-Fit Techniques (1986), table 4.9.
-
-    Examples
-    --------
-    >>> noise = np.random.default_rng(0).standard_normal(200)
-    >>> normality(noise) > 0.05, normality(np.exp(noise)) < 1e-6
-    (True, True)
     """
     number = len(values)
     scaled = np.sort((values - np.mean(values)) / np.std(values, ddof=1))
@@ -68,23 +51,14 @@ def normality(values: np.ndarray) -> float:
 
 
 def growth(sizes: np.ndarray, quantity: np.ndarray) -> tuple[float, float]:
-    """Return the correlation of sizes with the ranks of a quantity (values,), and the probability of one as large.
+    """Return the correlation of sizes with the ranks of a quantity (values,), and the probability of one as large; 0
+    and 1 where one of them is constant.
 
-    0 and 1 where one of them is constant.
-
-    Notes
-    -----
     The sizes are replaced by those that their ranks have among absolute values of normal noise: Φ⁻¹((1 + u)/2) with
     u = rank/(n + 1). So the level does not depend on the distribution, and more is seen than with ranks of the sizes
     (Spearman): of noise that grows from 1 to 2.5 over 200 samples 83 % in place of 67 % at a level of 0.0005.
 
     Source: J. Hájek, Z. Šidák, Theory of Rank Tests (1967), for linear rank statistics.
-
-    Examples
-    --------
-    >>> correlation, probability = growth(np.arange(20.0) ** 3, np.arange(20.0))
-    >>> round(correlation, 2), probability < 1e-9
-    (0.97, True)
     """
     scores = ndtri((1 + _ranks(sizes) / (len(sizes) + 1)) / 2)
     first, second = scores - np.mean(scores), _ranks(quantity) - (len(quantity) + 1) / 2

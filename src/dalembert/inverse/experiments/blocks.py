@@ -16,8 +16,6 @@ def blocks_of_records(fitted: np.ndarray, parts: Sequence[ExperimentPart], count
     ``fitted`` (samples, channels). ``parts``: where several experiments stand; empty for a single one. ``count``:
     ``count(samples)`` returns the number of blocks of a record with this number of fitted samples.
 
-    Examples
-    --------
     >>> blocks_of_records(np.array([[True], [False], [True], [True]]), (), lambda samples: 2).ravel().tolist()
     [0, -1, 0, 1]
     """

@@ -25,24 +25,15 @@ class Estimate:
 
 
 def estimate(slopes: np.ndarray, scale: np.ndarray, variance: float | np.ndarray) -> Estimate:
-    """Estimate from the linearised least squares problem, covariance s² (JᵀWJ)⁻¹.
+    """Return the estimate from the linearised least squares problem, covariance s² (JᵀWJ)⁻¹.
 
     ``slopes`` (values, parameters): W^½ ∂R/∂p · scale, from the singular values of which everything follows. ``scale``
-    (parameters,). ``variance`` (parameters, parameters): s², the variance of a weighted residual. With correlated
-    residuals UᵀΣU: their covariance along the left singular vectors of the slopes, from which follows the covariance
-    (JᵀWJ)⁻¹ JᵀWΣWJ (JᵀWJ)⁻¹.
+    (parameters,). ``variance``: s², the variance of a weighted residual. With correlated residuals UᵀΣU
+    (parameters, parameters): their covariance along the left singular vectors of the slopes, from which follows the
+    covariance (JᵀWJ)⁻¹ JᵀWΣWJ (JᵀWJ)⁻¹.
 
-    Notes
-    -----
     A combination that the response does not see leaves the deviations of its parameters infinite, and correlates them
     fully.
-
-    Examples
-    --------
-    The mean of four values with variance 0.04 has the deviation 0.2/√4.
-
-    >>> estimate(np.ones((4, 1)), np.ones(1), variance=0.04).deviations
-    array([0.1])
     """
     _, singular, directions = _decomposed(slopes)
     least = UNSEEN * (singular[0] or 1.0)

@@ -6,21 +6,11 @@ import numpy as np
 def local_deviation(along: np.ndarray, values: np.ndarray) -> float:
     """Return the standard deviation of the noise of values (values,) along a coordinate, which need not be even.
 
-    What varies smoothly does not count. Correlated noise counts less than it is.
-
-    Notes
-    -----
     Each value is compared with the straight line between its neighbours, in units of that difference's own deviation.
+    What varies smoothly does not count. Correlated noise counts less than it is.
 
     Source: T. Gasser, L. Sroka, C. Jennen-Steinmetz, Residual variance and residual pattern in nonlinear regression,
     Biometrika 73 (1986).
-
-    Examples
-    --------
-    >>> times = np.linspace(0, 1, 1001)
-    >>> noise = 0.1 * np.random.default_rng(0).standard_normal(1001)
-    >>> round(local_deviation(times, np.sin(6 * times) + noise), 2)
-    0.1
     """
     after = (along[1:-1] - along[:-2]) / (along[2:] - along[:-2])
     before = 1 - after

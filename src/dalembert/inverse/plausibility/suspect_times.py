@@ -84,15 +84,8 @@ def time_findings(model: ForwardModel, data: Measurements, vector: np.ndarray) -
 def short_time_findings(data: Measurements, respond: Respond) -> tuple[Finding, ...]:
     """Return a finding on the first channel whose response turns as often as the data within 1000 times their time.
 
-    Within the time of the data, the response has at most a quarter of their turning points. So times in s were
-    probably read as ms.
-
-    Examples
-    --------
-    >>> stamps = np.arange(200) * 2e-5  # seconds, read as milliseconds
-    >>> data = Measurements.of(stamps, {"x": np.cos(4e3 * stamps)})
-    >>> [finding.values["factor"] for finding in short_time_findings(data, lambda times: np.cos(6 * times)[:, None])]
-    [1000.0]
+    Within the time of the data, the response has at most a quarter of their turning points. So times in s were probably
+    read as ms.
     """
     for column, name in enumerate(data.channels):
         present = data.present[:, column]
@@ -128,19 +121,10 @@ def first_times(data: Measurements) -> np.ndarray:
 
 
 def time_unit_findings(data: Measurements, times: np.ndarray, response: np.ndarray) -> tuple[Finding, ...]:
-    """Return a finding on the first channel that changes smoothly where the response does not follow.
-
-    The response swings several times between two samples, or settles within the first of them.
+    """Return a finding on the first channel that changes smoothly where the response does not follow: the response
+    swings several times between two samples, or settles within the first of them.
 
     ``times`` (times,): as :func:`first_times` gives them. ``response`` (times, channels): of the channels of the data.
-
-    Examples
-    --------
-    >>> stamps = np.arange(200) * 5.0  # milliseconds, read as seconds
-    >>> data = Measurements.of(stamps, {"x": np.cos(4e-3 * stamps)})
-    >>> times = first_times(data)
-    >>> [finding.code for finding in time_unit_findings(data, times, np.cos(4 * times)[:, None])]
-    ['suspect-time-unit']
     """
     for column, name in enumerate(data.channels):
         present = data.present[:, column]

@@ -38,16 +38,7 @@ def without_priors(model: ForwardModel | Sequence[Experiment]) -> ForwardModel |
 
 @dataclass(frozen=True)
 class Remembered(Wrapped):
-    """A forward model that simulates no vector twice while one method runs.
-
-    Examples
-    --------
-    >>> from dalembert.forward import PythonModel
-    >>> model = PythonModel(lambda a: np.full(1, a), {"a": (0.0, 2.0)}, ["x"], np.zeros(1))
-    >>> remembered = Remembered(model)
-    >>> remembered.evaluate([[1.0], [1.0]]).values.ravel().tolist(), remembered.simulations
-    ([1.0, 1.0], 1)
-    """
+    """A forward model that simulates no vector twice while one method runs."""
 
     known: dict[bytes, tuple[np.ndarray, str | None]] = field(default_factory=dict, repr=False, compare=False)
 

@@ -61,8 +61,6 @@ class PosteriorModes:
     def of_chains(self, chains: int) -> np.ndarray:
         """Return the mode (chains,) at which each chain starts: each mode has one, the others follow the shares.
 
-        Examples
-        --------
         >>> PosteriorModes((), np.array([0.7, 0.3])).of_chains(4).tolist()
         [0, 0, 0, 1]
         """

@@ -12,14 +12,7 @@ from dalembert.priors import CorrelatedNormal
 
 @dataclass(frozen=True)
 class PriorDensity:
-    """Product of the priors of all parameters, up to the constant that truncation by the bounds brings.
-
-    Examples
-    --------
-    >>> density = PriorDensity(Parameters.of({"a": (0.0, 2.0), "b": (0.0, 4.0)}))
-    >>> np.exp(density(np.array([1.0, 1.0]))).round(6).item()
-    0.125
-    """
+    """Product of the priors of all parameters, up to the constant that truncation by the bounds brings."""
 
     parameters: Parameters
 

@@ -14,15 +14,8 @@ NEAREST = 1e-3
 
 @dataclass(frozen=True)
 class UnboundedCoordinates:
-    """Coordinates z = logit u, where u runs from 0 to 1 between the bounds of a parameter.
-
+    """Coordinates z = logit u, where u runs from 0 to 1 between the bounds of a parameter:
     u = (p − lower)/(upper − lower), or the same of the logarithms for parameters whose logarithm is searched.
-
-    Examples
-    --------
-    >>> coordinates = UnboundedCoordinates(Parameters.of({"angle": (-1.0, 1.0), "modulus": (1e6, 1e10)}))
-    >>> print(coordinates.vectors(np.zeros(2)))
-    [0.e+00 1.e+08]
     """
 
     parameters: Parameters

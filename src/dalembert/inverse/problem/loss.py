@@ -47,14 +47,7 @@ NAMES = ("linear", *LOSSES)
 
 @dataclass(frozen=True)
 class Loss:
-    """Loss scale² ϱ(r/scale) of a weighted residual r: its square where it is small, less where it is large.
-
-    Examples
-    --------
-    >>> huber = Loss("huber", 2.0)
-    >>> (huber.residual(np.array([1.0, -10.0])) ** 2).round(12).tolist()
-    [1.0, 36.0]
-    """
+    """Loss scale² ϱ(r/scale) of a weighted residual r: its square where it is small, less where it is large."""
 
     name: str  # {"huber", "soft-l1", "cauchy"}: ϱ(x) is x² up to 1 and 2x − 1 beyond; 2 (√(1 + x²) − 1); ln(1 + x²)
     scale: float  # weighted residual from which one counts as an outlier

@@ -13,16 +13,7 @@ BOUND = 1e-6
 
 @dataclass(frozen=True)
 class SearchCoordinates:
-    """Search coordinates z of parameters p: p/scale, or ln(p/lower) for parameters whose logarithm is searched.
-
-    Examples
-    --------
-    >>> search = SearchCoordinates(Parameters.of({"angle": (-2.0, 4.0), "modulus": (1e6, 1e9)}))
-    >>> search.points(np.array([2.0, 1e6])).tolist()
-    [0.5, 0.0]
-    >>> search.vectors(np.array([0.5, np.log(10)])).round().tolist()
-    [2.0, 10000000.0]
-    """
+    """Search coordinates z of parameters p: p/scale, or ln(p/lower) for parameters whose logarithm is searched."""
 
     parameters: Parameters
 

@@ -28,21 +28,8 @@ def differences(places: np.ndarray, count: int, order: int) -> np.ndarray:
 class Smoothed:
     """All minima of ‖A z − b‖² + μ² ‖D z‖².
 
-    Notes
-    -----
     In standard form, z = D⁺_A y + z₀ with z₀ in the null space of D and D⁺_A its A-weighted pseudoinverse, it is
     ‖Ā y − b̄‖² + μ² ‖y‖² with y = D z (Elden 1977).
-
-    Examples
-    --------
-    A line through noisy values is what a large weight leaves:
-
-    >>> values = np.array([0.0, 1.2, 1.8, 3.0])
-    >>> many = Smoothed(np.eye(4), values, differences(np.arange(4), 4, 2))
-    >>> many.solution(1e6).round(3).tolist()
-    [0.06, 1.02, 1.98, 2.94]
-    >>> many.solution(1e-6).round(3).tolist()
-    [0.0, 1.2, 1.8, 3.0]
     """
 
     matrix: np.ndarray  # (values, parameters): A

@@ -61,22 +61,12 @@ def pave(
     most_boxes: int,
     tell: Callable[[int, int, int], None] = lambda inside, boundary, waiting: None,
 ) -> Paving:
-    """Paving of the set of points in the polynomial's box at which it keeps its limits, by branch and prune.
+    """Return a paving of the points in the polynomial's box at which it keeps its limits, by branch and prune.
 
     A box is outside where a Bernstein enclosure leaves the limits by more than the error, inside where it keeps them by
-    more than the error, and halved otherwise.
-
-    ``resolution``: boxes are halved until their sides are no longer than this part of the polynomial's box.
-    ``most_boxes``: boxes to look at.
-    ``tell``: called with the numbers of boxes inside, on the boundary and waiting, after each halving.
-
-    Examples
-    --------
-    >>> parabola = ChebyshevPolynomial([-1.0], [1.0], [[0], [2]], [[0.5], [0.5]])  # x²
-    >>> small = Limits(np.array([0.0]), np.array([0.26]), np.zeros(1))
-    >>> paving = pave(parabola, small, 0.25, 100)
-    >>> paving.inside[:, :, 0].tolist(), paving.boundary[:, :, 0].tolist()
-    ([[-0.5, 0.0], [0.0, 0.5]], [[-1.0, -0.5], [0.5, 1.0]])
+    more than the error, and halved otherwise. ``resolution``: boxes are halved until their sides are no longer than
+    this part of the polynomial's box; ``most_boxes``: boxes to look at; ``tell``: called with the numbers of boxes
+    inside, on the boundary and waiting, after each halving.
     """
     size = polynomial.upper - polynomial.lower
     boxes = np.stack([polynomial.lower, polynomial.upper])[None]

@@ -13,22 +13,19 @@ class Chart(NamedTuple):
     """A local parametrisation of some coordinates, such as those of a rotation by three angles.
 
     Its functions take local vectors, in real and in complex numbers. ``N`` is the derivative of the coordinates by the
-    increments, a basis of the null space of the internal constraints' gradients.
+    increments, a basis of the null space of the internal constraints' gradients. ``size``, ``increments``: numbers of
+    coordinates, and of increments of them: the coordinates less the internal constraints.
 
-    Parameters
-    ----------
-    size, increments : int
-        Coordinates, and increments of them: the coordinates less the internal constraints.
-    spread : function (x, d, dx), optional
-        Fills ``dx`` (size,) with N(x) d. A chart without it is flat: its increments are those of the coordinates.
-    change : function (x, d, dx), optional
-        Fills ``dx`` with what a finite increment ``d`` changes: x + dx satisfies the internal constraints if x does,
-        and dx = N(x) d + O(d^2). Without cancellation: accelerations follow from it.
-    restore : function (x, p, m, dx), optional
-        Fills ``dx`` with what moves coordinates near the internal constraints onto them; p and m are the columns of
-        the kind that has the chart.
-    project : function (x, r, s), optional
-        Fills ``s`` (increments,) with N(x)^T r, where that is faster than by `spread`.
+    ``spread(x, d, dx)`` fills ``dx`` (size,) with N(x) d. A chart without it is flat: its increments are those of the
+    coordinates.
+
+    ``change(x, d, dx)`` fills ``dx`` with what a finite increment ``d`` changes: x + dx satisfies the internal
+    constraints if x does, and dx = N(x) d + O(d^2). Without cancellation: accelerations follow from it.
+
+    ``restore(x, p, m, dx)`` fills ``dx`` with what moves coordinates near the internal constraints onto them; p and m
+    are the columns of the kind that has the chart.
+
+    ``project(x, r, s)`` fills ``s`` (increments,) with N(x)^T r, where that is faster than by ``spread``.
     """
 
     size: int

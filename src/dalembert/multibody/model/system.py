@@ -27,14 +27,8 @@ Component = TypeVar("Component", bound=BaseBody | BaseJoint | BaseLoad)
 class BaseSystem(Displayed):
     """What mechanisms in the plane and in space share: a mechanism is built by adding components.
 
-    Parameters
-    ----------
-    gravity : tuple of float
-        m/s^2.
-    driving : sequence of str
-        Initial coordinates that assembly keeps.
-    start : {"placed", "equilibrium"}
-        Where a motion begins.
+    ``gravity``: m/s^2; ``driving``: initial coordinates that assembly keeps; ``start``: where a motion begins,
+    ``"placed"`` or ``"equilibrium"``.
     """
 
     IN_WORDS = "System"

@@ -38,13 +38,7 @@ def colour_of(place: int) -> str:
 
 
 def positive(values: np.ndarray) -> np.ndarray:
-    """Values for a logarithmic axis: NaN, a gap, where there is nothing to draw.
-
-    Examples
-    --------
-    >>> positive(np.array([1e-3, 0.0, np.inf])).tolist()
-    [0.001, nan, nan]
-    """
+    """Return values for a logarithmic axis: NaN, a gap, where they are not positive or not finite."""
     return np.where((values > 0) & np.isfinite(values), values, np.nan)
 
 

@@ -18,15 +18,7 @@ MARGIN = 0.04
 
 @dataclass(frozen=True)
 class Axis:
-    """An axis.
-
-    Parameters
-    ----------
-    title : str
-    low, high : float
-        Ends; of a logarithmic axis their decimal logarithms.
-    logarithmic : bool
-    """
+    """An axis; ``low``, ``high``: its ends, of a logarithmic axis their decimal logarithms."""
 
     title: str
     low: float
@@ -116,14 +108,8 @@ class Panel:
 
 
 def figure_svg(figure: Any, width: float = 540.0, height: float | None = None) -> str | None:
-    """Return a figure as SVG; None where it is not made of lines and points in the plane.
-
-    Parameters
-    ----------
-    figure : plotly.graph_objects.Figure
-        Of one or more rows.
-    width, height : float
-        Pixels; those of the figure's layout if no height is given.
+    """Return a figure of one or more rows as SVG; None where it is not made of lines and points in the plane.
+    ``width``, ``height``: pixels; without a height that of the figure's layout, at most 420.
     """
     if not figure.data or any(trace.type != "scatter" for trace in figure.data):
         return None

@@ -33,16 +33,8 @@ COLOURS = tuple(between(*pair) for pair in zip(LIGHT.series, DARK.series, strict
 class Canvas:
     """Shapes of a picture with equal scales along both axes.
 
-    Parameters
-    ----------
-    low, high : array, shape (2,)
-        Corners of what is drawn, in m.
-    size : (int, int)
-        Width and height in pixels.
-    zoom : float
-        Pixels of the shown picture a pixel.
-    choosable : bool
-        Whether its parts are buttons that the keyboard reaches.
+    ``low``, ``high`` (2,): corners of what is drawn, m; ``size``: width and height, pixels; ``zoom``: pixels of the
+    shown picture a pixel; ``choosable``: whether its parts are buttons that the keyboard reaches.
     """
 
     low: np.ndarray

@@ -39,14 +39,7 @@ def _drawn(canvas: Canvas, view: Projection, scene: Scene) -> np.ndarray:
 
 
 class _Labels:
-    """Names that keep clear of each other and of what is drawn, where they can.
-
-    Parameters
-    ----------
-    canvas : Canvas
-    drawn : array, shape (points, 2)
-        Pixels to keep clear of.
-    """
+    """Names that keep clear of each other and of the pixels ``drawn`` (points, 2), where they can."""
 
     def __init__(self, canvas: Canvas, drawn: np.ndarray) -> None:
         self.canvas, self.drawn = canvas, drawn

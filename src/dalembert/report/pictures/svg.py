@@ -28,23 +28,10 @@ def scene_picture(
     choosable: bool = False,
     labels: bool = False,
 ) -> str:
-    """Return the SVG picture of a scene in its first frame.
+    """Return the SVG picture of a scene in its first frame. Each part is a group ``<g class="ROLE" data-part="NAME">``.
 
-    Each part is a group ``<g class="ROLE" data-part="NAME">``.
-
-    Parameters
-    ----------
-    scene : Scene
-    label : str
-        For screen readers.
-    size : (int, int)
-        Pixels.
-    box : array, shape (2, 2), optional
-        Corners of the picture in m; around all points if not given.
-    choosable : bool
-        Whether the parts are buttons.
-    labels : bool
-        Whether the labels of the scene are drawn.
+    ``label``: for screen readers; ``size``: pixels; ``box`` (2, 2): corners of the picture, m, around all points if not
+    given; ``choosable``: whether the parts are buttons; ``labels``: whether the labels of the scene are drawn.
     """
     if not scene.to_scale:
         return row_picture(scene, label, size, choosable)

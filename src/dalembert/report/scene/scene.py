@@ -13,25 +13,17 @@ INK = -1
 class Primitive:
     """A line, a surface or a symbol that shows a part of a model.
 
-    Parameters
-    ----------
-    kind : str
-        ``line`` (with gaps where points are NaN), ``surface`` and ``mesh`` (faces; those of finite elements show their
-        sides), ``edges`` (pairs of points), ``dashes``, ``points``, ``crosses``, ``joint``, ``ground``, ``spring``,
-        ``arrow``, ``turn``, ``ring``, ``dot``, ``point``; of a row of masses also ``mass`` and ``element``.
-    role, name : str
-        The part: ``body``, ``joint``, ``load``, ``channel``, ``point``, ``measured``, ``path``, ``spring``,
-        ``contact``, ``force`` or ``ground``, and its name.
-    points : array, shape (frames, points, 2 or 3)
-        m. One frame if it does not move, or has poses.
-    colour : int
-        Number in the series of a palette, or ``INK``.
-    faces : array of int, shape (faces, 3 or 4), optional
-        Corners of the faces among the points.
-    along : array, shape (2 or 3,), optional
-        Direction of an arrow.
-    poses : array, shape (frames, 4, 3), optional
-        Origin in m and axes of a rigid body over time. The points, of one frame, are then in these axes.
+    ``kind``: ``line`` (with gaps where points are NaN), ``surface`` and ``mesh`` (faces; those of finite elements show
+    their sides), ``edges`` (pairs of points), ``dashes``, ``points``, ``crosses``, ``joint``, ``ground``, ``spring``,
+    ``arrow``, ``turn``, ``ring``, ``dot``, ``point``; of a row of masses also ``mass`` and ``element``.
+
+    ``role``: of the part ``name``: ``body``, ``joint``, ``load``, ``channel``, ``point``, ``measured``, ``path``,
+    ``spring``, ``contact``, ``force`` or ``ground``.
+
+    ``points`` (frames, points, 2 or 3): m, one frame if it does not move, or has poses; ``colour``: number in the
+    series of a palette, or ``INK``; ``faces`` (faces, 3 or 4): corners of the faces among the points; ``along``
+    (2 or 3,): direction of an arrow; ``poses`` (frames, 4, 3): origin, m, and axes of a rigid body over time. The
+    points, of one frame, are then in these axes.
     """
 
     kind: str
@@ -79,17 +71,8 @@ FIRST_ROLES = ("channel", "force", "joint", "load", "body")
 class Scene:
     """The picture of a model, at rest or over time.
 
-    Parameters
-    ----------
-    primitives : tuple of Primitive
-        Those of one part follow each other.
-    labels : tuple of Label
-    gravity : array, shape (2 or 3,), optional
-        Direction of gravity, of length 1.
-    times : array, shape (frames,)
-        s.
-    to_scale : bool
-        False for a row of masses whose positions are not known: x has their numbers.
+    ``primitives``: those of one part follow each other; ``gravity`` (2 or 3,): its direction, of length 1; ``times``
+    (frames,): s; ``to_scale``: False for a row of masses whose positions are not known: x has their numbers.
     """
 
     primitives: tuple[Primitive, ...]

@@ -13,13 +13,8 @@ if TYPE_CHECKING:
 
 
 def compare_runs(folders: Sequence[RunFolder], leave_out: str | None = None) -> "ModelComparison":
-    """Return the comparison of the fits or posteriors of runs, by the names of their folders.
-
-    Parameters
-    ----------
-    folders : sequence of RunFolder
-    leave_out : {"values", "blocks", "experiments"}, optional
-        See :func:`dalembert.inverse.compare_models`.
+    """Return the comparison of the fits or posteriors of runs, by the names of their folders; ``leave_out`` as in
+    :func:`dalembert.inverse.compare_models`.
     """
     from dalembert.inverse import compare_models
 

@@ -31,17 +31,9 @@ OF_THE_RUN = "run-"
 class EventLog:
     """Events of a run, appended to a file and handed to listeners as they come.
 
-    Parameters
-    ----------
-    path : Path
-        ``events.jsonl``; a last line that a kill cut short is removed when the log is opened again.
-    listeners : tuple of callables
-        Each is called with every event.
-
-    Notes
-    -----
-    A run that is resumed does again what it did, in the same order: as many events as the log has of what a run does
-    are handed to listeners, and not written a second time.
+    ``path``: ``events.jsonl``; a last line that a kill cut short is removed when the log is opened again. A run that is
+    resumed does again what it did, in the same order: as many events as the log has of what a run does are handed to
+    ``listeners``, and not written a second time.
     """
 
     path: Path

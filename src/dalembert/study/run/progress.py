@@ -22,14 +22,9 @@ MOST_LISTED = 8
 class ProgressText:
     """How far a run is, in words, from its events.
 
-    Parameters
-    ----------
-    names : tuple of str
-        Names of the unknowns, for the best values.
-    last : (str, int, int or None)
-        The last text, and how much is done of how much, where that is known.
-    units : mapping of str to (str, float)
-        Units in which the unknowns are listed, and their sizes in SI units; without a unit for others.
+    ``names``: of the unknowns, for the best values; ``last``: the last text, and how much is done of how much, None
+    where that is not known; ``units``: units in which the unknowns are listed, and their sizes in SI units; without a
+    unit for others.
     """
 
     names: tuple[str, ...] = ()
@@ -112,14 +107,7 @@ def _horizon(event: Event) -> str:
 
 @dataclass
 class Watch:
-    """Listener of a run's events that prints how far it is.
-
-    Parameters
-    ----------
-    console : Console
-    names : tuple of str
-        Names of the unknowns, for the best values.
-    """
+    """Listener of a run's events that prints how far it is; ``names``: of the unknowns, for the best values."""
 
     console: "Console"
     names: tuple[str, ...] = ()

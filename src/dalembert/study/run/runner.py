@@ -134,18 +134,8 @@ def resume_run(folder: RunFolder, *, listener: Listener | None = None, executor:
 class Attempt:
     """The part of a run that one process computes, from its start or from where it is resumed.
 
-    Parameters
-    ----------
-    study : Study
-    folder : RunFolder
-        Locked.
-    log : EventLog
-    facts : mapping
-        Of the study, for the first event and for the state of the run.
-    earlier : float
-        Seconds that the run took before it was resumed.
-    began : float
-        Value of ``perf_counter`` at its start.
+    ``folder``: locked; ``facts``: of the study, for the first event and for the state of the run; ``earlier``: seconds
+    that the run took before it was resumed; ``began``: value of ``perf_counter`` at its start.
     """
 
     study: Study

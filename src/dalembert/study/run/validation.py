@@ -24,14 +24,8 @@ class FirstSimulation(BaseException):
 
 
 class Unanswered(Checkpoint):
-    """A checkpoint without a file, which ends the run that looks for a result.
-
-    Every task looks for the result of a simulation in its checkpoint before it simulates.
-
-    Parameters
-    ----------
-    simulations : int
-        Number of simulations that are let through before.
+    """A checkpoint without a file, which lets a number of ``simulations`` through and then ends the run. Every task
+    looks for the result of a simulation in its checkpoint before it simulates.
     """
 
     def __init__(self, simulations: int = 0) -> None:
@@ -81,13 +75,8 @@ def plan(study: Study, simulations: int = 0) -> str:
 
 
 def forecast(study: Study, limit: float = inf) -> Iterator[str]:
-    """Yield sentences on how long a study takes and what its result will be, from few simulations.
-
-    Parameters
-    ----------
-    study : Study
-    limit : float
-        Seconds. What takes longer is left out, and a sentence says so.
+    """Yield sentences on how long a study takes and what its result will be, from few simulations. What takes longer
+    than ``limit``, s, is left out, and a sentence says so.
     """
     task, began = TASKS[study.task], monotonic()
     with users_code(), single_thread():

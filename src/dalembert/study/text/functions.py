@@ -25,14 +25,8 @@ _WAYS = "'model.py:function' (a file beside the study) or 'package.module:functi
 class FunctionReference:
     """A function by name, imported when it is first needed.
 
-    Parameters
-    ----------
-    text : str
-        As the study file writes it.
-    path : Path or None
-        The file, None if a module is named.
-    folder : Path
-        The study's folder, from which the function's own imports are found.
+    ``text``: as the study file writes it; ``path``: the file, None if a module is named; ``folder``: of the study, from
+    which the function's own imports are resolved.
     """
 
     text: str

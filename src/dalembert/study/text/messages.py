@@ -34,15 +34,8 @@ _EXPECTED = {
 
 
 def mistakes(error: ValidationError, document: Any, context: Context) -> list[tuple[tuple[str | int, ...], str]]:
-    """Path and sentence of each error: table and key, what was given, what is expected.
-
-    Parameters
-    ----------
-    error : ValidationError
-    document : dict
-        The study as TOML reads it, which the error is about.
-    context : Context
-        With which the document was validated.
+    """Return the path and the sentence of each error: table and key, what was given, what is expected. ``document``:
+    the study as TOML reads it, which was validated with the ``context``.
     """
     result = []
     for entry, path, table in _likeliest(document, error.errors(include_url=False)):

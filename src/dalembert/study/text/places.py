@@ -30,12 +30,8 @@ Position = tuple[float | Expression, ...]
 class Place:
     """Where something stands: at a point of a body, or at a position on the ground.
 
-    Parameters
-    ----------
-    body, point : str
-        Names of the body and of its point; empty for the ground.
-    position : (x, y) or (x, y, angle), or (x, y, z) in space, optional
-        Position on the ground; where the other side stands if not given.
+    ``body``, ``point``: their names, empty for the ground; ``position``: (x, y) or (x, y, angle), in space (x, y, z),
+    on the ground; where the other side stands if None.
     """
 
     body: str = ""

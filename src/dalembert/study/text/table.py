@@ -32,18 +32,10 @@ _NAME = r"^[^\W\d][\w-]*$"
 class Context:
     """Surroundings of a study file while it is read.
 
-    Parameters
-    ----------
-    folder : Path
-        Files named in the study are relative to it.
-    names : mapping of str to Unit or None
-        Parameters and constants, which an expression may use, with the units that they have.
-    series : mapping of str to tuple of str
-        Names of the parameters of each series, which a list of numbers may name as a whole.
-    files : mapping of str to Path
-        Where a file named in the study lies if not relative to the folder: a run folder keeps copies.
-    used : dict of str to Path
-        Files that were asked for.
+    ``folder``: files named in the study are relative to it; ``names``: parameters and constants, which an expression
+    may use, with their units; ``series``: names of the parameters of each series, which a list of numbers may name as a
+    whole; ``files``: where a file named in the study lies if not relative to the folder, as a run folder keeps copies;
+    ``used``: files that were asked for.
     """
 
     folder: Path = field(default_factory=Path)
@@ -138,12 +130,7 @@ class Read:
 
 def completed(table: type[Table], **keys: Any) -> type[Table]:
     """Return a table with further keys, or other types of its keys: those that depend on the kinds that there are.
-
-    Parameters
-    ----------
-    table : type
-    **keys : (type, default)
-        As `pydantic.create_model` takes them.
+    ``keys``: (type, default), as `pydantic.create_model` takes them.
     """
     return create_model(table.__name__, __base__=table, __doc__=table.__doc__, __module__=table.__module__, **keys)
 

@@ -18,19 +18,9 @@ MOST = 6
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """What of a curve is looked at.
+    """What of a ``curve`` with at least one converged point is looked at.
 
-    Parameters
-    ----------
-    curve : FrequencyCurve
-        With at least one point that was found.
-    dofs : tuple of str
-    kind : str
-        Of amplitude.
-    dof : str
-        The one of the dofs that moves most.
-    point : int
-        Its peak.
+    ``kind``: of amplitude; ``dof``: the one of the ``dofs`` that moves most; ``point``: its peak.
     """
 
     curve: "FrequencyCurve"

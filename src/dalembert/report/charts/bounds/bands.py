@@ -108,13 +108,7 @@ def draw_line(
 
 
 def outline(at: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Closed outline of a band over its samples: along the lower bounds and back along the upper ones.
-
-    Examples
-    --------
-    >>> outline(np.arange(2.0), np.zeros(2), np.ones(2))[1].tolist()
-    [0.0, 0.0, 1.0, 1.0, 0.0]
-    """
+    """Return the closed outline of a band over its samples: along the lower bounds and back along the upper ones."""
     forward, back = thin(lower), thin(upper)[::-1]
     x = np.concatenate([at[forward], at[back], at[:1]])
     return x, np.concatenate([lower[forward], upper[back], lower[:1]])

@@ -87,10 +87,8 @@ def labelled_points(x: np.ndarray, rows: Sequence[str], texts: Sequence[str], at
 
 
 def combination(row: np.ndarray, names: Sequence[str], most: int = 3) -> str:
-    """A direction in words, its largest parts first.
+    """Return a direction in words, its largest parts first, ``most`` at most.
 
-    Examples
-    --------
     >>> combination(np.array([0.6, -0.8, 0.01]), ["a", "b", "c"])
     '−0.80 b + 0.60 a'
     """

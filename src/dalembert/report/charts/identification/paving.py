@@ -78,24 +78,15 @@ def paving(
 
 
 def planes(names: Sequence[str]) -> list[tuple[str, ...]]:
-    """The planes in which to look at a set of parameters: each pair of them, the first few if there are many.
-
-    Examples
-    --------
-    >>> planes(["a"]), planes(["a", "b", "c"])
-    ([('a',)], [('a', 'b'), ('a', 'c'), ('b', 'c')])
+    """Return the planes in which to look at a set of parameters: each pair of them, the first few if there are many; of
+    one parameter its axis.
     """
     return [*combinations(names, 2)][:MOST_PLANES] if len(names) > 1 else [tuple(names)]
 
 
 def rectangles(boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Closed outlines, apart by NaN, of boxes (boxes, 2, 1 or 2) given by lower and upper ends; each place once.
-
-    Examples
-    --------
-    >>> x, y = rectangles(np.array([[[0.0, 0.0], [1.0, 2.0]], [[0.0, 0.0], [1.0, 2.0]]]))
-    >>> x.tolist(), y.tolist()
-    ([0.0, 1.0, 1.0, 0.0, 0.0, nan], [0.0, 0.0, 2.0, 2.0, 0.0, nan])
+    """Return closed outlines, apart by NaN, of boxes (boxes, 2, 1 or 2) given by lower and upper ends; equal boxes
+    once.
     """
     if boxes.shape[2] == 1:  # a strip of unit height
         boxes = np.concatenate([boxes, np.broadcast_to([[0.0], [1.0]], boxes.shape)], axis=2)

@@ -14,27 +14,15 @@ from dalembert.tables import shown
 class Film:
     """The frames of an animated figure, and the play button and slider that show them.
 
-    Parameters
-    ----------
-    labels : sequence of str
-        Texts at the slider, one for each frame.
-    seconds : float
-        Duration of one pass through all frames, s.
-    name, unit : str
-        Name and unit of the quantity that the labels give, such as time and s.
-    pace : str
-        The speed in words, such as "10 times slower".
-    endless : bool
-        Whether the last frame is followed by the first one, as in a period.
-    redraw : bool
-        Whether plotly draws each frame anew. False is faster and suffices if only lines of a plane figure change; with
-        other changes the figure stays as it was.
-    asks : str
-        What the slider is for, as a text for screen readers; ``name`` if not given.
-    frames : sequence of str
-        Names of the plotly frames; their numbers from 0 if not given.
-    y : float
-        Vertical position of the controls, as a part of the height of the plot: 0 is its lower edge.
+    ``labels``: texts at the slider, one for each frame; ``seconds``: duration of one pass through all frames, s;
+    ``name``, ``unit``: of the quantity that the labels give, such as time and s; ``pace``: the speed in words, such as
+    "10 times slower"; ``endless``: whether the first frame follows the last one, as in a period; ``asks``: what the
+    slider is for, as a text for screen readers, ``name`` if not given; ``frames``: names of the plotly frames, their
+    numbers from 0 if not given; ``y``: vertical position of the controls, as a part of the height of the plot from its
+    lower edge.
+
+    ``redraw``: whether plotly draws each frame anew. False is faster and suffices if only lines of a plane figure
+    change; with other changes the figure stays as it was.
     """
 
     labels: Sequence[str]
@@ -100,16 +88,8 @@ SHORTEST = 2.0
 
 @dataclass(frozen=True)
 class Playback:
-    """Frames of a motion for a film.
-
-    Parameters
-    ----------
-    times : array, shape (frames,)
-        Instants shown, in s.
-    frames : array of int, shape (frames,)
-        Their numbers in the motion.
-    seconds : float
-        How long the film takes.
+    """Frames of a motion for a film of ``seconds``: the ``times`` (frames,) shown, s, and their numbers in the motion,
+    ``frames`` (frames,).
     """
 
     times: np.ndarray
@@ -118,14 +98,7 @@ class Playback:
 
     @classmethod
     def of(cls, times: np.ndarray) -> "Playback":
-        """Film of a motion at the given times, as near to 25 frames a second in real time as 150 frames allow.
-
-        Examples
-        --------
-        >>> film = Playback.of(np.linspace(0, 10, 20_001))
-        >>> len(film.frames), film.seconds, film.pace
-        (150, 6.0, 'played 1.67 times faster than real')
-        """
+        """Return the film of a motion at times, s, as near to 25 frames a second in real time as 150 frames allow."""
         span = float(times[-1] - times[0])
         seconds = min(max(span, SHORTEST), FRAMES / FRAMES_A_SECOND)
         wanted = np.linspace(times[0], times[-1], max(2, round(seconds * FRAMES_A_SECOND)))

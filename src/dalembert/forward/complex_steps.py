@@ -89,19 +89,19 @@ def _contradicted(
 
 
 @np.errstate(all="ignore")
-def stepped(numbers: Callable[[complex], np.ndarray], scale: float, scratch: tuple[float, float]) -> Lost | None:
+def stepped(numbers: Callable[[complex], np.ndarray], scale: float, shifts: tuple[float, float]) -> Lost | None:
     """Return a number that follows a parameter in steps, as after rounding; None if there is none. ``numbers``,
-    ``scale``: as of :func:`lost_step`; ``scratch``: least and largest shift of the parameter, up to its bounds.
+    ``scale``: as of :func:`lost_step`; ``shifts``: least and largest shift of the parameter, up to its bounds.
     """
-    span = scratch[1] - scratch[0]
-    wide = _Intervals.around(numbers, scale, scratch, span, 1)
-    flat = _Intervals.around(numbers, scale, scratch, span, _INTERVALS) if np.any(wide.differ & wide.flat) else None
+    span = shifts[1] - shifts[0]
+    wide = _Intervals.around(numbers, scale, shifts, span, 1)
+    flat = _Intervals.around(numbers, scale, shifts, span, _INTERVALS) if np.any(wide.differ & wide.flat) else None
     if flat and (lost := flat.steps(numbers, _ALL_FLAT)):
         return lost
     width = min(_WIDTH * scale, span / _INTERVALS)
-    intervals = _Intervals.around(numbers, scale, scratch, 2 * width, 1)
+    intervals = _Intervals.around(numbers, scale, shifts, 2 * width, 1)
     while np.any(intervals.differ) and _INTERVALS * width <= span:
-        intervals = _Intervals.around(numbers, scale, scratch, _INTERVALS * width, _INTERVALS)
+        intervals = _Intervals.around(numbers, scale, shifts, _INTERVALS * width, _INTERVALS)
         if lost := intervals.steps(numbers, _MOST):
             return lost
         width *= 4
@@ -122,12 +122,12 @@ class _Intervals(NamedTuple):
         cls,
         numbers: Callable[[complex], np.ndarray],
         scale: float,
-        scratch: tuple[float, float],
+        shifts: tuple[float, float],
         size: float,
         count: int,
     ) -> "_Intervals":
         """Intervals around the parameter, moved inside its bounds."""
-        begin = np.clip(-size / 2, scratch[0], max(scratch[1] - size, scratch[0]))
+        begin = np.clip(-size / 2, shifts[0], max(shifts[1] - size, shifts[0]))
         points = begin + size * np.linspace(0.0, 1.0, 2 * count + 1)
         values, slopes = map(np.array, zip(*(_complex_step(numbers, point, scale) for point in points), strict=True))
         first, middle, last = slopes[:-1:2], slopes[1::2], slopes[2::2]
@@ -243,8 +243,8 @@ def check_steps(
                 f"{lost.by_differences:.6g} by differences. A function of the model drops the imaginary part, as "
                 f"{DROPPING} do. {REMEDY}"
             )
-        scratch = parameters.lower[column] - inside[column], parameters.upper[column] - inside[column]
-        lost = attempted(partial(stepped, along, parameters.scale[column], scratch)) if thorough else None
+        shifts = parameters.lower[column] - inside[column], parameters.upper[column] - inside[column]
+        lost = attempted(partial(stepped, along, parameters.scale[column], shifts)) if thorough else None
         if lost:
             raise InputError(
                 f"{place(lost.entry)} follows {name!r} in steps, as after rounding: its derivative is "

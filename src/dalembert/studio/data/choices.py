@@ -38,10 +38,10 @@ OF_FILE = (
 class Choices:
     """How the columns of a file are to be used. ``file`` is a name beside the study, ``time`` the column of the times.
     ``units`` has only the units that were chosen; the others are guessed. ``channels`` has the column of each channel.
-    ``start`` is the time of the file at which the motion begins, as in `[data]`: a number (s), ``"first"`` or another
-    entry. ``missing`` is ``"refuse"``, ``"leave-out"``, or a list of words that stand for missing values. ``between``
-    are the times (s) between which samples are kept. ``sampling`` gives the samples per second of a file without a
-    column of times.
+    ``start`` is the time of the file at which the motion begins, as in `[data]`: a number (s), a text such as
+    ``"1.5 s"`` or ``"first"``, or another entry. ``missing`` is ``"refuse"``, ``"leave-out"``, or a list of words that
+    stand for missing values. ``between`` are the times between which samples are kept, as in `[data]`. ``sampling``
+    gives the samples per second of a file without a column of times.
     """
 
     file: str
@@ -54,7 +54,7 @@ class Choices:
     missing: str | list[str | float] = "refuse"
     wraps: tuple[str, ...] = ()
     decimate: int | None = None
-    between: tuple[float, float] | None = None
+    between: tuple[Any, Any] | None = None
     sampling: Any = None
 
     @property
@@ -72,6 +72,11 @@ class Choices:
         except InputError:
             return None
         return rate if rate > 0 else None
+
+    @property
+    def begin(self) -> float | None:
+        """Time of the file at which the motion begins, s; None where no number says it."""
+        return _seconds(self.start)
 
     @property
     def used(self) -> tuple[Key | None, ...]:
@@ -95,10 +100,10 @@ class Choices:
             self.time,
             {column.key: self.unit(preview, column.key) for column in preview.columns},
             {channel: (key, units.get(channel, "")) for channel, key in self.channels.items()},
-            self.start if self.start is None or isinstance(self.start, (int, float, str)) else 0.0,
+            self.start if self.start in (None, "first") else self.begin or 0.0,
             "refuse" if self.missing == "refuse" else "leave-out",
             self.wraps,
-            self.between,
+            None if self.between is None else (_seconds(self.between[0]), _seconds(self.between[1])),
             self.decimate,
         )
 
@@ -130,8 +135,8 @@ def of_table(table: Mapping[str, Any]) -> Choices:
     """Return the choices that a `[data]` table says, as it stands in a study file."""
     columns: list[Any] = [table.get("time"), *table.get("columns", {}).values()]
     numbers: dict[str, Key] = {str(key): key for key in columns if isinstance(key, int)}
-    between = table.get("between", [])
-    plain = len(between) == 2 and all(isinstance(end, (int, float)) for end in between)
+    between = table.get("between")
+    is_range = isinstance(between, list) and len(between) == 2 and None not in map(_seconds, between)
     return Choices(
         str(table.get("file", "")),
         None if "sampling" in table else table.get("time", "t"),
@@ -143,9 +148,17 @@ def of_table(table: Mapping[str, Any]) -> Choices:
         table.get("missing", "refuse"),
         tuple(table.get("wraps", ())),
         table.get("decimate"),
-        (between[0], between[1]) if plain else None,
+        (between[0], between[1]) if is_range else None,
         table.get("sampling"),
     )
+
+
+def _seconds(time: object) -> float | None:
+    """A time of a study file in s; None if it is no number and no text such as ``"1.5 s"``."""
+    try:
+        return si(time, "s")
+    except InputError:
+        return None
 
 
 def table_of(choices: Choices, preview: Preview) -> dict[str, Any]:

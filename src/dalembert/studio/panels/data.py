@@ -129,8 +129,7 @@ class DataPanel:
         kind = FIRST if choices.start == FIRST else ZERO if choices.start is None else AT
         begins = {FIRST: f"with the first sample ({shown.begins:.6g} s)", ZERO: "at 0 s of the file", AT: "at a time"}
         self._begin.set_options(begins, value=kind)
-        number = choices.start if isinstance(choices.start, (int, float)) else None
-        self._at.set_value(number)
+        self._at.set_value(choices.begin)
         self._at.set_visibility(kind == AT)
         if choices.rate != self._rate.value:
             self._rate.set_value(choices.rate)

@@ -34,7 +34,8 @@ def changes_of(state: Mapping[str, Any], document: TOMLDocument) -> list[Change]
     """
     best = (state.get("best") or {}).get("values") or {}
     findings = state.get("findings") or []
-    return [change for one in findings for change in changes(one["code"], one["values"], document, best)]
+    advised = [change for one in findings for change in changes(one["code"], one["values"], document, best)]
+    return list({change.label: change for change in reversed(advised)}.values())[::-1]
 
 
 def changes(code: str, values: Values, document: TOMLDocument, best: Best) -> list[Change]:

@@ -111,6 +111,7 @@ class Live:
     _place: int = 0
     _samples: int | None = None
     _every: int = 1
+    _rated: int = 0  # events with a misfit
     _passed: int = 0
     _stride: int = 1
     _harmonics: int = 0
@@ -165,7 +166,8 @@ class Live:
             self.convergence, self._every = [], 1
         if best < self.best:
             self.best, self.values = best, event.get("values") or self.values
-        if self.count % self._every == 0:
+        self._rated += 1
+        if self._rated % self._every == 0:
             self.convergence.append((event.get("simulations", self.count), self.best))
             if event.get("values"):
                 self.visited.append((event.get("simulations", self.count), event.get("start", 0), event["values"]))

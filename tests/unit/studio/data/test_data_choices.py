@@ -112,7 +112,7 @@ def test_choices_of_a_table_know_numbers_of_columns():
     table = {"file": "a.txt", "time": 1, "columns": {ANGLE: 2}, "units": {"1": "ms", "2": "deg"}, "between": [0, 2.5]}
     choices = of_table(table)
     assert (choices.units, choices.between) == ({1: "ms", 2: "deg"}, (0, 2.5))
-    assert of_table({"file": "a.txt", "between": ["0 s", "2 s"]}).between is None
+    assert of_table({"file": "a.txt", "between": ["now", "2 s"]}).between is None
 
 
 FIXED = {
@@ -142,3 +142,15 @@ def test_missing_times_have_no_button(tmp_path):
     found = preview(tmp_path / "own.csv")
     use = Choices("own.csv", "t", channels={ANGLE: "x"}).use(found, CHANNELS)
     assert [fix_of(finding) for finding in problems(found, use)] == [None]
+
+
+def test_times_with_their_unit_stay_as_they_were_written(own):
+    table = {"file": "own.txt", "time": "time_ms", "columns": {ANGLE: "angle_deg"}, "start": "1510 ms"}
+    table |= {"between": ["1.5 s", "2 s"]}
+    choices = of_table(table)
+    assert (choices.begin, choices.use(own, CHANNELS).start, choices.use(own, CHANNELS).between) == (
+        1.51,
+        1.51,
+        (1.5, 2),
+    )
+    assert (table_of(choices, own)["start"], table_of(choices, own)["between"]) == ("1510 ms", ["1.5 s", "2 s"])

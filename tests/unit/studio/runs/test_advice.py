@@ -238,4 +238,6 @@ def test_the_changes_of_a_run():
     finding = {"code": "model-misfit", "severity": "warning", "message": "x", "advice": "y"}
     state = {"findings": [{**finding, "values": {}}, {**finding, "code": "other", "values": {}}]}
     assert [change.label for change in changes_of(state, tomlkit.parse(PENDULUM))] == ["Use 8 starts"]
+    twice = {"findings": [{**finding, "values": {}}, {**finding, "values": {}}]}
+    assert [change.label for change in changes_of(twice, tomlkit.parse(PENDULUM))] == ["Use 8 starts"]
     assert changes_of({}, tomlkit.parse(PENDULUM)) == []

@@ -48,6 +48,16 @@ def test_a_long_run_keeps_a_short_curve(tmp_path):
     assert [y for _, y in live.convergence] == sorted((y for _, y in live.convergence), reverse=True)
 
 
+def test_a_curve_grows_to_the_end_when_other_events_stand_between(tmp_path):
+    path = tmp_path / "events.jsonl"
+    other = json.dumps({"n": 0, "event": "started"}) + "\n"
+    path.write_text("".join(line(number) + other for number in range(3000)))
+    live = Live(path)
+    live.advance()
+    assert live.convergence[-1][0] > 2900
+    assert live.visited[-1][0] > 2900
+
+
 def test_a_misfit_over_more_samples_begins_another_curve(tmp_path):
     path = tmp_path / "events.jsonl"
     path.write_text(line(0, best=1e-9, samples=4) + line(1, best=0.1, samples=9))

@@ -16,6 +16,7 @@ from dalembert.study.run.progress import duration_text
 from dalembert.study.tables.study import Study
 from dalembert.study.tasks import TASKS
 from dalembert.study.text.functions import users_code
+from dalembert.study.text.table import naming
 from dalembert.threads import single_thread
 
 
@@ -66,7 +67,7 @@ def plan(study: Study, simulations: int = 0) -> str:
         What the run would raise before its next simulation.
     """
     task = TASKS[study.task]
-    with users_code():
+    with users_code(), naming(study.task):
         sentence = task.plan(study)
         for part in task.parts(replace(study, checkpoint=Unanswered(simulations), executor=None)):
             with suppress(FirstSimulation):

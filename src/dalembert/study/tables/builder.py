@@ -63,10 +63,8 @@ class SystemBuilder:
             coordinates = [
                 {joint: resolved(entry, values, f"[model], {key}") for joint, entry in at.items()} for key, at in stated
             ]
-            try:
+            with placed("[model]"):
                 system.pose(*coordinates)
-            except InputError as error:
-                raise InputError(f"[model]: {error}") from None
         return system
 
     def _system(self, options: dict[str, Any]) -> "BaseSystem":
@@ -74,10 +72,8 @@ class SystemBuilder:
             from dalembert.multibody.spatial import SpatialSystem as System
         else:
             from dalembert.multibody import System
-        try:
+        with placed("[model]"):
             return System(**options)
-        except InputError as error:
-            raise InputError(f"[model]: {error}") from None
 
 
 def robot_of(robot: RobotTable, values: Values, signals: Values, options: Mapping[str, Any]) -> "SpatialSystem":

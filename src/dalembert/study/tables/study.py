@@ -185,7 +185,9 @@ class Study(Displayed):
         from dalembert.vibration.balance.equations import equations
 
         system = self.system()
-        result = equations(system, self.balance.keeping(system.highest_harmonic).first())
+        balance = self.balance.keeping(system.highest_harmonic).first()
+        with placed("[model]"):
+            result = equations(system, balance)
         result.lowered.coordinates  # noqa: B018 (contacts that cannot be told apart are told as such)
         with placed(self.file.model.holding, ModelError):
             result.condensation  # noqa: B018

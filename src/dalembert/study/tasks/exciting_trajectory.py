@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from pydantic import Field
 
-from dalembert.errors import InputError, unknown
+from dalembert.errors import unknown
 from dalembert.study.run.duration import Effort, repeatedly
 from dalembert.study.run.events import Emit
 from dalembert.study.tables.study import Study
@@ -123,10 +123,7 @@ def limits_of(study: Study, tree: "Tree") -> "JointLimits":
     velocities = [_each(table.velocity, joint.name, joint.velocity) for joint in tree.moving]
     acceleration = [_each(table.acceleration, joint.name, np.inf) for joint in tree.moving]
     lower, upper = np.array(pairs).T
-    try:
-        return JointLimits(lower, upper, np.array(velocities), np.array(acceleration))
-    except InputError as error:
-        raise InputError(f"[exciting_trajectory]: {error}") from None
+    return JointLimits(lower, upper, np.array(velocities), np.array(acceleration))
 
 
 def _each(numbers: Any, name: str, otherwise: float) -> float:

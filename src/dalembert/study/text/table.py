@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from traceback import walk_tb
 from typing import Annotated, Any, Self, TypeVar
 
 from pydantic import (
@@ -26,6 +27,7 @@ from dalembert.unit_table import Unit
 
 T = TypeVar("T")
 _NAME = r"^[^\W\d][\w-]*$"
+_READERS = __name__.rsplit(".", 2)[0]  # the package that reads studies
 
 
 @dataclass
@@ -110,6 +112,18 @@ def placed(where: str, kind: type[DalembertError] = InputError) -> Iterator[None
         yield
     except kind as error:
         raise kind(f"{where}: {error}") from None
+
+
+@contextmanager
+def naming(table: str) -> Iterator[None]:
+    """A block whose refused arguments are placed in a table, unless the study's code refused them, which says where."""
+    try:
+        yield
+    except InputError as error:
+        frames = [frame for frame, _ in walk_tb(error.__traceback__)]
+        if frames[-1].f_globals["__name__"].startswith(_READERS):
+            raise
+        raise InputError(f"[{table}]: {error}") from error.__cause__
 
 
 def _name(value: Any) -> str:

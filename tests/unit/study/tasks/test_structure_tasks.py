@@ -429,9 +429,9 @@ def refused(write, text) -> str:
         ),
         (
             ('first = "m2"\nfriction', 'first = "m3"\nfriction'),
-            "contact 'slider': unknown degree of freedom 'm3.x'; did you mean 'm2.x' or 'm1.x'?",
+            "[model]: contact 'slider': unknown degree of freedom 'm3.x'; did you mean 'm2.x' or 'm1.x'?",
         ),
-        (('dof = "m1"', 'dof = "m"'), "a force: unknown degree of freedom 'm'; known: m1.x, m2.x"),
+        (('dof = "m1"', 'dof = "m"'), "[model]: a force: unknown degree of freedom 'm'; known: m1.x, m2.x"),
         (
             ('second = "m2"\nstiffness', 'second = "m4"\nstiffness'),
             "[[model.spring]]: spring 2: unknown degree of freedom 'm4'; known: m1.x, m2.x",

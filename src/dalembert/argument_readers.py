@@ -21,14 +21,7 @@ def names_of(entries: str | Iterable[str], owner: str, what: str) -> tuple[str, 
 
 
 def numbers_of(numbers: Any, owner: str, what: str) -> np.ndarray:
-    """Real numbers as an array of floats.
-
-    >>> numbers_of([1, 2], "design", "deviations")
-    array([1., 2.])
-    >>> numbers_of("many", "design", "deviations")
-    Traceback (most recent call last):
-    dalembert.errors.InputError: design: deviations is 'many'; expected real numbers
-    """
+    """Real numbers as an array of floats."""
     try:
         if numbers is not None and not isinstance(numbers, str | bytes):
             return np.array(numbers, dtype=object).astype(float)
@@ -38,12 +31,7 @@ def numbers_of(numbers: Any, owner: str, what: str) -> np.ndarray:
 
 
 def samples_of(values: Any, owner: str, what: str) -> np.ndarray:
-    """Real numbers as an array (samples,) of at least one.
-
-    >>> samples_of(3.5, "PythonModel", "samples")
-    Traceback (most recent call last):
-    dalembert.errors.InputError: PythonModel: samples is 3.5; expected a list of real numbers
-    """
+    """Real numbers as an array (samples,) of at least one."""
     numbers = np.zeros(0) if np.ndim(values) != 1 else numbers_of(values, owner, what)
     if not len(numbers):
         raise InputError(f"{owner}: {what} is {shown(values)}; expected a list of real numbers")
@@ -51,12 +39,7 @@ def samples_of(values: Any, owner: str, what: str) -> np.ndarray:
 
 
 def check_model(owner: str, model: Any) -> None:
-    """Raise unless something may be a forward model; its channels are not looked at, as they may take long.
-
-    >>> check_model("Sensors", 3.5)
-    Traceback (most recent call last):
-    dalembert.errors.InputError: Sensors: model is 3.5; expected a forward model, such as TimeResponse or PythonModel
-    """
+    """Raise unless something may be a forward model; its channels are not looked at, as they may take long."""
     if not (hasattr(type(model), "evaluate") and hasattr(model, "parameters")):
         raise InputError(
             f"{owner}: model is {shown(model)}; expected a forward model, such as TimeResponse or PythonModel"
@@ -64,11 +47,6 @@ def check_model(owner: str, model: Any) -> None:
 
 
 def check_integer(owner: str, name: str, value: Any, least: int) -> None:
-    """Raise unless a value is a whole number of at least ``least``.
-
-    >>> check_integer("identify", "starts", 2.5, 1)
-    Traceback (most recent call last):
-    dalembert.errors.InputError: identify: starts is 2.5; expected a whole number, at least 1
-    """
+    """Raise unless a value is a whole number of at least ``least``."""
     if not is_integer(value) or value < least:
         raise InputError(f"{owner}: {name} is {shown(value)}; expected a whole number, at least {least}")

@@ -19,16 +19,7 @@ _PLAIN = (float, int, complex, np.float64, np.complex128)
 
 
 def limited(default: Any = MISSING, unit: str | None = None, **limits: float) -> Any:
-    """Field of a dataclass that derives from :class:`Checked` whose values lie in a :class:`Range`.
-
-    >>> from dataclasses import dataclass
-    >>> @dataclass(frozen=True)
-    ... class Search(Checked):
-    ...     tolerance: float = limited(1e-8, above=0, below=1)
-    >>> Search(2.0)
-    Traceback (most recent call last):
-    dalembert.errors.InputError: Search: tolerance is 2; expected a number between 0 and 1
-    """
+    """Field of a dataclass that derives from :class:`Checked` whose values lie in a :class:`Range`."""
     metadata = {"unit": unit, "range": Range(**limits) if limits else None}
     return field(default=default, metadata={name: value for name, value in metadata.items() if value is not None})
 
@@ -268,11 +259,7 @@ def _is_scalar(value: Any, kinds: str = "iufc") -> bool:
 
 
 def array_of(value: Any) -> np.ndarray:
-    """Numbers of a model as an array; an empty one for anything else.
-
-    >>> array_of([[1, 2j], [3, 4]]).shape, array_of("ab").shape, array_of([[1.0], [2.0, 3.0]]).shape
-    ((2, 2), (0,), (0,))
-    """
+    """Numbers of a model as an array; an empty one for anything else."""
     try:
         array = np.asarray(value)
     except ValueError:  # rows of different lengths
@@ -286,11 +273,7 @@ def is_integer(value: Any) -> bool:
 
 
 def is_real(value: Any) -> bool:
-    """Whether a value is one real number.
-
-    >>> [is_real(value) for value in (2, np.float32(3), 1j, "2", None, True)]
-    [True, True, False, False, False, False]
-    """
+    """Whether a value is one real number; a bool is none."""
     return _is_scalar(value, "iuf")
 
 

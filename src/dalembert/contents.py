@@ -17,10 +17,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """Arrays with named dimensions, and attributes: what a result consists of.
-
-    ``variables`` and ``coordinates`` have the name of the dimension (or a tuple of names), the values and, if there are
-    any, attributes: ``{"x": ("time", [0.0, 1.0], {"units": "m"})}``. Values of ``attributes`` are str, int or float.
+    """Arrays with named dimensions, and attributes: what a result consists of. ``variables`` and ``coordinates`` have
+    the name of the dimension (or a tuple of names), the values and, if there are any, attributes:
+    ``{"x": ("time", [0.0, 1.0], {"units": "m"})}``. Values of ``attributes`` are str, int or float.
     """
 
     variables: Mapping[str, tuple]

@@ -44,31 +44,17 @@ class StorageError(DalembertError):
 
 
 def unwritable(path: object, reason: object) -> StorageError:
-    """Error about a file of a run that could not be written, from what the system says.
-
-    >>> str(unwritable("runs/a/result.nc", "No space left on device")).partition(";")[0]
-    'runs/a/result.nc cannot be written: No space left on device'
-    """
+    """Error about a file of a run that could not be written, from what the system says."""
     return StorageError(f"{path} cannot be written: {reason}{_BEGUN}")
 
 
 def not_begun(error: StorageError) -> StorageError:
-    """The same error of a run that has no state yet, so that nothing can go on with it.
-
-    >>> str(not_begun(unwritable("runs/a/study.toml", "No space left on device"))).rpartition(", ")[2]
-    'and run the study again'
-    """
+    """The same error of a run that has no state yet, so that nothing can go on with it."""
     return StorageError(str(error).replace(_BEGUN, _NOT_BEGUN))
 
 
 def unchanged(error: Exception) -> str:
-    """Sentence of an error about a file that is replaced as a whole or not at all, outside a run.
-
-    >>> unchanged(unwritable("studies/a/study.toml", "No space left on device")).partition(": ")[2].partition(":")[0]
-    'No space left on device; what was there before is unchanged'
-    >>> unchanged(PermissionError(13, "Permission denied", "studies/b")).partition(";")[0]
-    'studies/b cannot be written or read: Permission denied'
-    """
+    """Sentence of an error about a file that is replaced as a whole or not at all, outside a run."""
     if isinstance(error, OSError):
         return f"{error.filename or 'A file'} cannot be written or read: {error.strerror or error}{_UNCHANGED}"
     return str(error).replace(_BEGUN, _UNCHANGED)
@@ -78,12 +64,8 @@ _MOST_SHOWN, _FEW_SHOWN = 60, 12  # names in a sentence: all of them, or the fir
 
 
 def unknown(what: str, name: object, known: Iterable[str], where: str = "") -> str:
-    """Sentence for an unknown name, with the closest known ones.
-
-    >>> unknown("channel", "AB.end.z", ["AB.end.x", "AB.end.y", "OA.end.x"])
-    "unknown channel 'AB.end.z'; did you mean 'AB.end.y' or 'AB.end.x'?"
-
-    Of names with parts those of the same kind come first, as the last part says it.
+    """Sentence for an unknown name, with the closest known ones. Of names with parts those of the same kind come first,
+    as the last part says it.
 
     >>> unknown("channel", "bar.tip.x", ["bar.end.x", "bar.end.vx", "pin.tip.y", "bar.top.y"])
     "unknown channel 'bar.tip.x'; did you mean 'bar.end.x' or 'bar.top.y'?"
@@ -98,12 +80,7 @@ def unknown(what: str, name: object, known: Iterable[str], where: str = "") -> s
 
 
 def require_known(what: str, name: object, known: Iterable[str], where: str = "") -> None:
-    """Refuse a name that is not among the known ones, see :func:`unknown`.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a name that is not among the known ones, see :func:`unknown`."""
     if name not in (names := list(known)):
         raise InputError(unknown(what, name, names, where))
 
@@ -117,51 +94,28 @@ def _closest(wrong: str, names: list[str]) -> list[str]:
 
 
 def repeated(names: Iterable[str]) -> dict[str, int]:
-    """Names that are given more than once, in alphabetical order, with their counts.
-
-    >>> repeated(["b", "a", "b", "c", "a", "b"])
-    {'a': 2, 'b': 3}
-    """
+    """Names that are given more than once, in alphabetical order, with their counts."""
     return {name: count for name, count in sorted(Counter(names).items()) if count > 1}
 
 
 def no_text(path: object, error: UnicodeDecodeError) -> str:
-    """Sentence for a file that is not UTF-8 text, with the line where that shows.
-
-    >>> try:
-    ...     b"t,x\\n0,\\xe9".decode()
-    ... except UnicodeDecodeError as error:
-    ...     no_text("motion.csv", error)
-    'motion.csv, line 2: the file is not UTF-8 text; save it as UTF-8'
-    """
+    """Sentence for a file that is not UTF-8 text, with the line where that shows."""
     line = error.object[: error.start].count(b"\n") + 1
     return f"{path}, line {line}: the file is not UTF-8 text; save it as UTF-8"
 
 
 def listed(words: Sequence[str]) -> str:
-    """Words in a row.
-
-    >>> listed(["a", "b", "c"]), listed(["a"])
-    ('a, b and c', 'a')
-    """
+    """Words in a row, ``a, b and c``."""
     return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
 
 
 def counted(number: int, what: str) -> str:
-    """A number of things.
-
-    >>> counted(1, "value"), counted(3, "value")
-    ('1 value', '3 values')
-    """
+    """A number of things, as ``1 value`` or ``3 values``."""
     return f"{number} {what}" + ("" if number == 1 else "s")
 
 
 def shown(value: object) -> str:
-    """A value as a sentence can hold it: in one line, and not long.
-
-    >>> shown("2 kg"), shown(None), shown([1.0] * 1000)
-    ("'2 kg'", 'None', '[1.0, 1.0, 1.0, 1.0, 1.0, 1.0, ...')
-    """
+    """A value as a sentence can hold it: in one line, and not long."""
     text = " ".join(repr(value).split())
     if text.startswith("<") or (len(text) > _LONGEST and not isinstance(value, str | list | tuple | dict)):
         kind = type(value).__name__
@@ -170,11 +124,7 @@ def shown(value: object) -> str:
 
 
 def told(error: BaseException) -> str:
-    """What an error says, in one line: one of ours as it is, any other with its type and place in the user's code.
-
-    >>> told(InputError("no such spring")), told(KeyError("spring"))
-    ('no such spring', "KeyError: 'spring'")
-    """
+    """What an error says, in one line: one of ours as it is, any other with its type and place in the user's code."""
     if isinstance(error, DalembertError):
         return str(error)
     if isinstance(error, SyntaxError):
@@ -185,11 +135,7 @@ def told(error: BaseException) -> str:
 
 
 def users_place(error: BaseException | None) -> str:
-    """File and line of the user's own code that an error went through last; none if it met only libraries and ours.
-
-    >>> users_place(KeyError("never raised"))
-    ''
-    """
+    """File and line of the user's own code that an error went through last; none if it met only libraries and ours."""
     foreign = ("<", _PACKAGE, *sysconfig.get_paths().values())
     frames = traceback.walk_tb(error.__traceback__ if error else None)
     places = [(frame.f_code.co_filename, line) for frame, line in frames]

@@ -8,9 +8,8 @@ import numpy as np
 def spread(
     arrays: Mapping[str, np.ndarray], time: str | None, first: int = 0, brackets: str = "[]"
 ) -> dict[str, np.ndarray]:
-    """Return the columns of arrays by name; a matrix with as many columns as the times gives its rows.
-
-    ``time``: array of the times; ``first``: number of the first column; ``brackets``: around numbers of columns.
+    """Return the columns of arrays by name; a matrix with as many columns as the times gives its rows. ``time``: array
+    of the times; ``first``: number of the first column; ``brackets``: around numbers of columns.
 
     >>> list(spread({"t": np.zeros(3), "q": np.zeros((2, 3))}, "t"))
     ['t', 'q[0,:]', 'q[1,:]']

@@ -27,9 +27,8 @@ def is_clock(cell: str) -> bool:
 
 
 def clock_seconds(cells: Sequence[str]) -> np.ndarray | None:
-    """Return seconds since the first of several times (times,); None if one is no time, or only some have a date.
-
-    A time of day that is half a day before its predecessor is one of the next day. Of the dates ``1/2/2024`` the larger
+    """Return seconds since the first of several times (times,); None if one is no time, or only some have a date. A
+    time of day that is half a day before its predecessor is one of the next day. Of the dates ``1/2/2024`` the larger
     number is the day, and the first one where no date decides.
 
     >>> clock_seconds(["23:59:59,5", "00:00:00,25"]).tolist(), clock_seconds(["12:00:00 AM", "01:00:00 PM"]).tolist()

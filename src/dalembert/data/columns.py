@@ -130,10 +130,9 @@ def chosen(
     missing: str,
     trial: Trial | None = None,
 ) -> tuple[np.ndarray, dict[str, np.ndarray], dict[str, str]]:
-    """The times (samples,), columns (samples,) by name, and units that are known, of a file, or of one of its trials.
-
-    Times that are dates become seconds since the first, whatever unit their name has. Without ``names`` all columns of
-    numbers as long as the times are chosen. Without ``time`` samples are numbered.
+    """Times (samples,), columns (samples,) by name, and known units of a file, or of one of its trials. Times that are
+    dates become seconds since the first, whatever unit their name has. Without ``names`` all columns of numbers as long
+    as the times are chosen. Without ``time`` samples are numbered.
     """
     wanted = None if names is None else list(dict.fromkeys(names))
     if trial is not None:

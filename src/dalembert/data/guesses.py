@@ -21,10 +21,9 @@ Source = Literal["file", "name", "steps", ""]
 
 @dataclass(frozen=True)
 class Unit:
-    """A unit that a column probably has; ``name``: ``""`` where nothing gives it.
-
-    ``source``: ``"file"`` (the file names it), ``"name"`` (the name of the column ends in it), ``"steps"`` (the steps
-    of the times are usual in it) or ``""`` (nothing gives it).
+    """A unit that a column probably has; ``name``: ``""`` where nothing gives it. ``source``: ``"file"`` (the file
+    names it), ``"name"`` (the column's name ends in it), ``"steps"`` (the steps of the times are usual in it) or
+    ``""``.
     """
 
     name: str
@@ -32,13 +31,7 @@ class Unit:
 
 
 def time_column(preview: Preview) -> str | int | None:
-    """Return the column that probably has the times: by its name, else by its unit, else the first that grows evenly.
-
-    >>> from pathlib import Path
-    >>> columns = tuple(PreviewColumn(name, "", np.arange(3.0)) for name in ("count", "Time (s)", "x"))
-    >>> time_column(Preview(Path("a.csv"), "csv", columns, ()))
-    'Time (s)'
-    """
+    """Return the column that probably has the times: by name, else by unit, else the first that grows evenly."""
     columns = preview.columns
     named = [column for column in columns if _bare(str(column.key)) in TIMES or _named_unit(str(column.key)) == "s"]
     named += [column for column in columns if column.unit and _measures(column.unit) == "s"]
@@ -48,13 +41,7 @@ def time_column(preview: Preview) -> str | int | None:
 
 
 def unit_of(column: PreviewColumn, *, times: bool = False) -> Unit:
-    """Return the unit that a column probably has.
-
-    >>> unit_of(PreviewColumn("angle_deg", "", np.zeros(2))), unit_of(PreviewColumn("x", "mm", np.zeros(2)))
-    (Unit(name='deg', source='name'), Unit(name='mm', source='file'))
-    >>> unit_of(PreviewColumn("t", "", np.array([1500.0, 1510.0, 1520.0])), times=True)
-    Unit(name='ms', source='steps')
-    """
+    """Return the unit that a column probably has: by the file, by its name, or by the steps of ``times``."""
     if column.unit:
         return Unit(column.unit, "file")
     unit = suffix(str(column.key))

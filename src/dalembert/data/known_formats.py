@@ -42,11 +42,7 @@ def _reader(path: Path, format: str | None, *, trials: bool) -> Format:  # noqa:
 
 
 def format_of(path: Path) -> str:
-    """Name of the format that a suffix stands for.
-
-    >>> format_of(Path("motion.MAT"))
-    'mat'
-    """
+    """Name of the format that a suffix, in upper or lower case, stands for."""
     compressed = path.suffix.lower() == ".gz"
     suffix = Path(path.stem).suffix if compressed else path.suffix
     known = known_formats()

@@ -57,12 +57,12 @@ def columns_of(
 ) -> Columns:
     """Return times and columns by their names in the file, or by their numbers from 1.
 
-    ``lines``: (line number, text). ``time``: column of the times, which must grow, or are times of day; the first one
-    of a file without a header if it is ``"t"``. None numbers the samples. ``names``: columns wanted; all but the times
-    if None. ``missing``: ``"refuse"`` an empty cell, NA or NaN, or ``"leave-out"``, which makes it a NaN.
-    ``separator``: ``"auto"``, or the character; a blank stands for any number of blanks and tabs. ``decimal``:
-    ``"auto"``, or the mark before the decimals. ``trial``: the one trial whose lines are read. ``absent``: further
-    words for a cell without a value.
+    ``lines``: (line number, text). ``time``: column of the times, which must grow or be times of day; the first of a
+    file without a header if it is ``"t"``. None numbers the samples. ``names``: columns wanted; all but the times if
+    None. ``missing``: ``"refuse"`` an empty cell, NA or NaN, or ``"leave-out"``, which makes it a NaN. ``separator``:
+    ``"auto"``, or the character; a blank stands for any number of blanks and tabs. ``decimal``: ``"auto"``, or the mark
+    before the decimals. ``trial``: the one trial whose lines are read. ``absent``: further words for a cell without a
+    value.
     """
     _refuse_marks(path, separator, decimal)
     if not lines:

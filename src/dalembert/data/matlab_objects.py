@@ -16,11 +16,10 @@ TIMESERIES, DATASET = "timeseries", "Simulink.SimulationData.Dataset"
 
 
 def object_arrays(path: str) -> list[Array]:
-    """Return the arrays of a MAT file with objects; those outside of objects as well.
-
-    Names are those of MATLAB: a variable of a table ``run.angle``, the times of a timetable ``run.Time``, a timeseries
-    ``run.Time`` and ``run.Data``, the first element of a dataset of Simulink ``logsout{1}.Values.Data``. Properties of
-    other classes are named as fields of structs are.
+    """Return the arrays of a MAT file with objects; those outside of objects as well. Names are those of MATLAB: a
+    variable of a table ``run.angle``, the times of a timetable ``run.Time``, a timeseries ``run.Time`` and
+    ``run.Data``, the first element of a dataset of Simulink ``logsout{1}.Values.Data``. Properties of other classes are
+    named as fields of structs are.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of time zones and display formats
@@ -110,11 +109,7 @@ def _text(value: Any) -> str:
 
 
 def _seconds(array: np.ndarray) -> np.ndarray:
-    """Durations in s; anything else as it is.
-
-    >>> _seconds(np.array([1500], dtype="timedelta64[ms]"))
-    array([1.5])
-    """
+    """Durations in s; anything else as it is."""
     if array.dtype.kind != "m":
         return array
     seconds = array.astype("timedelta64[ns]").astype(np.int64) * 1e-9

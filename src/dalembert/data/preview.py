@@ -20,9 +20,8 @@ SHOWN = 5
 
 @dataclass(frozen=True, eq=False)
 class PreviewColumn:
-    """A column of a file: its ``values`` (samples,) as they are in the file, NaN where a cell has no number.
-
-    ``key``: what `[data]` calls it, its name, or its number from 1 where the file has no name that no other column has;
+    """A column of a file: its ``values`` (samples,) as they are in the file, NaN where a cell has no number. ``key``:
+    what `[data]` calls it, its name, or its number from 1 where the file has no name that no other column has;
     ``unit``: named by the file, ``""`` if it names none; ``missing``: number of cells without a value; ``wrong``: line,
     or sample, and content of the first cell that is neither a number nor empty.
     """
@@ -36,11 +35,9 @@ class PreviewColumn:
 
 @dataclass(frozen=True, eq=False)
 class Preview:
-    """What a file is taken to hold.
-
-    ``first``: cells of the first rows; ``layout``: what a text file was taken to be, in words; ``separator``,
-    ``decimal``: marks of a text file, as detected or given, ``""`` of another file; ``uneven``: line and number of
-    cells of the first line of a text file that has another number of cells.
+    """What a file is taken to hold. ``first``: cells of the first rows; ``layout``: what a text file was taken to be,
+    in words; ``separator``, ``decimal``: marks of a text file, as detected or given, ``""`` of another file;
+    ``uneven``: line and number of cells of the first line of a text file that has another number of cells.
     """
 
     path: Path
@@ -80,12 +77,7 @@ def preview(path: Path, separator: str = AUTO, decimal: str = AUTO, absent: Sequ
 
 
 def without(preview: Preview, numbers: Sequence[float], time: str | int | None) -> Preview:
-    """Return the same without the numbers that stand for missing values in the columns that are not the times.
-
-    >>> column = PreviewColumn("x", "", np.array([1.0, -9999.0]))
-    >>> without(Preview(Path("a.csv"), "csv", (column,), ()), [-9999.0], None).columns[0].missing
-    1
-    """
+    """Return the same without the numbers that stand for missing values in the columns that are not the times."""
     if not numbers:
         return preview
     columns = (column if column.key == time else _without(column, numbers) for column in preview.columns)

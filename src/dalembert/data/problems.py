@@ -35,12 +35,11 @@ FLAT = 1e-9
 
 @dataclass(frozen=True)
 class Use:
-    """How the columns of a file are to be used.
-
-    ``time``: column of the times; ``units``: of columns, SI where there is none; ``channels``: column of each channel,
-    and SI unit of the channel (``""`` if it is not known); ``start``: time (s) of the file at which the motion begins,
-    or ``"first"``; ``missing``: ``"refuse"`` or ``"leave-out"``; ``wraps``: channels that are angles known up to whole
-    turns; ``between``: times (s) from the beginning of the motion between which samples are used.
+    """How the columns of a file are to be used. ``time``: column of the times; ``units``: of columns, SI where there is
+    none; ``channels``: column of each channel, and SI unit of the channel (``""`` if it is not known); ``start``: time
+    (s) of the file at which the motion begins, or ``"first"``; ``missing``: ``"refuse"`` or ``"leave-out"``; ``wraps``:
+    channels that are angles known up to whole turns; ``between``: times (s) from the beginning of the motion between
+    which samples are used.
     """
 
     time: str | int | None = None
@@ -283,8 +282,7 @@ def outliers(values: np.ndarray) -> np.ndarray:
 def _noise(values: np.ndarray) -> float:
     """Standard deviation of the noise of a smooth motion, robust to outliers.
 
-    >>> noise = np.random.default_rng(0).standard_normal(4000)
-    >>> round(_noise(noise), 1)
+    >>> round(_noise(np.random.default_rng(0).standard_normal(4000)), 1)
     1.0
     """
     differences = values[2:-2] - np.convolve(values, CUBIC, mode="valid")

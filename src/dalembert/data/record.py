@@ -19,10 +19,8 @@ FIRST = "first"
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """Channels along a coordinate, and their parts.
-
-    The parameters are those of :class:`dalembert.data.Measurements`, which adds what filters, derivatives and splines
-    make of them.
+    """Channels along a coordinate, and their parts. The parameters are those of :class:`dalembert.data.Measurements`,
+    which adds what filters, derivatives and splines make of them.
     """
 
     coordinate: Coordinate

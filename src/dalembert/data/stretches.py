@@ -9,11 +9,8 @@ _USUAL = 0.95  # quantile of the distances that is the usual one: that of even s
 
 def stretches(present: np.ndarray, along: np.ndarray | None = None, gap: float | None = None) -> list[slice]:
     """Runs of samples that are there, from a mask (samples,); no run reaches over a gap of the coordinate (samples,).
-
     ``gap`` is the longest step of the coordinate that is no gap; see :func:`gaps`.
 
-    >>> stretches(np.array([True, True, False, True]))
-    [slice(0, 2, None), slice(3, 4, None)]
     >>> stretches(np.ones(6, dtype=bool), np.array([0.0, 0.1, 0.2, 0.3, 2.3, 2.4]))
     [slice(0, 4, None), slice(4, 6, None)]
     """

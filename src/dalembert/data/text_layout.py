@@ -33,11 +33,10 @@ _FOLLOW = 3  # lines of numbers that begin them
 
 @dataclass(frozen=True)
 class Layout:
-    """What the lines of a text file are.
-
-    ``separator``: a blank stands for any number of blanks and tabs; ``header``: names of the columns, their numbers
-    from 1 where the file has none; ``units``: one a column, ``""`` where none is named; ``rows``: (line number, cells);
-    ``named``, ``measured``: line of the names, and of the units, None where there is none.
+    """What the lines of a text file are. ``separator``: a blank stands for any number of blanks and tabs; ``header``:
+    names of the columns, their numbers from 1 where the file has none; ``units``: one a column, ``""`` where none is
+    named; ``rows``: (line number, cells); ``named``, ``measured``: line of the names, and of the units, None where
+    there is none.
     """
 
     separator: str

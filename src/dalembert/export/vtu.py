@@ -15,11 +15,9 @@ from dalembert.files import replacing, write_text
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Points, cells between them, and fields.
-
-    ``points`` (points, 3): m; ``cells``: kind as meshio calls it (``"vertex"``, ``"line"``, ``"triangle"`` or
-    ``"quad"``), and corners (cells, corners); ``fields`` (points,) or (points, 3); ``marks``: numbers of the cells, an
-    array (cells,) for each entry of ``cells``.
+    """Points, cells between them, and fields. ``points`` (points, 3): m; ``cells``: kind as meshio calls it
+    (``"vertex"``, ``"line"``, ``"triangle"`` or ``"quad"``), and corners (cells, corners); ``fields`` (points,) or
+    (points, 3); ``marks``: numbers of the cells, an array (cells,) for each entry of ``cells``.
     """
 
     points: np.ndarray
@@ -61,11 +59,7 @@ def write_series(path: Path, instants: Iterable[tuple[float, Mesh]]) -> Path:
 
 
 def chosen(count: int, most: int | None) -> np.ndarray:
-    """Numbers of at most so many of some instants, evenly from the first to the last.
-
-    >>> chosen(9, 3), chosen(2, None)
-    (array([0, 4, 8]), array([0, 1]))
-    """
+    """Numbers of at most ``most`` of ``count`` instants, evenly from the first to the last; all without ``most``."""
     if most is None or most >= count:
         return np.arange(count)
     return np.linspace(0, count - 1, most).round().astype(int)

@@ -71,10 +71,9 @@ def lost_step(numbers: Callable[[complex], np.ndarray], scale: float) -> Lost | 
 def _contradicted(
     numbers: Callable[[complex], np.ndarray], here: np.ndarray, by_step: np.ndarray, width: float
 ) -> np.ndarray:
-    """Which numbers are smooth, but have at no step the slope of the complex step, (numbers,).
-
-    A chaotic number changes as much over a small step as over a wide one, and a steep one has the slope at some step. A
-    number whose imaginary part is rounding, as of ``-1j * log(...)``, is smooth with another slope.
+    """Which numbers are smooth, but have at no step the slope of the complex step, (numbers,). A chaotic number changes
+    as much over a small step as over a wide one, and a steep one has the slope at some step. A number whose imaginary
+    part is rounding, as of ``-1j * log(...)``, is smooth with another slope.
     """
     steps = width * 10.0 ** -np.arange(_DECADES + 1)
     wide, small = (
@@ -218,15 +217,13 @@ def check_steps(
     *,
     thorough: bool = True,
 ) -> None:
-    """Raise where numbers that depend on parameters lose the complex step of one of them.
-
-    Where the numbers cannot be computed they are not compared: the model itself will report it.
+    """Raise where numbers that depend on parameters lose the complex step of one of them. Where the numbers cannot be
+    computed they are not compared: the model itself will report it.
 
     ``vector`` (parameters,): where they are compared; moved inside the bounds, so that the differences stay there.
-    ``numbers``: vector of the numbers at a real or complex vector of parameters.
-    ``place``: what an entry of the numbers is, for the message.
-    ``thorough``: whether parameters are compared one by one, and rounding to few decimals is sought too, which
-        needs wider differences. If not, first all parameters are compared at once.
+    ``numbers``: vector of the numbers at a real or complex vector of parameters. ``place``: what an entry of the
+    numbers is, for the message. ``thorough``: whether parameters are compared one by one, and rounding to few decimals
+    is sought too, which needs wider differences. If not, first all parameters are compared at once.
     """
     _refuse_imaginary(numbers(vector), place)
     margin = np.minimum(DIFFERENCE * parameters.scale, (parameters.upper - parameters.lower) / 4)

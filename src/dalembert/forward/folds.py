@@ -14,10 +14,9 @@ from dalembert.forward.recorded import Recorded
 
 
 class Fold:
-    """The state of a method after the batches of responses that it has used, as the checkpoint of its model keeps it.
-
-    A checkpoint that kept the responses of 5,000 samples would take gigabytes; the method needs only what it has made
-    of them, such as the smallest and the largest. The responses of the batch at work are kept until its end.
+    """State of a method after the batches of responses that it has used, as the checkpoint of its model keeps it. A
+    checkpoint with the responses of 5,000 samples would take gigabytes; the method needs only what it has made of them,
+    such as the smallest and the largest. The responses of the batch at work are kept until its end.
 
     ``model``: without a checkpoint nothing is kept; ``name``: of the method; ``points`` (n, parameters): parameter
     vectors of all batches; ``state``: before the first batch. Attributes: ``done``, number of batches that earlier
@@ -65,12 +64,9 @@ class Fold:
 
 
 def summarised(model: ForwardModel, name: str, numbers: np.ndarray, compute: Callable[[], Arrays]) -> Arrays:
-    """Return arrays that a method makes of a batch of responses; the checkpoint keeps them in place of the responses.
-
-    ``model``: without a checkpoint nothing is kept.
-    ``name``: of the method, with all other words that the arrays depend on.
-    ``numbers``: all numbers that they depend on.
-    ``compute``: evaluates the model and makes the arrays.
+    """Return arrays that a method makes of a batch of responses; a checkpoint of the ``model`` keeps them in place of
+    the responses. ``name``: of the method, with all other words that the arrays depend on. ``numbers``: all numbers
+    that they depend on. ``compute``: evaluates the model and makes the arrays.
     """
     recorded = recorded_in(model)
     if recorded is None:

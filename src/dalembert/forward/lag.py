@@ -16,10 +16,9 @@ _SHORT = 1.0  # length relative to T below which moments are taken by quadrature
 def lagged(
     spline: "BSpline", knots: np.ndarray, at: np.ndarray, constant: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return lagged columns, their rate, and their derivative by the time constant, each (samples, columns).
-
-    ``spline`` (columns,): R; its polynomials change at knots only. y = R at the first knot. ``at`` (samples,): from the
-    first to the last knot; ``constant``: T, in the unit of the knots; zero is no lag.
+    """Return lagged columns, their rate, and their derivative by the time constant, each (samples, columns). ``spline``
+    (columns,): R; its polynomials change at knots only. y = R at the first knot. ``at`` (samples,): from the first to
+    the last knot; ``constant``: T, in the unit of the knots; zero is no lag.
 
     On a piece that begins at s = 0 with y_0, y(s) = exp(-s/T) y_0 + sum_k c_k s^k m_k(s/T) with R = sum_k c_k s^k and
     m_k(z) = z int_0^1 exp(-z v) (1 - v)^k dv. A bidiagonal system gives y at all knots.

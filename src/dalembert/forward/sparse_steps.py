@@ -35,10 +35,9 @@ def singly(count: int, numbers: int) -> Pattern:
 
 
 def sparse_jacobian(along: Along, count: int, pattern: Pattern | None = None) -> tuple[csc_array, Pattern]:
-    """Return the Jacobian (numbers, parameters) of a function, and the pattern for the next point.
-
-    ``along``: derivative of the numbers along a direction; ``count``: number of parameters; ``pattern``: of an earlier
-    point; it is confirmed by one more step, and sought anew where it no longer holds.
+    """Return the Jacobian (numbers, parameters) of a function, and the pattern for the next point. ``along``:
+    derivative of the numbers along a direction; ``count``: number of parameters; ``pattern``: of an earlier point; it
+    is confirmed by one more step, and sought anew where it no longer holds.
     """
     probe = np.random.default_rng(0).uniform(1.0, 2.0, count)
     if count <= FEW:

@@ -260,10 +260,9 @@ def _optimise(module: Any, cpu: str | None) -> None:
 
 @cache
 def target_machine(cpu: str | None = None) -> Any:
-    """LLVM's description of a processor: of this one, or of the named one of the same family.
-
-    The code model is that of code whose sections are loaded anywhere: a usual one reaches other sections by relative
-    addresses of 2 GB, and LLVM ends the process where a large process has them further apart.
+    """LLVM's description of a processor: of this one, or of the named one of the same family. The code model is that of
+    code whose sections are loaded anywhere: a usual one reaches other sections by relative addresses of 2 GB, and LLVM
+    ends the process where a large process has them further apart.
     """
     ll.initialize_native_target()
     ll.initialize_native_asmprinter()

@@ -81,11 +81,7 @@ TRIED = (0, 62), (0, 68)
 
 
 def is_tried(version: tuple[int, int]) -> bool:
-    """Whether the passes and shortcuts of this module are known to work with a version of Numba; warn if they are not.
-
-    >>> is_tried((0, 68))
-    True
-    """
+    """Whether this module's passes and shortcuts are known to work with a version of Numba; warn if they are not."""
     first, last = TRIED
     if first <= version <= last:
         return True

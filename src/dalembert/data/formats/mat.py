@@ -35,10 +35,9 @@ class Mat(Format):
 
 
 def mat_columns(path: Path, time: str | None, names: Iterable[str] | None, missing: str) -> Columns:
-    """Times and columns: vectors by name, fields of structs as ``run.x``, columns of a matrix as ``q(:,1)``.
-
-    A matrix with a row a channel gives ``q(1,:)``; an array of structs gives ``run(1).x``, a cell ``q{1}``. Objects
-    (tables, timeseries, datasets of Simulink) are read with mat-io if it is installed. Text is passed over.
+    """Times and columns: vectors by name, fields of structs as ``run.x``, columns of a matrix as ``q(:,1)``. A matrix
+    with a row a channel gives ``q(1,:)``; an array of structs gives ``run(1).x``, a cell ``q{1}``. Objects (tables,
+    timeseries, datasets of Simulink) are read with mat-io if it is installed. Text is passed over.
     """
     content = _content(path)
     table = spread(content.arrays, time, 1, "()")

@@ -34,10 +34,9 @@ class Netcdf(Format):
 
 
 def netcdf_columns(path: Path, time: str | None, names: Iterable[str] | None, missing: str) -> Columns:
-    """Times and columns: variables along the times' dimension, each with the unit that its ``units`` attribute names.
-
-    A variable over another dimension too gives a column an entry: ``response[AB.end.x]`` where that dimension has
-    labels, else ``q[0]``.
+    """Times and columns: variables along the times' dimension, each with the unit that its ``units`` attribute names. A
+    variable over another dimension too gives a column an entry: ``response[AB.end.x]`` where that dimension has labels,
+    else ``q[0]``.
     """
     dataset = _dataset(path)
     arrays = [(label, array, unit) for name in dataset.variables for label, array, unit in _parts(dataset, name, time)]

@@ -30,10 +30,9 @@ class Uff(Format):
 
 
 def uff_columns(path: Path, names: Iterable[str] | None, missing: str, units: Iterable[str] = ()) -> Columns:
-    """Abscissa and functions, each named after its response: node and direction, ``12:+X``.
-
-    Where several functions have the same response they are numbered, ``12:+X#1``, ``12:+X#2``; a function may be named
-    by its first ID line too, if no other has the same. ``units`` are the columns whose unit is known.
+    """Abscissa and functions, each named after its response: node and direction, ``12:+X``. Where several functions
+    have the same response they are numbered, ``12:+X#1``, ``12:+X#2``; a function may be named by its first ID line
+    too, if no other has the same. ``units`` are the columns whose unit is known.
     """
     with reading(path, "UFF"):
         file = library("pyuff", path, "UFF files").UFF(str(path))

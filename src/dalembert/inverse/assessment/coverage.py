@@ -22,12 +22,9 @@ none covered less than 0.86 of an unseen record (tests/unseen_records.py)."""
 def with_coverage(fit: Fit, problem: MisfitProblem) -> Fit:
     """Return the fit with the shares of held-out values inside their 95 % bands, in all and for each channel.
 
-    ``problem``: the whole one, which its validation is of.
-
-    Notes
-    -----
     A value is inside where \\|R − data\\| ≤ z (σ_R² + σ²)^½ with the deviations of the response and of the noise. Where
-    a band has grown as wide as the motion, it has ended and holds nothing.
+    a band has grown as wide as the motion, it has ended and holds nothing. ``problem``: the whole one, with the
+    validation.
     """
     validation = fit.validation
     at = None if validation is None else problem.linearised(fit.values)

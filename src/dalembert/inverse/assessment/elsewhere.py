@@ -19,11 +19,10 @@ MOST = 3  # dips of the scan that are descended into, the lowest ones
 def elsewhere(
     problem: MisfitProblem, vector: np.ndarray, k: int, interval: tuple[float, float], walk: ProfileWalk
 ) -> tuple[tuple[float, float], ...]:
-    """Intervals of parameter ``k`` beside the one around the identified ``vector`` (parameters,), increasing.
-
-    One batch scans the parameter between its bounds. From its lowest dips the misfit is made least over all
-    parameters, and where that ends below the threshold at another value, both sides are walked from there. A region
-    whose basin lies between two values of the scan is not seen.
+    """Intervals of parameter ``k`` beside the one around the identified ``vector`` (parameters,), increasing. One batch
+    scans the parameter between its bounds. From its lowest dips the misfit is made least over all parameters, and where
+    that ends below the threshold at another value, both sides are walked from there. A region whose basin lies between
+    two values of the scan is not seen.
     """
     intervals = [interval]
     starts = list(_starts(problem, vector, k, interval))

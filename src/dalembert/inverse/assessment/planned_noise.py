@@ -31,9 +31,8 @@ class PlannedChannels:
     along: Coordinate
 
     def whitened(self, response: np.ndarray, jacobian: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return deviations (channels,) of the noise, and weighted sensitivities (samples, channels, parameters).
-
-        The deviations are root mean squares over the samples. Sensitivities are those of the model, with the response
+        """Return deviations (channels,) of the noise, and weighted sensitivities (samples, channels, parameters). The
+        deviations are root mean squares over the samples. Sensitivities are those of the model, with the response
         (samples, all channels), over the deviation, less their prediction from the samples before.
         """
         sizes, rows = np.empty((len(response), len(self.names))), jacobian[:, self.columns].copy()

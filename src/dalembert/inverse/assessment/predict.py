@@ -112,17 +112,9 @@ def predict(model: ForwardModel | Experiment, fit: Fit, level: float = 0.95) -> 
 
 def band_end(half_widths: np.ndarray, response: np.ndarray, *, wraps: bool = False) -> int | None:
     """Return the sample at which a band becomes as wide on each side as the response's amplitude, or None.
-
-    ``half_widths``, ``response`` (samples,).
-    ``wraps``: whether the channel is an angle known up to whole turns, of an amplitude of at most half a turn.
-
-    Notes
-    -----
-    The band must have been less than half as wide before: one that is wide from the start is of a badly known level,
-    not of a motion that becomes unpredictable.
-
-    >>> band_end(np.array([0.1, 0.3, 0.9, 2.7]), np.array([-1.0, 1.0, -1.0, 1.0]))
-    3
+    ``half_widths``, ``response`` (samples,); ``wraps``: whether the channel is an angle known up to whole turns, of an
+    amplitude of at most half a turn. The band must have been less than half as wide before: one that is wide from the
+    start is of a badly known level, not of a motion that becomes unpredictable.
     """
     amplitude = min(float(np.ptp(response)) / 2, np.pi if wraps else np.inf)
     wide = np.flatnonzero(half_widths >= amplitude)
@@ -216,10 +208,9 @@ def _noise(fit: Fit, column: int, wanted: int) -> float:
 
 
 def _excess(fit: Fit, column: int) -> float:
-    """Residuals of a channel over their given deviation, 1 where noise explains them.
-
-    It is the root mean square. With a robust loss it is the median over that of the normal distribution, which outliers
-    do not change; the standard error of that is 1.17/√n.
+    """Residuals of a channel over their given deviation, 1 where noise explains them: the root mean square. With a
+    robust loss it is the median over that of the normal distribution, which outliers do not change; its standard error
+    is 1.17/√n.
     """
     compared = fit.weights[:, column] > 0
     count = np.count_nonzero(compared)

@@ -162,10 +162,8 @@ def profile(
 
 
 def _threshold(fit: Fit, level: float) -> float:
-    """Return the excess at the ends of the intervals.
-
-    Where noise was estimated with the parameters, the excess is that of twice the logarithm of a likelihood. The
-    threshold is then the one with which the interval of a linear response is that of Student's t.
+    """Return the excess at the ends of the intervals. Where noise was estimated with the parameters, the excess is that
+    of twice a log-likelihood, and the threshold makes the interval of a linear response that of Student's t.
     """
     if fit.noise_is_known:
         return float(chdtri(1, 1 - level))

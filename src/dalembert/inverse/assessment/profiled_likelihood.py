@@ -31,10 +31,9 @@ class ProfiledLikelihood:
         return replace(self, _last=[])
 
     def least(self, problem: MisfitProblem, k: int, guess: np.ndarray) -> tuple[float, np.ndarray] | str:
-        """Return twice the loss of log-likelihood with search coordinate k as in ``guess``, and the search point.
-
-        The noise parameters are estimated again with the other parameters: they are unknown, and in noise that depends
-        on the response they are correlated with the others.
+        """Return twice the loss of log-likelihood with search coordinate k as in ``guess``, and the search point. The
+        noise parameters are estimated again with the other parameters: they are unknown, and in noise that depends on
+        the response they are correlated with the others.
         """
         search = problem.search
         vector = search.vectors(np.clip(guess, search.lower, search.upper))
@@ -53,11 +52,7 @@ class ProfiledLikelihood:
 
 
 def profiled_likelihood(problem: MisfitProblem, at: Linearisation, noise: EstimatedNoise) -> ProfiledLikelihood:
-    """Return the likelihood of a fit whose noise was estimated.
-
-    ``problem``: with the weights of the fit.
-    ``at``: at the identified values.
-    """
+    """Return the likelihood of a fit whose noise was estimated: ``problem`` with its weights, ``at`` its values."""
     picked = {series: noise.models[series.name] for series in series_of(problem, fewest=1)}
     channels, _ = noises_of(problem, picked, known=True)
     series = problem.model.parameters

@@ -51,10 +51,9 @@ class Side:
 def walked(
     problem: MisfitProblem, at: Linearisation, k: int, side: int, walk: ProfileWalk, excess: float = 0.0
 ) -> Side:
-    """One side of the profile of parameter ``k``: ``side`` −1 goes down, +1 up, from a minimum with this excess.
-
-    Each value is chosen so that √excess grows by a quarter of its threshold, judging from the last two; once beyond,
-    the crossing is found by Brent's method. The other parameters begin where the last two values lead them.
+    """One side of the profile of parameter ``k``: ``side`` −1 goes down, +1 up, from a minimum with this excess. Each
+    value is chosen so that √excess grows by a quarter of its threshold, judging from the last two; once beyond, the
+    crossing is found by Brent's method. The other parameters begin where the last two values lead them.
     """
     walk = walk.fresh()
     search = problem.search

@@ -25,11 +25,10 @@ def candidate(problem: BandProblem, polynomial: ChebyshevPolynomial, x: np.ndarr
 
 
 def slopes(problem: BandProblem, polynomial: ChebyshevPolynomial, at: Candidate) -> np.ndarray:
-    """Jacobian of :meth:`BandProblem.residual` by the two ends of the box, shape (2, 2 × outputs, d).
-
-    By the envelope theorem a bound changes as the polynomial at the point where it is taken, x* = a + (1 + η)/2 (b − a)
-    in each direction: ∂f/∂x (1 − η)/2 with the lower end a, ∂f/∂x (1 + η)/2 with the upper end b. On a side without
-    width the bound leaves to where the polynomial falls or rises, η = ∓ sign ∂f/∂x.
+    """Jacobian of :meth:`BandProblem.residual` by the two ends of the box, shape (2, 2 × outputs, d). By the envelope
+    theorem a bound changes as the polynomial at the point where it is taken, x* = a + (1 + η)/2 (b − a) in each
+    direction: ∂f/∂x (1 − η)/2 with the lower end a, ∂f/∂x (1 + η)/2 with the upper end b. On a side without width the
+    bound leaves to where the polynomial falls or rises, η = ∓ sign ∂f/∂x.
     """
     width = at.upper - at.lower
     root = np.sqrt(problem.weights.ravel())

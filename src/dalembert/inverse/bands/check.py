@@ -45,7 +45,6 @@ class BandSolution:
 
 def check(problem: BandProblem, polynomial: ChebyshevPolynomial, at: Candidate) -> Check | None:
     """True runs at a few points of a candidate's box at which the surrogate takes all of its bounds; None if all fail.
-
     Many bounds are taken at the same corners. Of the points where they are taken a small part is chosen such that on
     the surrogate no bound is missed by more than ``LOSS`` of its channel's range.
     """

@@ -17,15 +17,10 @@ TAKEN = 10.0  # weight of runs where the surrogate takes its bounds
 def corrected(
     polynomial: ChebyshevPolynomial, at: Candidate, points: np.ndarray, values: np.ndarray, taken: int
 ) -> ChebyshevPolynomial:
-    """The polynomial plus the least squares, over true runs near the box, of what it lacks there.
-
-    A correction of low total degree, the highest that leaves two runs a term, takes away most of what a polynomial of
-    high order lacks on a box much smaller than its own.
-
-    ``at``: its box.
-    ``points`` (runs, d).
-    ``values`` (runs, outputs).
-    ``taken``: the last of the runs, at points where bounds are taken: they weigh more.
+    """The polynomial plus the least squares, over true runs near the box ``at``, of what it lacks there. A correction
+    of low total degree, the highest that leaves two runs a term, takes away most of what a polynomial of high order
+    lacks on a box much smaller than its own. ``points`` (runs, d); ``values`` (runs, outputs); ``taken``: the last of
+    the runs, at points where bounds are taken: they weigh more.
     """
     width, thin = at.upper - at.lower, THIN * (polynomial.upper - polynomial.lower)
     margin = np.maximum(AROUND * width / 2, thin)

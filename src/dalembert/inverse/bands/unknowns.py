@@ -14,10 +14,9 @@ from dalembert.parameters import Parameters
 
 @dataclass(frozen=True, eq=False)
 class Unknowns:
-    """Vectors x = (middles of all d parameters, radii of the k intervals), in search coordinates.
-
-    A box with middle m and radius r is cut at the bounds: its ends are max(m − r, lower) and min(m + r, upper). So
-    every middle between the bounds goes with every radius up to half of their distance.
+    """Vectors x = (middles of all d parameters, radii of the k intervals), in search coordinates. A box with middle m
+    and radius r is cut at the bounds: its ends are max(m − r, lower) and min(m + r, upper). So every middle between the
+    bounds goes with every radius up to half of their distance.
     """
 
     parameters: Parameters

@@ -25,9 +25,8 @@ def channel_units(optimum: Optimum) -> Iterator[Finding]:
     A unit is wrong if the response explains a channel badly, and explains it and the suspected one where the model is
     fitted to the data in the other unit, from the same starts. Where the response explains all channels, a parameter
     may have made up for the unit: it changed by the suspected factor or its square root, and the first response
-    explains the data in the other unit as it is.
-
-    Where the end explains a channel badly, the first response is computed for all samples, if the fit began with fewer.
+    explains the data in the other unit as it is. Where the end explains a channel badly, the first response is computed
+    for all samples, if the fit began with fewer.
     """
     first = optimum.problem.journal.first
     if first is None:

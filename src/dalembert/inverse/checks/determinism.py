@@ -15,10 +15,9 @@ SAME = 1e-9
 
 
 def non_deterministic_model(optimum: Optimum) -> Iterator[Finding]:
-    """Simulate the identified values again and yield a finding if the response differs.
-
-    Checkpoints are left out, because they repeat what they hold. The response may come from a simulation with
-    sensitivities, whose rounding chaotic motion amplifies: if the two differ, a third run is compared with the second.
+    """Simulate the identified values again and yield a finding if the response differs. Checkpoints are left out,
+    because they repeat what they hold. The response may come from a simulation with sensitivities, whose rounding
+    chaotic motion amplifies: if the two differ, a third run is compared with the second.
     """
     if optimum.end.nodes is not None:
         return

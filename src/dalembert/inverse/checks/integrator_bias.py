@@ -12,12 +12,9 @@ LARGE = 0.5
 
 
 def integrator_bias(optimum: Optimum) -> Iterator[Finding]:
-    """Yield findings on the error of the integrator.
-
-    Notes
-    -----
-    Data that contain the same error were simulated with the same steps. They agree better with the response of these
-    steps than with the converged one, beyond the noise, and leave white residuals; then the bias is only a note.
+    """Yield findings on the error of the integrator. Data that contain the same error were simulated with the same
+    steps. They agree better with the response of these steps than with the converged one, beyond the noise, and leave
+    white residuals; then the bias is only a note.
     """
     bias, problem, misfit = optimum.integration, optimum.problem, optimum.end.misfit
     if bias is None or optimum.minimum.explained_by == "arithmetic":

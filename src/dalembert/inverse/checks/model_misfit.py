@@ -65,10 +65,9 @@ def model_misfit(optimum: Optimum) -> Iterator[Finding]:
 
 
 def _misfits(residuals: Residuals) -> tuple[ModelMisfit, ...]:
-    """Return the channel of each experiment in which the model leaves the data first.
-
-    Only residuals that stay correlated as long as the motion takes to change are those of a model, or correlated ones
-    that are far above given deviations: the size alone may be that of noise.
+    """Return the channel of each experiment in which the model leaves the data first. Only residuals that stay
+    correlated as long as the motion takes to change are those of a model, or correlated ones that are far above given
+    deviations: the size alone may be that of noise.
     """
     misfits: dict[str, ModelMisfit] = {}
     for signal in residuals.series:

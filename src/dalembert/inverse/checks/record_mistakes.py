@@ -45,10 +45,9 @@ POINTS = 3
 
 
 def record_mistakes(optimum: Optimum) -> Iterator[Finding]:
-    """Yield delays that explain the residuals, and mistakes in the record that explain them better.
-
-    A small delay leaves residuals that are proportional to the rate of the response. There a shift by whole periods
-    explains as much. Residuals away from a minimum show the search, not the record.
+    """Yield delays that explain the residuals, and mistakes in the record that explain them better. A small delay
+    leaves residuals that are proportional to the rate of the response. There a shift by whole periods explains as much.
+    Residuals away from a minimum show the search, not the record.
     """
     problem, causes, at = optimum.problem, optimum.causes, optimum.linearisation
     delays = tuple(delay_findings(causes.delays, problem.data.coordinate.name))

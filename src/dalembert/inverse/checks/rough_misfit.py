@@ -17,11 +17,8 @@ SMALL = 0.01
 
 
 def rough_misfit(optimum: Optimum) -> Iterator[Finding]:
-    """Yield how far the foreseen minimum is from the values, where a rough misfit ended the search.
-
-    Notes
-    -----
-    The distance is δp = −(JᵀWJ)⁻¹ JᵀW r, inside the bounds. A smooth misfit would have led there.
+    """Yield how far the foreseen minimum is from the values, where a rough misfit ended the search. The distance is
+    δp = −(JᵀWJ)⁻¹ JᵀW r, inside the bounds. A smooth misfit would have led there.
     """
     at = optimum.linearisation
     if not optimum.end.rough or at is None or optimum.minimum.explained_by == "arithmetic":

@@ -111,11 +111,7 @@ def _usual(problem: MisfitProblem, response: np.ndarray) -> float:
 
 
 def _explained(misfit: float, variation: float) -> Finding:
-    """Return the share of the data's variation that a response explains.
-
-    >>> print(_explained(1.0, 4.0))
-    The response explains 75 % of the data's variation.
-    """
+    """Return the finding on the share of the data's variation that a response explains."""
     share = 1 - misfit / variation if variation > 0 else np.nan
     if np.isnan(share):
         message = "The data are constant: the explained share of their variation is not defined."

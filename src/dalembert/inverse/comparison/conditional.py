@@ -45,14 +45,11 @@ class Conditional:
     def without(self, rows: np.ndarray) -> float:
         """Return the log predictive density of the values at ``rows`` from all others, exact for a linear model.
 
-        Notes
-        -----
         Where nothing is known of the parameters beforehand, the precision of all values is P = Wᵀ (I − B Bᵀ) W. Given
-        the others, the values of the rows S are normal, with the precision P_SS and the error P_SS⁻¹ (P r)_S.
-
-        Source: C. E. Rasmussen, C. K. I. Williams, Gaussian Processes for Machine Learning (2006), sections 2.7 and
-        5.4.2; S. Sundararajan, S. S. Keerthi, Predictive approaches for choosing hyperparameters in Gaussian
-        processes, Neural Computation 13 (2001).
+        the others, the values of the rows S are normal, with the precision P_SS and the error P_SS⁻¹ (P r)_S. Source:
+        C. E. Rasmussen, C. K. I. Williams, Gaussian Processes for Machine Learning (2006), sections 2.7 and 5.4.2;
+        S. Sundararajan, S. S. Keerthi, Predictive approaches for choosing hyperparameters in Gaussian processes, Neural
+        Computation 13 (2001).
         """
         columns = self.whitening[:, rows]
         places = np.unique(columns.indices)
@@ -101,15 +98,12 @@ class WithNoise:
     def without(self, rows: np.ndarray) -> float:
         """Return the same with the noise that the other values alone determine.
 
-        Notes
-        -----
         With the gradient g and the second derivatives H of the group's log density by the noise parameters η, and the
-        covariance C of η, the others have their maximum at η + d, d = −(C⁻¹ + H)⁻¹ g. The log density changes by
-        gᵀ d + ½ dᵀ H d. Where d is larger than a standard deviation, the maximum is searched for: the restricted
-        likelihood of the others is that of all values divided by the density of the group.
-
-        Source: K. R. Rad, A. Maleki, A scalable estimate of the out-of-sample prediction error via approximate
-        leave-one-out cross-validation, Journal of the Royal Statistical Society B 82 (2020).
+        covariance C of η, the others have their maximum at η + d, d = −(C⁻¹ + H)⁻¹ g. The log density changes by gᵀ d +
+        ½ dᵀ H d. Where d is larger than a standard deviation, the maximum is searched for: the restricted likelihood of
+        the others is that of all values divided by the density of the group. Source: K. R. Rad, A. Maleki, A scalable
+        estimate of the out-of-sample prediction error via approximate leave-one-out cross-validation, Journal of the
+        Royal Statistical Society B 82 (2020).
         """
         conditional = self._best.without(rows)
         if self.noise.known or not np.isfinite(conditional):

@@ -17,11 +17,9 @@ FEWEST = 5  # fewest blocks of a record
 
 def groups(fit: Fit, leave_out: str, blocks: int | None = None) -> np.ndarray:
     """Return the number of the group of each value, from 0, shape (samples, channels); −1 where it was not fitted.
-
-    ``leave_out`` {"values", "blocks", "experiments"}: single values; blocks of neighbouring samples with all their
-        channels; whole experiments.
-    ``blocks``: blocks of each record; without it as many as are longer than four correlation times of the
-        residuals.
+    ``leave_out``: single ``"values"``; ``"blocks"`` of neighbouring samples with all their channels; whole
+    ``"experiments"``. ``blocks``: blocks of each record; without it as many as are longer than four correlation times
+    of the residuals.
     """
     require_known("way", leave_out, WAYS, "leave_out")
     fitted = fit.weights > 0

@@ -63,14 +63,10 @@ class Linearised:
     def without(self, rows: np.ndarray) -> float:
         """Return the log predictive density of the values at ``rows`` from all others, exact for a linear model.
 
-        Notes
-        -----
         With the hat matrix H of the rows, the prediction error is (I − H)⁻¹ e and its covariance s² (I − H)⁻¹. An
         unknown s has the prior 1/s, so that the density is Student's t of n − m − p degrees of freedom for n values, m
-        of them left out.
-
-        Source: D. M. Allen, The relationship between variable selection and data augmentation and a method for
-        prediction, Technometrics 16 (1974); A. Gelman et al., Bayesian Data Analysis (2013), section 14.2.
+        of them left out. Source: D. M. Allen, The relationship between variable selection and data augmentation and a
+        method for prediction, Technometrics 16 (1974); A. Gelman et al., Bayesian Data Analysis (2013), section 14.2.
         """
         basis, residual = self.basis[rows], self.residual[rows]
         remaining = np.eye(len(rows)) - basis @ basis.T
@@ -91,11 +87,7 @@ class Linearised:
 
 
 def log_density(square: float, count: int, variance: float, freedom: float | None) -> float:
-    """Return the log density of ``count`` values with the sum of squares ``square``: normal, or Student's t.
-
-    >>> round(log_density(0.0, 1, 1.0, None), 6)
-    -0.918939
-    """
+    """Return the log density of ``count`` values with the sum of squares ``square``: normal, or Student's t."""
     if not variance > 0:
         return -np.inf
     if freedom is None:

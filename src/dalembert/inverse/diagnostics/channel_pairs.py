@@ -46,20 +46,15 @@ def correlated_pairs(
 ) -> list[ChannelPair]:
     """Return the pairs of channels whose noise is not independent, most correlated first.
 
-    ``series``: those that are tested. ``residual`` (values,): weighted residuals. ``basis`` (values, parameters):
-    orthonormal basis of the weighted jacobian's columns. A fit takes the part of the noise along them out of the
-    residuals, which correlates the rest; that is allowed for. ``width``: number of channels of the data. ``processes``:
-    of the series that are correlated in time, by name. Where the model is wrong for both channels, their residuals are
-    correlated anyway, and only copies count. ``level``: probability to take independent noise for correlated, over all
-    pairs.
-
-    Notes
-    -----
     Fisher's transformation atanh r of the correlation is normal with the variance 1/(n − 3). Where both series are
-    correlated in time, with coefficients a and b of neighbours, n is divided by (1 + a b)/(1 − a b).
+    correlated in time, with coefficients a and b of neighbours, n is divided by (1 + a b)/(1 − a b). Source:
+    M. S. Bartlett, Some aspects of the time-correlation problem, Journal of the Royal Statistical Society 98 (1935).
 
-    Source: M. S. Bartlett, Some aspects of the time-correlation problem, Journal of the Royal Statistical Society 98
-    (1935).
+    ``residual`` (values,): weighted residuals. ``basis`` (values, parameters): orthonormal basis of the weighted
+    jacobian's columns. A fit takes the part of the noise along them out of the residuals, which correlates the rest;
+    that is allowed for. ``width``: number of channels of the data. ``processes``: of the series that are correlated in
+    time, by name. Where the model is wrong for both channels, their residuals are correlated anyway, and only copies
+    count. ``level``: probability to take independent noise for correlated, over all pairs.
     """
     tried = list(_pairs(series, residual, basis, width, processes))
     correlated = [pair for pair in tried if pair.p_value < level / len(tried)]
@@ -92,15 +87,12 @@ def _pairs(
 
 
 def factors(pairs: Sequence[ChannelPair], slopes: np.ndarray, deviations: np.ndarray, width: int) -> np.ndarray:
-    """Return the standard deviations with the correlations of pairs over those without, shape (parameters,).
+    """Return the standard deviations with the correlations of pairs over those without, shape (parameters,): roots of
+    the ratios of the diagonals of S⁺ Σ S⁺ᵀ, with Σ diagonal and with r σ_a σ_b at common samples of a pair. NaN for a
+    parameter that the data do not determine.
 
     ``slopes`` (values + priors, parameters): W^½ ∂R/∂p, then one row a prior. ``deviations`` (values,): of the weighted
     residuals. ``width``: number of channels of the data.
-
-    Notes
-    -----
-    Roots of the ratios of the diagonals of S⁺ Σ S⁺ᵀ, with Σ diagonal and with r σ_a σ_b at common samples of a pair.
-    NaN for a parameter that the data do not determine.
     """
     inverse = np.linalg.pinv(slopes, rcond=UNSEEN)
     weighted = inverse * np.pad(deviations, (0, len(slopes) - len(deviations)), constant_values=1.0)

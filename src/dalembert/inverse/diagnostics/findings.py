@@ -73,10 +73,9 @@ class Outlier:
 def diagnostic_findings(
     names: Sequence[str], series: Sequence[SeriesResiduals], outliers: Sequence[Outlier], *, robust: bool, plain: bool
 ) -> Iterator[Finding]:
-    """Yield what the tests conclude, at most one finding for each test.
-
-    ``names``: of the parameters. ``outliers``: largest first. ``robust``: whether the loss makes outliers count less.
-    ``plain``: whether a noise model can be given: there is none yet, and no other loss or segments.
+    """Yield what the tests conclude, at most one finding for each test. ``names``: of the parameters. ``outliers``:
+    largest first. ``robust``: whether the loss makes outliers count less. ``plain``: whether a noise model can be
+    given: there is none yet, and no other loss or segments.
     """
     if outliers:
         yield _of_outliers(outliers, robust=robust)
@@ -180,10 +179,8 @@ def _of_normality(item: SeriesResiduals) -> Finding:
 
 
 def pair_findings(pairs: Sequence[ChannelPair], grown: np.ndarray) -> Iterator[Finding]:
-    """Yield that channels are correlated with each other, if there are such pairs.
-
-    ``grown`` are the standard deviations (parameters,) that allow for it, over those of the fit; empty without a
-    Jacobian.
+    """Yield that channels are correlated with each other, if there are such pairs. ``grown`` are the standard
+    deviations (parameters,) that allow for it, over those of the fit; empty without a Jacobian.
     """
     if not pairs:
         return

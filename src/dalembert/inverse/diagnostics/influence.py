@@ -41,16 +41,9 @@ def influence(
     of freedom that the variance was estimated with; None where it is known.
 
     With the hat matrix H = S (SᵀS)⁻¹ Sᵀ, leverage h and weighted residual e = data − R: D = e² h / (m s² (1 − h)²) for
-    m parameters. Without the value, the parameters change by −(SᵀS)⁻¹ x e/(1 − h), where x is its row of S.
-
-    Source: R. D. Cook, Detection of influential observation in linear regression, Technometrics 19 (1977);
-    D. A. Belsley, E. Kuh, R. E. Welsch, Regression Diagnostics (1980), section 2.1.
-
-    The last of three values at 0, 1 and 4 determines most of a line's slope:
-
-    >>> line = np.array([[1.0, 0.0], [1.0, 1.0], [1.0, 4.0]])
-    >>> influence(line, np.array([0.1, -0.1, 0.0]), np.ones(2, dtype=bool), 1.0, None).leverage.round(3).tolist()
-    [0.654, 0.385, 0.962]
+    m parameters. Without the value, the parameters change by −(SᵀS)⁻¹ x e/(1 − h), where x is its row of S. Source:
+    R. D. Cook, Detection of influential observation in linear regression, Technometrics 19 (1977); D. A. Belsley,
+    E. Kuh, R. E. Welsch, Regression Diagnostics (1980), section 2.1.
     """
     left, singular, directions = np.linalg.svd(slopes[:, free], full_matrices=False)
     seen = singular > UNSEEN * (singular[0] if len(singular) else 1.0)

@@ -13,12 +13,10 @@ FEW = 10
 def runs(values: np.ndarray) -> tuple[int, float, float]:
     """Return the number of runs of equal signs, the number that independent noise has, and the probability.
 
-    With n₁ positive and n₂ negative values, independent noise has μ = 2 n₁ n₂/n + 1 runs with the variance
-    (μ − 1) (μ − 2)/(n − 1). The probability is that of a number at least as far from μ; it is 1 where there are fewer
-    than ten values of a sign.
-
-    Source: A. Wald, J. Wolfowitz, On a test whether two samples are from the same population, Annals of Mathematical
-    Statistics 11 (1940).
+    With n₁ positive and n₂ negative values, independent noise has μ = 2 n₁ n₂/n + 1 runs with the variance (μ − 1)
+    (μ − 2)/(n − 1). The probability is that of a number at least as far from μ; it is 1 where there are fewer than ten
+    values of a sign. Source: A. Wald, J. Wolfowitz, On a test whether two samples are from the same population, Annals
+    of Mathematical Statistics 11 (1940).
     """
     signs = values[values != 0] > 0
     total, above = len(signs), int(np.count_nonzero(signs))
@@ -32,9 +30,7 @@ def runs(values: np.ndarray) -> tuple[int, float, float]:
 
 def normality(values: np.ndarray) -> float:
     """Return the probability of values (values,) at least as far from a normal distribution of unknown mean and width:
-    the Anderson–Darling test.
-
-    Source: R. B. D'Agostino, M. A. Stephens, Goodness-of-Fit Techniques (1986), table 4.9.
+    the Anderson–Darling test. Source: R. B. D'Agostino, M. A. Stephens, Goodness-of-Fit Techniques (1986), table 4.9.
     """
     number = len(values)
     scaled = np.sort((values - np.mean(values)) / np.std(values, ddof=1))
@@ -56,9 +52,8 @@ def growth(sizes: np.ndarray, quantity: np.ndarray) -> tuple[float, float]:
 
     The sizes are replaced by those that their ranks have among absolute values of normal noise: Φ⁻¹((1 + u)/2) with
     u = rank/(n + 1). So the level does not depend on the distribution, and more is seen than with ranks of the sizes
-    (Spearman): of noise that grows from 1 to 2.5 over 200 samples 83 % in place of 67 % at a level of 0.0005.
-
-    Source: J. Hájek, Z. Šidák, Theory of Rank Tests (1967), for linear rank statistics.
+    (Spearman): of noise that grows from 1 to 2.5 over 200 samples 83 % in place of 67 % at a level of 0.0005. Source:
+    J. Hájek, Z. Šidák, Theory of Rank Tests (1967), for linear rank statistics.
     """
     scores = ndtri((1 + _ranks(sizes) / (len(sizes) + 1)) / 2)
     first, second = scores - np.mean(scores), _ranks(quantity) - (len(quantity) + 1) / 2

@@ -12,12 +12,8 @@ USUAL = 10
 
 def blocks_of_records(fitted: np.ndarray, parts: Sequence[ExperimentPart], count: Callable[[int], int]) -> np.ndarray:
     """Return the number of the block of each value, from 0, shape (samples, channels); −1 where it was not fitted.
-
-    ``fitted`` (samples, channels). ``parts``: where several experiments stand; empty for a single one. ``count``:
+    ``fitted`` (samples, channels). ``parts``: where several experiments stand; empty for a single one.
     ``count(samples)`` returns the number of blocks of a record with this number of fitted samples.
-
-    >>> blocks_of_records(np.array([[True], [False], [True], [True]]), (), lambda samples: 2).ravel().tolist()
-    [0, -1, 0, 1]
     """
     numbers, begin = np.full(fitted.shape, -1), 0
     for record in [part.block for part in parts] or [np.ix_(*map(np.arange, fitted.shape))]:

@@ -35,11 +35,10 @@ from dalembert.parameters import Parameters
 
 @dataclass(frozen=True, eq=False)
 class JointModel:
-    """Experiments as one forward model.
-
-    Its samples are those of all experiments, ordered by the part of their experiment's time that has passed; samples at
-    the same part share a row, so that the first rows are the beginning of every experiment. Its channels are the
-    measured ones of all, ``"NAME.channel"``; where an experiment has no sample in a row, the response is 0.
+    """Experiments as one forward model. Its samples are those of all experiments, ordered by the part of their
+    experiment's time that has passed; samples at the same part share a row, so that the first rows are the beginning of
+    every experiment. Its channels are the measured ones of all, ``"NAME.channel"``; where an experiment has no sample
+    in a row, the response is 0.
     """
 
     models: tuple[ForwardModel, ...]

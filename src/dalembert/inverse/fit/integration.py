@@ -19,13 +19,10 @@ CHAOTIC = 1e3
 
 @dataclass(frozen=True, eq=False)
 class IntegrationBias:
-    """What one more exact simulation at the identified values says about the error of the integrator.
-
-    Notes
-    -----
-    With the responses ŷ_h and ŷ_{h/2} at the identified values and a method of order q, the error of ŷ_h is
-    d = (ŷ_h − ŷ_{h/2}) 2^q/(2^q − 1), and values − bias are corrected by δp = (JᵀWJ)⁻¹ JᵀW d. For methods that choose
-    their steps ŷ_{h/2} is the response at a tolerance 100 times tighter, and d the difference.
+    """What one more exact simulation at the identified values says about the error of the integrator. With the
+    responses ŷ_h and ŷ_{h/2} at the identified values and a method of order q, the error of ŷ_h is d = (ŷ_h − ŷ_{h/2})
+    2^q/(2^q − 1), and values − bias are corrected by δp = (JᵀWJ)⁻¹ JᵀW d. For methods that choose their steps ŷ_{h/2}
+    is the response at a tolerance 100 times tighter, and d the difference.
     """
 
     how: str  # what the more exact simulation was, such as ``"at half the step"``; why there is none if it failed

@@ -20,10 +20,8 @@ class ResidualCauses:
 
 
 def residual_causes(problem: MisfitProblem, at: Linearisation | None, *, known: bool) -> ResidualCauses:
-    """Return causes of the residuals at identified values; none away from a minimum.
-
-    Data that a delay explains are not halved: the other parameters make up for the delay. ``known``: whether the noise
-    of the data is.
+    """Return causes of the residuals at identified values; none away from a minimum. Data that a delay explains are not
+    halved: the other parameters make up for the delay. ``known``: whether the noise is.
     """
     if at is None or problem.compared <= len(at.vector) + 1:
         return ResidualCauses()

@@ -224,10 +224,9 @@ def _followed(problem: ConsistentProblem) -> tuple[np.ndarray, float, int]:
 
 
 def _minimised(problem: ConsistentProblem, start: np.ndarray) -> tuple[np.ndarray, float, int]:
-    """Parameters at the minimum, half the squared Newton decrement, and the number of steps.
-
-    Newton's method by θ with a line search that keeps links possible: the objective is convex there, and combinations
-    that the torques determine well are straight. It is curved over log-Cholesky parameters.
+    """Parameters at the minimum, half the squared Newton decrement, and the number of steps. Newton's method by θ with
+    a line search that keeps links possible: the objective is convex there, and combinations that the torques determine
+    well are straight. It is curved over log-Cholesky parameters.
     """
     values, misfit, last = start, problem.value_at(start), np.inf
     for steps in range(STEPS):

@@ -95,10 +95,8 @@ class ConsistentProblem:
         return jacobian.T @ slope + gamma * pull, half.T @ half + extra
 
     def start(self, parameters: np.ndarray, least: float) -> np.ndarray:
-        """Unknowns of the consistent parameters next to given ones.
-
-        Eigenvalues of pseudo-inertias relative to the prior, and positive parameters relative to theirs, become at
-        least ``least``.
+        """Unknowns of the consistent parameters next to given ones. Eigenvalues of pseudo-inertias relative to the
+        prior, and positive parameters relative to theirs, become at least ``least``.
         """
         unknowns = np.zeros(len(self.prior))
         for k, factor in enumerate(self.factors):

@@ -98,13 +98,9 @@ class FourierMotion:
 
 
 def largest_motion(shape: np.ndarray, period: float, limits: JointLimits) -> FourierMotion:
-    """Return the largest motion of a shape that keeps the limits at all times.
+    """Return the largest motion of a shape that keeps the limits at all times. ``shape`` (joints, 2 harmonics + 1),
+    from −1 to 1: sines and cosines of the velocity, and where the motion lies between the limits of the position.
 
-    ``shape`` (joints, 2 harmonics + 1): from −1 to 1: sines and cosines of the velocity, and where the motion lies
-        between the limits of the position.
-
-    Notes
-    -----
     Between N even samples a trigonometric polynomial of degree n is at most 1 / cos(π n / N) times its largest sample,
     here 1.003 times (H. Ehlich, K. Zeller, Schwankung von Polynomen zwischen Gitterpunkten, Mathematische Zeitschrift
     86, 1964).

@@ -22,10 +22,10 @@ class End:
     """Where a start ended: a search point (parameters,), its misfit over all samples, and how it was reached.
 
     At a ``stationary`` end a finer descent would change nothing; at a ``rough`` one the response is not smooth enough
-    for it. Multiple shooting adds the ``nodes`` of its segments, and a ``spread`` S (parameters, parameters)
-    with the covariance S Sᵀ of the parameters at unit variance. ``begun`` is the misfit where the descent over all
-    samples began. The descent
-    did not go along the directions ``left_out`` (directions, parameters), which are not identifiable.
+    for it. Multiple shooting adds the ``nodes`` of its segments, and a ``spread`` S (parameters, parameters) with the
+    covariance S Sᵀ of the parameters at unit variance. ``begun`` is the misfit where the descent over all samples
+    began. The descent did not go along the directions ``left_out`` (directions, parameters), which are not
+    identifiable.
     """
 
     point: np.ndarray
@@ -42,10 +42,9 @@ class End:
 
 
 class Memo:
-    """Residual and jacobian of a problem at search points, so that a point is simulated at most twice.
-
-    After an accepted point the next one is simulated with its sensitivities at once, since it will most likely be
-    accepted too; after a rejected one without.
+    """Residual and jacobian of a problem at search points, so that a point is simulated at most twice. After an
+    accepted point the next one is simulated with its sensitivities at once, since it will most likely be accepted too;
+    after a rejected one without.
     """
 
     def __init__(self, problem: MisfitProblem, at: Linearisation | None = None) -> None:
@@ -116,10 +115,9 @@ class Memo:
 
 
 def descend(ladder: Sequence[MisfitProblem], method: Squares, point: np.ndarray, misfit: float | None = None) -> End:
-    """Least squares from a search point on each problem of a ladder, the last one the whole problem.
-
-    The shorter horizons only lead the way and are left early. Where they lead to a larger misfit of the whole problem
-    than the point's ``misfit``, if that is known, the descent over the whole begins at the point.
+    """Least squares from a search point on each problem of a ladder, the last one the whole problem. The shorter
+    horizons only lead the way and are left early. Where they lead to a larger misfit of the whole problem than the
+    point's ``misfit``, if that is known, the descent over the whole begins at the point.
     """
     led = point
     for problem in ladder[:-1]:

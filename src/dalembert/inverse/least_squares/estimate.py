@@ -13,7 +13,6 @@ UNSEEN = 1e-10
 @dataclass(frozen=True, eq=False)
 class Estimate:
     """Standard deviations (parameters,) and correlation (parameters, parameters) of identified parameters.
-
     ``singular_values`` (parameters,), largest first, are those of W^½ ∂R/∂p · scale; the rows of ``directions``
     (parameters, parameters) are the combinations of p/scale that they belong to.
     """
@@ -28,12 +27,10 @@ def estimate(slopes: np.ndarray, scale: np.ndarray, variance: float | np.ndarray
     """Return the estimate from the linearised least squares problem, covariance s² (JᵀWJ)⁻¹.
 
     ``slopes`` (values, parameters): W^½ ∂R/∂p · scale, from the singular values of which everything follows. ``scale``
-    (parameters,). ``variance``: s², the variance of a weighted residual. With correlated residuals UᵀΣU
-    (parameters, parameters): their covariance along the left singular vectors of the slopes, from which follows the
-    covariance (JᵀWJ)⁻¹ JᵀWΣWJ (JᵀWJ)⁻¹.
-
-    A combination that the response does not see leaves the deviations of its parameters infinite, and correlates them
-    fully.
+    (parameters,). ``variance``: s², the variance of a weighted residual. With correlated residuals UᵀΣU (parameters,
+    parameters): their covariance along the left singular vectors of the slopes, from which follows the covariance
+    (JᵀWJ)⁻¹ JᵀWΣWJ (JᵀWJ)⁻¹. A combination that the response does not see leaves the deviations of its parameters
+    infinite, and correlates them fully.
     """
     _, singular, directions = _decomposed(slopes)
     least = UNSEEN * (singular[0] or 1.0)

@@ -33,12 +33,10 @@ def identifiability_findings(
     plain: Estimate | None = None,
     bias: np.ndarray | None = None,
 ) -> Iterator[Finding]:
-    """Yield findings on parameters at a bound, not identifiable, or hardly distinguishable.
-
-    ``values`` (parameters,): identified values. ``known``: of these values. ``plain``: for independent residuals;
-    ``known`` if not given. A prior that contradicts the data leaves correlated ones, whose larger standard deviations
-    would hide the conflict. ``bias`` (parameters,): error of the values that the integrator causes; NaN where it is not
-    known.
+    """Yield findings on parameters at a bound, not identifiable, or hardly distinguishable. ``values`` (parameters,):
+    identified values. ``known``: of these values. ``plain``: for independent residuals; ``known`` if not given. A prior
+    that contradicts the data leaves correlated ones, whose larger standard deviations would hide the conflict. ``bias``
+    (parameters,): error of the values that the integrator causes; NaN where it is not known.
     """
     width = parameters.upper - parameters.lower
     for k, item in enumerate(parameters):
@@ -75,13 +73,10 @@ def foreseen(parameters: Parameters, expected: Estimate, *, noise_known: bool) -
 def unidentifiable(
     names: tuple[str, ...], widths: np.ndarray, scale: np.ndarray, known: Estimate, bias: np.ndarray | None = None
 ) -> Iterator[Finding]:
-    """Yield findings on unknowns that are not or hardly identifiable, alone, in combination, or in pairs.
-
-    Unknowns of a combination are named with it, and not again alone or in pairs. Without sensitivities there is one
-    finding, which says so.
-
-    ``widths`` (unknowns,): distances between the bounds. ``scale`` (unknowns,). ``bias`` (unknowns,): error of the
-    values that the integrator causes; NaN where it is not known.
+    """Yield findings on unknowns that are not or hardly identifiable, alone, in combination, or in pairs. Unknowns of a
+    combination are named with it, and not again alone or in pairs. Without sensitivities there is one finding, which
+    says so. ``widths`` (unknowns,): distances between the bounds. ``scale`` (unknowns,). ``bias`` (unknowns,): error of
+    the values that the integrator causes; NaN where it is not known.
     """
     if not np.all(np.isfinite(known.singular_values)):
         message = "Identifiability is not known: the model has no sensitivities at the identified values."
@@ -138,10 +133,9 @@ def unidentifiable(
 def _together(
     widths: np.ndarray, scale: np.ndarray, known: Estimate, bias: np.ndarray
 ) -> Iterable[tuple[np.ndarray, str]]:
-    """Yield moves (unknowns,) of several unknowns that the data do not see, and what their effect is below.
-
-    A move that changes the response counts where neither it nor any unknown that moves is known better than by a
-    uniform distribution: by the noise, or by the noise and the ``bias`` (unknowns,) of the integrator.
+    """Yield moves (unknowns,) of several unknowns that the data do not see, and what their effect is below. A move that
+    changes the response counts where neither it nor any unknown that moves is known better than by a uniform
+    distribution: by the noise, or by the noise and the ``bias`` (unknowns,) of the integrator.
     """
     singular, directions = known.singular_values, known.directions
     unseen = singular <= UNSEEN * (singular[0] or 1.0)

@@ -33,12 +33,9 @@ class SuspectDelay:
 
 
 def suspect_delays(residuals: Residuals) -> tuple[tuple[SuspectDelay, ...], Residuals]:
-    """Return the delays that explain residuals, the most explaining first, and the residuals without them.
-
-    Notes
-    -----
-    Data that are late by τ leave the residuals R(t) − R(t − τ) ≈ τ dR/dt. The part of W^½ dR/dt that no parameter makes
-    up for is the column d; τ = dᵀr/dᵀd. Its deviation allows for the correlation of the residuals that are left.
+    """Return the delays that explain residuals, the most explaining first, and the residuals without them. Data that
+    are late by τ leave the residuals R(t) − R(t − τ) ≈ τ dR/dt. The part of W^½ dR/dt that no parameter makes up for is
+    the column d; τ = dᵀr/dᵀd. Its deviation allows for the correlation of the residuals that are left.
     """
     suspects: list[SuspectDelay] = []
     rates = _rates(residuals)

@@ -51,12 +51,9 @@ class Halves:
 
 def halves(residuals: Residuals) -> Halves | None:
     """Return the parameters of the halves of the records; None where a half has too few values, or a parameter a prior.
-
     One Gauss–Newton step of each half from the whole fit needs no simulation. Where it finds different parameters, both
     halves are fitted, from the values of the whole fit on.
 
-    Notes
-    -----
     With the rows S_h of S = W^½ ∂R/∂p that belong to a half, its step is −S_h⁺ r. The residuals of the whole fit are
     (I − UUᵀ) e, with the noise e and the left singular vectors U of S. So the difference of the steps has the
     covariance G Σ Gᵀ, G = (S_1⁺ − S_2⁺)(I − UUᵀ). Σ is the covariance of the noise: of its process where a channel is

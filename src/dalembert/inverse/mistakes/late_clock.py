@@ -17,10 +17,9 @@ STEPS = 48
 
 
 def late_clock(record: FittedRecord) -> Iterator[Mistake]:
-    """Yield the mistake for the clock of each experiment, of all, and of each channel.
-
-    Delays by less than a twelfth of a period leave residuals that are proportional to the rate of the response: the
-    finding ``suspect-delay`` estimates them better.
+    """Yield the mistake for the clock of each experiment, of all, and of each channel. Delays by less than a twelfth of
+    a period leave residuals that are proportional to the rate of the response: the finding ``suspect-delay`` estimates
+    them better.
     """
     for clock in clocks(record, channels=True):
         step = clock.period / RESOLUTION

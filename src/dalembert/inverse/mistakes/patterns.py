@@ -20,10 +20,9 @@ def runs(data: np.ndarray) -> np.ndarray:
 
 
 def plateaus(data: np.ndarray) -> np.ndarray:
-    """Return which of data (values,) are at an end of their range because they are clipped.
-
-    Several values share the end, and others approach it: an end that all others keep away from is that of lost samples.
-    A single run of them is clipped only if no other values repeat.
+    """Return which of data (values,) are at an end of their range because they are clipped. Several values share the
+    end, and others approach it: an end that all others keep away from is that of lost samples. A single run of them is
+    clipped only if no other values repeat.
     """
     first, clipped = runs(data), np.zeros(len(data), dtype=bool)
     repeats = first != np.arange(len(data))

@@ -30,12 +30,9 @@ class NoiseFloor:
 
 
 def noise_floor(problem: MisfitProblem, smooth: np.ndarray | None = None) -> NoiseFloor:
-    """Floor from given deviations, from the digits that the data are rounded to, and from arithmetic.
-
-    ``smooth`` (channels,) are deviations that were estimated by local polynomials.
-
-    The variance of a value is the given one, plus q²/12 for data rounded to multiples of q, plus the square of a
-    millionth of its channel's spread.
+    """Floor from given deviations, or the deviations ``smooth`` (channels,) that local polynomials estimated, from the
+    digits that the data are rounded to, and from arithmetic. The variance of a value is the given one, plus q²/12 for
+    data rounded to multiples of q, plus the square of a millionth of its channel's spread.
     """
     data, weights = problem.data, problem.weights
     deviations = np.zeros(len(data.channels)) if data.deviations is None else data.deviations
@@ -76,11 +73,7 @@ def _filled(problem: MisfitProblem) -> np.ndarray:
 
 
 def quantum(column: np.ndarray) -> float:
-    """Unit of the last decimal that data (samples,) are rounded to; 0 where they are not, or span too few units to say.
-
-    >>> quantum(np.array([0.1234, -0.5, 1.25])), quantum(np.array([0.0, 1.0, 2.0])), quantum(np.sqrt(np.arange(9.0)))
-    (0.0001, 0.0, 0.0)
-    """
+    """Unit of the last decimal that data (samples,) are rounded to; 0 where they are not, or span too few units."""
     for decimals in range(13):
         scaled = column * 10.0**decimals
         if np.all(np.abs(scaled - np.rint(scaled)) < 1e-6):

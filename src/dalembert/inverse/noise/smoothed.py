@@ -45,10 +45,9 @@ LEAST = 1e-6
 
 
 def smooth_noise(data: Measurements, parts: Sequence[ExperimentPart]) -> np.ndarray:
-    """Return the standard deviation of each channel's noise, shape (channels,): what local polynomials leave.
-
-    Channels of several experiments are smoothed each over its own samples. Where samples are too few it is the spread
-    of the channel.
+    """Return the standard deviation of each channel's noise, shape (channels,): what local polynomials leave. Channels
+    of several experiments are smoothed each over its own samples. Where samples are too few it is the spread of the
+    channel.
     """
     found = np.zeros(len(data.channels))
     for part_data, columns in [(part.data(data), part.columns) for part in parts] or [(data, np.arange(len(found)))]:

@@ -48,12 +48,9 @@ Respond = Callable[[np.ndarray], np.ndarray | None]
 
 
 def time_findings(model: ForwardModel, data: Measurements, vector: np.ndarray) -> tuple[Finding, ...]:
-    """Return a finding if the times of the data are probably too long or too short, by a factor such as 1000.
-
-    The response at the first guesses is computed at other times than those of the data. So models that cannot do
-    this have no finding.
-
-    ``model``: its channels have those of the data. ``vector`` (parameters,): first guesses.
+    """Return a finding if the times of the data are probably too long or too short, by a factor such as 1000. The
+    response at the first guesses ``vector`` (parameters,) is computed at other times than those of the data; models
+    that cannot do this have no finding. ``model``: its channels have those of the data.
     """
     stamps = data.coordinate.values
     if data.coordinate.unit != "s" or len(stamps) < FEWEST or not stamps[-1] > 0:
@@ -83,7 +80,6 @@ def time_findings(model: ForwardModel, data: Measurements, vector: np.ndarray) -
 
 def short_time_findings(data: Measurements, respond: Respond) -> tuple[Finding, ...]:
     """Return a finding on the first channel whose response turns as often as the data within 1000 times their time.
-
     Within the time of the data, the response has at most a quarter of their turning points. So times in s were probably
     read as ms.
     """
@@ -122,9 +118,8 @@ def first_times(data: Measurements) -> np.ndarray:
 
 def time_unit_findings(data: Measurements, times: np.ndarray, response: np.ndarray) -> tuple[Finding, ...]:
     """Return a finding on the first channel that changes smoothly where the response does not follow: the response
-    swings several times between two samples, or settles within the first of them.
-
-    ``times`` (times,): as :func:`first_times` gives them. ``response`` (times, channels): of the channels of the data.
+    swings several times between two samples, or settles within the first of them. ``times`` (times,): as
+    :func:`first_times` gives them. ``response`` (times, channels): of the channels of the data.
     """
     for column, name in enumerate(data.channels):
         present = data.present[:, column]

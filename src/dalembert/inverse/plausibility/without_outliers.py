@@ -6,12 +6,6 @@ from dalembert.data.problems import outliers
 
 
 def without_outliers(data: np.ndarray, computed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the data and the response, (values,) each, without the samples at which the data have outliers.
-
-    >>> data = np.sin(np.arange(50) / 10)
-    >>> data[20] = 100.0
-    >>> [len(values) for values in without_outliers(data, np.zeros(50))]
-    [49, 49]
-    """
+    """Return the data and the response, (values,) each, without the samples at which the data have outliers."""
     far = outliers(data)
     return np.delete(data, far), np.delete(computed, far)

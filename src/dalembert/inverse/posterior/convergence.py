@@ -94,10 +94,6 @@ def ended(names: Sequence[str], convergence_of_draws: Convergence, chains: int, 
 
 
 def _rounded(draws: float) -> int:
-    """Two significant digits, rounded up.
-
-    >>> _rounded(1234.0)
-    1300
-    """
+    """Two significant digits, rounded up."""
     unit = 10 ** max(0, int(np.floor(np.log10(draws))) - 1)
     return int(np.ceil(draws / unit)) * unit

@@ -184,11 +184,9 @@ def with_guessed_noise(likelihood: Likelihood, vectors: np.ndarray) -> tuple[np.
 
 
 def local_maxima(target: Target, count: int, seed: int) -> np.ndarray:
-    """Return the local maxima of the posterior among points over the prior, the largest first, (n, parameters).
-
-    A point is a local maximum where its nearest neighbours have smaller densities.
-
-    Source: A. Törn and S. Viitanen, Topographical global optimization, in Recent Advances in Global Optimization, 1992.
+    """Return the local maxima of the posterior among points over the prior, the largest first, (n, parameters). A point
+    is a local maximum where its nearest neighbours have smaller densities. Source: A. Törn and S. Viitanen,
+    Topographical global optimization, in Recent Advances in Global Optimization, 1992.
     """
     parameters = target.problem.model.parameters
     vectors, likelihoods = with_guessed_noise(target.likelihood, over_prior(parameters, count, seed))

@@ -98,10 +98,9 @@ def with_priors(likelihood: Likelihood, priors: Mapping[str, AnyPrior] | None) -
 def search_start(
     posed: PosedPosterior, start: Fit | Mapping[str, float] | ArrayLike | None, identified: Callable[[], Fit]
 ) -> SearchStart:
-    """Return the start of the search: values of the model's parameters, by least squares if none are given.
-
-    Parameters of the noise are those that ``start``, if it is a fit, has estimated; the others follow from the
-    residuals at the start.
+    """Return the start of the search: values of the model's parameters, by least squares if none are given. Parameters
+    of the noise are those that ``start``, if it is a fit, has estimated; the others follow from the residuals at the
+    start.
     """
     likelihood = posed.likelihood
     parameters, noise = likelihood.problem.model.parameters, likelihood.noise_parameters

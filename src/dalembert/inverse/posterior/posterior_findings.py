@@ -108,12 +108,9 @@ def _between(parameters: Parameters, draws: np.ndarray) -> np.ndarray:
 
 
 def separate_modes(modes: PosteriorModes, places: np.ndarray, sampler: Sampler) -> Iterator[Finding]:
-    """Yield the finding on modes between which no chain moves.
-
-    A chain visits a mode where one of its draws is within the distance √(number of parameters) of it, in standard
-    deviations: about half of the draws of a normal mode are. Modes that one chain visits are connected.
-
-    ``places`` (chains, draws, parameters): draws, in the coordinates of the best mode.
+    """Yield the finding on modes between which no chain moves. A chain visits a mode where one of its draws, ``places``
+    (chains, draws, parameters) in the coordinates of the best mode, is within the distance √(number of parameters) of
+    it, in standard deviations: about half of the draws of a normal mode are. Modes that one chain visits are connected.
     """
     if len(modes.targets) < 2:
         return

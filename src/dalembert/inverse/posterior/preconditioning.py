@@ -41,11 +41,10 @@ class Centred:
 def centred(
     likelihood: Likelihood, parameters: Parameters, start: np.ndarray, *, gradients: bool, local: bool = False
 ) -> Centred:
-    """Return the target around the mode that is reached from a start (parameters,).
-
-    With ``gradients`` the mode is searched by L-BFGS-B, and the curvature is JᵀΣ⁻¹J and that of the priors. Without,
-    Nelder and Mead's simplex and second differences serve. A ``local`` search takes short steps, and trusts the
-    curvature only as far as the density falls by it, so that it stays in a narrow mode.
+    """Return the target around the mode that is reached from a start (parameters,). With ``gradients`` the mode is
+    searched by L-BFGS-B, and the curvature is JᵀΣ⁻¹J and that of the priors. Without, Nelder and Mead's simplex and
+    second differences serve. A ``local`` search takes short steps, and trusts the curvature only as far as the density
+    falls by it, so that it stays in a narrow mode.
     """
     count = len(parameters)
     target = Target(likelihood, parameters, np.zeros(count), np.eye(count))
@@ -72,10 +71,9 @@ def centred(
 
 
 def _narrowed(target: Target) -> Target:
-    """Return the target with columns of its factor halved until the density falls by at most FALL at their ends.
-
-    A normal density falls by ½ there. It falls by more where the response is so nonlinear that the curvature JᵀΣ⁻¹J
-    at the centre is far too small.
+    """Return the target with columns of its factor halved until the density falls by at most FALL at their ends. A
+    normal density falls by ½ there. It falls by more where the response is so nonlinear that the curvature JᵀΣ⁻¹J at
+    the centre is far too small.
     """
     count = len(target.centre)
     for _ in range(HALVINGS):

@@ -16,19 +16,14 @@ MEMBER = 0.1
 
 
 def amounts(parameters: Parameters, values: np.ndarray) -> str:
-    """Numbers (parameters,) with the names and units of parameters.
-
-    >>> amounts(Parameters.of({"mass": (1.0, 2.0), "angle": (0.0, 1.0)}), np.array([0.1, 2e-5]))
-    'mass 0.1, angle 2e-05'
-    """
+    """Numbers (parameters,) with the names and units of parameters, ``mass 0.1 kg, angle 2e-05``."""
     pairs = zip(parameters, values, strict=True)
     return ", ".join(f"{item.name} {value:.2g} {item.unit}".rstrip() for item, value in pairs)
 
 
 def separated(rows: np.ndarray) -> np.ndarray:
-    """Basis of the space of independent ``rows`` (n, parameters) in which each row has a pivot that no other row has.
-
-    So that as few parameters as possible are part of each.
+    """Basis of the space of independent ``rows`` (n, parameters) in which each row has a pivot that no other row has,
+    so that as few parameters as possible are part of each.
 
     >>> separated(np.array([[1.0, 1.0, 2.0, 2.0], [1.0, 1.0, -1.0, -1.0]])).round(12).tolist()
     [[0.0, 0.0, 1.0, 1.0], [1.0, 1.0, 0.0, 0.0]]

@@ -19,9 +19,6 @@ class First:
 @dataclass
 class Journal:
     """Counts simulations, keeps the steps of the search and the result of each start, and passes on every event.
-
-    Notes
-    -----
     ``_iteration`` counts the steps of the current start; ``_before`` is the number of simulations before it.
     """
 

@@ -65,11 +65,9 @@ class Loss:
         return np.where(small, 1.0, pull(x) / np.sqrt(curve(np.where(small, 1.0, x))))
 
     def variance(self, residual: np.ndarray, freedom: int) -> float:
-        """Factor s² of the covariance s² (JᵀWJ)⁻¹ from the weighted residuals (values,) at the minimum.
-
-        Σψ²/freedom over the square of the mean of ψ', where ψ is half the loss's derivative.
-
-        Source: P. J. Huber, Robust Statistics, 1981, section 7.6.
+        """Factor s² of the covariance s² (JᵀWJ)⁻¹ from the weighted residuals (values,) at the minimum: Σψ²/freedom
+        over the square of the mean of ψ', where ψ is half the loss's derivative. Source: P. J. Huber, Robust
+        Statistics, 1981, section 7.6.
         """
         _, pull, stiffness, _ = LOSSES[self.name]
         x = np.abs(residual) / self.scale
@@ -77,10 +75,9 @@ class Loss:
         return float(np.sum((self.scale * pull(x)) ** 2)) / freedom / mean**2 if freedom > 0 and mean > 0 else np.nan
 
     def influence(self, residual: np.ndarray) -> np.ndarray:
-        """Return ψ over the mean of ψ' of weighted residuals (values,): what each contributes to the estimate.
-
-        In place of the residuals it makes the covariance of an estimate with this loss that of least squares. The mean
-        square, over the degrees of freedom, is :meth:`variance`.
+        """Return ψ over the mean of ψ' of weighted residuals (values,): what each contributes to the estimate. In place
+        of the residuals it makes the covariance of an estimate with this loss that of least squares. The mean square,
+        over the degrees of freedom, is :meth:`variance`.
         """
         _, pull, stiffness, _ = LOSSES[self.name]
         x = np.abs(residual) / self.scale

@@ -24,13 +24,10 @@ SEEN, BLIND = 1e-10, 1e-3
 def prior_conflicts(
     parameters: Parameters, values: np.ndarray, unit: np.ndarray, information: np.ndarray, gradient: np.ndarray
 ) -> Iterator[Finding]:
-    """Yield findings on priors that contradict the data, by the linearised likelihood.
+    """Yield findings on priors that contradict the data, by the linearised likelihood. ``values`` (parameters,).
+    ``unit`` (parameters,): ∂p/∂z of the coordinates z. ``information`` (parameters, parameters): of the data alone
+    about z. ``gradient`` (parameters,): of the log-likelihood of the data by z.
 
-    ``values`` (parameters,). ``unit`` (parameters,): ∂p/∂z of the coordinates z. ``information`` (parameters,
-    parameters): of the data alone about z. ``gradient`` (parameters,): of the log-likelihood of the data by z.
-
-    Notes
-    -----
     With the residual r of a prior, its change Δr up to the maximum of the likelihood alone and the standard deviation s
     that the data leave in it, (r + Δr)/√(1 + s²) is standard normal if prior and data agree.
     """
@@ -65,10 +62,9 @@ def prior_conflicts(
 def conflicts_of_minimum(
     parameters: Parameters, values: np.ndarray, deviations: np.ndarray, correlation: np.ndarray
 ) -> Iterator[Finding]:
-    """Yield the same at the minimum of a fit, where the gradients of data and priors cancel.
-
-    ``values``, ``deviations`` (parameters,): identified values and their standard deviations with the priors.
-    ``correlation`` (parameters, parameters).
+    """Yield the same at the minimum of a fit, where the gradients of data and priors cancel. ``values``, ``deviations``
+    (parameters,): identified values and their standard deviations with the priors. ``correlation`` (parameters,
+    parameters).
     """
     free = off_bounds(parameters, values)
     if not len(parameters.square_priors) or not np.all(np.isfinite(deviations)) or not np.all(free):

@@ -100,10 +100,8 @@ class MisfitProblem:
         return simulated(self.model, self.columns, self.journal, vectors)
 
     def misfit(self, points: np.ndarray) -> np.ndarray:
-        """Misfit (batch,) at search points (batch, parameters); NaN where a sample failed.
-
-        A checkpoint keeps that of several points in place of the responses, with the reasons of failures and the
-        journal's first response.
+        """Misfit (batch,) at search points (batch, parameters); NaN where a sample failed. A checkpoint keeps that of
+        several points in place of the responses, with the reasons of failures and the journal's first response.
         """
         vectors, known = self.search.vectors(points), self.journal.first
         if len(vectors) < 2 or not self._is_recorded:

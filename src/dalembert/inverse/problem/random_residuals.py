@@ -5,11 +5,8 @@ import numpy as np
 
 def autocorrelation(residual: np.ndarray, shape: tuple[int, int], present: np.ndarray | None = None) -> float:
     """Correlation of neighbouring samples of weighted residuals, flat from (samples, channels), over all channels.
+    ``present`` (samples, channels) masks the values that are there; neighbours are those.
 
-    ``present`` (samples, channels) masks the values that are there, all if not given; neighbours are those.
-
-    >>> autocorrelation(np.array([1.0, -1.0, 1.0, -1.0]), (4, 1))
-    -0.75
     >>> gaps = np.array([1.0, 0.0, -1.0, 0.0, 1.0, 0.0, -1.0])
     >>> autocorrelation(gaps, (7, 1), gaps[:, None] != 0)
     -0.75

@@ -284,10 +284,9 @@ class _Stage:
 
 
 def _minimised(problem: MisfitProblem, many: Smoothed, mu: float, near: np.ndarray, stage: _Stage) -> np.ndarray:
-    """z of the least nonlinear misfit, by L-BFGS-B in coordinates in which the linearised misfit is round.
-
-    z = z₁ + C⁻ᵀ u, with C Cᵀ the normal matrix of the linearised problem, and z₁ on the way from the last values,
-    ``near``, to its minimum: the whole way if that lowers the misfit, else a part of it.
+    """z of the least nonlinear misfit, by L-BFGS-B in coordinates in which the linearised misfit is round. z = z₁ +
+    C⁻ᵀ u, with C Cᵀ the normal matrix of the linearised problem, and z₁ on the way from the last values, ``near``, to
+    its minimum: the whole way if that lowers the misfit, else a part of it.
     """
     scale, penalty = problem.model.parameters.scale, mu * many.penalty
     factor, goal = np.linalg.cholesky(many.normal(mu)), many.solution(mu)

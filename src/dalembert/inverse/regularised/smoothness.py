@@ -26,10 +26,8 @@ def differences(places: np.ndarray, count: int, order: int) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Smoothed:
-    """All minima of ‖A z − b‖² + μ² ‖D z‖².
-
-    In standard form, z = D⁺_A y + z₀ with z₀ in the null space of D and D⁺_A its A-weighted pseudoinverse, it is
-    ‖Ā y − b̄‖² + μ² ‖y‖² with y = D z (Elden 1977).
+    """All minima of ‖A z − b‖² + μ² ‖D z‖². In standard form, z = D⁺_A y + z₀ with z₀ in the null space of D and D⁺_A
+    its A-weighted pseudoinverse, it is ‖Ā y − b̄‖² + μ² ‖y‖² with y = D z (Elden 1977).
     """
 
     matrix: np.ndarray  # (values, parameters): A

@@ -8,10 +8,8 @@ GROWTHS = 10_000  # most steps of one growth
 
 def inner_box(boxes: np.ndarray) -> np.ndarray | None:
     """Return the largest box (2, d) found in a union of boxes (n, 2, d) that meet only in their faces; None for no
-    boxes.
-
-    Grown from the largest of the boxes, and from the one nearest to the middle of all, either on all sides in turn by
-    the smallest step, or along one direction as far as it goes and then on.
+    boxes. Grown from the largest of the boxes, and from the one nearest to the middle of all, either on all sides in
+    turn by the smallest step, or along one direction as far as it goes and then on.
     """
     if not len(boxes):
         return None

@@ -32,10 +32,9 @@ class Nearest:
 
 @dataclass(eq=False)
 class Inversion:
-    """Search for the parameters whose outputs differ from ``data`` by at most ``error``.
-
-    The method `zoomed` makes the surrogates, `paved` divides a box into boxes inside, outside and at the boundary of
-    the set, `consistent` and `outside` check the result by runs of the model itself.
+    """Search for the parameters whose outputs differ from ``data`` by at most ``error``. The method `zoomed` makes the
+    surrogates, `paved` divides a box into boxes inside, outside and at the boundary of the set, `consistent` and
+    `outside` check the result by runs of the model itself.
     """
 
     # Returns the outputs (n, outputs) of runs of the model at points (n, d); NaN where a run failed. Points are search

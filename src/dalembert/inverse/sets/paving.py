@@ -24,10 +24,9 @@ class Limits:
     wraps: np.ndarray | None = None
 
     def judge(self, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Which boxes (boxes,) keep the limits, and which leave them, from bounds (boxes, outputs) on them.
-
-        Of a wrapping output the whole turn next to the middle of its bounds decides: bounds that reach to another one
-        reach to this one, too.
+        """Which boxes (boxes,) keep the limits, and which leave them, from bounds (boxes, outputs) on them. Of a
+        wrapping output the whole turn next to the middle of its bounds decides: bounds that reach to another one reach
+        to this one, too.
         """
         low, high = low - self.middle, high - self.middle
         if self.wraps is not None:
@@ -61,12 +60,11 @@ def pave(
     most_boxes: int,
     tell: Callable[[int, int, int], None] = lambda inside, boundary, waiting: None,
 ) -> Paving:
-    """Return a paving of the points in the polynomial's box at which it keeps its limits, by branch and prune.
-
-    A box is outside where a Bernstein enclosure leaves the limits by more than the error, inside where it keeps them by
-    more than the error, and halved otherwise. ``resolution``: boxes are halved until their sides are no longer than
-    this part of the polynomial's box; ``most_boxes``: boxes to look at; ``tell``: called with the numbers of boxes
-    inside, on the boundary and waiting, after each halving.
+    """Return a paving of the points in the polynomial's box at which it keeps its limits, by branch and prune. A box is
+    outside where a Bernstein enclosure leaves the limits by more than the error, inside where it keeps them by more
+    than the error, and halved otherwise. ``resolution``: boxes are halved until their sides are no longer than this
+    part of the polynomial's box; ``most_boxes``: boxes to look at; ``tell``: called with the numbers of boxes inside,
+    on the boundary and waiting, after each halving.
     """
     size = polynomial.upper - polynomial.lower
     boxes = np.stack([polynomial.lower, polynomial.upper])[None]

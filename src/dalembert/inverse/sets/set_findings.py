@@ -26,12 +26,10 @@ def outcome(
     believed: bool,
     failures: list[str],
 ) -> Iterator[Finding]:
-    """Yield whether the set is empty, whether the paving was finished, and what the surrogate's error does.
-
-    ``share``: largest error of the surrogate, in units of that of the data.
-    ``at``: the nearest run's parameters as text.
-    ``believed``: whether true runs at the corners of the inner box keep within the error.
-    ``failures``: reasons of failed simulations.
+    """Yield whether the set is empty, whether the paving was finished, and what the surrogate's error does. ``share``:
+    largest error of the surrogate, in units of that of the data; ``at``: the nearest run's parameters as text;
+    ``believed``: whether true runs at the corners of the inner box keep within the error; ``failures``: reasons of
+    failed simulations.
     """
     yield from _paved(data, paving, nearest, at)
     yield from failed_simulations(failures)
@@ -79,11 +77,8 @@ def _paved(data: Measurements, paving: Paving, nearest: Nearest | None, at: str)
 def conclusions(
     inversion: Inversion, surrogate: Surrogate, paving: Paving, left_out: np.ndarray, names: Sequence[str]
 ) -> Iterator[Finding]:
-    """Yield the findings of an inversion.
-
-    ``surrogate``: the last one.
-    ``left_out`` (n, d): consistent runs that lie in no box of the paving.
-    ``names`` sequence of str, of length d.
+    """Yield the findings of an inversion, with its last ``surrogate``. ``left_out`` (n, d): consistent runs that lie in
+    no box of the paving. ``names`` (d,).
     """
     yield _unseen(inversion.first or surrogate, paving, names)
     share = float(np.max(surrogate.error / inversion.error))

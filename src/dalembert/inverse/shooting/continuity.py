@@ -85,10 +85,9 @@ class Chain:
         return SearchCoordinates(self.segments.parameters)
 
     def closed(self, point: np.ndarray, *, merged: bool = False) -> ChainEnd:
-        """Gaps closed from a search point on: their weight grows, then the conditions of continuity hold exactly.
-
-        Where the steps to the exact conditions fail, the weight grows further, and multipliers close the gaps. Segments
-        that were ``merged`` from others which met have no such gaps: where the steps fail, they are too long.
+        """Gaps closed from a search point on: their weight grows, then the conditions of continuity hold exactly. Where
+        the steps to the exact conditions fail, the weight grows further, and multipliers close the gaps. Segments that
+        were ``merged`` from others which met have no such gaps: where the steps fail, they are too long.
         """
         found = ChainEnd(point, np.inf, float(np.max(np.abs(self._linearise(point).response.gaps), initial=0.0)))
         if merged:
@@ -108,11 +107,10 @@ class Chain:
         return found
 
     def _met(self, point: np.ndarray) -> ChainEnd:
-        """Steps of Gauss and Newton under the linearised conditions, each accepted by a filter.
-
-        A step must not be worse in both, the misfit and the gaps, than any point before it. Source: H. G. Bock, 1983
-        (generalised Gauss-Newton); R. Fletcher and S. Leyffer, Nonlinear programming without a penalty function,
-        Mathematical Programming 91 (2002).
+        """Steps of Gauss and Newton under the linearised conditions, each accepted by a filter. A step must not be
+        worse in both, the misfit and the gaps, than any point before it. Source: H. G. Bock, 1983 (generalised
+        Gauss-Newton); R. Fletcher and S. Leyffer, Nonlinear programming without a penalty function, Mathematical
+        Programming 91 (2002).
         """
         search = self.search
         best = now = self._found(point, self._linearise(point).response)
@@ -151,10 +149,9 @@ class Chain:
         return ChainEnd(point, float(left @ left), float(np.max(np.abs(response.gaps), initial=0.0)))
 
     def _step(self, at: Tangent) -> tuple[np.ndarray, float]:
-        """Search step dz of least (F + J dz)² under c + C dz = 0, and the fall of the misfit that it foresees.
-
-        It is the sum of the shortest one that closes the gaps and of one along the null space of C. Parameters at
-        bounds that it would pass stay there.
+        """Search step dz of least (F + J dz)² under c + C dz = 0, and the fall of the misfit that it foresees. It is
+        the sum of the shortest one that closes the gaps and of one along the null space of C. Parameters at bounds that
+        it would pass stay there.
         """
         search, point = self.search, self.search.points(at.vector)
         rows, slopes = self._misfits(at), self.segments.slopes_of_gaps(at) * self.search.slope(at.vector)
@@ -209,10 +206,9 @@ class Chain:
         return Linearisation(at.vector[:number], at.response.values, slopes)
 
     def spread(self, point: np.ndarray) -> np.ndarray:
-        """Return S (parameters, parameters) with the covariance S Sᵀ of the model's parameters, at unit variance.
-
-        With an orthonormal basis Z of the null space of the conditions it is Z (Zᵀ JᵀWJ Z)⁻¹ Zᵀ. The derivatives of
-        whole motions, which errors make grow without bound, are not formed.
+        """Return S (parameters, parameters) with the covariance S Sᵀ of the model's parameters, at unit variance. With
+        an orthonormal basis Z of the null space of the conditions it is Z (Zᵀ JᵀWJ Z)⁻¹ Zᵀ. The derivatives of whole
+        motions, which errors make grow without bound, are not formed.
         """
         at = self._linearise(point)
         unit, number = self.search.slope(at.vector), len(self.problem.model.parameters)
@@ -228,10 +224,9 @@ class Chain:
         return at.vector[len(self.problem.model.parameters) :], at.response.gaps * self.segments.ranges
 
     def growth(self, point: np.ndarray, first: Sequence[np.ndarray]) -> float:
-        """Growth of a small change by the last beginning of a segment of each motion, the largest of all.
-
-        Both are in parts of the ranges. The change is one of the parameters ``first`` of each motion, those of its
-        initial state in the order of the states; or, without them, of the state at the first later beginning.
+        """Growth of a small change by the last beginning of a segment of each motion, the largest of all. Both are in
+        parts of the ranges. The change is one of the parameters ``first`` of each motion, those of its initial state in
+        the order of the states; or, without them, of the state at the first later beginning.
         """
         if not len(first):
             return max(
@@ -258,10 +253,9 @@ class Chain:
         return follow
 
     def _solved(self, point: np.ndarray, tightness: float, shift: np.ndarray, *, far: bool = False) -> ChainEnd:
-        """Least F² + ((c + shift)/tightness)² from a search point on.
-
-        Least squares get the sum's root as the first residual and zeros behind it, as many as there are unknowns, with
-        the slopes turned accordingly: sums of squares, gradients and normal matrices are those of all residuals.
+        """Least F² + ((c + shift)/tightness)² from a search point on. Least squares get the sum's root as the first
+        residual and zeros behind it, as many as there are unknowns, with the slopes turned accordingly: sums of
+        squares, gradients and normal matrices are those of all residuals.
         """
         search, problem = self.search, self.problem
         best = ChainEnd(point, np.inf, np.inf)
@@ -361,10 +355,9 @@ class Chain:
 
 
 def _turned(rows: np.ndarray) -> np.ndarray:
-    """Slopes (1 + unknowns, unknowns) whose residual is the root of the sum of squares, then zeros.
-
-    ``rows`` (any, unknowns + 1) are slopes and residuals. A triangular factor of both has the same products; a
-    reflection turns its residuals into the first axis.
+    """Slopes (1 + unknowns, unknowns) whose residual is the root of the sum of squares, then zeros. ``rows``
+    (any, unknowns + 1) are slopes and residuals. A triangular factor of both has the same products; a reflection turns
+    its residuals into the first axis.
     """
     factor = np.linalg.qr(rows, mode="r")
     factor = np.concatenate([factor, np.zeros((rows.shape[1] - len(factor), rows.shape[1]))])

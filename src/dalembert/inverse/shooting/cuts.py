@@ -66,10 +66,8 @@ class Cut:
         return self if len(self.nodes) < 2 else replace(self, nodes=self.nodes[1::2])
 
     def piece(self, begin: SegmentNode | None, end: SegmentNode | None, own: np.ndarray, after: np.ndarray) -> Piece:
-        """Return a segment.
-
-        ``begin``, ``end``: none at the first sample and the last one. ``own``, ``after`` (states,): where the numbers
-        of both nodes stand among all unknowns.
+        """Return a segment; ``begin``, ``end`` are none at the first sample and the last one. ``own``, ``after``
+        (states,): where the numbers of both nodes stand among all unknowns.
         """
         track, sample = self.track, 0 if begin is None else begin.sample
         last = len(track.times) - 1 if end is None else end.sample

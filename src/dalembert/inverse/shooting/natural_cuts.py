@@ -73,10 +73,9 @@ def natural_cuts(
 
 
 def coarser(cuts: Sequence[Cut], grown: Sequence[Sequence[np.ndarray]]) -> list[Cut]:
-    """Return motions in fewer segments, within which a small change of the state grows by ``GROWTH`` at most.
-
-    ``grown`` are the derivatives of each node's state by that of the node before, (states, states), in parts of the
-    ranges; one list a motion.
+    """Return motions in fewer segments, within which a small change of the state grows by ``GROWTH`` at most. ``grown``
+    are the derivatives of each node's state by that of the node before, (states, states), in parts of the ranges; one
+    list a motion.
     """
     return [
         replace(cut, nodes=tuple(_chosen(cut.nodes, own, GROWTH, max(1, len(cut.nodes) // (FEWEST - 1)))))
@@ -177,10 +176,9 @@ class _Estimates:
         return _bounded(found)
 
     def estimated(self, own: np.ndarray, chart: StateChart, sample: int) -> np.ndarray:
-        """Numbers of a state that agree with what was measured at a sample, and else with the chart's values.
-
-        Least squares by Gauss and Newton: channels have the measured values, and their derivative by the coordinates
-        times the rates gives the measured rates of change.
+        """Numbers of a state that agree with what was measured at a sample, and else with the chart's values. Least
+        squares by Gauss and Newton: channels have the measured values, and their derivative by the coordinates times
+        the rates gives the measured rates of change.
         """
         track, seen, numbers = self.track, self.seen, chart.values
         half, channels, sizes = len(numbers) // 2, track.picked, self._sizes(chart)

@@ -112,11 +112,9 @@ class SpreadForm:
 
 
 def most_likely(likelihood: Likelihood, form: SpreadForm) -> tuple[np.ndarray, float]:
-    """Return the unknowns of the largest restricted likelihood, and that likelihood.
-
-    At σ = 0 the slope is zero: a descent may end there that is not at the maximum. The better of two starts counts.
-
-    ``likelihood``: of values that are scaled to a size of about 1.
+    """Return the unknowns of the largest restricted likelihood, and that likelihood, of values that are scaled to a
+    size of about 1. At σ = 0 the slope is zero: a descent may end there that is not at the maximum. The better of two
+    starts counts.
     """
     k = form.parameters
     starts = [np.concatenate([np.full(k, size), np.zeros(form.unknowns - k)]) for size in (1.0, 0.2)]

@@ -47,11 +47,10 @@ def multistart(
     spread: str,
     start: np.ndarray,
 ) -> list[End]:
-    """Ends of up to ``starts`` descents from search points.
-
-    Stops early when an end reaches a conclusive noise floor, or, from the third start on, when the best end has been
-    reached twice and leaves residuals that look like noise. With more than one start each is left once a step gains
-    less than a thousandth of the misfit; the best end is to be polished.
+    """Ends of up to ``starts`` descents from search points. Stops early when an end reaches a conclusive noise floor,
+    or, from the third start on, when the best end has been reached twice and leaves residuals that look like noise.
+    With more than one start each is left once a step gains less than a thousandth of the misfit; the best end is to be
+    polished.
     """
     sizes = horizons(problem, horizon)
     ladder = [problem.first(samples) for samples in sizes]
@@ -106,9 +105,8 @@ def _attempts(
     first: np.ndarray,
     ends: Sequence[End],
 ) -> Iterator[Attempt]:
-    """Up to ``starts`` search points, each with its first horizon in the ladder, and its end if that is known.
-
-    The stated start comes first, its horizon growing from the shortest. If its misfit is larger at the end than at the
+    """Up to ``starts`` search points, each with its first horizon in the ladder, and its end if that is known. The
+    stated start comes first, its horizon growing from the shortest. If its misfit is larger at the end than at the
     start, the same start over all samples is next; otherwise it is the last. Then points spread over the box are
     simulated in one batch. The best of them are the other starts; a cluster runs them in parallel.
     """
@@ -124,9 +122,8 @@ def _attempts(
 
 
 def _chosen(search: SearchCoordinates, points: np.ndarray, scores: np.ndarray) -> Iterator[Attempt]:
-    """Screened points (number, parameters) to start from, by their misfit over each horizon (rungs, number).
-
-    The horizons, half of the samples, a quarter, an eighth, take turns to name the best point left by the misfit over
+    """Screened points (number, parameters) to start from, by their misfit over each horizon (rungs, number). The
+    horizons, half of the samples, a quarter, an eighth, take turns to name the best point left by the misfit over
     themselves and to grow from it: the longer ones stand above the noise, the shorter ones hold fewer false minima.
     """
     longest = max(0, len(scores) - 2)
@@ -152,9 +149,8 @@ def _screen(ladder: list[MisfitProblem], number: int, seed: int, spread: str) ->
 
 
 def _reproduced(problem: MisfitProblem, ends: list[End]) -> bool:
-    """Whether a second end cannot be told from the best one by the data, and the residuals look like noise.
-
-    Two ends cannot be told apart when misfit and linearised residuals differ by less than one variance of the noise,
+    """Whether a second end cannot be told from the best one by the data, and the residuals look like noise. Two ends
+    cannot be told apart when misfit and linearised residuals differ by less than one variance of the noise,
     misfit/(values − parameters).
     """
     best, *others = sorted(ends, key=lambda end: end.misfit)

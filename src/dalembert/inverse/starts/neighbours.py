@@ -19,10 +19,9 @@ WORSE = 9.0
 
 
 def neighbours(problem: MisfitProblem, end: End) -> np.ndarray:
-    """Search points (n, parameters) near other minima, the most promising first.
-
-    They are the local minima of the misfit, simulated in one batch, along a line through ``end`` for each combination
-    of parameters that a singular value of the sensitivities belongs to.
+    """Search points (n, parameters) near other minima, the most promising first. They are the local minima of the
+    misfit, simulated in one batch, along a line through ``end`` for each combination of parameters that a singular
+    value of the sensitivities belongs to.
     """
     if end.linearisation is None:
         return np.empty((0, len(end.point)))

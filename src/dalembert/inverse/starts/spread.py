@@ -10,10 +10,9 @@ SPREADS = ("latin-hypercube", "sobol")
 
 
 def spread_points(problem: MisfitProblem, number: int, seed: int, spread: str) -> np.ndarray:
-    """Search points (number, parameters) over the box: a Latin hypercube, or a scrambled sequence of Sobol's.
-
-    Sobol's sequence is even in all parameters together where the hypercube is in each alone; it is whole where the
-    number is a power of 2.
+    """Search points (number, parameters) over the box: a Latin hypercube, or a scrambled sequence of Sobol's. Sobol's
+    sequence is even in all parameters together where the hypercube is in each alone; it is whole where the number is a
+    power of 2.
     """
     low, high = problem.search.lower, problem.search.upper
     rng = np.random.default_rng((seed, 1))

@@ -40,10 +40,9 @@ WORSE = 1.5
 def explained(
     problem: MisfitProblem, response: np.ndarray, weights: np.ndarray, fitted: float
 ) -> tuple[Explained, ...]:
-    """Return the shares of all channels with held-out values.
-
-    ``problem``: the whole one. ``response`` (samples, channels). ``weights`` (samples, channels): w of the held-out
-    values, 0 for the others. ``fitted``: root mean square of the weighted residuals of the fitted values.
+    """Return the shares of all channels with held-out values. ``problem``: the whole one. ``response`` (samples,
+    channels). ``weights`` (samples, channels): w of the held-out values, 0 for the others. ``fitted``: root mean square
+    of the weighted residuals of the fitted values.
     """
     data = problem.data
     values, residual = data.continuous.ravel(), (np.sqrt(weights) * problem.unweighted_residual(response)).ravel()

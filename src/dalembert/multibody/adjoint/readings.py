@@ -26,10 +26,8 @@ def pull_readings(
     signal_bars: np.ndarray,
 ) -> MotionState:  # fmt: skip
     """Return the cotangents of sampled states (samples, N + 1), and add to the gradient by numbers of channels.
-
-    ``model``: in complex numbers without imaginary parts; ``states`` (samples, N + 1); ``times`` (samples,): s;
-    ``cotangent`` (samples, channels); ``signal_bars`` (samples, signals, 3): adjoints of the signals at each sample;
-    added to.
+    ``model``: in complex numbers without imaginary parts; ``times`` (samples,): s; ``cotangent`` (samples, channels);
+    ``signal_bars`` (samples, signals, 3): adjoints of the signals at each sample, added to.
     """
     bars = MotionState(*(np.zeros_like(states.x) for _ in range(4)))
     rows = gradient.observer.rows

@@ -43,11 +43,9 @@ class Stored:
 
 @dataclass(frozen=True, eq=False)
 class StoredMotion:
-    """A motion whose states can be passed from the last to the first.
-
-    ``starts``: state at the start of each stretch, with its accelerations; ``samples`` (samples, N + 1); ``turns``
-    (samples, angles): of the angles that were counted; ``owners``, ``shares`` (samples,): step that each sample lies
-    in, -1 for the start, and the share of that step.
+    """A motion whose states can be passed from the last to the first. ``starts``: state at the start of each stretch,
+    with its accelerations; ``samples`` (samples, N + 1); ``turns`` (samples, angles): of the angles that were counted;
+    ``owners``, ``shares`` (samples,): step that each sample lies in, -1 for the start, and the share of that step.
     """
 
     problem: IntegrationProblem

@@ -21,12 +21,10 @@ from dalembert.multibody.model.lowered import Lowered
 
 
 def accelerations_back(lowered: Lowered, state: MotionState, t: float, within: float, bar: MotionState) -> np.ndarray:
-    """Take the adjoint of a state with consistent accelerations to that of its positions and velocities alone.
-
-    ``state``: unknowns, velocities and accelerations, (N + 1,), as they were solved for; ``t``, ``within``: time, s,
-    and a time that says on which side of a jump it lies; ``bar``: adjoint of the state; those of accelerations and
-    multipliers become zero. Returns array, shape (N + 1,): mu: its last part belongs to the second derivatives of the
-    constraints.
+    """Take the adjoint of a state with consistent accelerations to that of its positions and velocities alone. Return
+    mu (N + 1,), whose last part belongs to the second derivatives of the constraints. ``state``: unknowns, velocities
+    and accelerations, (N + 1,), as they were solved for; ``t``, ``within``: time, s, and a time that says on which side
+    of a jump it lies; ``bar``: adjoint of the state; those of accelerations and multipliers become zero.
     """
     n, last = lowered.structure.n, lowered.structure.size
     x, v, a = state.x, state.v, state.a

@@ -78,7 +78,6 @@ def _add_tangents(blocks, count, increments, last_row, slots, by, rows, work, ma
 @inner
 def tangent(complex_model, slots, n, x, v, a, by, rows, work, matrix):
     """Fill the flat ``matrix`` with the residual's derivative along ``by[0] dq + by[1] dv + by[2] da``, and dlambda.
-
     Rows of the equations of motion are multiplied by ``rows[0]``, those of the constraints by ``rows[1]``.
     ``complex_model`` is the model in complex numbers, ``slots`` where each block finds the positions of its entries.
     """

@@ -42,11 +42,9 @@ class Signals:
 
 @dataclass(frozen=True, eq=False)
 class BlockModel:
-    """A whole model in real numbers, or in complex ones as a direction of differentiation.
-
-    ``size``: unknowns; ``coordinates``: unknowns that are no multipliers; ``reduction``: rows of the reduced system;
-    ``roles``: kernels that it needs at once: in real numbers the residuals, in complex ones the tangents, too, or
-    alone.
+    """A whole model in real numbers, or in complex ones as a direction of differentiation. ``size``: unknowns;
+    ``coordinates``: unknowns that are no multipliers; ``reduction``: rows of the reduced system; ``roles``: kernels
+    that it needs at once: in real numbers the residuals, in complex ones the tangents, too, or alone.
     """
 
     blocks: Blocks

@@ -47,9 +47,8 @@ class Sizes(NamedTuple):
 
 @dataclass
 class Failures:
-    """Exceptions that functions of the user's raised, with the component's name; the answer was NaN there.
-
-    Those ``inexact`` were raised for complex numbers only: the motion does not need them, its derivatives do. Compiled
+    """Exceptions that functions of the user's raised, with the component's name; the answer was NaN there. Those
+    ``inexact`` were raised for complex numbers only: the motion does not need them, its derivatives do. Compiled
     functions have the time at which they last returned numbers that are not finite, an array (1,).
     """
 

@@ -18,13 +18,10 @@ class Chart(NamedTuple):
 
     ``spread(x, d, dx)`` fills ``dx`` (size,) with N(x) d. A chart without it is flat: its increments are those of the
     coordinates.
-
     ``change(x, d, dx)`` fills ``dx`` with what a finite increment ``d`` changes: x + dx satisfies the internal
     constraints if x does, and dx = N(x) d + O(d^2). Without cancellation: accelerations follow from it.
-
     ``restore(x, p, m, dx)`` fills ``dx`` with what moves coordinates near the internal constraints onto them; p and m
     are the columns of the kind that has the chart.
-
     ``project(x, r, s)`` fills ``s`` (increments,) with N(x)^T r, where that is faster than by ``spread``.
     """
 

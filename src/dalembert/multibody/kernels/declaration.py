@@ -27,27 +27,20 @@ class Declaration:
 
     ``residual(x, v, a, p, m, inputs, r)`` adds to ``r`` (zero before) what the component adds to the left side of the
     equations of motion M a + J^T lambda - Q = 0: applied forces with the opposite sign.
-
     ``constraint(x, p, m, inputs, g)`` fills ``g`` (multipliers,), which are zero where the joint is closed. Its time
     derivatives and the constraint forces follow by automatic differentiation; a signal's value is
     ``signal(inputs, number)``.
-
     ``forces(x, p, m, r)`` adds the constraint forces J^T lambda by a formula, where that is faster; lambda stand in
     ``x`` behind the coordinates. A test compares it with the automatic ones.
-
     ``energy(x, v, p, m, inputs)`` returns the kinetic and the potential energy, J, and the power, W, of the forces
     without a potential, negative where they dissipate. Without it, all forces count as power.
-
     ``tangent(x, p, m, by_x, by_a, matrix)`` fills the local matrix by_x dr/dx + by_a dr/da, multipliers by 1. Its
     formula holds where ``known(p, m)`` says so.
-
     ``quadratic``: whether the constraints are polynomials of degree two at most in the coordinates, or without
     constraints the residual is linear in the accelerations and depends on no other unknowns; and signals do not matter.
     The tangent is then computed in real numbers.
-
     ``observe(x, v, a, p, m, inputs, out)`` fills the ``outputs`` (name, unit); ``observes_inputs``: whether these
     depend on signals, which are evaluated only then.
-
     ``angles``: outputs that are angles which are known up to whole turns. (``angle`` is one where the integer ``wraps``
     is 1.) The integration counts their turns; an output with ``rate`` for ``angle`` in its name is the rate.
     ``turn(x, v, p, m, out)`` fills angle and rate of each of them: less work at each step than all outputs.
@@ -55,15 +48,12 @@ class Declaration:
     ``chart``: of a kind whose constraints are the internal ones of its coordinates: how increments change these.
     Integrators that support it solve for the increments, without these constraints and their multipliers. ``charts``:
     those of the coordinates, one after the other, `flat` ones between them; none if all are flat.
-
     ``dissipates``: whether a force depends on velocities; or the columns of which any entry that is not zero says so.
     Without it RadauIIA and the variational methods leave damping out of Newton's matrix, and converge more slowly or
     not. ``varying_mass``, likewise: whether the masses that it adds change with the coordinates. Some integrators need
     masses that do not. ``rotor``: these masses as constant ones of one more coordinate: a constraint that ties it to
     those of the kind, and its inertia. Their numbers and integers are columns of the kind.
-
     ``driven``, ``loads``: whether a prescribed motion, or a load, may do work.
-
     ``holds``: whether a component on the ground keeps the mechanism from moving freely, as joints and springs do. It
     then has the columns ``a_kind b_kind`` (integers) and ``a_x a_y b_x b_y`` of two markers. ``holds_frame``: whether
     it then holds the direction of a ground point, not only the point.

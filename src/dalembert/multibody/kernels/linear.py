@@ -18,10 +18,9 @@ _ENOUGH = 0.01  # share of a column's largest entry that a diagonal entry needs 
 
 
 class Layout(NamedTuple):
-    """Where a matrix's entries are kept: kind, size N, reach of the band, stored column, place of each unknown.
-
-    Entry (i, j) stands at ``j lead + i``, in a band at ``j lead + 2 reach + i - j``, which leaves room for what the
-    exchange of rows fills in. Reach and dense columns are padded to whole vectors.
+    """Where a matrix's entries are kept: kind, size N, reach of the band, stored column, place of each unknown. Entry
+    (i, j) stands at ``j lead + i``, in a band at ``j lead + 2 reach + i - j``, which leaves room for what the exchange
+    of rows fills in. Reach and dense columns are padded to whole vectors.
     """
 
     kind: int
@@ -149,11 +148,9 @@ def _pivot(size, reach, lead, a, pivots, tops, k, last):
 
 @kernel
 def factorise_band(size: int, reach: int, lead: int, a: Reals, pivots: Integers, tops: Integers) -> bool:
-    """Triangular factors of a band matrix; whether it is regular.
-
-    The lower one has ones on its diagonal, of the upper one the diagonal is inverted.
-
-    Two columns at a time where the second one needs no exchange of rows, which halves the passes over the others.
+    """Triangular factors of a band matrix; whether it is regular. The lower one has ones on its diagonal, of the upper
+    one the diagonal is inverted. Two columns at a time where the second one needs no exchange of rows, which halves the
+    passes over the others.
     """
     last = tops[0] = 0
     above = 2 * reach

@@ -58,11 +58,10 @@ def _each(kind: Declaration, role: str, dtype: type, step: Callable[..., None]) 
 
 
 class _System(NamedTuple):
-    """The equations that a kind adds to: by the block those of the full system, or of the reduced one.
-
-    ``count(block)`` returns the number of local rows. ``project(count, x, r, s)`` returns the local residual in these
-    rows, for which it may fill ``s``. ``perturb(count, j, call, x, v, a)`` adds the imaginary step along local row j,
-    and returns the range of the unknowns that it changes.
+    """The equations that a kind adds to: by the block those of the full system, or of the reduced one. ``count(block)``
+    returns the number of local rows. ``project(count, x, r, s)`` returns the local residual in these rows, for which it
+    may fill ``s``. ``perturb(count, j, call, x, v, a)`` adds the imaginary step along local row j, and returns the
+    range of the unknowns that it changes.
     """
 
     count: Any

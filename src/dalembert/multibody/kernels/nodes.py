@@ -15,10 +15,9 @@ from dalembert.multibody.kernels.records import BLOCK_SIZE, block_at, call_at, m
 
 
 def _kernel(role: str, kind: Declaration, dtype: type) -> BlockKernel:
-    """Fill the changes of the nodes' coordinates by a function of their chart.
-
-    Those of increments are N(x) delta (``spread``), or what the finite increments -by_x delta change, divided by -by_x
-    (``change``). Those that move the coordinates onto the internal constraints (``restore``) are divided by -by_x, too.
+    """Fill the changes of the nodes' coordinates by a function of their chart. Those of increments are N(x) delta
+    (``spread``), or what the finite increments -by_x delta change, divided by -by_x (``change``). Those that move the
+    coordinates onto the internal constraints (``restore``) are divided by -by_x, too.
     """
     view, _ = arithmetic(dtype)
     given: Any = getattr(kind.chart, role)

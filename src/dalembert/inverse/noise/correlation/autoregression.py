@@ -73,10 +73,8 @@ class Moments:
 
     @cached_property
     def process(self) -> Autoregression:
-        """The process of the order of least AICc.
-
-        Nearly perfect correlation makes the equations of high orders singular: orders whose process is not stationary,
-        by rounding, are left out.
+        """The process of the order of least AICc. Nearly perfect correlation makes the equations of high orders
+        singular: orders whose process is not stationary, by rounding, are left out.
         """
         number = int(self.count[0])
         most = 1 - 2 / number
@@ -91,11 +89,9 @@ class Moments:
         raise AssertionError("a process of order 1 is stationary")
 
     def corrected(self, common: np.ndarray) -> "Moments":
-        """Return the moments with the bias that the fit of parameters causes taken off.
-
-        Residuals are r = (I − QQᵀ) e, so that E[r rᵀ] = Σ − QQᵀΣ − ΣQQᵀ + Q (QᵀΣQ) Qᵀ; ``common`` is QᵀΣQ of all
-        residuals. The variance is at least half and at most twice that of the residuals: a larger bias is that of
-        residuals that are no noise.
+        """Return the moments with the bias that the fit of parameters causes taken off. Residuals are r = (I − QQᵀ) e,
+        so that E[r rᵀ] = Σ − QQᵀΣ − ΣQQᵀ + Q (QᵀΣQ) Qᵀ; ``common`` is QᵀΣQ of all residuals. The variance is at least
+        half and at most twice that of the residuals: a larger bias is that of residuals that are no noise.
         """
         applied = self.process.applied(self.basis)
         assert self.series.grid is not None
@@ -124,14 +120,9 @@ def moments(series: Series, values: np.ndarray, basis: np.ndarray) -> Moments:
 
 
 def levinson(covariances: np.ndarray, most: float) -> tuple[list[np.ndarray], np.ndarray]:
-    """Return the coefficients and the variances of the white noise of processes of order 1, 2 and so on.
-
-    Partial autocorrelations are limited to ±``most``, so that each process is stationary.
-
-    Source: J. Durbin, The fitting of time-series models, Review of the International Statistical Institute 28 (1960).
-
-    >>> [row.round(12).tolist() for row in levinson(0.5 ** np.arange(3), 0.99)[0]]
-    [[0.5], [0.5, 0.0]]
+    """Return the coefficients and the variances of the white noise of processes of order 1, 2 and so on. Partial
+    autocorrelations are limited to ±``most``, so that each process is stationary. Source: J. Durbin, The fitting of
+    time-series models, Review of the International Statistical Institute 28 (1960).
     """
     rows, variances = [], []
     row, variance = np.zeros(0), covariances[0]
@@ -146,11 +137,7 @@ def levinson(covariances: np.ndarray, most: float) -> tuple[list[np.ndarray], np
 
 
 def autocorrelations(coefficients: np.ndarray, number: int) -> np.ndarray:
-    """Return the first autocorrelations (number,) of a stationary process, from the Yule–Walker equations.
-
-    >>> autocorrelations(np.array([0.5]), 4)
-    array([1.   , 0.5  , 0.25 , 0.125])
-    """
+    """Return the first autocorrelations (number,) of a stationary process, from the Yule–Walker equations."""
     from scipy.signal import lfilter, lfiltic
 
     order = len(coefficients)

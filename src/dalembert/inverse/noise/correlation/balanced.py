@@ -15,12 +15,9 @@ LEAST = 1e-6
 
 def balanced(series: Sequence[Series], residual: np.ndarray, basis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return weighted residuals and the basis of what was fitted, if each series had counted by its own noise.
-
     ``residual`` (values,): weighted residuals r of a fit that takes the noise of all series for equal. ``basis``
     (values, parameters): orthonormal basis U of the weighted jacobian's columns.
 
-    Notes
-    -----
     The residuals of the fit are r = (I − UUᵀ) e. Where the noise e of one series is larger, its part along U enters the
     residuals of the others: it has the shape of the response's derivatives, and tests take it for periodic or
     correlated. One Gauss–Newton step with the weights 1/σ² leads to σ (I − QQᵀ) (r/σ), with an orthonormal basis Q of

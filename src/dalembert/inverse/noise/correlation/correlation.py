@@ -139,10 +139,9 @@ def noise_along(
 def _remainder(
     product: np.ndarray, rows: np.ndarray, variance: float, process: NoiseProcess, *, known: bool
 ) -> np.ndarray:
-    """What the noise of a series has beyond its process, (parameters, parameters).
-
-    Where the variance is ``known`` and the process has less than half of it, the remainder counts as independent.
-    Systematic residuals make no combination of parameters better known than independent ones would.
+    """What the noise of a series has beyond its process, (parameters, parameters). Where the variance is ``known`` and
+    the process has less than half of it, the remainder counts as independent. Systematic residuals make no combination
+    of parameters better known than independent ones would.
     """
     if known and process.variance < SMALL * variance:
         return (variance - process.variance) * rows.T @ rows
@@ -185,14 +184,10 @@ def summaries(
 def degrees_of_freedom(number: int, first: float) -> float:
     """Return the degrees of freedom of the variance of a slow combination of ``number`` samples of a process.
 
-    Notes
-    -----
     With innovations of variance s² that variance is V = s²/(1 − φ)². The relative variance of its estimate is that of
     s², 2/n, and that of φ, 4 (1 + φ)/(n (1 − φ)). By Satterthwaite it has 2/(relative variance) degrees of freedom,
-    n/(1 + 2 (1 + φ)/(1 − φ)). Two remain at least. Faster combinations have more.
-
-    Source: F. E. Satterthwaite, An approximate distribution of estimates of variance components, Biometrics Bulletin 2
-    (1946).
+    n/(1 + 2 (1 + φ)/(1 − φ)). Two remain at least. Faster combinations have more. Source: F. E. Satterthwaite, An
+    approximate distribution of estimates of variance components, Biometrics Bulletin 2 (1946).
 
     >>> [round(degrees_of_freedom(60, first), 1) for first in (0.0, 0.4, 0.8)]
     [20.0, 10.6, 3.2]

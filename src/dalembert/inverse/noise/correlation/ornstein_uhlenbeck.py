@@ -34,14 +34,10 @@ class OrnsteinUhlenbeck:
 def ornstein_uhlenbeck(series: Series, values: np.ndarray, basis: np.ndarray) -> OrnsteinUhlenbeck:
     """Return the process of the largest restricted likelihood for weighted residuals (values,).
 
-    Notes
-    -----
     With φ_k = exp(−Δt_k/τ) whitened residuals are e_1 = r_1, e_k = (r_k − φ_k r_{k−1}) / √(1 − φ_k²), and so are the
     rows of the ``basis`` Q. The restricted likelihood −½ [(n − ν) log σ² + Σ log(1 − φ_k²) + (ν/p) log|QᵀΣ⁻¹Q|] allows
-    for the ν degrees of freedom that this series lost to the p parameters.
-
-    Source: H. D. Patterson, R. Thompson, Recovery of inter-block information when block sizes are unequal, Biometrika
-    58 (1971).
+    for the ν degrees of freedom that this series lost to the p parameters. Source: H. D. Patterson, R. Thompson,
+    Recovery of inter-block information when block sizes are unequal, Biometrika 58 (1971).
     """
     from scipy.optimize import minimize_scalar
 

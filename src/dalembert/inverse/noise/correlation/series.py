@@ -81,11 +81,7 @@ def _of_record(
 
 
 def even_grid(along: np.ndarray) -> tuple[np.ndarray | None, float]:
-    """Return the places (values,) of samples on an even grid, or None, and the grid's interval.
-
-    >>> even_grid(np.array([0.0, 0.1, 0.2, 0.5]))[0].tolist(), even_grid(np.array([0.0, 1.0, 2.4]))[0]
-    ([0, 1, 2, 5], None)
-    """
+    """Return the places (values,) of samples on an even grid, or None, and the grid's interval."""
     if len(along) < 2:
         return np.zeros(len(along), dtype=int), 0.0
     intervals = np.diff(along)

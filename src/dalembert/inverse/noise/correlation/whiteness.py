@@ -18,21 +18,16 @@ LAGS = 10
 
 
 def p_value(series: Series, values: np.ndarray, basis: np.ndarray) -> float:
-    """Return the probability of correlations at least as large in white noise; 1 for fewer than ten values.
+    """Return the probability of correlations at least as large in white noise; 1 for fewer than ten values. ``values``
+    (values,): weighted residuals. ``basis`` (values, parameters): these rows of an orthonormal basis of the weighted
+    jacobian's columns. A fit takes the part of the noise along them out of the residuals, which correlates the rest;
+    that is allowed for.
 
-    ``values`` (values,): weighted residuals. ``basis`` (values, parameters): these rows of an orthonormal basis of the
-    weighted jacobian's columns. A fit takes the part of the noise along them out of the residuals, which correlates the
-    rest; that is allowed for.
-
-    Notes
-    -----
     Even samples, with gaps or without: the Ljung–Box test of the first autocorrelation, and of the first ten, with the
     number of pairs that are there at each lag. The smaller of both probabilities counts twice. Uneven samples:
-    chi-square test of the mean product of neighbours, in bins of their interval.
-
-    Source: G. M. Ljung, G. E. P. Box, On a measure of lack of fit in time series models, Biometrika 65 (1978);
-    D. S. Stoffer, C. M. C. Toloi, A note on the Ljung–Box–Pierce portmanteau statistic with missing data, Statistics
-    and Probability Letters 13 (1992).
+    chi-square test of the mean product of neighbours, in bins of their interval. Source: G. M. Ljung, G. E. P. Box, On
+    a measure of lack of fit in time series models, Biometrika 65 (1978); D. S. Stoffer, C. M. C. Toloi, A note on the
+    Ljung–Box–Pierce portmanteau statistic with missing data, Statistics and Probability Letters 13 (1992).
     """
     if len(values) < LEAST or not np.any(values):
         return 1.0
@@ -43,10 +38,9 @@ def p_value(series: Series, values: np.ndarray, basis: np.ndarray) -> float:
 
 
 def is_first_order(series: Series, first: float, values: np.ndarray, basis: np.ndarray) -> bool:
-    """Return whether weighted residuals (values,) are noise of first order: whitened as such they pass as white.
-
-    Even samples must have no periodic part, either: a model that is wrong leaves one of the motion's own period.
-    ``first`` is the autocorrelation of samples one ``series.step`` apart; a process without a positive one is not.
+    """Return whether weighted residuals (values,) are noise of first order: whitened as such they pass as white. Even
+    samples must have no periodic part, either: a model that is wrong leaves one of the motion's own period. ``first``
+    is the autocorrelation of samples one ``series.step`` apart; a process without a positive one is not.
     """
     if not 0 < first < 1:
         return False
@@ -63,14 +57,9 @@ def is_first_order(series: Series, first: float, values: np.ndarray, basis: np.n
 
 
 def p_value_of_period(values: np.ndarray, fitted: float = 0.0) -> float:
-    """Return the probability of a periodic part at least as large in white noise (places,): Fisher's g test.
-
-    ``fitted`` is the number of parameters that a fit took out of the values: each leaves half a frequency less.
-
-    Source: R. A. Fisher, Tests of significance in harmonic analysis, Proceedings of the Royal Society A 125 (1929).
-
-    >>> p_value_of_period(np.cos(np.arange(64.0))) < 1e-9
-    True
+    """Return the probability of a periodic part at least as large in white noise (places,): Fisher's g test. Each of
+    the ``fitted`` parameters that a fit took out of the values leaves half a frequency less. Source: R. A. Fisher,
+    Tests of significance in harmonic analysis, Proceedings of the Royal Society A 125 (1929).
     """
     power = np.abs(np.fft.rfft(values - np.mean(values))[1:]) ** 2
     count, share = max(len(power) - fitted / 2, 1.0), float(np.max(power) / np.sum(power))

@@ -71,18 +71,14 @@ class ChannelNoise:
         groupings: Sequence[np.ndarray],
     ) -> list[np.ndarray]:
         """Return the log density of each group of values after all others, for each grouping (batch, groups).
+        ``residual``, ``response`` (batch, values). ``values`` (batch, 1). ``groupings`` (values,): number of each
+        value's group, from 0.
 
-        ``residual``, ``response`` (batch, values). ``values`` (batch, 1). ``groupings`` (values,): number of the group
-        of each value, from 0.
-
-        Notes
-        -----
         With the inverse K = AᵀA of the correlation of the standardised residuals z, a group S has the precision K_SS
         and the error K_SS⁻¹ (K z)_S. Without the entries of K between groups, one banded Cholesky factor L has the
-        factors of all K_SS, so that each value adds −½ u² + log L_ii with L u = K z.
-
-        Source: P.-C. Bürkner, J. Gabry, A. Vehtari, Efficient leave-one-out cross-validation for Bayesian
-        non-factorized normal and Student-t models, Computational Statistics 36 (2021), equations 8 and 9, for groups.
+        factors of all K_SS, so that each value adds −½ u² + log L_ii with L u = K z. Source: P.-C. Bürkner, J. Gabry,
+        A. Vehtari, Efficient leave-one-out cross-validation for Bayesian non-factorized normal and Student-t models,
+        Computational Statistics 36 (2021), equations 8 and 9, for groups.
         """
         if self.whitening is None:
             densities = self.log_densities(residual, response, values)
@@ -100,10 +96,9 @@ class ChannelNoise:
     def slopes(
         self, residual: np.ndarray, response: np.ndarray, jacobian: np.ndarray, values: Mapping[str, np.ndarray]
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Return w, l (values,), and ∂w, ∂l (values, parameters) with respect to the parameters of the response.
-
-        These are the whitened residuals and the logarithms of the deviations; ``jacobian`` is that of the response.
-        Complex noise parameters give complex results.
+        """Return w, l (values,), and ∂w, ∂l (values, parameters) with respect to the parameters of the response, whose
+        ``jacobian`` is given: the whitened residuals and the logarithms of the deviations. Complex noise parameters
+        give complex results.
         """
         sizes = self.model.deviations(response, self.given, values)
         logarithmic = self.model.slopes(response, self.given, values) / sizes

@@ -128,10 +128,9 @@ def _slopes(likelihood: Likelihood, optimum: Maximum) -> np.ndarray:
 
 
 def _expected_rows(expansion: Expansion, count: int) -> np.ndarray:
-    """Return rows G with the information GᵀG, without what the mean of model and noise share.
-
-    That is zero in expectation: a change of the noise changes the mean of a value in proportion to residuals before it.
-    ``count`` is the number of the model's parameters.
+    """Return rows G with the information GᵀG, without what the mean of model and noise share. That is zero in
+    expectation: a change of the noise changes the mean of a value in proportion to residuals before it. ``count``:
+    number of the model's parameters.
     """
     of_model, noise = expansion.means.copy(), expansion.means.copy()
     of_model[:, count:], noise[:, :count] = 0.0, 0.0
@@ -158,11 +157,9 @@ def _noise(likelihood: Likelihood, optimum: Maximum, picked: Mapping[Series, Noi
 
 
 def _noise_covariance(likelihood: Likelihood, optimum: Maximum) -> np.ndarray:
-    """Return the covariance of the noise parameters, from the curvature of the restricted likelihood.
-
-    Its curvature is −∂²ℓ/∂ν² − Cᵀ I⁻¹ C for the noise parameters ν, with C = −∂²ℓ/∂θ∂ν and the information I on the
-    model's parameters θ, which follow the noise. Where that is not positive, for example at a bound, the expected
-    information takes its place.
+    """Return the covariance of the noise parameters, from the curvature of the restricted likelihood:
+    −∂²ℓ/∂ν² − Cᵀ I⁻¹ C for the noise parameters ν, with C = −∂²ℓ/∂θ∂ν and the information I on the model's parameters
+    θ, which follow the noise. Where that is not positive, as at a bound, the expected information takes its place.
     """
     model = likelihood.problem.model.parameters
     count = len(model)

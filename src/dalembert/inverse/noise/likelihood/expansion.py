@@ -12,13 +12,9 @@ from dalembert.parameters import Parameters
 
 @dataclass(frozen=True, eq=False)
 class Expansion:
-    """Log-likelihood, gradient and information at a vector.
-
-    Notes
-    -----
-    With w = (m − y)/s, M = ``means`` and S = ``spreads``, ∂w = M − w S, the gradient is −Mᵀ w + Sᵀ (w² − 1) and the
-    information Mᵀ M + 2 Sᵀ S: its expectation is Fisher's. For parameters of the response and a deviation that does not
-    depend on it, it is Jᵀ Σ⁻¹ J.
+    """Log-likelihood, gradient and information at a vector. With w = (m − y)/s, M = ``means`` and S = ``spreads``,
+    ∂w = M − w S, the gradient is −Mᵀ w + Sᵀ (w² − 1) and the information Mᵀ M + 2 Sᵀ S: its expectation is Fisher's.
+    For parameters of the response and a deviation that does not depend on it, it is Jᵀ Σ⁻¹ J.
     """
 
     at: Linearisation  # of the response

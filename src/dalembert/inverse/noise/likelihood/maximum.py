@@ -102,16 +102,13 @@ def maximum(
     at: Linearisation | None = None,
     restriction: Restriction | None = None,
 ) -> Maximum:
-    """Return the maximum of the restricted likelihood near a vector (parameters,) of model and noise.
+    """Return the maximum of the restricted likelihood near ``start`` (parameters,), a vector of model and noise.
+    ``held``: places of parameters that keep their values. ``at``: of the response at the start, if it is known.
+    ``restriction``: a fixed one; if not given, that of each linearised response in turn.
 
-    ``start`` (parameters,). ``held``: places of parameters that keep their values. ``at``: of the response at the
-    start, if it is known. ``restriction``: a fixed one; if not given, that of each linearised response in turn.
-
-    Notes
-    -----
     Fisher's scoring: the response is linearised, the likelihood of the linearised model made largest over all
-    parameters by damped steps with the information matrix, and the response linearised there again. Model and noise
-    are so estimated together, and a costly model is simulated only once a round.
+    parameters by damped steps with the information matrix, and the response linearised there again. Model and noise are
+    so estimated together, and a costly model is simulated only once a round.
     """
     problem, parameters = likelihood.problem, likelihood.parameters
     of_model, search = problem.model.parameters, SearchCoordinates(parameters)
@@ -188,10 +185,9 @@ def _forward(
 def scored(
     here: Expansion, objective: Objective, search: SearchCoordinates, expansion: Callable[[np.ndarray], Expansion]
 ) -> tuple[Expansion, float]:
-    """Return the maximum of an objective from damped steps, and how much larger it is than here.
-
-    Far away the steps are those of Fisher's scoring. Close to the maximum the curvature along the noise parameters
-    replaces their information, since scoring alone is slow where noise is strongly correlated.
+    """Return the maximum of an objective from damped steps, and how much larger it is than here. Far away the steps are
+    those of Fisher's scoring. Close to the maximum the curvature along the noise parameters replaces their information,
+    since scoring alone is slow where noise is strongly correlated.
     """
     begun = value = objective.value(here)
     damping, slopes, promised = 1e-3, None, np.inf

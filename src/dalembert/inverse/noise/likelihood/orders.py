@@ -27,17 +27,12 @@ PATIENCE = 3
 def ordered(
     problem: MisfitProblem, picked: Mapping[Series, NoiseModel], at: Linearisation, *, known: bool
 ) -> dict[Series, NoiseModel]:
-    """Return the noise models with the order of each autoregressive one that leaves it open.
+    """Return the noise models with the order of each autoregressive one that leaves it open. ``at``: whose residuals
+    are compared. ``known``: whether the weights of the problem are 1/variance.
 
-    ``at``: whose residuals are compared. ``known``: whether the weights of the problem are 1/variance.
-
-    Notes
-    -----
     The order is that of the least AICc = −2 log p + 2k + 2k(k + 1)/(n − k − 1), with k parameters of model and noise
-    and n values. Experiments that share noise parameters share the order.
-
-    Source: C. M. Hurvich, C.-L. Tsai, Regression and time series model selection in small samples, Biometrika 76
-    (1989).
+    and n values. Experiments that share noise parameters share the order. Source: C. M. Hurvich, C.-L. Tsai, Regression
+    and time series model selection in small samples, Biometrika 76 (1989).
     """
     groups: dict[str, list[Series]] = {}
     for series, model in picked.items():

@@ -18,17 +18,12 @@ RIDGE = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class Restriction:
-    """−½ log |I| of the information I on the model's parameters, a function of the noise parameters alone.
+    """−½ log |I| of the information I on the model's parameters, a function of the noise parameters alone. Added to the
+    log-likelihood it removes the bias of noise parameters that estimating the others causes.
 
-    Added to the log-likelihood it removes the bias of noise parameters that estimating the others causes.
-
-    Notes
-    -----
-    For a linear model and noise that does not depend on its response the sum is the restricted likelihood; otherwise
-    it is that of the linearised model. A prior counts as data.
-
-    Source: H. D. Patterson, R. Thompson, Recovery of inter-block information when block sizes are unequal, Biometrika
-    58 (1971).
+    For a linear model and noise that does not depend on its response the sum is the restricted likelihood; otherwise it
+    is that of the linearised model. A prior counts as data. Source: H. D. Patterson, R. Thompson, Recovery of
+    inter-block information when block sizes are unequal, Biometrika 58 (1971).
     """
 
     problem: MisfitProblem

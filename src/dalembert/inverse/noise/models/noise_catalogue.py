@@ -30,11 +30,7 @@ def noise_model(model: object) -> NoiseModel:
 
 
 def as_table(model: NoiseModel) -> dict[str, Any]:
-    """Return a noise model as plain values, its name as ``"model"``.
-
-    >>> as_table(ConstantNoise(deviation=0.1))
-    {'model': 'constant', 'local': False, 'deviation': 0.1}
-    """
+    """Return a noise model as plain values, its name as ``"model"``."""
     values = {part.name: getattr(model, part.name) for part in fields(model)}
     plain = {
         name: as_table(value) if isinstance(value, NoiseModel) else list(value) if isinstance(value, tuple) else value

@@ -15,10 +15,9 @@ LONGEST = 50
 
 
 class Whitening(Protocol):
-    """What makes the standardised residuals z (values,) of a series independent.
-
-    Row i of the matrix A is (z_i − Σ_j a_j z_{i−j}) / d_i, with the best prediction from the values before and the
-    standard deviation d_i that it leaves, so that A C Aᵀ is the identity for the correlation C of z.
+    """What makes the standardised residuals z (values,) of a series independent. Row i of the matrix A is
+    (z_i − Σ_j a_j z_{i−j}) / d_i, with the best prediction from the values before and the standard deviation d_i that
+    it leaves, so that A C Aᵀ is the identity for the correlation C of z.
     """
 
     def matrix(self, values: Mapping[str, np.ndarray]) -> "csr_array":
@@ -44,12 +43,9 @@ class DecayWhitening:
 
 @dataclass(frozen=True, eq=False)
 class GridWhitening:
-    """Whitening of an autoregressive process of order m on an even grid, with gaps.
-
-    Notes
-    -----
-    A value is predicted from those back to the last m places without a gap: what lies before adds nothing. Rows with
-    the same lags to these values share one solution of the Yule–Walker equations.
+    """Whitening of an autoregressive process of order m on an even grid, with gaps. A value is predicted from those
+    back to the last m places without a gap: what lies before adds nothing. Rows with the same lags to these values
+    share one solution of the Yule–Walker equations.
     """
 
     grid: np.ndarray  # (values,): place of each value
@@ -107,11 +103,7 @@ def _row(correlations: np.ndarray, lags: np.ndarray) -> np.ndarray:
 
 
 def correlations_of(partials: Sequence[np.ndarray], number: int) -> np.ndarray:
-    """Return autocorrelations (number,) of a process with these partial autocorrelations, by Durbin's recursion.
-
-    >>> correlations_of([0.5], 4)
-    array([1.   , 0.5  , 0.25 , 0.125])
-    """
+    """Return autocorrelations (number,) of a process with these partial autocorrelations, by Durbin's recursion."""
     row, variance = np.zeros(0), 1.0
     known: list = [1.0]
     for partial in partials:

@@ -106,10 +106,9 @@ def _around(modes: PosteriorModes, mode: np.ndarray, places: np.ndarray) -> np.n
 
 
 def _jumped(modes: PosteriorModes, places: np.ndarray, random: np.random.RandomState) -> tuple[np.ndarray, np.ndarray]:
-    """Places (walkers, parameters) from one mode to another, and the logarithm of the ratio of volumes (walkers,).
-
-    The map y_j = y_i, with y_i the coordinates in which mode i is round, is affine, and its inverse is proposed as
-    often. So the ratio of densities times the determinant of the map decides.
+    """Places (walkers, parameters) from one mode to another, and the logarithm of the ratio of volumes (walkers,). The
+    map y_j = y_i, with y_i the coordinates in which mode i is round, is affine, and its inverse is proposed as often.
+    So the ratio of densities times the determinant of the map decides.
     """
     best, targets, count = modes.best.target, modes.targets, len(modes.targets)
     # ln det of the map from mode i to mode j is ln det factor_j − ln det factor_i.

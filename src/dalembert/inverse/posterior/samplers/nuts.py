@@ -102,10 +102,8 @@ def _on_worker(targets: Sequence[Target], sampler: NUTS, length: Length, problem
 
 
 def _chain(sampler: NUTS, length: Length, on_draws: OnDraws, stop: Event, target: Target, chain: int) -> Chains:
-    """Sample one chain.
-
-    nutpie calls Python from a thread of its own and ends the process where a function raises. So the first error is
-    kept, further calls return at once, and the error is raised at the end.
+    """Sample one chain. nutpie calls Python from a thread of its own and ends the process where a function raises. So
+    the first error is kept, further calls return at once, and the error is raised at the end.
     """
     nutpie, count = package("nutpie", "the sampler NUTS"), len(target.centre)
     # A density of −∞ ends a trajectory as divergent, so nutpie comes back soon after an error.

@@ -130,11 +130,10 @@ def respond(
     walk: CollocationRun,
     scratch: Descent,
 ) -> bool:
-    """Derivatives of the minimum along the directions, by the derivative of its gradient.
-
-    The first derivatives of what remains are exact. Its second ones, which stand beside what remains at the minimum,
-    are central differences of the exact first ones; where the polynomial can satisfy the equations at all Gauss points
-    nothing remains, and none are needed. Whether the minimum is regular.
+    """Derivatives of the minimum along the directions, by the derivative of its gradient; whether the minimum is
+    regular. The first derivatives of what remains are exact. Its second ones, which stand beside what remains at the
+    minimum, are central differences of the exact first ones; where the polynomial can satisfy the equations at all
+    Gauss points nothing remains, and none are needed.
     """
     n, own, unknowns, count = problem.n, walk.partition, len(walk.c), walk.slopes.shape[1]
     layout, normal, right, change = (

@@ -18,10 +18,9 @@ from dalembert.multibody.kernels.states import row, subtract
 
 @inner
 def _drive(problem, model, complex_model, t, within, state, linear, constraints, c):
-    """Accelerations and multipliers by the equations of motion; whether the matrix is regular.
-
-    As `accelerate` does, for a state that `settle` has left, whose constraint Jacobian it takes: one tangent is enough
-    where no force depends on the multipliers.
+    """Accelerations and multipliers by the equations of motion; whether the matrix is regular. As `accelerate` does,
+    for a state that `settle` has left, whose constraint Jacobian it takes: one tangent is enough where no force depends
+    on the multipliers.
     """
     n, given, answer, rate = problem.n, c.vectors[0], c.vectors[1], c.vectors[2]
     set_signals(complex_model, t, within, c.complex_work)

@@ -20,10 +20,9 @@ _STILL = 1e-9  # the same, where next to nothing remains
 
 @dataclass(frozen=True, eq=False)
 class CollocationSearch:
-    """Minimises what remains in the steps of one run.
-
-    The box lies around the prediction: twice what remains there of each independent coordinate's acceleration.
-    The directions of the ``models`` are those of the unknown accelerations, then those of the parameters.
+    """Minimises what remains in the steps of one run. The box lies around the prediction: twice what remains there of
+    each independent coordinate's acceleration. The directions of the ``models`` are those of the unknown accelerations,
+    then those of the parameters.
     """
 
     minimiser: Squares | Firefly | Swarm | Minimiser

@@ -66,13 +66,11 @@ def step_of(schedule, number):
 
 
 class CollocationRun(NamedTuple):
-    """State and work of a run.
-
-    ``c`` (count u,): the unknown accelerations of u independent coordinates; ``dc`` (directions, count u). ``points``
-    (g, N + 1): states at the Gauss points. ``dpoint``: a state's derivatives by c, ``dall``: by c and along the
-    directions. ``gaps`` (g, N + 1), ``slopes`` (g, directions of dall, N + 1): what remains, and its derivatives.
-    ``chosen``: dependence at the choice of the independent coordinates; 0: none was made, or the last step had another.
-    ``linear``: whether the equations of motion are linear in the multipliers.
+    """State and work of a run. ``c`` (count u,): the unknown accelerations of u independent coordinates; ``dc``
+    (directions, count u). ``points`` (g, N + 1): states at the Gauss points. ``dpoint``: a state's derivatives by c,
+    ``dall``: by c and along the directions. ``gaps`` (g, N + 1), ``slopes`` (g, directions of dall, N + 1): what
+    remains, and its derivatives. ``chosen``: dependence at the choice of the independent coordinates; 0: none was made,
+    or the last step had another. ``linear``: whether the equations of motion are linear in the multipliers.
     """
 
     old: MotionState

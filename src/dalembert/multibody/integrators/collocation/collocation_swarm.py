@@ -25,7 +25,6 @@ _ROUNDING = 1e-11  # last correction, if they shrink no more
 
 class Kept(NamedTuple):
     """Of the prediction: its accelerations, and of each Gauss point there the state, its derivatives by them, inverses.
-
     ``points`` (g, N + 1) and ``slopes`` (g unknowns, N + 1): ``a`` by the polynomial, ``w`` by the equations of motion.
     ``trial``: the state of a trial; ``vectors``: gaps, changes and what is not needed, (3, N + 1).
     """

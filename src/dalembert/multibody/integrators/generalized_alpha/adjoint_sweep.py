@@ -46,10 +46,9 @@ class Cotangents(NamedTuple):
 
 
 class Pulls(NamedTuple):
-    """What takes the gradients by the numbers of a model.
-
-    ``blocks`` (blocks, 3): addresses of a block, of its kernel and of its record. ``signals``: address of the kernel of
-    the signals, 0 if none matters, with that of its record. ``bars`` (signals, 3): adjoints of the signals.
+    """What takes the gradients by the numbers of a model. ``blocks`` (blocks, 3): addresses of a block, of its kernel
+    and of its record. ``signals``: address of the kernel of the signals, 0 if none matters, with that of its record.
+    ``bars`` (signals, 3): adjoints of the signals.
     """
 
     blocks: Integers2
@@ -59,10 +58,9 @@ class Pulls(NamedTuple):
 
 
 class ResidualDerivatives(NamedTuple):
-    """Derivatives of the residuals of some blocks, each entry once.
-
-    ``blocks``: their numbers, with the ``slots`` of their entries. ``rows``, ``columns`` and ``values`` of the entries,
-    and their ``places`` in the matrix that is factorised.
+    """Derivatives of the residuals of some blocks, each entry once. ``blocks``: their numbers, with the ``slots`` of
+    their entries. ``rows``, ``columns`` and ``values`` of the entries, and their ``places`` in the matrix that is
+    factorised.
     """
 
     blocks: Integers
@@ -75,7 +73,6 @@ class ResidualDerivatives(NamedTuple):
 
 class SweepWorkspace(NamedTuple):
     """Work of the sweep: a call in complex numbers, the matrix with its transposed solution, parts of it, vectors.
-
     ``masses`` are those that do not change, in the places of the matrix. ``by_x``, ``by_v`` and ``by_a`` are the parts
     along coordinates, velocities (of blocks that depend on them), and accelerations (of blocks whose masses vary).
     """

@@ -31,10 +31,9 @@ from dalembert.multibody.kernels.states import (
 
 
 class Differentiation(NamedTuple):
-    """Work of the derivatives: a call in complex numbers, a matrix, and vectors.
-
-    ``r``, ``right`` and ``delta`` have the rows of the reduced system. ``change`` is the correction of all unknowns. If
-    no coordinates have internal constraints, the reduced system is the full one, and ``change`` is the array ``delta``.
+    """Work of the derivatives: a call in complex numbers, a matrix, and vectors. ``r``, ``right`` and ``delta`` have
+    the rows of the reduced system. ``change`` is the correction of all unknowns. If no coordinates have internal
+    constraints, the reduced system is the full one, and ``change`` is the array ``delta``.
     """
 
     complex_work: Address
@@ -63,9 +62,8 @@ def differentiate(
     problem: IntegrationProblem, complex_model: Address, directions: Integers, c: Coefficients, t: float, within: float,
     new: MotionState, dolds: MotionStates, dnews: MotionStates, scratch: Differentiation,
 ) -> bool:  # fmt: skip
-    """Compute the derivatives of the converged step along all directions; return whether the tangent is regular.
-
-    The derivatives at the start of the step are read from ``dolds``, those at its end are written into ``dnews``. The
+    """Compute the derivatives of the converged step along all directions; return whether the tangent is regular. The
+    derivatives at the start of the step are read from ``dolds``, those at its end are written into ``dnews``. The
     derivative of the residual r = 0 is linear in those of accelerations and multipliers. So one solution with the exact
     tangent of the step gives the correction of the predicted derivatives: its right-hand side is Im r / STEP in the
     state that is perturbed along them (`docs/theory/sensitivities.md`).

@@ -183,12 +183,11 @@ def integrate(
     dout: Histories, log: Log, ends: Reals2, scratch: AlphaWorkspace,
 ) -> None:  # fmt: skip
     """Run a stack of samples from ``problem.edges[sample, 0]`` to the last edge; fill the states at the output times.
-
     ``opens`` (samples, -): whether each stretch starts anew; else the motion goes on, and held tables have their mean
     where it begins; ``models``, ``complex_models`` (samples,): models in real and in complex numbers; ``directions``:
     complex models, one a direction of differentiation; empty if there is more than one sample; ``turns`` (samples,):
-    what counts the turns of angles, 0 for none; ``states``: at the start, (samples, N + 1); overwritten; ``dstates``:
-    derivatives at the start, (directions, N + 1); overwritten; ``out``, ``dout``: arrays (samples, times, N + 1) and
+    what counts the turns of angles, 0 for none; ``states`` (samples, N + 1), ``dstates`` (directions, N + 1): at the
+    start, and its derivatives; overwritten; ``out``, ``dout``: arrays (samples, times, N + 1) and
     (directions, times, N + 1); ``w`` is not used; ``log``: of the last sample; ``ends`` (samples, 3): status (`DONE`,
     or the reason), time reached, unknown that moved most.
     """

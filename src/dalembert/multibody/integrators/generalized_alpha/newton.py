@@ -28,11 +28,10 @@ _AGED = 0.02  # contraction at which the next step begins with a new one
 
 
 class Newton(NamedTuple):
-    """Work of the Newton iteration.
-
-    ``memory``: step for which the kept factorisation was made (0: none), contraction seen last. ``slope``: rate of
-    change of accelerations and multipliers over the last step, for the prediction of the next one. ``r`` and ``delta``
-    have the rows of the reduced system, ``change`` is the correction of all unknowns: the same array without nodes.
+    """Work of the Newton iteration. ``memory``: step for which the kept factorisation was made (0: none), contraction
+    seen last. ``slope``: rate of change of accelerations and multipliers over the last step, for the prediction of the
+    next one. ``r`` and ``delta`` have the rows of the reduced system, ``change`` is the correction of all unknowns: the
+    same array without nodes.
     """
 
     factors: Factors

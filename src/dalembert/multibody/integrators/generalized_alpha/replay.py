@@ -35,7 +35,6 @@ def replay(
     scratch: ReplayWorkspace,
 ) -> int:  # fmt: skip
     """Take the steps from a state, which is overwritten with the last one; return the status, or the reason.
-
     ``radius``, ``tolerance``: spectral radius, and tolerance of Newton's iteration; ``state``: (N + 1,); ``path``:
     filled with the states at the ends of the steps, (steps, N + 1); with none of them, (0, N + 1).
     """

@@ -66,7 +66,6 @@ def partition(
     own: Partition,
 ) -> bool:  # fmt: skip
     """Choose the independent coordinates if that is needed: at first, or where the present ones have become bad.
-
     Whether there are now other dependent ones; never without constraints. ``work``: address of a call in complex
     numbers.
     """

@@ -23,12 +23,10 @@ class _Along(NamedTuple):
 
 
 class RateField:
-    """Rates of a sample's coordinates and velocities, and of their derivatives along directions.
-
-    The vectors hold coordinates (n,) and velocities (n,), then those of each direction. The state that was asked for
-    last is kept: its accelerations and multipliers are the first guess of the next.
-
-    ``dstates``: derivatives of the state at the start; overwritten; ``implicit``: whether the `jacobian` is needed.
+    """Rates of a sample's coordinates and velocities, and of their derivatives along directions. The vectors hold
+    coordinates (n,) and velocities (n,), then those of each direction. The state that was asked for last is kept: its
+    accelerations and multipliers are the first guess of the next. ``dstates``: derivatives of the state at the start;
+    overwritten; ``implicit``: whether the `jacobian` is needed.
     """
 
     def __init__(

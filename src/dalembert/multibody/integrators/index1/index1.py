@@ -43,11 +43,10 @@ class Terms(NamedTuple):
 
 
 class Tools(NamedTuple):
-    """Work of the index-1 methods, made once a run.
-
-    ``work``, ``complex_work``: calls in real and in complex numbers. ``partition`` is that of the coordinates;
-    ``surplus`` serves redundant constraints, ``base`` and ``change`` projections. ``along``: address of the kernel for
-    derivatives, 0 if there are none. The last four are addresses of kernels that only some stabilisations need, else 0.
+    """Work of the index-1 methods, made once a run. ``work``, ``complex_work``: calls in real and in complex numbers.
+    ``partition`` is that of the coordinates; ``surplus`` serves redundant constraints, ``base`` and ``change``
+    projections. ``along``: address of the kernel for derivatives, 0 if there are none. The last four are addresses of
+    kernels that only some stabilisations need, else 0.
     """
 
     work: Address
@@ -107,7 +106,6 @@ def demand(
     tools: Tools,
 ) -> bool:  # fmt: skip
     """Fill accelerations and multipliers of a state by the equations of index 1, and their derivatives; whether it can.
-
     [M J^T; J 0] [a; l] = [f; -(second rate without a) - 2 alpha (first rate) - beta^2 (constraint)]. The equations are
     linear in both but for friction that depends on the multipliers; the state's own ones are the first guess.
     """

@@ -24,12 +24,10 @@ _DRIFTED = 1e-6
 
 
 class Surplus(NamedTuple):
-    """Work for redundant constraints.
-
-    ``partition``: that of the constraints. The first columns of ``basis`` (m, m) span the range of the multipliers,
-    whose ``scale`` (m,) is that of the problem.
-    ``product`` (N, N), by columns, and ``small``: work for the matrix on the range; ``across`` (3, m) for derivatives.
-    ``invert``, ``turn``: addresses of the kernels, 0 if no constraint is redundant, ``turn`` 0 without derivatives.
+    """Work for redundant constraints. ``partition``: that of the constraints. The first columns of ``basis`` (m, m)
+    span the range of the multipliers, whose ``scale`` (m,) is that of the problem. ``product`` (N, N), by columns, and
+    ``small``: work for the matrix on the range; ``across`` (3, m) for derivatives. ``invert``, ``turn``: addresses of
+    the kernels, 0 if no constraint is redundant, ``turn`` 0 without derivatives.
     """
 
     partition: Partition
@@ -158,9 +156,8 @@ def _extend(n, size, lead, rank, surplus, matrix, small_lead):
 
 @kernel
 def invert_on_range(problem: IntegrationProblem, surplus: Surplus, matrix: Reals) -> bool:
-    """Replace a dense flat matrix, of motion beside constraints, by the inverse on the multipliers in the range.
-
-    For redundant but consistent constraints this is the solution of least norm; others are met in least squares. The
+    """Replace a dense flat matrix, of motion beside constraints, by the inverse on the multipliers in the range. For
+    redundant but consistent constraints this is the solution of least norm; others are met in least squares. The
     Jacobian stands in ``surplus.partition.matrix``. Whether the matrix on the range is regular.
     """
     _find_range(problem, surplus)
@@ -177,10 +174,9 @@ def turn_range(
     problem: IntegrationProblem, perturbed: Address, state: MotionState, dstate: MotionState, complex_work: Address,
     complex_state: Complexes2, surplus: Surplus,
 ) -> None:  # fmt: skip
-    """Give the multipliers' derivative the part across the range that keeps the multipliers in it.
-
-    With the multipliers S^2 J w, w fixed, this is the part of the derivative of S^2 J, times w, across the range. The
-    rest of the derivative follows from the equations of motion.
+    """Give the multipliers' derivative the part across the range that keeps the multipliers in it. With the multipliers
+    S^2 J w, w fixed, this is the part of the derivative of S^2 J, times w, across the range. The rest of the derivative
+    follows from the equations of motion.
     """
     partition, basis, scale, across = surplus.partition, surplus.basis, surplus.scale, surplus.across
     n, m, rank = problem.n, len(basis), partition.rank[0]

@@ -46,11 +46,9 @@ def project_along(
 
 @inner
 def _follow(problem, level, model, t, within, state, dstate, tools, change):
-    """The derivative of a projection along one direction.
-
-    ``dstate`` holds the derivative of the state before the projection, and that of the one after it when done. The
-    equations are those of the projection in complex numbers: M w + J^T m = 0 in the coordinates before, and the
-    constraints after.
+    """The derivative of a projection along one direction. ``dstate`` holds the derivative of the state before the
+    projection, and that of the one after it when done. The equations are those of the projection in complex numbers:
+    M w + J^T m = 0 in the coordinates before, and the constraints after.
     """
     n, last, complex_state, work = problem.n, len(state.x) - 1, tools.complex_state, tools.complex_work
     base, gap, answer = tools.base, tools.gap, tools.answer
@@ -93,10 +91,9 @@ def project(
     Phi(q - w) = 0, by Newton's iteration with J kept. The velocities then move to v - w with M w + J^T m = 0 and
     J (v - w) + Phi_t = 0, which is linear.
 
-    ``problem``, ``terms``, ``models``: the mechanism, see their classes; ``t``: time, s; ``within``: a time in the
-    smooth interval of the motion to which ``t`` belongs, s: it decides on which side of a jump the signals are
-    evaluated; ``state``: coordinates and velocities, which are moved; ``dstates``: derivatives of the state, which are
-    moved with it; of length 0 if there are none; ``tools``: matrices and vectors to work in.
+    ``t``: time, s; ``within``: a time in the smooth interval of the motion to which ``t`` belongs, s: it decides on
+    which side of a jump the signals are evaluated; ``state``: coordinates and velocities; ``dstates``: its derivatives,
+    which are moved with it; of length 0 if there are none.
     """
     n, last, base, change = problem.n, len(state.x) - 1, tools.base, tools.change
     set_signals(models.real, t, within, tools.work)

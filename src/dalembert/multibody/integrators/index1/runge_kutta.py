@@ -193,12 +193,9 @@ def integrate(
     counts: Integers,
     scratch: RungeKuttaWorkspace,
 ) -> tuple[int, float]:  # fmt: skip
-    """Run one sample: status and time reached.
-
-    ``edges``: of the smooth stretches, s; ``out``: at the output times, (1 + directions, times, N + 1): states, then
-    their derivatives; ``counts`` (4,): steps, and zeros; ``scratch``: with the state at the start,
-    and its derivatives, in
-    ``stage``; overwritten.
+    """Run one sample: status and time reached. ``edges``: of the smooth stretches, s; ``out``: at the output times,
+    (1 + directions, times, N + 1): states, then their derivatives; ``counts`` (4,): steps, and zeros; ``scratch``: with
+    the state at the start, and its derivatives, in ``stage``; overwritten.
     """
     n, tools, stage, between = problem.n, scratch.tools, scratch.stage, scratch.between
     projects = terms.way == PROJECTED and len(stage.state.x) - 1 > n

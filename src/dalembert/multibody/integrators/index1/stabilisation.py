@@ -147,10 +147,9 @@ def posed(
 
 
 def _weighed(problem: IntegrationProblem, lowered: Lowered) -> np.ndarray:
-    """Scales with those of the multipliers: one for forces, a lever for torques, (N + 1,).
-
-    The lever is the power of ten, in m, nearest to the mechanism's extent where the model is built first, so that it is
-    the same for all parameters of a model. A multiplier is a torque where its constraint depends on no position.
+    """Scales with those of the multipliers: one for forces, a lever for torques, (N + 1,). The lever is the power of
+    ten, in m, nearest to the mechanism's extent where the model is built first, so that it is the same for all
+    parameters of a model. A multiplier is a torque where its constraint depends on no position.
     """
     n, scale = problem.n, problem.scale.copy()
     positions = np.array(lowered.structure.kinds) == "position"

@@ -30,10 +30,9 @@ _STRONGEST = 0.5  # part of the velocities that the force may take or give in a 
 
 
 class FreeRigidMotions(NamedTuple):
-    """Rigid motions that are free, as velocities ``spin`` sign x[partner] + shift of the coordinates.
-
-    ``partner`` and ``sign`` (n,), ``spin`` (motions,), ``shift`` (motions, n), ``shifts`` (directions, motions, n): the
-    same with the imaginary step along the directions of differentiation.
+    """Rigid motions that are free, as velocities ``spin`` sign x[partner] + shift of the coordinates. ``partner`` and
+    ``sign`` (n,), ``spin`` (motions,), ``shift`` (motions, n), ``shifts`` (directions, motions, n): the same with the
+    imaginary step along the directions of differentiation.
     """
 
     partner: Integers
@@ -44,10 +43,9 @@ class FreeRigidMotions(NamedTuple):
 
 
 class Balance(NamedTuple):
-    """Rigid motions; workspace for them, their momenta, the direction of the force and sums of energies; kernels.
-
-    It has real and complex numbers. ``converge`` and ``converge_along`` are the addresses of these kernels:
-    both are 0 if the energy is not balanced, the second one is 0 if there are no directions, too.
+    """Rigid motions; workspace for them, their momenta, the direction of the force and sums of energies; kernels. It
+    has real and complex numbers. ``converge`` and ``converge_along`` are the addresses of these kernels: both are 0 if
+    the energy is not balanced, the second one is 0 if there are no directions, too.
     """
 
     rigid: FreeRigidMotions

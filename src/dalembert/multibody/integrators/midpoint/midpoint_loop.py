@@ -53,10 +53,9 @@ class MidpointSettings(NamedTuple):
 
 
 class Derivatives(NamedTuple):
-    """Work of the derivatives along directions.
-
-    ``slopes`` (directions, 2, N + 1); ``energies`` (directions,) are derivatives of the energy, at the start and then
-    of the balanced one. ``differentiate`` is the address of the kernel, 0 if there are no directions.
+    """Work of the derivatives along directions. ``slopes`` (directions, 2, N + 1); ``energies`` (directions,) are
+    derivatives of the energy, at the start and then of the balanced one. ``differentiate`` is the address of the
+    kernel, 0 if there are no directions.
     """
 
     along: Along
@@ -154,10 +153,9 @@ def integrate(
     out: MotionStates, dout: Histories, log: Log, matrices: Matrices, consistent: Consistency, step: MidpointStep,
     balance: Balance, slope: Reals2, outputs: Outputs, derivatives: Derivatives,
 ) -> tuple[int, float, int]:  # fmt: skip
-    """Run one sample between ``edges`` (s): status, time reached, and the unknown that moved most.
-
-    ``new`` (N + 1), the state at the start, and its derivatives ``dnews`` (directions, N + 1) are overwritten; ``out``
-    (times, N + 1) and ``dout`` (directions, times, N + 1) are filled at ``problem.times``.
+    """Run one sample between ``edges`` (s): status, time reached, and the unknown that moved most. ``new`` (N + 1), the
+    state at the start, and its derivatives ``dnews`` (directions, N + 1) are overwritten; ``out`` (times, N + 1) and
+    ``dout`` (directions, times, N + 1) are filled at ``problem.times``.
     """
     n, times, scale, counts, s = problem.n, problem.times, problem.scale, log.counts, step.rows
     between, moved, last = outputs.between, outputs.moved, outputs.last

@@ -73,7 +73,6 @@ def along_workspace(width: int, middle: int, end: int) -> Along:
 @inner
 def place(n, h, s):
     """Coordinates and velocities of a step by its accelerations ``A`` and ``B``, multipliers of its middle.
-
     v_m = v_0 + h A / 2, v_1 = v_m + h B / 2, q_1 = q_0 + h v_m, q_m = (q_0 + q_1) / 2, see
     `docs/theory/structure-preserving.md`.
     """
@@ -116,10 +115,9 @@ def keep_missed(n, start, s, slope):
 
 @inner
 def _balance(model, n, at, middle, end, f, gap, rate, second):
-    """Fill the residuals of a step, in real or in complex numbers; the signals of both calls hold the time.
-
-    ``f``: M a + F + J^T l at the start. ``gap``: J^T l at the end less that at the start, constraints at the end.
-    ``rate``: their rates.
+    """Fill the residuals of a step, in real or in complex numbers; the signals of both calls hold the time. ``f``:
+    M a + F + J^T l at the start. ``gap``: J^T l at the end less that at the start, constraints at the end. ``rate``:
+    their rates.
     """
     # M a + F(q_m, v_m) + J(q_m)^T l_m from one call of the kernels, less its constraint forces: what is left is M a +
     # F.
@@ -143,9 +141,8 @@ def _balance(model, n, at, middle, end, f, gap, rate, second):
 
 @inner
 def _correct(n, size, matrices, h, f, gap, rate, first, other, s):
-    """Take Newton's correction off a step, by the residuals; ``f`` and ``gap`` become what accelerations moved.
-
-    Two systems: [M + h/2 C + h^2/4 K, J^T; J, 0] for ``A``, and the same without C and K for ``B`` - ``A``: in the
+    """Take Newton's correction off a step, by the residuals; ``f`` and ``gap`` become what accelerations moved. Two
+    systems: [M + h/2 C + h^2/4 K, J^T; J, 0] for ``A``, and the same without C and K for ``B`` - ``A``: in the
     difference of both equations the forces cancel.
     """
     # Constraints at the end change by h^2/2 J a, their rates by h/2 J (a + b): scaled to accelerations.
@@ -190,10 +187,9 @@ def converge(
     tolerance: float,
     least: float,
 ) -> tuple[bool, int, float, int]:
-    """Newton's iteration on a step that a force resists.
-
-    Answers whether it converged, iterations, last contraction, unknown that moved most. Corrections end at
-    ``tolerance`` times the way that the coordinates go in the step, and at least ``least``, in parts of their scales.
+    """Newton's iteration on a step that a force resists. Answers whether it converged, iterations, last contraction,
+    unknown that moved most. Corrections end at ``tolerance`` times the way that the coordinates go in the step, and at
+    least ``least``, in parts of their scales.
     """
     s, b, push, middle, end = step.rows, step.vectors, step.push, step.middle, step.end
     n, size, scale, mass = problem.n, s.shape[1] - 1, problem.scale, matrices.mass

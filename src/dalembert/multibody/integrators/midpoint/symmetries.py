@@ -12,7 +12,6 @@ from dalembert.multibody.model.lowered import Lowered
 
 def rigid_motions(lowered: Lowered, perturbed: Sequence[Lowered]) -> FreeRigidMotions:
     """The free translations and the free rotation of a mechanism, by its gravity and what holds it to the ground.
-
     Without any hold, those are the translations across gravity, and without gravity the rotation, too. Pins, rods and
     springs at one point of the ground leave the rotation about it. What else may be free (along a slide) is not looked
     for.

@@ -11,12 +11,11 @@ from dalembert.kernels.words import Complexes, Reals, Reals2
 
 
 class Coefficients(NamedTuple):
-    """Of the method with s stages, of order 2 s - 1.
-
-    ``c`` (s,) of the stages, ``a`` (s, s), the weights of their rates, and its inverse. ``t`` brings the inverse to the
-    real block form A^-1 T = T diag(g, [a, -b; b, a], ...), with g = ``real`` and the ``pairs`` a + ib; ``back`` is the
-    inverse of T. ``start`` (s,) extrapolates what is known at the stages to the start of the step;
-    the stages are predicted by those of the step before and by the last ``more`` of the step earlier (measured).
+    """Of the method with s stages, of order 2 s - 1. ``c`` (s,) of the stages, ``a`` (s, s), the weights of their
+    rates, and its inverse. ``t`` brings the inverse to the real block form A^-1 T = T diag(g, [a, -b; b, a], ...), with
+    g = ``real`` and the ``pairs`` a + ib; ``back`` is the inverse of T. ``start`` (s,) extrapolates what is known at
+    the stages to the start of the step; the stages are predicted by those of the step before and by the last ``more``
+    of the step earlier (measured).
     """
 
     c: Reals
@@ -32,10 +31,9 @@ class Coefficients(NamedTuple):
 
 @cache
 def coefficients(stages: int) -> Coefficients:
-    """Return the coefficients for an odd number of stages.
-
-    The stages stand at the zeros of the Jacobi polynomial of the weight 1 - x, and at the end; their weights integrate
-    the polynomials up to degree s - 1 exactly, by Legendre's, which lose no digits (Hairer and Wanner 1996, IV.5).
+    """Return the coefficients for an odd number of stages. The stages stand at the zeros of the Jacobi polynomial of
+    the weight 1 - x, and at the end; their weights integrate the polynomials up to degree s - 1 exactly, by Legendre's,
+    which lose no digits (Hairer and Wanner 1996, IV.5).
     """
     points = np.append(roots_jacobi(stages - 1, 1.0, 0.0)[0], 1.0)
     values = legendre.legvander(points, stages - 1)

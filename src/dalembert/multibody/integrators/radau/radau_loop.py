@@ -76,7 +76,6 @@ def integrate(
     edges: Reals, settings: RadauSettings, models: SampleModels, start: MotionState, out: MotionStates, log: Log,
 ) -> tuple[int, float, int, float]:  # fmt: skip
     """Run one sample between ``edges`` (s): status, time reached, unknown that moved most, smallest error of a step.
-
     ``method`` are the coefficients. ``start`` (N + 1) and its derivatives ``dstates`` (directions, N + 1) are
     overwritten; ``out`` (times, N + 1) and ``dout`` (directions, times, N + 1) are filled at ``problem.times``. The
     rest is a workspace, which may be that of another sample before.

@@ -53,11 +53,10 @@ def _scaled(pair, h):
 
 @inner
 def correct_coordinates(n, size, method, matrices, h, b):
-    """Corrections of the stages' coordinates, multipliers and rates by the residuals ``motion`` and ``weighed``.
-
-    Along each eigenvector of D = A^-1 / h, with eigenvalue s: the system [M + C/s + K/s^2, J^T; J, 0]
-    (`docs/theory/radau.md`) for ``motion`` + s ``weighed``. Its solution is the correction of v' (``change_a``);
-    that of q' is 1/s times it, that of q 1/s^2 times it.
+    """Corrections of the stages' coordinates, multipliers and rates by the residuals ``motion`` and ``weighed``. Along
+    each eigenvector of D = A^-1 / h, with eigenvalue s: the system [M + C/s + K/s^2, J^T; J, 0]
+    (`docs/theory/radau.md`) for ``motion`` + s ``weighed``. Its solution is the correction of v' (``change_a``); that
+    of q' is 1/s times it, that of q 1/s^2 times it.
     """
     given, answer, change_x, change_u, change_a = b.given, b.answer, b.change_x, b.change_u, b.change_a
     pairs = method.pairs
@@ -156,12 +155,11 @@ def largest(n, scale, moves):
 
 @inner
 def converge(n, scale, method, matrices, model, damped, works, h, start, s, b, tolerance, speed, limit):
-    """Newton's iteration on the stages, which are given as predicted, with their integrals.
-
-    Answers whether it converged, iterations, last contraction, unknown that moved most, and the estimated error of
-    the step if there is a ``limit`` for it. Corrections end at ``tolerance`` times the way that the coordinates go in
-    the step, by ``speed`` (1/s) at least, in parts of their scales. It also ends where the estimated error is certain
-    to be larger than ``limit``.
+    """Newton's iteration on the stages, which are given as predicted, with their integrals. Answers whether it
+    converged, iterations, last contraction, unknown that moved most, and the estimated error of the step if there is a
+    ``limit`` for it. Corrections end at ``tolerance`` times the way that the coordinates go in the step, by ``speed``
+    (1/s) at least, in parts of their scales. It also ends where the estimated error is certain to be larger than
+    ``limit``.
     """
     size, count = len(start.x) - 1, len(method.c)
     before, norm, rate, worst = 0.0, 1.0, 1.0, 0
@@ -220,12 +218,11 @@ def converge(n, scale, method, matrices, model, damped, works, h, start, s, b, t
 
 @inner
 def estimate(n, scale, method, matrices, damped, h, start, s, b):
-    """Estimated error of a step, as a part of the scales: of coordinates, and of velocities, 1/s.
-
-    It is the difference to the method of the order of the stages that also weighs the rates at the start, by the
-    reciprocal of the real eigenvalue (Hairer and Wanner 1996, IV.8.18). Rates of the coordinates are the velocities
-    of the stages: ``u`` also holds the rounding of constraints over h, and viscous forces C would turn it into
-    velocities, C M^-1 times the rounding, whatever the step.
+    """Estimated error of a step, as a part of the scales: of coordinates, and of velocities, 1/s. It is the difference
+    to the method of the order of the stages that also weighs the rates at the start, by the reciprocal of the real
+    eigenvalue (Hairer and Wanner 1996, IV.8.18). Rates of the coordinates are the velocities of the stages: ``u`` also
+    holds the rounding of constraints over h, and viscous forces C would turn it into velocities, C M^-1 times the
+    rounding, whatever the step.
     """
     size, a = len(start.x) - 1, s.a
     real = method.real / h

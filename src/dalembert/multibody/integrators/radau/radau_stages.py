@@ -10,12 +10,10 @@ from dalembert.multibody.kernels.assembly import set_signals
 
 
 class Stages(NamedTuple):
-    """States of the stages, each array (stages, N + 1).
-
-    Rates ``u`` of the coordinates' polynomial and ``a`` of the velocities' one, from which follow what coordinates and
-    velocities are ahead of the start of the step, ``dx`` and ``dv``, and unknowns ``x`` and velocities ``v`` (the other
-    way round, rounding would be 1/h times as large in the rates); ``m`` holds the second multipliers in the places of
-    the first.
+    """States of the stages, each array (stages, N + 1). Rates ``u`` of the coordinates' polynomial and ``a`` of the
+    velocities' one, from which follow what coordinates and velocities are ahead of the start of the step, ``dx`` and
+    ``dv``, and unknowns ``x`` and velocities ``v`` (the other way round, rounding would be 1/h times as large in the
+    rates); ``m`` holds the second multipliers in the places of the first.
     """
 
     x: Reals2
@@ -28,10 +26,9 @@ class Stages(NamedTuple):
 
 
 class Buffers(NamedTuple):
-    """Residuals ``motion``, ``weighed`` and ``rate`` (stages, N + 1), corrections, some vectors.
-
-    ``change_x``, ``change_u`` and ``change_a`` are the corrections of coordinates (and multipliers), of their rates and
-    of the rates of the velocities, and before them the same along the eigenvectors of A.
+    """Residuals ``motion``, ``weighed`` and ``rate`` (stages, N + 1), corrections, some vectors. ``change_x``,
+    ``change_u`` and ``change_a`` are the corrections of coordinates (and multipliers), of their rates and of the rates
+    of the velocities, and before them the same along the eigenvectors of A.
     """
 
     motion: Reals2
@@ -124,10 +121,8 @@ def _extrapolation(c, h, before, earlier, more, nodes, weights):
 
 @inner
 def extrapolate(n, h, method, before, earlier, past, s, b, weights):
-    """Stages by the polynomial through those of the step before, and of the one earlier (0: without) in ``past``.
-
-    They took ``before`` and ``earlier`` seconds; ``weights`` (stages + 1,
-    2 stages) is workspace. The stages before are then
+    """Stages by the polynomial through those of the step before, and of the one earlier (0: without) in ``past``. They
+    took ``before`` and ``earlier`` seconds; ``weights`` (stages + 1, 2 stages) is workspace. The stages before are then
     in ``past``.
     """
     count = len(method.c)

@@ -36,10 +36,8 @@ def attempt(
     before: float, earlier: float, stale: bool, made: float, speed: float, new: MotionState, matrices: Matrices,
     scratch: RadauStep,
 ) -> tuple[int, float, float, float, int, float, int]:  # fmt: skip
-    """A step from ``new``, which moves if the step is good.
-
-    Status, step that the kept systems are for, error against the tolerance, largest velocity, iterations, contraction,
-    unknown that moved most.
+    """A step from ``new``, which moves if the step is good. Status, step that the kept systems are for, error against
+    the tolerance, largest velocity, iterations, contraction, unknown that moved most.
     """
     n, scale, h = problem.n, problem.scale, target - t
     s, past, b, weights, works = scratch.s, scratch.past, scratch.b, scratch.weights, scratch.works

@@ -19,10 +19,9 @@ _ENDS = 4  # of steps, through which outputs are interpolated
 
 
 class RadauSettings(NamedTuple):
-    """What the compiled loop needs of `RadauIIA`.
-
-    ``step`` 0: chosen by the error; ``damped``: whether forces may be; ``slow``: velocity in parts of the scales, 1/s,
-    that errors of velocities are relative to, if it is less than the largest velocity of the motion.
+    """What the compiled loop needs of `RadauIIA`. ``step`` 0: chosen by the error; ``damped``: whether forces may be;
+    ``slow``: velocity in parts of the scales, 1/s, that errors of velocities are relative to, if it is less than the
+    largest velocity of the motion.
     """
 
     step: float

@@ -33,13 +33,12 @@ class Sample(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Batch:
-    """Samples of one structure, with what every integrator needs of them before its first step.
-
-    ``perturbed``: the model along each direction of differentiation; empty if there is more than one sample;
-    ``problem``: with the smooth stretches of each sample's motion; ``end``: s; ``logged``: keep what happened at each
-    step; ``states`` (samples, N + 1): at the start; integrators may overwrite them; ``dstates`` (directions, N + 1):
-    derivatives of the states at the start; integrators may overwrite them; ``counters``: one a sample, of the turns of
-    angles; empty if none are counted.
+    """Samples of one structure, with what every integrator needs of them before its first step. ``perturbed``: the
+    model along each direction of differentiation; empty if there is more than one sample; ``problem``: with the smooth
+    stretches of each sample's motion; ``end``: s; ``logged``: keep what happened at each step; ``states``
+    (samples, N + 1): at the start; integrators may overwrite them; ``dstates`` (directions, N + 1): derivatives of the
+    states at the start; integrators may overwrite them; ``counters``: one a sample, of the turns of angles; empty if
+    none are counted.
     """
 
     samples: Sequence[Lowered]

@@ -73,10 +73,9 @@ def accelerate(
     dstates: MotionStates,
     c: Consistency,
 ) -> bool:
-    """Accelerations and multipliers that satisfy the equations of motion, and their derivatives.
-
-    Where the problem says so, the velocities are first moved onto the constraints, by the smallest kinetic energy:
-    v - w with M w + J^T m = 0 and J w = rate of the constraints.
+    """Accelerations and multipliers that satisfy the equations of motion, and their derivatives. Where the problem says
+    so, the velocities are first moved onto the constraints, by the smallest kinetic energy: v - w with M w + J^T m = 0
+    and J w = rate of the constraints.
     """
     n = problem.n
     delta, answer, rate, w = c.vectors[0], c.vectors[1], c.vectors[2], c.vectors[3]

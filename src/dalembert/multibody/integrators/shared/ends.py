@@ -74,11 +74,10 @@ def support(e):
 
 @inner
 def weigh_ends(e, oldest, t, weights):
-    """Weights of the ends' data in the state at ``t``, (4, ends, 3).
-
-    Those of coordinates, velocities and accelerations in the same three, by Hermite's interpolation: with l the cube of
-    Lagrange's polynomial of an end and D, E its logarithmic derivatives there, the basis is l (1 - D x + (D^2 - E)
-    x^2 / 2), l (x - D x^2) and l x^2 / 2. Behind them stand Lagrange's polynomials, for the multipliers.
+    """Weights of the ends' data in the state at ``t``, (4, ends, 3). Those of coordinates, velocities and accelerations
+    in the same three, by Hermite's interpolation: with l the cube of Lagrange's polynomial of an end and D, E its
+    logarithmic derivatives there, the basis is l (1 - D x + (D^2 - E) x^2 / 2), l (x - D x^2) and l x^2 / 2. Behind
+    them stand Lagrange's polynomials, for the multipliers.
     """
     for j in range(oldest, len(e.times)):
         ell, slope, bend, first, second = 1.0, 0.0, 0.0, 0.0, 0.0

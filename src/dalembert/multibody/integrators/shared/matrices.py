@@ -24,10 +24,9 @@ from dalembert.multibody.model.structure import Structure
 
 
 class Pattern(NamedTuple):
-    """Where the entries of the matrix of motion stand: in a list, in a real system and in a complex one.
-
-    The complex system A + iB stands as the real one [A, -B; B, A], whose blocks' places are ``double`` (4, entries).
-    ``varies`` says whether masses may change with the coordinates.
+    """Where the entries of the matrix of motion stand: in a list, in a real system and in a complex one. The complex
+    system A + iB stands as the real one [A, -B; B, A], whose blocks' places are ``double`` (4, entries). ``varies``
+    says whether masses may change with the coordinates.
     """
 
     slots: Integers
@@ -50,12 +49,11 @@ class Doubles(NamedTuple):
 
 
 class Matrices(NamedTuple):
-    """Values of the entries of a pattern, and factorised systems.
-
-    ``mass``, ``damping`` and ``stiffness`` are the derivatives of the equations of motion by accelerations, velocities
-    and coordinates; with the stiffness stand those of the constraints and by the multipliers. ``rigid`` is factorised
-    [M, J^T; J, 0], ``real`` and ``doubles`` are [M + C/s + K/s^2, J^T; J, 0] for a real s and for complex ones.
-    ``heavy`` are the numbers of the entries that have a mass, as many as its last entry says.
+    """Values of the entries of a pattern, and factorised systems. ``mass``, ``damping`` and ``stiffness`` are the
+    derivatives of the equations of motion by accelerations, velocities and coordinates; with the stiffness stand those
+    of the constraints and by the multipliers. ``rigid`` is factorised [M, J^T; J, 0], ``real`` and ``doubles`` are
+    [M + C/s + K/s^2, J^T; J, 0] for a real s and for complex ones. ``heavy`` are the numbers of the entries that have a
+    mass, as many as its last entry says.
     """
 
     pattern: Pattern

@@ -17,10 +17,8 @@ from dalembert.multibody.model.turns import count_turns
 
 class Outputs(NamedTuple):
     """Work of outputs: ends of the last steps, a state between them and its derivative, weights (4, ends, 3), calls.
-
-    ``moved`` and ``complex_state`` are workspace, see `settle_along`. ``along``: address of `record_along`,
-    0 if there are
-    no directions.
+    ``moved`` and ``complex_state`` are workspace, see `settle_along`. ``along``: address of `record_along`, 0 if there
+    are no directions.
     """
 
     last: Ends

@@ -22,12 +22,11 @@ _CLOSED = 1e-9  # correction against the scale after which a quadratic iteration
 
 
 class Partition(NamedTuple):
-    """Which coordinates depend on which constraints, and the work of solving for them.
-
-    ``columns`` (n,) and ``rows`` (m,): coordinates and constraints in the order of their pivots; the first ``rank[0]``
-    of them are the dependent coordinates and the independent constraints. ``matrix``: the constraint Jacobian in the
-    dense layout of the problem. ``pivots`` (m, n): what elimination leaves. ``dependent``: inverse of the dependent
-    part. ``along``: address of the kernel for derivatives of a settled state, 0 if there are none.
+    """Which coordinates depend on which constraints, and the work of solving for them. ``columns`` (n,) and ``rows``
+    (m,): coordinates and constraints in the order of their pivots; the first ``rank[0]`` of them are the dependent
+    coordinates and the independent constraints. ``matrix``: the constraint Jacobian in the dense layout of the problem.
+    ``pivots`` (m, n): what elimination leaves. ``dependent``: inverse of the dependent part. ``along``: address of the
+    kernel for derivatives of a settled state, 0 if there are none.
     """
 
     columns: Integers
@@ -196,10 +195,9 @@ def settle(
     dstates: MotionStates,
     work: Address, complex_work: Address, complex_state: Complexes2, partition: Partition,
 ) -> bool:  # fmt: skip
-    """Make the dependent entries of a state satisfy the constraints, and those of its derivatives along directions.
-
-    The independent entries stay as they are. ``levels``: `POSITION`, `VELOCITY` or `ACCELERATION`, each with those
-    before it. ``complex_state``: complex work (5, N + 1). Whether the constraints could be satisfied.
+    """Make the dependent entries of a state satisfy the constraints, and those of its derivatives along directions. The
+    independent entries stay as they are. ``levels``: `POSITION`, `VELOCITY` or `ACCELERATION`, each with those before
+    it. ``complex_state``: complex work (5, N + 1). Whether the constraints could be satisfied.
     """
     n = problem.n
     set_signals(models.real, t, within, work)

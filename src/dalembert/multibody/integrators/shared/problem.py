@@ -24,12 +24,11 @@ class Reduced(NamedTuple):
 
 
 class IntegrationProblem(NamedTuple):
-    """What does not change from sample to sample: sizes, scales, where matrix entries go, times.
-
-    ``n`` coordinates; ``scale`` (N + 1,); ``exact_slots`` and ``exact_layout`` of a full matrix that is renewed often;
-    ``times`` of the output; ``reduced``: the reduced system. ``edges`` (samples, -) of the smooth stretches of
-    motion, and how many ``stretches`` each sample has. ``projected``: whether velocities are moved onto the constraints
-    wherever accelerations are solved for.
+    """What does not change from sample to sample: sizes, scales, where matrix entries go, times. ``n`` coordinates;
+    ``scale`` (N + 1,); ``exact_slots`` and ``exact_layout`` of a full matrix that is renewed often; ``times`` of the
+    output; ``reduced``: the reduced system. ``edges`` (samples, -) of the smooth stretches of motion, and how many
+    ``stretches`` each sample has. ``projected``: whether velocities are moved onto the constraints wherever
+    accelerations are solved for.
     """
 
     n: int

@@ -19,12 +19,10 @@ from dalembert.multibody.model.lowered import Lowered, scales
 
 @dataclass(frozen=True)
 class Run:
-    """What a run of an integrator left.
-
-    ``reason``: why the run ended early; ``times`` (samples,); ``states`` (samples, N + 1); ``derivatives`` (directions,
-    samples, N + 1); ``counts`` (4,): steps, Newton iterations, factorisations, rejected steps; ``iterations``,
-    ``ends``: Newton iterations of each step, and the step's end, s; ``turns`` (samples, angles): whole turns of the
-    angles that were counted.
+    """What a run of an integrator left. ``reason``: why the run ended early; ``times`` (samples,); ``states``
+    (samples, N + 1); ``derivatives`` (directions, samples, N + 1); ``counts`` (4,): steps, Newton iterations,
+    factorisations, rejected steps; ``iterations``, ``ends``: Newton iterations of each step, and the step's end, s;
+    ``turns`` (samples, angles): whole turns of the angles that were counted.
     """
 
     reason: SolveError | None

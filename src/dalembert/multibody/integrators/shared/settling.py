@@ -100,9 +100,8 @@ def largest(values, begin, end):
 
 @inner
 def balanced(model, n, state, work, f, unheld, at, still):
-    """Whether what is left of the equations of motion is rounding against their forces, as of a mechanism at rest.
-
-    Its accelerations are nothing but rounding, so that no correction is small against them. Forces without those of the
+    """Whether what is left of the equations of motion is rounding against their forces, as of a mechanism at rest. Its
+    accelerations are nothing but rounding, so that no correction is small against them. Forces without those of the
     joints show it at rest, those at zero velocity where a drive turns steadily against its dampers. ``f`` is what is
     left, the other vectors (N + 1,) are workspace.
     """
@@ -125,9 +124,8 @@ def settle(
     work: Address,
     first: int,
 ) -> bool:
-    """Accelerations and multipliers of a state; if ``first`` says so, coordinates and velocities are moved before.
-
-    The signals in ``work`` hold the time. ``moved`` (6, N + 1) are the moves of coordinates and velocities with their
+    """Accelerations and multipliers of a state; if ``first`` says so, coordinates and velocities are moved before. The
+    signals in ``work`` hold the time. ``moved`` (6, N + 1) are the moves of coordinates and velocities with their
     multipliers, and workspace. Answers whether the iteration converged.
     """
     n, last = problem.n, len(state.x) - 1

@@ -93,6 +93,13 @@ def test_outputs_between_steps_satisfy_the_constraints_too_and_change_no_step():
     np.testing.assert_array_equal(end(system, solver, ANGLES), steps.channels(ANGLES)[-1])
 
 
+def test_the_rule_integrates_accelerations_twice():
+    """With u = 1 at the one node of degree 2: q = s^2 / 2, v = s and a = 1 at the Gauss points s."""
+    rule, points = make_rule(2, 2), 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3)
+    for shapes, point in zip(rule.shapes, points, strict=True):
+        np.testing.assert_allclose(shapes.ravel(), [point**2 / 2, point, 1.0], rtol=1e-14)
+
+
 @pytest.mark.parametrize(("degree", "points"), [(2, 2), (3, 2), (3, 4)])
 @pytest.mark.parametrize(
     ("minimiser", "tolerance"),

@@ -7,7 +7,7 @@ from correlated_noise import autoregressive, exponential, left, polynomials, ser
 from dalembert.inverse.experiments.experiment import Experiment
 from dalembert.inverse.experiments.experiments import joint
 from dalembert.inverse.noise.correlation.series import Series, even_grid, series_of
-from dalembert.inverse.noise.correlation.whiteness import p_value
+from dalembert.inverse.noise.correlation.whiteness import p_value, p_value_of_period
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import pose
 from small_models import DECAY, measured
@@ -93,3 +93,11 @@ def test_each_channel_of_each_experiment_is_a_series():
     for own in found:
         np.testing.assert_allclose(together.values.ravel()[own.rows], data.values[:, 0])
         np.testing.assert_allclose(own.along, data.coordinate.values)
+
+
+def test_a_period_is_seen_and_white_noise_is_taken_for_one_as_often_as_the_level_says():
+    assert p_value_of_period(np.cos(np.arange(64.0))) < 1e-9
+    rng = np.random.default_rng(0)
+    values = np.array([p_value_of_period(rng.standard_normal(64)) for _ in range(2000)])
+    for level in (0.02, 0.1, 0.5):
+        assert abs(np.mean(values < level) - level) < 4 * np.sqrt(level * (1 - level) / 2000)

@@ -37,8 +37,7 @@ QUANTITIES = {
 
 
 def size_label(kind: str) -> str:
-    """What a kind of amplitude is called on an axis.
-
+    """Return the name of a kind of amplitude on an axis.
     >>> size_label("peak"), size_label("rms"), size_label("harmonic 1")
     ('amplitude', 'rms', 'amplitude of harmonic 1')
     """
@@ -47,7 +46,6 @@ def size_label(kind: str) -> str:
 
 def quantity(channel: str, unit: str = "") -> str:
     """Return the axis label of a channel, with ``unit`` where its name does not determine one.
-
     >>> quantity("AB.end.x"), quantity("gauge 7", "V"), quantity("A.rx harmonic 1")
     ('position (m)', 'response (V)', 'amplitude of harmonic 1 (rad)')
     """
@@ -79,11 +77,7 @@ def _known(channel: str, unit: str) -> tuple[str, str]:
 
 
 def common(labels: Iterable[Label], otherwise: Label) -> Label:
-    """The label that all have, such as that of an axis that they share; another one where they differ.
-
-    >>> common(["angle (rad)", "angle (rad)"], "response"), common(["angle (rad)", "torque (N m)"], "response")
-    ('angle (rad)', 'response')
-    """
+    """Return the label that all have, such as that of an axis that they share; ``otherwise`` where they differ."""
     known = set(labels)
     return known.pop() if len(known) == 1 else otherwise
 

@@ -7,7 +7,6 @@ import numpy as np
 
 class Range(NamedTuple):
     """Range of a number, of which the limits ``above`` and ``below`` are no part.
-
     >>> [0 in POSITIVE, 0 in NOT_NEGATIVE, -0.5 in Range(above=-1.0, most=0.0)]
     [False, True, True]
     >>> f"{POSITIVE}; {Range(least=1.0)}; {Range(above=-1.0, below=0.5)}"

@@ -19,9 +19,6 @@ SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 def shown(value: float | None, deviation: float | None = None, digits: int = 6) -> str:
     """Return the text of a number. With its standard ``deviation``, it ends with the second digit of that; otherwise it
     has ``digits`` significant digits, trailing zeros dropped.
-
-    >>> shown(0.78539816, 1.2e-5), shown(2e8, 3e5), shown(41), shown(1.65e-8), shown(float("nan"))
-    ('0.785398', '2.0000 × 10⁸', '41', '1.65 × 10⁻⁸', '–')
     """
     if value is None or math.isnan(value):
         return "–"
@@ -84,7 +81,6 @@ SMALLEST = {"m": (-9, 0), "N": (0, 6), "J": (-9, 6)}
 
 def prefixed(largest: float, unit: str) -> tuple[float, str]:
     """Return the factor from a unit to one in which the largest of some values lies between 1 and 1000, and its name.
-
     >>> prefixed(2.5e-5, "m"), prefixed(1200.0, "N"), prefixed(3e-5, "rad"), prefixed(1e4, "m")
     ((1000000.0, 'µm'), (0.001, 'kN'), (1.0, 'rad'), (1.0, 'm'))
     """

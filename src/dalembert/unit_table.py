@@ -134,7 +134,6 @@ _POWER = re.compile(r"(?:\s*(?:\^|\*\*)\s*)?([+-]?\d(?:\.\d)?)(?!\d|\.)")
 @cache
 def readings(text: str) -> tuple[Unit, ...]:
     """Return the units that a text may be, the usual one first; none if it is no product of powers of known units.
-
     >>> [unit.factor for unit in readings("g")], readings("potato")
     ([0.001, 9.80665], ())
     """

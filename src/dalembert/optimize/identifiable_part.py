@@ -33,22 +33,16 @@ class IdentifiablePart:
 def identifiable_part(
     problem: SumOfSquares, x: np.ndarray, residual: np.ndarray, slopes: np.ndarray, fall: float = 0.0
 ) -> IdentifiablePart:
-    """Return slopes without the directions that the data do not identify.
+    """Return slopes without the directions that the data do not identify; with all of them if the disturbance of the
+    ``problem`` is not known. ``x`` (parameters,); ``residual`` (values,); ``slopes`` (values, parameters): relative to
+    one unit a parameter; ``fall``: last fall of the sum of squares.
 
-    ``problem``: all directions are kept if its disturbance is not known.
-    ``x`` (parameters,).
-    ``residual`` (values,).
-    ``slopes`` (values, parameters): relative to one unit a parameter.
-    ``fall``: last fall of the sum of squares.
-
-    Notes
-    -----
-    With u s vᵀ a part of the singular value decomposition of slopes · widths, noise of variance σ² = ‖r‖²/(values −
-    parameters) moves the minimum along v by σ/s widths, and an error e by uᵀe/s. A direction is not identifiable if the
-    root of the sum of both squares exceeds the standard deviation of a uniform distribution between the bounds. It is
-    left out if noise and error explain both ``fall`` and the foreseen fall (uᵀr)² along it, which are then below
-    4 σ² + 4 (uᵀe)², or σ² + 4 (uᵀe)² if the residuals are not white: the point is as likely as the minimum. Directions
-    along which the bounds are farther than the standard deviation are kept, however small their singular values are.
+    With u s vᵀ a part of the singular value decomposition of slopes · widths, noise of variance
+    σ² = ‖r‖²/(values − parameters) moves the minimum along v by σ/s widths, and an error e by uᵀe/s. A direction is not
+    identifiable if the root of the sum of both squares exceeds the standard deviation of a uniform distribution between
+    the bounds. It is left out if noise and error explain both ``fall`` and the foreseen fall (uᵀr)² along it, which are
+    then below 4 σ² + 4 (uᵀe)², or σ² + 4 (uᵀe)² if the residuals are not white: the point is as likely as the minimum.
+    Directions along which the bounds are farther than the standard deviation are kept, whatever their singular values.
     """
     freedom = int(np.count_nonzero(residual)) - len(x)
     if problem.disturbance is None or freedom <= 0:

@@ -10,10 +10,8 @@ from dalembert.optimize.tikhonov import Regularised
 
 @dataclass(frozen=True, eq=False)
 class LinearModel:
-    """Residuals r + S d of a step d with down ≤ d ≤ up.
-
-    What meets a bound stays there, and the others are chosen anew: clipped, the free step (3, 2) would be (3, 1).
-
+    """Residuals r + S d of a step d with down ≤ d ≤ up. What meets a bound stays there, and the others are chosen anew:
+    clipped, the free step (3, 2) would be (3, 1).
     >>> slopes = np.array([[2.0, 1.0], [1.0, -1.0]])
     >>> model = LinearModel(np.array([-8.0, -1.0]), slopes, np.full(2, -9.0), np.array([9.0, 1.0]))
     >>> model.step(0.0).round(12).tolist()

@@ -107,8 +107,7 @@ class Minimum:
 
 
 def misfits(objective: Objective, points: np.ndarray) -> np.ndarray:
-    """Misfit of a batch, shape (batch,), with every failed sample infinitely bad.
-
+    """Return the misfit of a batch, shape (batch,), with every failed sample infinitely bad.
     >>> misfits(lambda x: np.array([1.0, np.nan, -np.inf]), np.zeros((3, 2)))
     array([ 1., inf, inf])
     """

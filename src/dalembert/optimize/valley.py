@@ -17,14 +17,11 @@ DAMPING, LEAST = 1e-3, 1e-16  # squared damping at first and at least, relative 
 def follow_valley(path: SearchPath, start: np.ndarray, stopping: Stopping, shortest: float) -> NoReturn:
     """Descend from ``start`` (parameters,) along a valley; the exception says why the descent ended.
 
-    Notes
-    -----
     A step d = v + a/2 follows the geodesic on the surface of responses to second order: with slopes S, residuals r and
     damping μ, (SᵀS + μ²) v = −Sᵀr and (SᵀS + μ²) a = −Sᵀr″, where r″ is the second derivative of r along v. It comes
     from one more residual: r″ ≈ 2/h ((r(x + h v) − r)/h − S v). Steps that bend more than they lead are shortened.
     Parameters are scaled by the largest norms of their columns so far. A step may go uphill where it leads on along the
     valley: (1 − cos β) ‖r(x + d)‖² must not exceed the least sum of squares, with the angle β between v and the last v.
-
     Source: M. K. Transtrum, J. P. Sethna, Improvements to the Levenberg-Marquardt algorithm for nonlinear least-squares
     minimization, arXiv:1201.5885 (2012).
     """

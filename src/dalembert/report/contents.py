@@ -32,8 +32,7 @@ def provenance(facts: Mapping[str, Any], study: str | None) -> list[Section]:
 
 
 def _worded(value: Any) -> str:
-    """A setting as people write it.
-
+    """Return a setting as people write it.
     >>> _worded(True), _worded(None), _worded(["low", "high"]), _worded([0.08, 0.32]), _worded(1e-10)
     ('yes', 'none', 'low, high', '0.08, 0.32', '1e-10')
     """

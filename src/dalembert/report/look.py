@@ -69,10 +69,8 @@ def dark(figure: go.Figure) -> go.Figure:
 def themed(
     figure: go.Figure, title: str = "", height: int = 420, *, x: Axis = "", y: Axis | Sequence[Axis] = "", **layout: Any
 ) -> go.Figure:
-    """Return the figure in our look, with its title and those of its axes.
-
-    ``height``: pixels; ``x``, ``y``: title of an axis, or its settings. Of rows below each other, ``y`` has one entry
-    for each row, and ``x`` belongs to the lowest. ``layout``: further settings of the layout.
+    """Return the figure in our look, with its title and those of its axes. ``height``: pixels; ``x``, ``y``: title of
+    an axis, or its settings. Of rows below each other, ``y`` has one entry each, and ``x`` belongs to the lowest.
     """
     rows = [y] if isinstance(y, str | Mapping) else y
     for row, axis in enumerate(rows, start=1):

@@ -13,10 +13,9 @@ Kind = TypeVar("Kind")
 
 @dataclass(frozen=True)
 class ReportOptions:
-    """The options of a report: what it shows with a result.
-
-    ``supplements``: other results, mappings of str to results (one for each experiment), and sections; ``notes``:
-    paragraphs; ``study``: text of the study file; ``findings``: about the run, before those of the result.
+    """What a report shows with a result. ``supplements``: other results, mappings of str to results (one for each
+    experiment), and sections; ``notes``: paragraphs; ``study``: text of the study file; ``findings``: about the run,
+    before those of the result.
     """
 
     supplements: tuple[Any, ...] = ()
@@ -33,8 +32,7 @@ class ReportOptions:
     """Results beside that a section shows."""
 
     def each(self, kind: type[Kind]) -> dict[str, Kind]:
-        """Results of a kind by the names of their experiments; by no name where there is only one.
-
+        """Return results of a kind by the names of their experiments; by no name where there is only one.
         >>> options = ReportOptions((3, {"warm": 1.0, "cold": 2.0}))
         >>> options.each(int), options.each(float)
         ({'': 3}, {'warm': 1.0, 'cold': 2.0})

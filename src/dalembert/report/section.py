@@ -160,8 +160,7 @@ def by_name(tables: Iterable[Table]) -> dict[str, list[Table]]:
 
 
 def numbered(name: str, by_experiment: Mapping[str, Shown]) -> Iterator[tuple[str, str, Shown]]:
-    """Name of a figure's place, name of the experiment, and what was given for it.
-
+    """Yield the name of a figure's place, the name of the experiment, and what was given for it.
     >>> list(numbered("mechanism", {"": 3})), list(numbered("mechanism", {"warm": 3}))
     ([('mechanism', '', 3)], [('mechanism-1', 'warm', 3)])
     """

@@ -23,9 +23,7 @@ def thinned(along: np.ndarray, values: np.ndarray, most: int = 4000) -> tuple[np
 
 
 def largest_of_stretches(times: np.ndarray, values: np.ndarray, most: int = 200) -> tuple[np.ndarray, np.ndarray]:
-    """Return the ends of at most ``most`` stretches of a series (samples,), and the largest value of each; NaN where
-    all are NaN.
-
+    """Return ends of at most ``most`` stretches of a series (samples,) and their largest values, NaN where all are NaN.
     >>> largest_of_stretches(np.arange(6.0), np.array([1.0, 5.0, 2.0, np.nan, 3.0, 4.0]), most=3)
     (array([1., 3., 5.]), array([5., 2., 4.]))
     """

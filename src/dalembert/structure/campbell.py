@@ -33,10 +33,8 @@ class SpeedModes(NamedTuple):
 
 
 class CriticalSpeed(NamedTuple):
-    """A speed at which a mode has the frequency of the rotation.
-
-    ``speed``: rad/s, interpolated between the speeds of the diagram; ``mode``: its number, from 1 on; ``direction``:
-    ``"forward"``, ``"backward"`` or ``""``.
+    """A speed at which a mode has the frequency of the rotation. ``speed``: rad/s, interpolated between the speeds of
+    the diagram; ``mode``: its number, from 1 on; ``direction``: ``"forward"``, ``"backward"`` or ``""``.
     """
 
     speed: float
@@ -207,10 +205,9 @@ def direction(whirl: float) -> str:
 
 
 def followed(modes: Sequence[SpeedModes], count: int | None) -> tuple[np.ndarray, np.ndarray]:
-    """Return roots and whirl (speeds, modes) with each mode in one column, followed from the highest speed down.
-
-    Modes of neighbouring speeds are paired by their shapes and their roots: 1 - MAC plus the relative distance of the
-    roots. At the highest speed they are in the order of their frequencies.
+    """Return roots and whirl (speeds, modes) with each mode in one column, followed from the highest speed down. Modes
+    of neighbouring speeds are paired by their shapes and their roots: 1 - MAC plus the relative distance of the roots.
+    At the highest speed they are in the order of their frequencies.
     """
     from scipy.optimize import linear_sum_assignment  # mechanisms that do not rotate start without it
 

@@ -10,10 +10,9 @@ _NEUTRAL = 1e-7
 
 
 class ComplexModes(NamedTuple):
-    """Roots and shapes of M z'' + C z' + K z = 0, with z = phi exp(lambda t).
-
-    ``roots`` (modes,): 1/s, with positive imaginary parts, in ascending order of these; ``shapes`` (freedoms, modes);
-    ``growth``: largest real part of all roots, also of those that do not oscillate, 1/s; 0 if it is rounding.
+    """Roots and shapes of M z'' + C z' + K z = 0, with z = phi exp(lambda t). ``roots`` (modes,): 1/s, with positive
+    imaginary parts, in ascending order of these; ``shapes`` (freedoms, modes); ``growth``: largest real part of all
+    roots, also of those that do not oscillate, 1/s; 0 if it is rounding.
     """
 
     roots: np.ndarray
@@ -22,10 +21,8 @@ class ComplexModes(NamedTuple):
 
 
 def complex_modes(mass: np.ndarray, damping: np.ndarray, stiffness: np.ndarray) -> ComplexModes:
-    """Return the oscillating modes of a system with any matrices, of a regular mass matrix.
-
-    The state is (z, z'/s) with s = sqrt(|M^-1 K|) or |M^-1 C|: roots of zero are then rounded in proportion to the
-    largest root, not to its square.
+    """Return the oscillating modes of a system with any matrices, that of the mass regular. The state is (z, z'/s) with
+    s = sqrt(|M^-1 K|) or |M^-1 C|: roots of zero are then rounded in proportion to the largest root, not its square.
     """
     size = len(mass)
     if size == 0:
@@ -42,11 +39,10 @@ def complex_modes(mass: np.ndarray, damping: np.ndarray, stiffness: np.ndarray) 
 
 
 def whirl(shapes: np.ndarray, mass: np.ndarray, turn: np.ndarray) -> np.ndarray:
-    """Return in which direction modes whirl, (modes,): 1 forward, -1 backward, 0 along a line.
-
-    A shape that whirls forward on circles lags by a quarter of a turn behind itself turned by 90 degrees about the
-    axis, J phi = i phi. So the direction is Im(phi^H M J phi) / (phi^H M phi), which weighs bodies by their inertia.
-    ``shapes`` (freedoms, modes): complex; ``mass``, ``turn`` (freedoms, freedoms): M and M J.
+    """Return in which direction modes whirl, (modes,): 1 forward, -1 backward, 0 along a line. A shape that whirls
+    forward on circles lags by a quarter of a turn behind itself turned by 90 degrees about the axis, J phi = i phi. So
+    the direction is Im(phi^H M J phi) / (phi^H M phi), which weighs bodies by their inertia. ``shapes``
+    (freedoms, modes): complex; ``mass``, ``turn`` (freedoms, freedoms): M and M J.
     """
     spin = np.imag(np.einsum("im,ij,jm->m", shapes.conj(), (turn - turn.T) / 2, shapes))
     size = np.real(np.einsum("im,ij,jm->m", shapes.conj(), mass, shapes))

@@ -16,10 +16,9 @@ SINGULAR = 1e-13
 
 
 def factorise(matrix: Any, what: str, advice: str = "; clamp it") -> Callable[[np.ndarray], np.ndarray]:
-    """The solution of ``matrix @ x = b`` as a function of b, of shape (n,) or (n, columns).
-
-    ``matrix`` (n, n): symmetric, as rows and columns are reordered together to keep the factors sparse; ``what`` and
-    ``advice``: its name in the error, and the end of that sentence.
+    """Return the solution of ``matrix @ x = b`` as a function of b, of shape (n,) or (n, columns). ``matrix`` (n, n):
+    symmetric, as rows and columns are reordered together to keep the factors sparse; ``what``, ``advice``: its name in
+    the error, and the end of that sentence.
     """
     singular = f"{what} is singular: the structure, or a part of it, moves without being held{advice}"
     if not issparse(matrix):

@@ -15,7 +15,6 @@ def code_text(text: str) -> ui.html:
 
 def code_html(text: str) -> str:
     """Return a sentence as HTML.
-
     >>> code_html("Write `start = 1` where a < b.")
     'Write <code>start = 1</code> where a &lt; b.'
     """
@@ -24,7 +23,6 @@ def code_html(text: str) -> str:
 
 def plain_text(text: str) -> str:
     """Return a sentence for places that show no code: names in quotes.
-
     >>> plain_text("Write `start = 1`.")
     "Write 'start = 1'."
     """

@@ -18,8 +18,7 @@ from dalembert.study.run.folder import RunFolder
 
 
 def _rgb(colour: str) -> str:
-    """A colour as browsers write it.
-
+    """Return a colour as browsers write it.
     >>> _rgb("#0069ab")
     'rgb(0, 105, 171)'
     """
@@ -260,9 +259,8 @@ class _Complaints(ContextDecorator):
 
 
 def complaints(action: Hashable = None) -> _Complaints:
-    """Return a block, which decorates functions and coroutine functions too, whose errors are shown as messages.
-
-    A message is taken away when the same action is done again: what the block decorates, or whatever has the same
+    """Return a block, which decorates functions and coroutine functions too, whose errors are shown as messages. A
+    message is taken away when the same action is done again: what the block decorates, or whatever has the same
     ``action``, such as its name.
     """
     return _Complaints(action)

@@ -22,11 +22,10 @@ Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 
 @dataclass(frozen=True)
 class Guard:
-    """Lets through what may be requested, pages and sockets alike.
-
-    A page of another site cannot reach the studio through its user's browser: the host and the origin that the browser
-    names must be the studio's own (a name that was made to point here is refused, too). Beyond this machine a token is
-    needed as well, once in the address, then as a cookie; none is needed if ``token`` is empty.
+    """Lets through what may be requested, pages and sockets alike. A page of another site cannot reach the studio
+    through its user's browser: the host and the origin that the browser names must be the studio's own (a name that was
+    made to point here is refused, too). Beyond this machine a token is needed as well, once in the address, then as a
+    cookie; none is needed if ``token`` is empty.
     """
 
     app: Callable[[Scope, Receive, Send], Awaitable[None]]

@@ -91,8 +91,7 @@ class Job:
 
 
 def ending(code: int) -> str:
-    """How a process ended, from its exit code.
-
+    """Return how a process ended, from its exit code.
     >>> ending(-9), ending(3)
     ('by the signal SIGKILL', 'with code 3')
     """

@@ -56,12 +56,7 @@ class Kept:
         self._things.pop(kind, None)
 
     def newest(self, kind: str, source: Hashable, make: Callable[[], T]) -> T:
-        """Return the thing made of a source, made anew if the last one of its kind was made of another source.
-
-        >>> kept = Kept()
-        >>> [kept.newest("square", n, lambda: [n * n]) for n in (2, 3)]
-        [[4], [9]]
-        """
+        """Return the thing made of a source, made anew if the last one of its kind was made of another source."""
         if kind not in self._things or self._things[kind][0] != source:
             self._things.pop(kind, None)  # before the new one is made: there may be no room for both
             self._things[kind] = source, make()

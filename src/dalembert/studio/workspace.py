@@ -131,11 +131,7 @@ class Workspace:
 
 
 def checked(name: str) -> str:
-    """Return the name with composed characters, if a study, a file or a run may have it.
-
-    >>> checked("Pendel (2) für 50 %")
-    'Pendel (2) für 50 %'
-    """
+    """Return the name with composed characters; raise InputError if no study, file or run may have it."""
     name = unicodedata.normalize("NFC", name)
     if not (NAME.fullmatch(name) and name.isprintable() and len(name.encode()) <= LONGEST):
         raise InputError(

@@ -25,7 +25,6 @@ def channel_units(study: Study) -> dict[str, str]:
 
 def grouped(names: Iterable[str]) -> Iterator[str]:
     """Yield lines on channels, one for each group of points or components with the same quantities.
-
     >>> print(*grouped(["OA.start.x", "OA.start.y", "OA.end.x", "OA.end.y", "A.gap", "system.energy"]), sep="\\n")
     6 channels, NAME.QUANTITY:
       OA.start, OA.end: x, y

@@ -54,7 +54,6 @@ def write(folder: Path) -> Path:
 @cache
 def task_names() -> tuple[str, ...]:
     """Return the names of the tasks that there are, as the schema has them.
-
     >>> "identify" in task_names(), "model" in task_names()
     (True, False)
     """

@@ -21,8 +21,7 @@ def source_lines(study: Study) -> Iterator[str]:
 
 
 def _units(data: "Measurements") -> str:
-    """The units in which channels were read.
-
+    """Return the units in which channels were read, in a sentence.
     >>> from dalembert.data import Measurements
     >>> _units(Measurements((0.0, 1.0), ("a.x", "a.y"), [[0, 1], [2, 3]], source_units={"a.x": "mm", "time": "ms"}))
     'Units: time in ms, a.x in mm; no unit is given for a.y, read in SI units'

@@ -7,11 +7,9 @@ import numpy as np
 
 
 def chebyshev(eta: np.ndarray, degrees: np.ndarray, derivative: int = 0) -> list[np.ndarray]:
-    """Return T_0 … T_m of each coordinate, or their first or second derivatives: a list of d arrays of shape
-    (n, m_k + 1).
-
-    By the recurrences T_{m+1} = 2η T_m − T_{m−1} and its derivatives, T'_{m+1} = 2 T_m + 2η T'_m − T'_{m−1} and so on.
-    ``eta`` (n, d); ``degrees`` (d,): highest degree m_k of each direction.
+    """Return T_0 … T_m of each coordinate of ``eta`` (n, d), or their first or second derivatives: a list of d arrays
+    of shape (n, m_k + 1), by the highest degrees m_k in ``degrees`` (d,). By the recurrences T_{m+1} = 2η T_m − T_{m−1}
+    and its derivatives, T'_{m+1} = 2 T_m + 2η T'_m − T'_{m−1} and so on.
     """
     return [_ladder(eta[:, k], int(degree), derivative) for k, degree in enumerate(degrees)]
 
@@ -41,8 +39,7 @@ def products(factors: list[np.ndarray], exponents: np.ndarray) -> np.ndarray:
 
 
 def roots(number: int) -> np.ndarray:
-    """Roots of T_number in [−1, 1], ascending and symmetric to the last bit, shape (number,).
-
+    """Return the roots of T_number in [−1, 1], ascending and symmetric to the last bit, shape (number,).
     >>> roots(2).round(6).tolist()
     [-0.707107, 0.707107]
     """
@@ -51,8 +48,7 @@ def roots(number: int) -> np.ndarray:
 
 
 def total_degree(directions: int, order: int) -> np.ndarray:
-    """Exponents of all terms of total degree at most ``order``, by growing degree: (order + d)!/(order! d!) rows.
-
+    """Return exponents of terms of total degree at most ``order``, by growing degree: (order + d)!/(order! d!) rows.
     >>> total_degree(2, 1).tolist()
     [[0, 0], [0, 1], [1, 0]]
     """
@@ -68,11 +64,7 @@ def _summing(directions: int, total: int) -> list[tuple[int, ...]]:
 
 
 def terms_of(directions: int, order: int) -> int:
-    """Number of terms of total degree at most ``order``, (order + d)!/(order! d!).
-
-    >>> terms_of(2, 2)
-    6
-    """
+    """Return the number of terms of total degree at most ``order``, (order + d)!/(order! d!)."""
     return comb(order + directions, directions)
 
 
@@ -83,9 +75,7 @@ def full_tensor(orders: tuple[int, ...]) -> np.ndarray:
 
 def powers_of_two(*tables: np.ndarray) -> np.ndarray:
     """Return the exponent of the largest magnitude of each column of tables (rows, outputs), as integers (outputs,).
-
     Numbers x 2^-exponent are below 1, so that the sum of their squares is finite; the scaling does not round.
-
     >>> powers_of_two(np.array([[3.0, 0.0], [-1.0, 0.0]])), powers_of_two(np.array([[1e200]]))
     (array([2, 0]), array([665]))
     """

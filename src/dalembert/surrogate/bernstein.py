@@ -22,17 +22,13 @@ DEPTH = 60  # most halvings of a box
 def enclosures(
     polynomial: ChebyshevPolynomial, low: np.ndarray, high: np.ndarray, gap: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Bounds (boxes, outputs) twice, that the polynomial does not leave on boxes (boxes, d) inside its own.
+    """Return bounds (boxes, outputs) twice, that the polynomial does not leave on boxes ``low``, ``high`` (boxes, d)
+    inside its own. Boxes are halved until no bound is further from a value of the polynomial than ``gap`` times the sum
+    of its |coefficients| without the constant one; an infinite gap takes the first coefficients as they are. Halving
+    ends before that where rounding hides the rest, after ``DEPTH`` halvings, or when the open parts of a box fill
+    ``CHUNK``, as those of a valley that is flat in several directions may: bounds are then guaranteed all the same, and
+    wider.
 
-    ``low``, ``high`` (boxes, d).
-    ``gap``: halves boxes until no bound is further from a value of the polynomial than this part of the sum of its
-        |coefficients| without the constant one; infinite for the first coefficients as they are. Ends before that
-        where rounding hides the rest, after ``DEPTH`` halvings, or when the open parts of a box fill ``CHUNK``, as
-        those of a valley that is flat in several directions may: bounds are then guaranteed all the same, and
-        wider.
-
-    Notes
-    -----
     What rounding may do is added outwards: 10^-15 times the degrees, times the sizes of all products on the way.
     Source: Garloff 1985; Farouki 2012, The Bernstein polynomial basis: a centennial retrospective.
     """
@@ -121,11 +117,9 @@ def _halved(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _restriction(degree: int, start: np.ndarray, end: np.ndarray) -> np.ndarray:
-    """Matrices (n, degree + 1, degree + 1) from Bernstein coefficients on [0, 1] to those on [start, end], (n,) each.
-
-    Row i holds the coefficients in z of (1 − a + a z)^{degree − i} (1 − b + b z)^i: the blossom of the polynomial at
-    degree − i times a and i times b. No number on the way is negative.
-
+    """Return matrices (n, degree + 1, degree + 1) from Bernstein coefficients on [0, 1] to those on [start, end], (n,)
+    each. Row i holds the coefficients in z of (1 − a + a z)^{degree − i} (1 − b + b z)^i: the blossom of the polynomial
+    at degree − i times a and i times b. No number on the way is negative.
     >>> _restriction(2, np.array([0.0]), np.array([0.5]))[0].tolist()
     [[1.0, 0.0, 0.0], [0.5, 0.5, 0.0], [0.25, 0.5, 0.25]]
     """
@@ -142,10 +136,8 @@ def _restriction(degree: int, start: np.ndarray, end: np.ndarray) -> np.ndarray:
 
 @cache
 def _from_chebyshev(degree: int) -> np.ndarray:
-    """Bernstein coefficients (degree + 1, degree + 1) of T_0(2s − 1) … T_degree(2s − 1), a column each.
-
+    """Return Bernstein coefficients (degree + 1, degree + 1) of T_0(2s − 1) … T_degree(2s − 1), a column each.
     T_j = Σ_m (−1)^{j−m} C(2j, 2m) s^m (1 − s)^{j−m}, times (s + 1 − s)^{degree − j}; in integers but for one division.
-
     >>> _from_chebyshev(2).tolist()
     [[1.0, -1.0, 1.0], [1.0, 0.0, -3.0], [1.0, 1.0, 1.0]]
     """

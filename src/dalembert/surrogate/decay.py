@@ -34,10 +34,9 @@ def _sums(degrees: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
 
 
 def tail(shells: np.ndarray) -> np.ndarray:
-    """Estimate what the degrees above the last one would add, shape (outputs,), from shells (order + 1, outputs).
-
-    With a the sum of the last two shells (one of them may vanish by symmetry) and r their decay a degree,
-    a r²/(1 − r²): what is left of a geometric series.
+    """Estimate what the degrees above the last one would add, shape (outputs,), from shells (order + 1, outputs). With
+    a the sum of the last two shells (one of them may vanish by symmetry) and r their decay a degree, a r²/(1 − r²):
+    what is left of a geometric series.
     """
     # Σ_{m≥1} a r^{2m} of pairs of shells two degrees apart.
     decay = _ratio(shells, len(shells) - 1)
@@ -46,7 +45,6 @@ def tail(shells: np.ndarray) -> np.ndarray:
 
 def power(shells: np.ndarray) -> np.ndarray:
     """Return p of a decay as degree^−p over the upper half of the degrees, shape (outputs,); infinite below ``SHORT``.
-
     From the largest shells of the third and the last quarter. A kink |x| has p = 2, a step p = 1, noise and waves that
     are not resolved p = 0, smooth functions a p that grows with the degree.
     """
@@ -60,12 +58,10 @@ def power(shells: np.ndarray) -> np.ndarray:
 
 
 def slow_tail(shells: np.ndarray) -> np.ndarray:
-    """Estimate what the degrees above the last one would add to a function with a kink or a step, shape (outputs,).
-
-    The shells are taken to continue as s (m/n)^−p, whose sum is s n/(p − 1): s is the largest of the upper half, moved
-    to the last degree n. The coefficients of a kink oscillate, so that p may be too large: no more than ``STEEPEST`` is
-    taken. Zero where p is too large for a kink, or where the coefficients clearly decay geometrically: :func:`tail`
-    holds there.
+    """Estimate what the degrees above the last one would add to a function with a kink or a step, shape (outputs,). The
+    shells are taken to continue as s (m/n)^−p, whose sum is s n/(p − 1): s is the largest of the upper half, moved to
+    the last degree n. The coefficients of a kink oscillate, so that p may be too large: it is at most ``STEEPEST``.
+    Zero where p is too large for a kink, or where the coefficients clearly decay geometrically, see :func:`tail`.
     """
     order, p = len(shells) - 1, power(shells)
     if order < SHORT:
@@ -103,12 +99,9 @@ def _misfit(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 def needed_order(shells: np.ndarray, tolerance: np.ndarray) -> tuple[int, bool]:
     """Return the lowest order that leaves less than ``tolerance`` (outputs,) out, if the decay of the coefficients
-    continues, and whether they decay at all.
-
-    From degree p on, degree q is taken to decay by r (p/q)^α: α = 0 for a geometric series, as of a function with a
-    pole, α = 1 for that of an entire function such as a sine; the last shells determine which. Where no decay is seen
-    yet, twice the order is returned, as the next one to try.
-
+    continues, and whether they decay at all. From degree p on, degree q is taken to decay by r (p/q)^α: α = 0 for a
+    geometric series, as of a function with a pole, α = 1 for that of an entire function such as a sine; the last shells
+    determine which. Where no decay is seen yet, twice the order is returned, as the next one to try.
     >>> needed_order(10.0 ** -np.arange(6)[:, None], np.array([1e-9]))
     (9, True)
     """

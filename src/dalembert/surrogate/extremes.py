@@ -13,13 +13,12 @@ CONVERGED = 1e-15  # a step that promises less than this part of the sum of |coe
 
 
 class ExtremesWorkspace(NamedTuple):
-    """Workspace for a box, in d directions, and for starts in it.
-
-    ``eta``, ``gradient``, ``step``, ``trial``, ``trial_gradient`` (d,): a point and the gradient there, a step, where
-    it leads and the gradient there; ``free`` (d,): 0 where a side of the box holds the direction, else 1; ``hessian``,
-    ``factor`` (d, d); ``tables`` (3, d, largest degree + 1, at least 2): Chebyshev polynomials and their derivatives at
-    a point; ``signed`` (rows, longest): coefficients of an output, or of its negative for the largest value; ``best``,
-    ``places`` (starts,): lowest values of a scan, and where they are.
+    """Workspace for a box, in d directions, and for starts in it. ``eta``, ``gradient``, ``step``, ``trial``,
+    ``trial_gradient`` (d,): a point and the gradient there, a step, where it leads and the gradient there; ``free``
+    (d,): 0 where a side of the box holds the direction, else 1; ``hessian``, ``factor`` (d, d); ``tables`` (3, d,
+    largest degree + 1, at least 2): Chebyshev polynomials and their derivatives at a point; ``signed`` (rows, longest):
+    coefficients of an output, or of its negative for the largest value; ``best``, ``places`` (starts,): lowest values
+    of a scan, and where they are.
     """
 
     eta: Reals
@@ -255,13 +254,11 @@ def extremes(
     values: Reals3, grid: Reals2, sides: Integers, low: Reals2, high: Reals2, rows: Rows, bounds: Reals3,
     at: Reals4, scratch: ExtremesWorkspace,
 ) -> None:  # fmt: skip
-    """Refine the extremes of a scan; all in coordinates η of the polynomial, with terms ``rows``.
-
-    ``values`` (boxes, outputs, points): at the points of the scan; ``grid`` (points, d): these points relative to each
-    box, in [0, 1]; ``sides`` (d,): points of the scan in each direction, the last one fastest, (0,) if they form no
-    grid; ``low``, ``high`` (boxes, d). ``bounds`` (2, boxes, outputs) and ``at`` (2, boxes, outputs, d): filled with
-    the smallest and the largest values, and where they are. The starts of the ``workspace`` are the most points that
-    are refined.
+    """Refine the extremes of a scan; all in coordinates η of the polynomial, with terms ``rows``. ``values``
+    (boxes, outputs, points): at the points of the scan; ``grid`` (points, d): these points relative to each box, in
+    [0, 1]; ``sides`` (d,): points of the scan in each direction, the last one fastest, (0,) if they form no grid;
+    ``low``, ``high`` (boxes, d). ``bounds`` (2, boxes, outputs) and ``at`` (2, boxes, outputs, d): filled with the
+    smallest and the largest values, and where they are. The starts of ``scratch`` are the most points that are refined.
     """
     eta, size = scratch.eta, low.shape[1]
     for b in range(len(low)):

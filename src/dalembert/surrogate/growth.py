@@ -26,10 +26,9 @@ class Growth:
 
     def batch(self, scale: np.ndarray | None, most: int, stalled: int) -> list[Term]:
         """Return the next terms, at most ``most``, the ones expected to be largest relative to ``scale`` first.
-
-        ``stalled`` counts the batches since the held-out runs show an error where nothing large is expected any more.
-        A symmetry hides it, as that of e^{xy} does, which has no terms but (k, k): then any large surplus nearby
-        counts, and in every other batch the lowest degrees, as sin² 3x vanishes at all of the first points.
+        ``stalled`` counts the batches since the held-out runs show an error where nothing large is expected any more. A
+        symmetry hides it, as that of e^{xy} does, which has no terms but (k, k): then any large surplus nearby counts,
+        and in every other batch the lowest degrees, as sin² 3x vanishes at all of the first points.
         """
         if scale is None:
             return self._start()[:most]

@@ -11,21 +11,16 @@ EXACT = 60  # Newton steps, kept in an interval that shrinks, that reach roundin
 
 
 def leja(number: int) -> np.ndarray:
-    """Return the first points ζ_0, ζ_1 … of the sequence that starts with 0, 1, −1, shape (number,).
-
-    Each next one is where |Π_i (x − ζ_i)| is largest; of equal ones the right one. Points never move, so that a
-    polynomial of higher degree reuses every run.
-
-    >>> leja(4).round(6).tolist()
-    [0.0, 1.0, -1.0, 0.57735]
+    """Return the first points ζ_0, ζ_1 … of the sequence that starts with 0, 1, −1, shape (number,). Each next one is
+    where |Π_i (x − ζ_i)| is largest; of equal ones the right one. Points never move, so that a polynomial of higher
+    degree reuses every run.
     """
     return _sequence(_workspace(number))[:number]
 
 
 def hierarchical(number: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the polynomials h_j(x) = Π_{i<j} (x − ζ_i)/(ζ_j − ζ_i), whose largest magnitude on [−1, 1] is 1.
-
-    The values (number, number) have h_j(ζ_i) in row j and column i: zero for i < j and one for i = j. The coefficients
+    """Return the polynomials h_j(x) = Π_{i<j} (x − ζ_i)/(ζ_j − ζ_i), whose largest magnitude on [−1, 1] is 1. The
+    values (number, number) have h_j(ζ_i) in row j and column i: zero for i < j and one for i = j. The coefficients
     (number, number) of T_0, T_1 … have a row for each h_j.
     """
     values, coefficients = _tables(_workspace(number))
@@ -34,7 +29,6 @@ def hierarchical(number: int) -> tuple[np.ndarray, np.ndarray]:
 
 def hierarchical_at(x: np.ndarray, number: int) -> np.ndarray:
     """Return h_0 … h_{number − 1} at points x (n,), shape (n, number).
-
     >>> hierarchical_at(np.array([0.5]), 3)[0].tolist()
     [1.0, 0.5, -0.125]
     """

@@ -66,10 +66,8 @@ def orthonormal(polynomial: ChebyshevPolynomial, rules: Sequence[Rule] = ()) -> 
 
 
 def change(degree: int, rule: Rule = uniform) -> np.ndarray:
-    """Return M of T_n = Σ_j M_nj p_j, shape (degree + 1, degree + 1).
-
-    With the nodes η_i and the weights w_i of the rule, √w_i T_n(η_i) = Q R gives orthonormal polynomials of values
-    Q_ij/√w_i and M = Rᵀ.
+    """Return M of T_n = Σ_j M_nj p_j, shape (degree + 1, degree + 1). With the nodes η_i and the weights w_i of the
+    rule, √w_i T_n(η_i) = Q R gives orthonormal polynomials of values Q_ij/√w_i and M = Rᵀ.
     """
     nodes, weights = rule(degree)
     upper = np.asarray(np.linalg.qr(np.sqrt(weights)[:, None] * chebvander(nodes, degree), mode="r"))

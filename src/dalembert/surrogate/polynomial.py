@@ -14,12 +14,11 @@ from dalembert.surrogate.basis import chebyshev, products
 
 
 class Rows(NamedTuple):
-    """Terms that differ only in their degree in one direction, the inner one, side by side.
-
-    ``degrees`` (d,): of the polynomial; ``inner``: the direction of highest degree; ``exponents``, ``active`` (rows,
-    d): degrees above zero in the other directions, and these directions, of which the first ``counts`` (rows,) entries
-    count; ``lengths`` (rows,): numbers of terms, of degrees 0, 1, 2 … in the inner direction; ``coefficients``
-    (outputs, rows, longest): zero where a term is absent.
+    """Terms that differ only in their degree in one direction, the inner one, side by side. ``degrees`` (d,): of the
+    polynomial; ``inner``: the direction of highest degree; ``exponents``, ``active`` (rows, d): degrees above zero in
+    the other directions, and these directions, of which the first ``counts`` (rows,) entries count; ``lengths``
+    (rows,): numbers of terms, of degrees 0, 1, 2 … in the inner direction; ``coefficients`` (outputs, rows, longest):
+    zero where a term is absent.
     """
 
     degrees: Integers

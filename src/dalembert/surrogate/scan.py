@@ -32,10 +32,9 @@ class Scan:
 
 
 def spread(polynomial: ChebyshevPolynomial, points: int | None) -> Scan:
-    """Points at which to scan: in each direction as many as asked for, or two more than the degree, at least FEWEST.
-
-    Chebyshev points of the second kind, cos πj/(n − 1), both ends included; equidistant ones where a number is asked
-    for. In so many directions that a grid would be too large: a Sobol sequence, half of its coordinates at the ends.
+    """Return points at which to scan: in each direction as many as asked for, or two more than the degree, at least
+    FEWEST. Chebyshev points of the second kind, cos πj/(n − 1), both ends included; equidistant ones if a number is
+    given. In too many directions for a grid: a Sobol sequence, half of its coordinates at the ends.
     """
     degrees = polynomial.degrees
     least = FEWEST if len(degrees) <= 3 else 0

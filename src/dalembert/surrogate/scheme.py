@@ -25,11 +25,9 @@ class Scheme(Protocol):
     """Settings of a way to choose terms and runs."""
 
     def fitted(self, runs: Runs, seed: int, held_out: HeldOut, scale: Callable[[], np.ndarray]) -> Fitted:
-        """Return the polynomial, from runs that it asks for.
-
-        ``held_out``: runs that the polynomial is not fitted to. An adaptive scheme adds terms until the polynomial
-        agrees with them. ``scale``: returns the sizes (outputs,) to which a tolerance is relative, from all runs so
-        far.
+        """Return the polynomial, from runs that it asks for. ``held_out``: runs that the polynomial is not fitted to.
+        An adaptive scheme adds terms until the polynomial agrees with them. ``scale`` returns the sizes (outputs,) to
+        which a tolerance is relative, from all runs so far.
         """
         ...
 

@@ -53,10 +53,8 @@ def unseen_between(eta: np.ndarray, names: Sequence[str]) -> tuple[str, dict[str
 
 
 def variation_lengths(surrogate: Surrogate) -> np.ndarray:
-    """Return half a wave of the response along each direction as a part of its side, shape (d,); at most 1.
-
-    T_n has n half waves. Of each output that matters the mean degree √(Σ e_k² c² / Σ c²) counts, and of all outputs the
-    largest one.
+    """Return half a wave of the response along each direction as a part of its side, shape (d,); at most 1. T_n has n
+    half waves. Of each output that matters the mean degree √(Σ e_k² c² / Σ c²) counts, and of all outputs the largest.
     """
     polynomial = surrogate.polynomial
     varying = polynomial.exponents.any(axis=1)
@@ -118,10 +116,9 @@ def gaps(eta: np.ndarray, lengths: np.ndarray | None = None) -> Gaps:
 
 
 def _largest_empty(eta: np.ndarray, sides: np.ndarray) -> float:
-    """Return the largest t such that a box of sides t · ``sides`` (f,), as parts of the whole box, holds no run.
-
-    By a search from random places: at each, the largest box around it that holds no run and does not leave the whole
-    one. Larger ones may exist; they are rare.
+    """Return the largest t such that a box of sides t · ``sides`` (f,), as parts of the whole box, holds no run. By a
+    search from random places: at each, the largest box around it that holds no run and does not leave the whole one.
+    Larger ones may exist; they are rare.
     """
     f = len(sides)
     tree = KDTree(eta / sides)

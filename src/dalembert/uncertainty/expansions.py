@@ -28,11 +28,10 @@ class Expansions:
         return (np.arange(first, min(first + size, outputs)) for first in range(0, outputs, size))
 
     def curvatures(self, outputs: np.ndarray) -> np.ndarray:
-        """Hessians by η, shape (runs, len(outputs), f, f), from the differences of gradients to the nearest runs.
-
-        The symmetric H of least Σ w² |H Δη − Δg|² over the neighbours, w = 1/|Δη|² so that nearer ones weigh more. It
-        solves H S + S H = C + Cᵀ, S = Σ w² Δη Δηᵀ, C = Σ w² Δg Δηᵀ, in the eigenvectors of S; it is zero along those in
-        which no neighbour lies.
+        """Return Hessians by η, shape (runs, len(outputs), f, f), from the differences of gradients to the nearest
+        runs. The symmetric H of least Σ w² |H Δη − Δg|² over the neighbours, w = 1/|Δη|² so that nearer ones weigh
+        more. It solves H S + S H = C + Cᵀ, S = Σ w² Δη Δηᵀ, C = Σ w² Δg Δηᵀ, in the eigenvectors of S; it is zero along
+        those in which no neighbour lies.
         """
         runs, f = self.points.shape
         near, distance = self._neighbours

@@ -65,12 +65,9 @@ class Inputs:
 
 
 def inputs_of(model: ForwardModel, distributions: Distributions | None, method: str) -> Inputs:
-    """Return the inputs of a model, in its order.
-
-    ``distributions``: of each parameter an interval, within which it is uniform, or a distribution, which the bounds of
-        the parameter truncate. If not given, the priors of the parameters; without prior a parameter is uniform
-        between its bounds.
-    ``method``: named in errors.
+    """Return the inputs of a model, in its order. ``distributions``: of each parameter an interval, within which it is
+    uniform, or a distribution, which the bounds of the parameter truncate. If not given, the priors of the parameters;
+    without prior a parameter is uniform between its bounds. ``method``: named in errors.
     """
     items = {item.name: item for item in model.parameters}
     if distributions is None:

@@ -12,10 +12,9 @@ from dalembert.uncertainty.runs import Runs
 @dataclass(frozen=True, eq=False)
 class MethodBounds:
     """Bounds (samples, channels), where they are taken (samples, channels, parameters), and their estimated error.
-
-    ``kind`` is "inner bound", "estimate" or "enclosure of the surrogate". ``outcome`` is how reliable the bounds are,
-    and which method is better. An error is None where it is unknown; a finding then has the reason. ``success`` is
-    whether the method came to its end.
+    ``kind``: "inner bound", "estimate" or "enclosure of the surrogate"; ``outcome``: their reliability, and which
+    method is better; ``error``: None if unknown, a finding then has the reason; ``success``: whether it came to its
+    end.
     """
 
     kind: str

@@ -29,12 +29,7 @@ def method_of(method: Method | str) -> Method:
 
 
 def label(method: Method) -> str:
-    """A method's name, and its settings that are not the usual ones.
-
-    >>> from dalembert.uncertainty import Scan
-    >>> label(Scan()), label(Scan(points_each=5))
-    ('scan', 'scan (points_each=5)')
-    """
+    """Return a method's name, and its settings that are not the usual ones, such as ``scan (points_each=5)``."""
     usual = vars(type(method)())
     changed = [f"{name}={value!r}" for name, value in vars(method).items() if value != usual[name]]
     return f"{method.name} ({', '.join(changed)})" if changed else method.name

@@ -11,11 +11,8 @@ from dalembert.uncertainty.runs import Runs
 
 
 def unknown_error(runs: Runs, points: np.ndarray, reason: str, values: Mapping[str, Any], advice: str = "") -> Finding:
-    """Return the finding "unknown-error" of bounds that runs at points (n, parameters) of the box reach.
-
-    ``points`` (n, parameters).
-    ``reason``: what the method knows instead, in a sentence.
-    ``values``: its numbers.
+    """Return the finding "unknown-error" of bounds that runs at ``points`` (n, parameters) of the box reach.
+    ``reason``: what the method knows instead, in a sentence; ``values``: its numbers.
     """
     message, gaps = f"The error of the bounds is unknown. {reason}", {}
     if len(runs.free):
@@ -28,7 +25,6 @@ def unknown_error(runs: Runs, points: np.ndarray, reason: str, values: Mapping[s
 
 def share_of(part: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> float:
     """Return the largest of parts (samples, channels) relative to the widest band of their channel; zero without any.
-
     >>> share_of(np.array([[0.5]]), np.zeros((1, 1)), np.ones((1, 1)))
     0.5
     """

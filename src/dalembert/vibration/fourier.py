@@ -84,8 +84,7 @@ def synthesis(orders: tuple[int, ...], angles: np.ndarray) -> np.ndarray:
 
 
 def in_orders(coefficients: np.ndarray, orders: tuple[int, ...], more_orders: tuple[int, ...]) -> np.ndarray:
-    """Coefficients (rows, coefficients) of a series with other orders, which contain its own; the rest is 0.
-
+    """Return coefficients (rows, coefficients) of a series with other orders, which contain its own; the rest is 0.
     >>> in_orders(np.array([[1.0, 2.0]]), (1,), (0, 1, 2)).tolist()
     [[0.0, 1.0, 2.0, 0.0, 0.0]]
     """

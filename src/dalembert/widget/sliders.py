@@ -24,10 +24,8 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """What a widget simulates: a motion from values of parameters.
-
-    ``motion``: returns the motion of a parameter vector (parameters,) at times, s; ``end``: s; ``channels``: drawn over
-    time; ``data``: drawn with the channels of the same names.
+    """What a widget simulates: a motion from values of parameters. ``motion`` returns that of a vector (parameters,) at
+    times, s; ``end``: s; ``channels``: drawn over time; ``data``: drawn with the channels of the same names.
     """
 
     parameters: Parameters

@@ -13,10 +13,9 @@ from dalembert.multibody.kernels.records import Inputs, block_at, call_at
 
 
 def tangent(kind: Declaration, dtype: type) -> BlockKernel:
-    """Add the tangent of a quadratic kind, from the real numbers of a complex model.
-
-    The directions are of size one, along coordinates and multipliers, or along accelerations where there are no
-    constraints. In the reduced system N^T r changes with N, too, which is linear in the coordinates.
+    """Add the tangent of a quadratic kind, from the real numbers of a complex model. The directions are of size one,
+    along coordinates and multipliers, or along accelerations where there are no constraints. In the reduced system
+    N^T r changes with N, too, which is linear in the coordinates.
     """
     function, width, coordinates, increments = kind.residual_function, kind.width, kind.coordinates, kind.increments
     joins, system, others = kind.constraint is not None, system_of(kind), kind.width - kind.coordinates

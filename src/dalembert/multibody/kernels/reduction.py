@@ -13,12 +13,10 @@ _NODAL = -1  # row of an unknown of a node, which has none
 
 
 class Reduction(NamedTuple):
-    """Rows of the reduced system: increments, then multipliers of all but internal constraints.
-
-    ``increments`` and ``size``: how many increments, and rows. ``index``: rows of the components of each kind (count,
-    width), without kinds of internal constraints; ``nodes``: those of the kinds that have a chart (count, increments);
-    ``rows`` (N + 1,): of each unknown, ``size`` where there is none. Without nodes these are the rows of the full
-    system, by the same arrays.
+    """Rows of the reduced system: increments, then multipliers of all but internal constraints. ``size``: number of
+    rows; ``index``: those of each kind's components (count, width), without kinds of internal constraints; ``nodes``:
+    those of the kinds that have a chart (count, increments); ``rows`` (N + 1,): of each unknown, ``size`` where there
+    is none. Without nodes these are the rows of the full system, by the same arrays.
     """
 
     increments: int

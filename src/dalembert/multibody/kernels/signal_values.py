@@ -114,11 +114,9 @@ def _kernel(dtype: type) -> BlockKernel:
     view, view2 = (complexes, complexes2) if dtype is complex else (reals, reals2)
 
     def evaluate(work, model):
-        """Fill the signals of a call at its time.
-
-        ``within`` is a time strictly inside the present smooth stretch of motion; it decides on which side of a jump
-        the time ``t`` lies when the two coincide. Where it is the time of a change of a held table, the value is the
-        mean of both sides.
+        """Fill the signals of a call at its time. ``within`` is a time strictly inside the present smooth stretch of
+        motion; it decides on which side of a jump the time ``t`` lies when the two coincide. Where it is the time of a
+        change of a held table, the value is the mean of both sides.
         """
         own, table = call_at(work), model_at(model)
         index, out = integers2(table.signal_index, table.signal_count, 4), view2(own.signals, table.signal_count, 3)

@@ -115,11 +115,9 @@ def coefficients(step, spectral_radius):
 
 @inner
 def advance(n, c, old, new):
-    """Fill the new algorithmic accelerations w, coordinates q and velocities v from the new accelerations a.
-
-    ``n`` is the number of coordinates, ``c`` has the step h and the method's coefficients. ``old`` and ``new`` are the
-    states (x for q, v, a, w) at both ends of the step; ``new.a`` is given. The results are linear in ``old`` and
-    ``new.a``:
+    """Fill the new algorithmic accelerations w, coordinates q and velocities v from the new accelerations a. ``n``:
+    number of coordinates; ``c``: the step h and the method's coefficients; ``old``, ``new``: states (x for q, v, a, w)
+    at both ends of the step, of which ``new.a`` is given. The results are linear in ``old`` and ``new.a``:
 
     (1 - alpha_m) w_{n+1} + alpha_m w_n = (1 - alpha_f) a_{n+1} + alpha_f a_n,
     q_{n+1} = q_n + h v_n + h^2 ((1/2 - beta) w_n + beta w_{n+1}), v_{n+1} = v_n + h ((1 - gamma) w_n + gamma w_{n+1}).

@@ -11,10 +11,8 @@ from dalembert.multibody.components.points import Point
 def carried_rates(
     bodies: Sequence[BaseBody], coordinates: Sequence[np.ndarray], modes: Sequence[np.ndarray], chosen: np.ndarray
 ) -> np.ndarray:
-    """Rates of the frames (bodies, rates, k) from chosen ones (bodies, rates, k), in the order of the bodies.
-
-    ``coordinates`` (size,): of each undeformed body; ``modes`` (size, rates): their derivatives by the frames;
-    ``chosen`` (bodies, rates, k).
+    """Return the rates of the frames in the order of the bodies, from ``chosen`` ones, both (bodies, rates, k).
+    ``coordinates`` (size,): of each undeformed body; ``modes`` (size, rates): their derivatives by the frames.
     """
     number = {body.name: k for k, body in enumerate(bodies)}
     rates = chosen.astype(np.result_type(chosen, *modes))

@@ -20,15 +20,12 @@ _MODELS = ("real", "complex_model", "unperturbed", "tangents")
 
 @dataclass(frozen=True)
 class Lowered:
-    """A system as arrays.
-
-    ``data`` (count, -); ``frames`` (bodies, -): initial frame of each body; ``rates`` (bodies, rates): their stated
-    rates, zero where none is stated; ``stated`` (bodies, rates): which rates the bodies state; ``x``, ``v`` (N + 1,):
-    first unknowns and velocities, as placed: joints may not be closed yet; ``jumps``: times, s, at which loads jump;
-    these and those of kinks are measured from the start of the motion; ``changes``: those of the jumps at which nothing
-    but the values of held tables changes; ``kinks`` (time, joint): times, s, at which the velocity of a prescribed
-    motion would jump; ``failures``: what functions of the user's raised; ``parts``: name of the component that each row
-    belongs to.
+    """A system as arrays. ``data`` (count, -); ``frames`` (bodies, -): initial frame of each body; ``rates``
+    (bodies, rates): their stated rates, zero where none is stated; ``stated`` (bodies, rates): which rates the bodies
+    state; ``x``, ``v`` (N + 1,): first unknowns and velocities, as placed: joints may not be closed yet; ``jumps``:
+    times at which loads jump, s from the start of the motion; ``changes``: those at which nothing but the values of
+    held tables changes; ``kinks`` (time, joint): times, from the same start, at which the velocity of a prescribed
+    motion would jump; ``failures``: what functions of the user's raised; ``parts``: name of the component of each row.
     """
 
     structure: Structure

@@ -58,10 +58,9 @@ def size_of(values: np.ndarray) -> tuple[float, float]:
 
 
 def smallest(lowered: Lowered, model: BlockModel, x: np.ndarray, modes: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Smallest change of frames (free,), with ``modes`` (n, free), that changes the constraints as ``wanted`` (m,).
-
-    With J the jacobian of the constraints by the frames it is J^T p, J J^T p = wanted. Both products are taken from the
-    kernels, so that in complex numbers the derivative of J counts, too; only the inverse is that of the real part.
+    """Return the smallest change of frames (free,), with ``modes`` (n, free), that changes the constraints as
+    ``wanted`` (m,): J^T p with J J^T p = wanted, J the jacobian of the constraints by the frames. The kernels compute
+    both products, so that in complex numbers the derivative of J counts, too; only the inverse is the real part's.
     """
     n = lowered.structure.n
     jacobian = constraint_jacobian(lowered, np.real(x)) @ np.real(modes)

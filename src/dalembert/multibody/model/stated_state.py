@@ -98,10 +98,9 @@ def _stem(coordinate: str) -> str:
 
 
 def _alone(system: Any, stated: Stated) -> list[tuple[str, str]]:
-    """Coordinates that are not stated, of joints without which their sides are not connected.
-
-    Those of joints that couplings tie to each other may have to change. A point mass does not turn, so a joint that
-    holds only a point mass to the rest has no angle of its bodies to keep.
+    """Return coordinates that are not stated, of joints without which their sides are not connected. Those of joints
+    that couplings tie to each other may have to change. A point mass does not turn, so a joint that holds only a point
+    mass to the rest has no angle of its bodies to keep.
     """
     coupled = {own.joint.name for joint in system.joints for own in joint.coordinates}
     turning = {body.name for body in system.bodies if body.turns}

@@ -25,10 +25,8 @@ Component = TypeVar("Component", bound=BaseBody | BaseJoint | BaseLoad)
 
 
 class BaseSystem(Displayed):
-    """What mechanisms in the plane and in space share: a mechanism is built by adding components.
-
-    ``gravity``: m/s^2; ``driving``: initial coordinates that assembly keeps; ``start``: where a motion begins,
-    ``"placed"`` or ``"equilibrium"``.
+    """Base of the mechanisms in the plane and in space, which are built by adding components. ``gravity``: m/s^2;
+    ``driving``: initial coordinates that assembly keeps; ``start`` of a motion: ``"placed"`` or ``"equilibrium"``.
     """
 
     IN_WORDS = "System"

@@ -14,10 +14,8 @@ def turning_bushings(system: BaseSystem) -> dict[str, tuple[str, ...]]:
 
 
 def half_turns(times: np.ndarray, rotations: Mapping[str, np.ndarray]) -> tuple[Finding, ...]:
-    """Return a finding for each bushing that passes half a turn.
-
-    ``times`` (samples,): s. ``rotations`` (samples, 3): rotation vector of each bushing, rad. Where its length passes
-    pi, it jumps by almost 2 pi.
+    """Return a finding for each bushing that passes half a turn. ``times`` (samples,): s; ``rotations`` (samples, 3):
+    rotation vector of each bushing, rad, which jumps by almost 2 pi where its length passes pi.
     """
     findings = []
     for name, vectors in rotations.items():

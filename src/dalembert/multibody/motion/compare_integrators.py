@@ -33,13 +33,12 @@ ERRORS = (1e-4, 1e-8)
 
 @dataclass(frozen=True)
 class IntegratorRun:
-    """One run of one integrator.
-
-    ``method``: name of the integrator's series; ``settings``: the integrator with its settings; ``error``: largest
-    distance of any channel from the reference at any output time, relative to the channel's range; ``seconds``: run
-    time of the integration alone, the smallest of the repetitions; ``position``, ``velocity``, ``acceleration``:
-    largest constraint violations (m or rad, and per s and s^2); ``energy``: largest energy imbalance relative to the
-    range of the kinetic energy, NaN where nothing moves; ``failure``: why the run ended early, empty if it did not.
+    """One run of one integrator. ``method``: name of the integrator's series; ``settings``: the integrator with its
+    settings; ``error``: largest distance of any channel from the reference at any output time, relative to the
+    channel's range; ``seconds``: run time of the integration alone, the smallest of the repetitions; ``position``,
+    ``velocity``, ``acceleration``: largest constraint violations (m or rad, and per s and s^2); ``energy``: largest
+    energy imbalance relative to the range of the kinetic energy, NaN where nothing moves; ``failure``: why the run
+    ended early, empty if it did not.
     """
 
     method: str

@@ -151,10 +151,9 @@ def _of_components(lowered: Lowered, along: Along) -> Iterator[tuple[str, np.nda
 
 
 def check_forces(lowered: Lowered, along: Along, scale: np.ndarray, remedy: str = REMEDY) -> None:
-    """Raise where a function of the user's, or a kind of another package, loses the complex step of the state.
-
-    ``scale`` (N + 1,): typical sizes of the coordinates; ``remedy``: what to do about a force, at the end of the
-    message. Raises InputError: it names the component.
+    """Raise InputError, which names the component, where a function of the user's, or a kind of another package, loses
+    the complex step of the state. ``scale`` (N + 1,): typical sizes of the coordinates; ``remedy``: what to do about a
+    force, at the end of the message.
     """
     kinds = [kind for kind in lowered.data if _foreign(kind)]
     if kinds or along.readers:

@@ -13,15 +13,14 @@ _AXES = "xyz"
 
 @dataclass(frozen=True, eq=False)
 class LocalCoordinates:
-    """Coordinates without internal constraints, relative to a reference state.
-
-    The directors of a node are d_i = exp([t]x) d_i0, with the rotation increment t (3,) from the directors d_i0 of the
-    reference; its rates are the angular velocity w, d_i' = w x d_i. Both are in the fixed axes. All other coordinates
-    are local coordinates themselves. So a mechanism in the plane has local coordinates that are its coordinates.
+    """Coordinates without internal constraints, relative to a reference state. The directors of a node are
+    d_i = exp([t]x) d_i0, with the rotation increment t (3,) from the directors d_i0 of the reference; its rates are the
+    angular velocity w, d_i' = w x d_i. Both are in the fixed axes. All other coordinates are local coordinates
+    themselves, so in the plane all are.
 
     ``names``, ``kinds``: such as ``"bar.x"``, ``"bar.angle"`` and ``"bar.rotation x"``; rotation increments are angles;
     ``coordinates``: number n of coordinates; ``directors`` (nodes, 9): coordinates of the directors; ``rotations``
-    (nodes, 3): places of the rotation increments among the local coordinates; ``inner``: constraints that local
+    (nodes, 3): slots of the rotation increments among the local coordinates; ``inner``: constraints that local
     coordinates satisfy: those of the directors.
     """
 

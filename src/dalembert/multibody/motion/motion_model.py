@@ -206,10 +206,8 @@ class BuiltModel(MotionModel):
         return self.solver
 
     def check_derivatives(self, vector: np.ndarray) -> None:
-        """Compare the complex step with differences of the model's numbers at a vector (parameters,).
-
-        Nothing is simulated. The forces of functions of the user's are compared by the next derivative, along its
-        motion.
+        """Compare the complex step with differences of the model's numbers at a vector (parameters,). Nothing is
+        simulated. The forces of functions of the user's are compared by the next derivative, along its motion.
         """
         if self.derivative == COMPLEX_STEP:
             self._compared.once(vector, lambda thorough: check_numbers(self.builder, self.parameters, vector, thorough))

@@ -36,14 +36,10 @@ def chart(
     like: StateChart | None = None,
     turning: tuple[str, ...] = (),
 ) -> StateChart:
-    """Return independent coordinates and rates of a mechanism near a state; all of them if ``whole``.
-
-    The state (2n + turning,) ends with the whole turns of the channels ``turning``; they are zero where it has 2n
-    numbers.
-
-    The constraints leave the motions N = null(J) free, in scaled local coordinates. Independent are the coordinates
-    whose rows of N a pivoted QR decomposition chooses; or those of a chart ``like`` it, where their rows are not much
-    worse.
+    """Return independent coordinates and rates of a mechanism near a state; all of them if ``whole``. The state
+    (2n + turning,) ends with the whole turns of the channels ``turning``; they are zero where it has 2n numbers. The
+    constraints leave the motions N = null(J) free, in scaled local coordinates. A pivoted QR decomposition chooses the
+    rows of N of the independent coordinates; those of a chart ``like`` it stay unless their rows are much worse.
     """
     structure, scale = lowered.structure, scales(lowered)
     n, size = structure.n, structure.size
@@ -109,11 +105,9 @@ def _unit(kind: str) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Completion:
-    """How the dependent coordinates of a state follow from the chosen ones.
-
-    ``dependent``: local coordinates that follow; ``local`` (local,): local coordinates where the joints are closed;
-    ``inverse``, ``of_rates``: inverses there of the derivatives of the joints' constraints by the dependent local
-    coordinates, and of their rates by the dependent rates.
+    """How the dependent coordinates of a state follow from the chosen ones. ``dependent``: local coordinates that
+    follow; ``local`` (local,): values where the joints are closed; ``inverse``, ``of_rates``: inverses there of the
+    derivatives of the joints' constraints by the dependent coordinates, and of their rates by the dependent rates.
     """
 
     chart: StateChart
@@ -179,12 +173,10 @@ def _inverse(matrix: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class MotionSegment(MotionModel):
-    """A segment of a mechanism's motion as a forward model.
-
-    ``model``: of the motion; ``begin``: time of the signals at the beginning of the segment, s; ``times`` (samples,):
-    s, from that beginning. Parameters behind those of the model are the numbers of the state by the ``chart``; without
-    one the segment begins as the model's builder says. Channels behind those of the model are the numbers by the chart
-    ``ends``.
+    """A segment of a mechanism's motion as a forward model. ``begin``: time of the signals at the beginning of the
+    segment, s; ``times`` (samples,): s, from that beginning. Parameters behind those of ``model`` are the numbers of
+    the state by the ``chart``; without one the segment begins as the model's builder says. Channels behind those of the
+    model are the numbers by the chart ``ends``.
     """
 
     model: BuiltModel

@@ -24,11 +24,9 @@ FORCES = ("force", "force_in_space")
 
 @dataclass(frozen=True, eq=False)
 class Sketch:
-    """One pose of a mechanism.
-
-    ``drawing``: one frame; ``ends`` (1 or 2, 2 or 3): positions in m of the points that a joint or a load acts on, by
-    its name; ``marks`` (2 or 3,): positions in m of further points of bodies, by ``"body.point"``; ``forces`` (2 or
-    3,): forces in N along the fixed axes, by the names of their loads: amplitudes of those that change over time.
+    """One pose of a mechanism. ``drawing``: one frame; ``ends`` (1 or 2, 2 or 3): points that a joint or a load acts
+    on, m, by its name; ``marks`` (2 or 3,): further points of bodies, m, by ``"body.point"``; ``forces`` (2 or 3,):
+    along the fixed axes, N, by the names of their loads: amplitudes of those that change over time.
     """
 
     system: BaseSystem
@@ -49,10 +47,8 @@ class Sketch:
 
 
 def sketch(system: BaseSystem, points: int = 8, *, marks: Sequence[str] = (), assemble: bool = True) -> Sketch:
-    """Return the mechanism as it begins: assembled, or as its bodies are placed.
-
-    ``points``: drawn points of a beam element; ``marks``: points of bodies to locate, ``"body.point"``; ``assemble``:
-    whether to close the joints. Raises ModelError: where the mechanism cannot be assembled.
+    """Return the mechanism at its start: assembled, or as its bodies are placed if not ``assemble``. ``points``: drawn
+    points of a beam element; ``marks``: points of bodies to locate, ``"body.point"``.
     """
     placed = lower(system)
     prepare(placed.kernels(False))

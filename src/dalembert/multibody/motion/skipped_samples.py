@@ -29,11 +29,10 @@ def late_samples(times: np.ndarray) -> tuple[Finding, ...]:
 
 
 def skipped_samples(system: BaseSystem, step: float | None, begin: float, end: float) -> tuple[Finding, ...]:
-    """Return a finding for each table of a system that fixed steps sample too coarsely.
-
-    ``step``: s, None for a solver that chooses its steps; ``begin``, ``end``: time of the signals at which the motion
-    starts, and its duration, s. The lost part is the root mean square of the values less those on lines between the
-    steps, relative to their standard deviation. Steps end at all changes of a held table, so that none is lost.
+    """Return a finding for each table of a system that fixed steps sample too coarsely. ``step``: s, None for a solver
+    that chooses its steps; ``begin``, ``end``: time of the signals at which the motion starts, and its duration, s. The
+    lost part is the root mean square of the values less those on lines between the steps, relative to their standard
+    deviation. Steps end at all changes of a held table, so that none is lost.
     """
     if step is None:
         return ()

@@ -26,11 +26,9 @@ def slip_findings(
     name: str, smoothing: Smoothing, times: np.ndarray, rates: np.ndarray, step: float | None
 ) -> Iterator[Finding]:
     """Yield whether a joint creeps or chatters where friction should hold it, or crosses its zone in too few steps.
-
     ``times``, ``rates`` (samples,): s and rad/s or m/s; ``step``: s, None for a solver that chooses its steps. The zone
     is -slip to slip. The joint creeps while its rate stays within twice the zone for ten times as long as a crossing
-    takes at the root mean square of the acceleration. Samples farther apart than a step do not show how it crosses the
-    zone.
+    takes at the root mean square of the acceleration. Samples farther apart than a step do not show the crossing.
     """
     slip, setting, unit = float(np.real(smoothing.slip)), smoothing.setting, smoothing.unit
     largest = float(np.max(np.abs(rates)))

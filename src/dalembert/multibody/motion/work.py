@@ -10,13 +10,10 @@ _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 
 
 def works_of_steps(lowered: Lowered, times: np.ndarray, states: MotionState) -> np.ndarray:
-    """Return the work of what is not conservative in each interval between states, J, (samples - 1,).
-
-    Coordinates and velocities between states are cubic, by their rates and accelerations, so the work has an error of
-    fourth order in the intervals, below those of the methods at their steps. Multipliers are linear. The points lie
-    inside of the intervals, where no load jumps.
-
-    ``times`` (samples,): s; ``states`` (samples, N + 1).
+    """Return the work of what is not conservative in each interval between states, J, (samples - 1,). ``times``
+    (samples,): s; ``states`` (samples, N + 1). Coordinates and velocities between states are cubic, by their rates and
+    accelerations, so the work has an error of fourth order in the intervals, below those of the methods at their steps.
+    Multipliers are linear. The points lie inside of the intervals, where no load jumps.
     """
     x, v, a = (np.asarray(own) for own in (states.x, states.v, states.a))
     n, h = lowered.structure.n, np.diff(times)[:, None]

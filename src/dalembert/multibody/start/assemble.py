@@ -47,10 +47,9 @@ _APART = 1e-6  # squared distance of a constraint's row, of length one, from the
 def assembled(
     system: BaseSystem, perturbed: bool = False, placed: Lowered | None = None, begin: float = 0.0
 ) -> Lowered:
-    """Arrays of a system whose joints are closed and whose velocities are consistent, at the time ``begin`` (s).
-
-    A ``perturbed`` system is treated in complex numbers even if only functions of the user's hold the imaginary step;
-    ``placed`` are the arrays of the system as `lower` makes them, where they are there already.
+    """Return arrays of a system whose joints are closed and whose velocities are consistent, at the time ``begin`` (s).
+    A ``perturbed`` system is treated in complex numbers even if only functions of the user's hold the imaginary step.
+    ``placed``: arrays of the system from `lower`, if they exist already.
     """
     lowered = placed or lower(system, begin)
     rests = system.start == EQUILIBRIUM

@@ -113,10 +113,9 @@ def _newton(
 
 
 def _settled(lowered: Lowered, forces: Forces, x: np.ndarray, most: int) -> tuple[np.ndarray | None, int]:
-    """Follow the forces downhill, as a motion without inertia does; None where it does not settle.
-
-    Pseudo-transient continuation (Kelley and Keyes 1998): Newton steps with K + s M in place of K, where s halves at
-    each step and grows before a step uphill. It needs no stiffness where it begins, as of a chain of rigid bars.
+    """Follow the forces downhill, as a motion without inertia does; None where it does not settle. Pseudo-transient
+    continuation (Kelley and Keyes 1998): Newton steps with K + s M in place of K, where s halves at each step and grows
+    before a step uphill. It needs no stiffness where it begins, as of a chain of rigid bars.
     """
     n, still, scale = lowered.structure.n, np.zeros_like(x), scales(lowered)[:-1]
     x, s = x.copy(), 0.0

@@ -14,11 +14,9 @@ _INDEPENDENT = 1e-9
 
 
 class Locked(NamedTuple):
-    """A mechanism that cannot move.
-
-    ``constraints``: of joints, without prescribed motions and the constraints inside of bodies; ``freedoms``: of the
-    bodies without joints; ``joints``: joints without which, one at a time, the mechanism would move; all of them if
-    there is no such one.
+    """A mechanism that cannot move. ``constraints``: of joints, without prescribed motions and the constraints inside
+    of bodies; ``freedoms``: of the bodies without joints; ``joints``: those without which, one at a time, the mechanism
+    would move; all if there is none.
     """
 
     constraints: int

@@ -13,10 +13,9 @@ _LARGEST = 2000  # constraints or coordinates up to which the singular values ar
 
 
 def dependent_joints(lowered: Lowered, x: np.ndarray, t: float) -> tuple[str, ...]:
-    """Joints whose constraints have lost independence at the unknowns ``x`` (N + 1,); empty in a regular position.
-
-    The Jacobian, in units of the coordinates' scales and with rows of length one, has a singular value that is small
-    against that of the start; its left singular vector has the constraints that depend on each other.
+    """Return joints whose constraints have lost independence at the unknowns ``x`` (N + 1,); empty in a regular
+    position. The Jacobian, in units of the coordinates' scales and with rows of length one, has a singular value that
+    is small against that of the start; its left singular vector has the constraints that depend on each other.
     """
     structure = lowered.structure
     n, m = structure.n, structure.size - structure.n

@@ -27,7 +27,6 @@ _NEUTRAL = 1e-8  # of the largest stiffness
 @dataclass(frozen=True, eq=False)
 class SteadyEquations:
     """M z'' + C z' + K z = 0 of small vibrations about a steady motion, in a frame in which they are constant.
-
     ``frame``: "fixed" or "rotating"; ``frame_rate``, ``rate`` (1 or 3,): angular velocities of the frame and of the
     fastest body, rad/s, in the fixed axes; ``x`` (N + 1,): coordinates and multipliers at the time 0; ``mass``,
     ``damping``, ``stiffness`` (freedoms, freedoms); ``shapes`` (N + 1, freedoms): derivatives of coordinates and
@@ -65,14 +64,9 @@ def moves(lowered: Lowered) -> bool:
 
 
 def steady_equations(lowered: Lowered, frame: str | None = None) -> SteadyEquations:
-    """Return the equations about the steady motion that is nearest to the start.
-
-    The rates of bodies are those of the start; positions, directions of axes and forces of joints follow from the
-    equations of motion, so springs carry centrifugal forces. Frames are tried in turn: the fixed one, and those that
-    turn with a body.
-
-    Raises ModelError: where the motion is not steady, or its equations are constant in no frame, or not in the one that
-    is given.
+    """Return the equations about the steady motion that is nearest to the start. The rates of bodies are those of the
+    start; positions, directions of axes and forces of joints follow from the equations of motion, so springs carry
+    centrifugal forces. ``frame``: "fixed", or "rotating" with a body; if not given, both are tried in turn.
     """
     v = np.real(lowered.v[:-1])
     nodes = nodes_of(lowered)
@@ -228,10 +222,9 @@ class _Steady:
         check_forces(self.lowered, along, scales(self.lowered), SAFE)
 
     def _matrices(self, t: float, free: np.ndarray | None) -> tuple[np.ndarray, ...]:
-        """Mass, damping and stiffness of free local coordinates, the state, slopes, and the free local coordinates.
-
-        With q, q' and q'' linear in z, z' and z'' by A0, A1 and A2, the projected residual has M = A0' M A0,
-        C = A0' (C A0 + 2 M A1) and K = A0' (K A0 + C A1 + M A2).
+        """Return mass, damping and stiffness of free local coordinates, the state, slopes, and the free local
+        coordinates. With q, q' and q'' linear in z, z' and z'' by A0, A1 and A2, the projected residual has
+        M = A0' M A0, C = A0' (C A0 + 2 M A1) and K = A0' (K A0 + C A1 + M A2).
         """
         lowered = self.lowered
         n, scale = lowered.structure.n, scales(lowered)

@@ -53,13 +53,11 @@ def skew(rate: np.ndarray) -> np.ndarray:
 
 @dataclass
 class SteadyNode:
-    """Coordinates that one twist moves.
-
-    ``position`` (d,): coordinates of a position; ``vectors`` (vectors, d): coordinates of vectors that turn with the
-    node; ``scalars``: coordinates that are numbers; ``turns``: whether rotations are local coordinates; ``absolute``:
-    whether the numbers are angles against the fixed axes; ``p0``, ``s0``: position and numbers at the time 0, in the
-    frame; ``directions`` (vectors, d); ``rate``, ``centre``, ``velocity``, ``speeds``: of the twist relative to the
-    frame, and of the numbers.
+    """Coordinates that one twist moves. ``position`` (d,): coordinates of a position; ``vectors`` (vectors, d):
+    coordinates of vectors that turn with the node; ``scalars``: coordinates that are numbers; ``turns``: whether
+    rotations are local coordinates; ``absolute``: whether the numbers are angles against the fixed axes; ``p0``,
+    ``s0``: position and numbers at the time 0, in the frame; ``directions`` (vectors, d); ``rate``, ``centre``,
+    ``velocity``, ``speeds``: of the twist relative to the frame, and of the numbers.
     """
 
     position: np.ndarray

@@ -43,11 +43,9 @@ Frame = tuple[np.ndarray, np.ndarray]
 
 @dataclass
 class Group:
-    """Links that are fixed to each other: one rigid body, named after the first of them.
-
-    ``joint``: by which it hangs on another group; None for the group of the base; ``frames``: frame of each link in
-    that of the first one; ``seats``: frame of each joint that hangs on it, at the position zero; ``inertias`` (Frame,
-    Inertia); ``shapes``: in the frame of the first link.
+    """Links that are fixed to each other: one rigid body, named after the first of them. ``joint``: by which it hangs
+    on another group, None for the group of the base; ``frames``: frame of each link in that of the first one;
+    ``seats``: frame of each joint that hangs on it, at the position zero; ``shapes``: in the frame of the first link.
     """
 
     name: str

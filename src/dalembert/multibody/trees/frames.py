@@ -15,12 +15,10 @@ COSINE, SINE, CONSTANT, PLACE, SLIDE, AXIS, INERTIA, WIDTH = 0, 9, 18, 27, 30, 3
 
 
 class Frames(NamedTuple):
-    """The frames for kernels.
-
-    ``parents`` (frames,): 0 for the base, k + 1 for frame k; ``turns`` (frames,): 1 for a revolute joint, 0 for a
-    prismatic one; ``numbers`` (frames * WIDTH,): rotation from the frame to its parent's: constant part, factors of
-    cosine and sine of the position; position in the parent's frame and its derivative by that of the joint; axis; mass,
-    mass x centre and inertia about the origin of all that hangs rigidly on the frame.
+    """The frames for kernels. ``parents`` (frames,): 0 for the base, k + 1 for frame k; ``turns`` (frames,): 1 for a
+    revolute joint, 0 for a prismatic one; ``numbers`` (frames * WIDTH,): rotation from the frame to its parent's:
+    constant part, factors of cosine and sine of the position; position in the parent's frame and its derivative by that
+    of the joint; axis; mass, mass x centre and inertia about the origin of all that hangs rigidly on the frame.
     """
 
     parents: Integers
@@ -38,12 +36,10 @@ class ComplexFrames(NamedTuple):
 
 @dataclass(frozen=True)
 class FlatTree:
-    """A tree as arrays.
-
-    ``joints``: that of each frame; those that follow another one included; ``factors`` (frames, dofs); ``offsets``
-    (frames,): positions of the joints = factors @ positions of the tree + offsets; ``homes`` (links,): on which frame
-    each link hangs: 0 for the base, k + 1 for frame k; ``places`` (links, 3); ``axes`` (links, 3, 3): position and
-    orientation of the links in these frames.
+    """A tree as arrays. ``joints``: of each frame, also those that follow another joint; ``factors`` (frames, dofs);
+    ``offsets`` (frames,): positions of the joints = factors @ positions of the tree + offsets; ``homes`` (links,): on
+    which frame each link hangs: 0 for the base, k + 1 for frame k; ``places`` (links, 3), ``axes`` (links, 3, 3):
+    position and orientation of the links in these frames.
     """
 
     frames: Frames | ComplexFrames

@@ -13,10 +13,8 @@ MOST = 8
 
 @dataclass(frozen=True)
 class Omission:
-    """A part of a robot file that has no counterpart in the mechanism.
-
-    ``text``: what was left out, with its line or its name; ``moves``: whether the motion is another one without it: a
-    spring does, a camera does not.
+    """A part of a robot file that has no counterpart in the mechanism. ``text``: what was left out, with its line or
+    name; ``moves``: whether the motion changes without it: a spring changes it, a camera does not.
     """
 
     text: str

@@ -19,13 +19,10 @@ _SHARE = 1e-6
 def possible(
     mass: float, tensor: np.ndarray, centre: Vector, place: str, impossible: str, notes: list[Omission]
 ) -> Inertia | None:
-    """The inertia of a link, from a tensor about its centre of mass (3, 3); None without mass and inertia.
-
-    Point masses and thin bodies, whose second moments are zero along some axes, are imported with a small radius of
-    gyration along these, and listed. The nearest possible one of an impossible inertia has the same principal axes;
-    second moments along them, the eigenvalues of tr(J) / 2 - J, that are too small are raised.
-
-    Raises ModelError: for an impossible inertia that is to be refused, with the place and the excess.
+    """Return the inertia of a link, from a tensor about its centre of mass (3, 3); None without mass and inertia. Point
+    masses and thin bodies, whose second moments are zero along some axes, are imported with a small radius of gyration
+    along these, and listed. An impossible inertia is refused, or replaced by the nearest possible one with the same
+    principal axes: second moments along them, the eigenvalues of tr(J) / 2 - J, that are too small are raised.
     """
     if mass == 0.0 and not np.any(tensor):
         return None

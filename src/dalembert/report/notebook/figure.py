@@ -56,8 +56,7 @@ class Axis:
         return self._around(unit * width), other._around(unit * height)
 
     def ticks(self, most: int = TICKS) -> list[tuple[float, str]]:
-        """Values at the ticks and their labels, about as many as asked for.
-
+        """Return values at the ticks and their labels, about as many as asked for.
         >>> [label for _, label in Axis("", 0.0, 1.0).ticks()]
         ['0', '0.2', '0.4', '0.6', '0.8', '1']
         >>> [label for _, label in Axis("", -3.0, 1.0, logarithmic=True).ticks()]

@@ -15,8 +15,7 @@ MARGIN = 26
 
 
 def between(light: str, dark: str, share: float = 0.15) -> str:
-    """Return a colour between two, which can be seen on a light page and on a dark one.
-
+    """Return a colour between two that can be seen on light and dark pages; ``share`` is the part of ``dark``.
     >>> between("#000000", "#ffffff", 0.5)
     '#808080'
     """
@@ -31,10 +30,9 @@ COLOURS = tuple(between(*pair) for pair in zip(LIGHT.series, DARK.series, strict
 
 @dataclass
 class Canvas:
-    """Shapes of a picture with equal scales along both axes.
-
-    ``low``, ``high`` (2,): corners of what is drawn, m; ``size``: width and height, pixels; ``zoom``: pixels of the
-    shown picture a pixel; ``choosable``: whether its parts are buttons that the keyboard reaches.
+    """Shapes of a picture with equal scales along both axes. ``low``, ``high`` (2,): corners of what is drawn, m;
+    ``size``: width and height, pixels; ``zoom``: pixels of the shown picture a pixel; ``choosable``: whether its parts
+    are buttons that the keyboard reaches.
     """
 
     low: np.ndarray
@@ -151,17 +149,12 @@ def message_picture(words: str, size: tuple[int, int] = SIZE) -> str:
 
 
 def moved(pixel: np.ndarray, right: float, down: float) -> np.ndarray:
-    """Return the pixel to the right of one and below it.
-
-    >>> moved(np.array([1.0, 2.0]), 3, -1).tolist()
-    [4.0, 1.0]
-    """
+    """Return the pixel to the right of one and below it."""
     return np.asarray(pixel) + np.array((right, down), dtype=float)
 
 
 def path(pixels: np.ndarray) -> str:
-    """Commands of an SVG path through pixels (points, 2), with gaps where they are not finite.
-
+    """Return commands of an SVG path through pixels (points, 2), with gaps where they are not finite.
     >>> path(np.array([[0, 0], [1.25, 2], [np.nan, 0], [3, 3], [4, 4]]))
     'M0 0L1.2 2M3 3L4 4'
     """

@@ -29,9 +29,8 @@ def scene_picture(
     labels: bool = False,
 ) -> str:
     """Return the SVG picture of a scene in its first frame. Each part is a group ``<g class="ROLE" data-part="NAME">``.
-
     ``label``: for screen readers; ``size``: pixels; ``box`` (2, 2): corners of the picture, m, around all points if not
-    given; ``choosable``: whether the parts are buttons; ``labels``: whether the labels of the scene are drawn.
+    given; ``choosable``: whether the parts are buttons; ``labels``: whether those of the scene are drawn.
     """
     if not scene.to_scale:
         return row_picture(scene, label, size, choosable)

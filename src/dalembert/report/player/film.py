@@ -33,10 +33,8 @@ def film_of(drawing: "Drawing", measured: Mapping[str, np.ndarray], rows: np.nda
 
 
 def encoded(scene: Scene) -> dict[str, Any]:
-    """Return a scene as ``space.js`` and ``plane.js`` take it.
-
-    ``positions`` are single precision numbers in base64: of each shape in turn (frames or 1, count, 2 or 3), m, and
-    of one with poses (frames, 4, 3). Bodies with a surface come without their lines.
+    """Return a scene as ``space.js`` and ``plane.js`` take it. ``positions``: single precision in base64, of each shape
+    in turn (frames or 1, count, 2 or 3), m, and of one with poses (frames, 4, 3). Bodies with a surface have no lines.
     """
     surfaces = {shape.part for shape in scene.primitives if shape.kind == "surface"}
     drawn = [

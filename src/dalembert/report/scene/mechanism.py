@@ -22,10 +22,9 @@ Channels = Mapping[str, tuple[np.ndarray, list[str]]]
 
 
 def mechanism_scene(sketch: Sketch, channels: Channels | None = None, tables: Collection[str] | None = None) -> Scene:
-    """Return bodies, loads, joints, points with channels and located points of a mechanism in one pose.
-
-    ``tables`` are the parts that have tables. A load at the position of another label has a label only if it is among
-    them: the drives of a robot would crowd its joints.
+    """Return bodies, loads, joints, points with channels and located points of a mechanism in one pose. ``tables`` are
+    the parts that have tables. A load at the position of another label has a label only if it is among them: the drives
+    of a robot would crowd its joints.
     """
     shapes = body_shapes(sketch.drawing)
     labels = [Label("body", name, line[0].mean(axis=0), name) for name, line in sketch.drawing.lines.items()]

@@ -111,7 +111,6 @@ def _ray(axes: np.ndarray, number: int, length: float) -> np.ndarray:
 
 def unfolded(line: np.ndarray) -> np.ndarray:
     """Return a line (frames, points, 3) with gaps for pieces that go back or have no length: WebGL cannot draw them.
-
     >>> there_and_back = np.array([[[0.0, 0, 0], [1, 0, 0], [0, 0, 0], [0, 0, 0], [0, 1, 0]]])
     >>> unfolded(there_and_back)[0, :, :2].tolist()
     [[0.0, 0.0], [1.0, 0.0], [nan, nan], [0.0, 0.0], [0.0, 1.0]]

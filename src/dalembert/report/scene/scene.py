@@ -11,14 +11,11 @@ INK = -1
 
 @dataclass(frozen=True, eq=False)
 class Primitive:
-    """A line, a surface or a symbol that shows a part of a model.
-
-    ``kind``: ``line`` (with gaps where points are NaN), ``surface`` and ``mesh`` (faces; those of finite elements show
-    their sides), ``edges`` (pairs of points), ``dashes``, ``points``, ``crosses``, ``joint``, ``ground``, ``spring``,
-    ``arrow``, ``turn``, ``ring``, ``dot``, ``point``; of a row of masses also ``mass`` and ``element``.
-
-    ``role``: of the part ``name``: ``body``, ``joint``, ``load``, ``channel``, ``point``, ``measured``, ``path``,
-    ``spring``, ``contact``, ``force`` or ``ground``.
+    """A line, a surface or a symbol that shows a part of a model. ``kind``: ``line`` (with gaps where points are NaN),
+    ``surface`` and ``mesh`` (faces; those of finite elements show their sides), ``edges`` (pairs of points),
+    ``dashes``, ``points``, ``crosses``, ``joint``, ``ground``, ``spring``, ``arrow``, ``turn``, ``ring``, ``dot``,
+    ``point``; of a row of masses also ``mass`` and ``element``. ``role``: of the part ``name``: ``body``, ``joint``,
+    ``load``, ``channel``, ``point``, ``measured``, ``path``, ``spring``, ``contact``, ``force`` or ``ground``.
 
     ``points`` (frames, points, 2 or 3): m, one frame if it does not move, or has poses; ``colour``: number in the
     series of a palette, or ``INK``; ``faces`` (faces, 3 or 4): corners of the faces among the points; ``along``
@@ -69,10 +66,9 @@ FIRST_ROLES = ("channel", "force", "joint", "load", "body")
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """The picture of a model, at rest or over time.
-
-    ``primitives``: those of one part follow each other; ``gravity`` (2 or 3,): its direction, of length 1; ``times``
-    (frames,): s; ``to_scale``: False for a row of masses whose positions are not known: x has their numbers.
+    """The picture of a model, at rest or over time. ``primitives``: those of one part follow each other; ``gravity``
+    (2 or 3,): its direction, of length 1; ``times`` (frames,): s; ``to_scale``: False for a row of masses whose
+    positions are not known: x has their numbers.
     """
 
     primitives: tuple[Primitive, ...]

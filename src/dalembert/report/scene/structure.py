@@ -87,7 +87,6 @@ def _row(system: "VibrationSystem", masses: list[str], channels: Sequence[str]) 
 
 def node_of(name: str, known: Container[str]) -> str | None:
     """Return the node of a degree of freedom, a node, or a channel such as ``"tip.x harmonic 1"``; None if not known.
-
     >>> node_of("tip.x harmonic 1", ["tip"]), node_of("tip", ["tip"]), node_of("end.x", ["tip"])
     ('tip', 'tip', None)
     """
@@ -124,8 +123,7 @@ def _connections(system: "VibrationSystem", masses: list[str]) -> Iterator[tuple
 
 
 def edges(places: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """Ends (edges, 2) of the edges of one face alone, and of those where two faces meet at an angle.
-
+    """Return ends (edges, 2) of the edges of one face alone, and of those where two faces meet at an angle.
     >>> corners = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [2, 1, 0]])
     >>> len(edges(corners, np.array([[0, 1, 2, 3], [1, 4, 5, 2]])))  # not the one between them
     6

@@ -36,12 +36,11 @@ OF_FILE = (
 
 @dataclass(frozen=True)
 class Choices:
-    """How the columns of a file are to be used. ``file`` is a name beside the study, ``time`` the column of the times.
-    ``units`` has only the units that were chosen; the others are guessed. ``channels`` has the column of each channel.
-    ``start`` is the time of the file at which the motion begins, as in `[data]`: a number (s), a text such as
-    ``"1.5 s"`` or ``"first"``, or another entry. ``missing`` is ``"refuse"``, ``"leave-out"``, or a list of words that
-    stand for missing values. ``between`` are the times between which samples are kept, as in `[data]`. ``sampling``
-    gives the samples per second of a file without a column of times.
+    """How the columns of a file are to be used. ``file`` is a name beside the study, ``time`` and ``channels`` are
+    columns. ``units`` has only the units that were chosen; the others are guessed. ``start``: time of the file at which
+    the motion begins, as in `[data]`: a number (s), a text such as ``"1.5 s"`` or ``"first"``, or another entry;
+    ``missing``: ``"refuse"``, ``"leave-out"``, or a list of words that stand for missing values; ``between``: times
+    between which samples are kept, as in `[data]`; ``sampling``: samples per second of a file without times.
     """
 
     file: str
@@ -210,9 +209,8 @@ SET = (
 
 def write(document: TOMLDocument, table: Mapping[str, Any], place: tuple[str | int, ...] = ("data",)) -> None:
     """Write the keys of a `[data]` table, as :func:`table_of` returns it, into a study; comments, order and other keys
-    stay. ``place`` is the table to write: ``("data",)``, or an experiment such as ``("experiments", 0)``. Keys that
-    belong to another file, such as its trial, are removed. Deviations of channels that the data no longer have are
-    removed, too.
+    stay. ``place``: the table to write, ``("data",)``, or an experiment such as ``("experiments", 0)``. Keys that
+    belong to another file, such as its trial, and deviations of channels that the data no longer have are removed.
     """
     if place == ("data",) and "data" not in document:
         document["data"] = tomlkit.table()

@@ -26,10 +26,9 @@ MOST_SAMPLES = 20_000
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """A column over the times, with its chosen or guessed unit. ``along`` and ``values`` (points,) are thinned so that
-    peaks stay. ``along`` is the time in s from the beginning of the motion. It is the number of the row where neither a
-    column nor a sampling rate gives the times. ``values`` is the column as it is in the file. ``far`` (2, points) has
-    times and values of outliers. ``missing`` is the number of cells without a value.
+    """A column over the times, with its chosen or guessed unit. ``along``, ``values`` (points,), thinned so that peaks
+    stay: time from the beginning of the motion, s, or number of the row if neither a column nor a sampling rate gives
+    times; and values as in the file. ``far`` (2, points): the same of outliers; ``missing``: cells without a value.
     """
 
     key: Key
@@ -42,10 +41,9 @@ class Curve:
 
 @dataclass(frozen=True, eq=False)
 class Examined:
-    """A file as it is read with some choices, which may be guessed. ``channels`` maps the channels of the model to
-    their SI units. ``layout`` describes the layout of a text file in words. ``separator`` and ``decimal`` are ``""``
-    where the file is no text. ``first`` has the cells of the first rows, ``begins`` is the first time (s) of the file.
-    ``table`` is the `[data]` table; it is empty if it lacks something, and ``lacks`` says what.
+    """A file as it is read with some choices, which may be guessed. ``channels``: of the model, with SI units;
+    ``layout``: of a text file, in words; ``separator``, ``decimal``: ``""`` where the file is no text; ``first``: cells
+    of the first rows; ``begins``: first time, s; ``table``: the `[data]` table, empty if it lacks what ``lacks`` says.
     """
 
     choices: Choices

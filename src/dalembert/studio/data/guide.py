@@ -27,10 +27,9 @@ LARGE = 1.345
 
 
 class DataGuide:
-    """What is chosen for a file, and the result. ``place`` is the table that is written: ``("data",)``, or one of the
-    experiments. ``file`` is empty if none is chosen. ``choices`` is None until the file was read once. ``examined`` is
-    the last result of the file and the choices. ``suspects`` are findings from the response at the first guesses.
-    ``error`` says why the file cannot be read.
+    """Choices for a file, and the result. ``place``: table to write, ``("data",)`` or one of the experiments; ``file``:
+    empty if none is chosen; ``choices``: None until the file was read once; ``examined``: the last result;
+    ``suspects``: findings from the response at the first guesses; ``error``: why the file cannot be read.
     """
 
     def __init__(self, draft: Draft, worker: Worker) -> None:

@@ -61,7 +61,6 @@ HOW = "Click the point, joint or body that was measured."
 
 def channels_of_part(part: str, channels: Iterable[str]) -> list[str]:
     """Return the channels of a part of a drawing; those of one of its points if it is one.
-
     >>> channels = ["rod.end.x", "rod.end.y", "rod.angle", "rod2.angle", "pin.angle"]
     >>> channels_of_part("body rod", channels), channels_of_part("point rod.end", channels)
     (['rod.end.x', 'rod.end.y', 'rod.angle'], ['rod.end.x', 'rod.end.y'])

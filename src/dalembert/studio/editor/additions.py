@@ -22,10 +22,9 @@ TASK = "Task"
 
 @dataclass(frozen=True)
 class Addition:
-    """Something that can be added. ``place`` is the table or list of tables to add it to, empty for one of the tables
-    of ``kinds``. ``kinds`` maps kinds, or tables, to their meanings; it is empty where a name is requested instead.
-    ``names`` is ``"channel"`` where the name must be that of a channel, and empty for a new name. ``elsewhere`` is a
-    sentence that says where it must be added instead, empty if it can be added here.
+    """Something that can be added. ``place``: table or list of tables to add it to, empty for one of the tables of
+    ``kinds``; ``kinds``: kinds, or tables, and their meanings, empty if a name is requested; ``names``: ``"channel"``
+    for that of a channel, empty for a new name; ``elsewhere``: a sentence on where to add it instead, or empty.
     """
 
     label: str
@@ -82,8 +81,7 @@ def added(text: str, addition: Addition, what: str) -> tuple[str, Place]:
 
 
 def _free(model: Mapping[str, Any], what: str) -> str:
-    """A name that nothing in a model has.
-
+    """Return a name that nothing in a model has.
     >>> _free({"body": [{"name": "body1"}]}, "body")
     'body2'
     """

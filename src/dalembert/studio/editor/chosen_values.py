@@ -30,11 +30,7 @@ class _Home:
 
 
 def unit_in(document: Any, name: str) -> tuple[str, float]:
-    """Return the unit in which a study writes a parameter, and its size in SI units; ``("", 1.0)`` for plain numbers.
-
-    >>> unit_in({"parameters": {"k": {"lower": 0, "upper": "9 kN/m"}, "c": {"lower": 0, "upper": 1}}}, "k")
-    ('kN/m', 1000.0)
-    """
+    """Return the unit in which a study writes a parameter, and its size in SI units; ``("", 1.0)`` without one."""
     sensor = _sensor(document, name)
     try:
         return unit_among(sensor[name.rpartition(" ")[2]] if sensor else _home(document, name).given.values())
@@ -55,16 +51,7 @@ def use_as_start(document: Any, values: Mapping[str, float]) -> None:
 
 
 def use_as_value(document: Any, name: str, value: float) -> None:
-    """Fix a parameter at a value (SI units): both bounds become equal, and the other numbers are left out.
-
-    >>> import tomlkit
-    >>> document = tomlkit.parse('[parameters.angle]\\nlower = 0.6 # rad\\nupper = 1.0\\nstart = 0.7\\n')
-    >>> use_as_value(document, "angle", 0.8)
-    >>> print(tomlkit.dumps(document).strip())
-    [parameters.angle]
-    lower = 0.8 # rad
-    upper = 0.8
-    """
+    """Fix a parameter at a value (SI units): both bounds become equal, and the other numbers are left out."""
     sensor = _sensor(document, name)
     if sensor is not None:
         what = name.rpartition(" ")[2]

@@ -28,7 +28,6 @@ class Cursor:
 
 def cursor_at(text: str, position: int) -> Cursor | None:
     """Return where a position (characters from the beginning) is; None in a comment.
-
     >>> cursor_at("[parameters]\\nd = { lower = 0, up", 32)
     Cursor(where='key', place=('parameters', 'd'), typed='up', quoted=False, given={'lower': ''})
     """

@@ -29,13 +29,11 @@ class ChangedOnDiskError(InputError):
 
 class Draft:
     """The state of one open study. Panels follow its topics. Text typed within a short time by ``clock`` (s) is undone
-    in one step.
-
-    ``reading`` is the text as a study when it was last checked; ``good`` is the last study without mistakes. ``values``
-    are current values of parameters in SI units, at first their start values; ``starts`` are their first guesses. Local
-    parameters and those of sensors have the names of a fit: ``"trial.angle"``, ``"AB.end.x delay"``. ``selection`` is a
-    place in the file, such as ``("model", "body", 0)``. ``disk`` compares the file with what was read or saved.
-    ``watched_files`` are the files that the text names; :meth:`check_files` reports "files" after changes of them.
+    in one step. ``reading``: the text as a study when it was last checked; ``good``: the last study without mistakes;
+    ``values``: current values of parameters in SI units, at first their start values; ``starts``: their first guesses.
+    Local parameters and those of sensors have the names of a fit: ``"trial.angle"``, ``"AB.end.x delay"``.
+    ``selection``: a place in the file, such as ``("model", "body", 0)``; ``disk``: the file compared with what was read
+    or saved; ``watched_files``: those that the text names; :meth:`check_files` reports "files" after changes of them.
     """
 
     def __init__(self, path: Path, clock: Callable[[], float] = time.monotonic) -> None:

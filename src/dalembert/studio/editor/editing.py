@@ -87,7 +87,6 @@ def with_table(text: str, place: Place, values: Mapping[str, Any]) -> tuple[str,
 
 def value_of(text: str, field: TableField) -> Any:
     """Return the value that a text in a form stands for, by the shape of its field; None if it is empty.
-
     >>> number, names = TableField("length", "number"), TableField("channels", "list")
     >>> value_of("0.4", number), value_of("400 mm", number), value_of("A.x, A.y", names)
     (0.4, '400 mm', ['A.x', 'A.y'])
@@ -109,7 +108,6 @@ def value_of(text: str, field: TableField) -> Any:
 
 def text_of(value: Any) -> str:
     """Return a value of a study as a form shows it; :func:`value_of` reads it back.
-
     >>> text_of("400 mm"), text_of([0, "2 m"]), text_of({"end": 2.0})
     ('400 mm', '[0, "2 m"]', '{ end = 2.0 }')
     """

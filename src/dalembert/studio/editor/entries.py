@@ -25,7 +25,6 @@ def table_at(document: Mapping[str, Any], name: str) -> Mapping[str, Any]:
 
 def number_of(entry: object) -> float | None:
     """Return the number that an entry is, in SI units; None for an expression of names, and for no entry.
-
     >>> number_of("1 ms"), number_of(0.5), number_of("pi / 2"), number_of("angle"), number_of(None)
     (0.001, 0.5, 1.5707963267948966, None, None)
     """
@@ -40,7 +39,6 @@ def number_of(entry: object) -> float | None:
 
 def units_of(entry: object) -> str:
     """Return the unit that an entry has with it; empty if there is none.
-
     >>> units_of("1 ms"), units_of(0.001), units_of("pi / 2")
     ('ms', '', '')
     """
@@ -50,10 +48,8 @@ def units_of(entry: object) -> str:
 
 
 def unit_among(entries: Iterable[object]) -> tuple[str, float]:
-    """Return the first unit that entries have, and its size in SI units; ``("", 1.0)`` if none has one.
-
-    A unit whose zero is another one, such as that of a temperature, is left out.
-
+    """Return the first unit that entries have, and its size in SI units; ``("", 1.0)`` if none has one. A unit whose
+    zero is another one, such as that of a temperature, is left out.
     >>> unit_among([0.5, "2 ms"]), unit_among([0.5])
     (('ms', 0.001), ('', 1.0))
     """
@@ -63,9 +59,7 @@ def unit_among(entries: Iterable[object]) -> tuple[str, float]:
 
 
 def like(entry: object, number: float, table: Mapping[str, Any] | None = None) -> str | float:
-    """Return a number in SI units as an entry with the unit of another entry. If ``entry`` has no unit, the first entry
-    of ``table`` with a unit gives it.
-
+    """Return a number in SI units as an entry with the unit of another entry, else of the first in ``table`` with one.
     >>> like("1 ms", 0.0005), like(0.001, 0.0005), like(0, 1.0, {"lower": 0, "upper": "90 deg"})
     ('0.5 ms', 0.0005, '57.2958 deg')
     """
@@ -75,7 +69,6 @@ def like(entry: object, number: float, table: Mapping[str, Any] | None = None) -
 
 def put(parent: Any, name: str | int, **entries: Any) -> None:
     """Set entries of a table, which is made if it is not there; None removes an entry.
-
     >>> document = tomlkit.parse("a = { b = 1, c = 2 } # kept\\n")
     >>> put(document, "a", b=None, d=[0.0, 0.5])
     >>> print(tomlkit.dumps(document), end="")

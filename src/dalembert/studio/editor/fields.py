@@ -32,10 +32,9 @@ _OF_KEYS = {"columns": "channel", "deviations": "channel", "weights": "channel",
 
 @dataclass(frozen=True)
 class TableField:
-    """A key of a table. ``shape`` says what a value of it is, ``meaning`` includes what is expected. ``unit`` is that
-    of a number; it is None or empty where the number has none. ``default`` is None where the key has no default, or one
-    that depends on others. ``choices`` are texts that are allowed, such as kinds. ``names`` says what a text, or each
-    text of a list, is the name of: a "point", "joint", "channel" and so on.
+    """A key of a table. ``shape`` says what a value of it is, ``meaning`` includes what is expected. ``unit``: of a
+    number, None or empty if it has none; ``default``: None if there is none, or it depends on other keys; ``choices``:
+    allowed texts, such as kinds; ``names``: what a text, or each text of a list, names, such as a "point" or "joint".
     """
 
     key: str
@@ -49,8 +48,7 @@ class TableField:
 
     @property
     def facts(self) -> str:
-        """Unit and default in a few words.
-
+        """Return unit and default in a few words.
         >>> TableField("angle", "number", unit="rad", default=0.0).facts
         'in rad, default 0'
         """
@@ -236,8 +234,7 @@ def _shape(choices: Sequence[Node], texts: Sequence[str]) -> Shape:
 
 
 def shown(value: Any) -> str:
-    """A default as a study file gives it.
-
+    """Return a default as a study file gives it.
     >>> shown(True), shown(0.001), shown("cubic")
     ('true', '0.001', 'cubic')
     """

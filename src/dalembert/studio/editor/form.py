@@ -102,8 +102,7 @@ def _sentences(mistakes: Iterable[Mistake], place: Place) -> tuple[str, ...]:
 
 
 def _title(document: Any, place: Place) -> str:
-    """What a form is about.
-
+    """Return what a form is about.
     >>> study = {"model": {"body": [{"name": "rod"}, {}]}}
     >>> _title(study, ("model", "body", 0, "points")), _title(study, ("model", "body", 1)), _title({}, ("model",))
     ("body 'rod', points", 'body 2', 'model')

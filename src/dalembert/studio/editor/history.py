@@ -11,7 +11,6 @@ MOST = 500
 @dataclass
 class History:
     """Texts in their order, and which of them is the present one.
-
     >>> history = History("a")
     >>> history.add("ab", 0.0)
     >>> history.add("abc", 0.2)

@@ -26,7 +26,6 @@ _TELLING = (
 
 def model_kind(document: Any) -> str:
     """Return what a document's model is: "file", "function", "mechanism" or "structure"; empty while nothing says it.
-
     >>> model_kind({"model": {"joint": [{}]}}), model_kind({"model": {"mass": [{}], "gravity": 1}}), model_kind({})
     ('mechanism', 'structure', '')
     """
@@ -36,7 +35,6 @@ def model_kind(document: Any) -> str:
 
 def fits_model(document: Any, key: object) -> bool:
     """Return True if a key of ``[model]`` belongs to a model of the document's kind.
-
     >>> [fits_model({"model": {"body": [{}]}}, key) for key in ("joint", "contact", "file", "key of a plug-in")]
     [True, False, False, True]
     """
@@ -53,7 +51,6 @@ def model_file(document: Any) -> str:
 
 def model_elsewhere(document: Any) -> str:
     """Return a sentence that says where the model is; empty if its tables are in the document.
-
     >>> model_elsewhere({"model": {"file": "pendulum.toml"}})
     'The bodies, joints, forces and other parts of the model are in pendulum.toml. Change them there.'
     """

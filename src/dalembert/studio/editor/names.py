@@ -10,12 +10,7 @@ Names = Mapping[str, tuple[str, ...]]
 
 
 def names_in(document: Mapping[str, Any]) -> dict[str, tuple[str, ...]]:
-    """Return the names that the tables of a document give, by what they are names of.
-
-    >>> names = names_in({"model": {"body": [{"kind": "RigidBar", "name": "rod"}]}, "parameters": {"drag": {}}})
-    >>> names["point"], names["parameter"]
-    (('ground', 'rod.start', 'rod.end', 'rod.centre'), ('drag',))
-    """
+    """Return the names that the tables of a document give, by what they are names of, such as ``"point"``."""
     model = _table(document, "model")
     bodies = dict(_entries(model, "body"))
     parameters, constants = tuple(_table(document, "parameters")), tuple(_table(document, "constants"))

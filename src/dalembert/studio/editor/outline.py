@@ -15,10 +15,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Outline:
-    """A study without its model, which may be the user's code and take some time. ``name`` is that of its runs.
-    ``parts`` are what can be simulated: experiments, or one part with an empty name where there are none. Each has the
-    parameters that act on it, those of sensors too. ``channels`` are all channels of a mechanism; none of another
-    model, or where it cannot be built. ``files`` are the other files that the study names.
+    """A study without its model, which may be slow code of the user's. ``name``: of its runs; ``parts``: what to
+    simulate: experiments, or one with an empty name, and the parameters that act on each, also of sensors;
+    ``channels``: all of a mechanism, none of another model, or where it cannot be built; ``files``: other files named.
     """
 
     text: str

@@ -111,7 +111,6 @@ def _stamps(study: "Study") -> dict[Path, int]:
 def mistake(text: str, place: Place, sentence: str) -> Mistake:
     """Return a mistake at the place that its sentence begins with, such as ``[[model.joint]] 'pin', b``, or at a place.
     A mistake of a model in a separate file is at the key that names the file.
-
     >>> mistake('[model]\\n[[model.joint]]\\nname = "pin"\\nb = 1\\n', ("model",), "[[model.joint]] 'pin', b: wrong")
     Mistake(place=('model', 'joint', 0, 'b'), line=4, sentence="[[model.joint]] 'pin', b: wrong")
     """

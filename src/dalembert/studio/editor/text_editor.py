@@ -18,10 +18,9 @@ _MOST = 200
 
 
 class StudyEditor(ui.codemirror, component="study_editor.js", esm={"dalembert-codemirror": _NICEGUI}):
-    """An editor of a study's text. ``names`` returns names that the text does not contain, such as channels. ``late``
-    is called with a text that was typed when the browser had not yet received the present one. ``kept`` takes a text
-    that the browser kept when its page was lost, and the saved text that it was based on. ``label`` is for screen
-    readers. ``tables`` are those that the file may have; all if empty.
+    """An editor of a study's text. ``names`` returns names that the text lacks, such as channels. ``late`` takes a text
+    typed before the browser received the present one; ``kept`` a text that the browser kept when its page was lost, and
+    the saved text that it was based on. ``label``: for screen readers; ``tables``: allowed ones, all if empty.
     """
 
     def __init__(

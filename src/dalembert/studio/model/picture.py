@@ -67,13 +67,11 @@ NOTHING = "This model is a Python function of its parameters alone. It has no sh
 
 @dataclass(frozen=True)
 class Picture:
-    """A model as a page draws it. ``svg`` is empty if there is nothing to draw. ``scene`` is the same in three
-    dimensions, of a model in space, as :func:`~dalembert.report.player.film.encoded` returns it.
-
-    ``parts`` are roles and names of the parts that are drawn. ``places`` are places in the text by the parts of the
-    drawing, see :func:`~dalembert.studio.model.parts.places_of`. ``box`` (2, 2) has the corners of what is drawn, m.
-    ``absent`` are parts of the model that have tables and no shape. ``message`` is about the drawing, ``mistake`` about
-    the model; it is empty if nothing is wrong.
+    """A model as a page draws it. ``svg``: empty if there is nothing to draw; ``scene``: the same in three dimensions,
+    of a model in space, as :func:`~dalembert.report.player.film.encoded` returns it; ``parts``: roles and names of the
+    drawn parts; ``places``: places in the text by the parts of the drawing, see
+    :func:`~dalembert.studio.model.parts.places_of`; ``box`` (2, 2): corners of what is drawn, m; ``absent``: parts of
+    the model that have tables and no shape; ``message``: about the drawing; ``mistake``: in the model, or empty.
     """
 
     svg: str = ""

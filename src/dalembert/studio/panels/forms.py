@@ -283,8 +283,7 @@ class Editor:
 
 
 def _add(addition: Addition) -> str:
-    """What a button does.
-
+    """Return the label of a button.
     >>> _add(Addition("Input", ("inputs",))), _add(Addition("Body", ()))
     ('Add an input', 'Add a body')
     """

@@ -20,7 +20,6 @@ STEPS = 1000
 @dataclass(frozen=True)
 class SliderScale:
     """Positions of a slider, from 0 to :data:`STEPS`, and values of a parameter.
-
     >>> angle, modulus = SliderScale(Parameter("angle", 0.6, 1.0)), SliderScale(Parameter("E", 1e6, 1e9))
     >>> angle.value(500), modulus.value(500), modulus.position(1e8)
     (0.8, 31622800.0, 667)
@@ -54,9 +53,7 @@ _MINUS = "\N{MINUS SIGN}"
 
 
 def typed_number(text: str | None, unit: str = "", size: float = 1.0) -> float:
-    """Return the number of a text in SI units. ``unit`` is that of the field, for a text without a unit, and ``size``
-    its size in SI units.
-
+    """Return the number of a text in SI units. ``unit``: of a text without one; ``size``: of this unit, in SI units.
     >>> typed_number("-2,5", "mm", 1e-3), typed_number("2 cm", "mm", 1e-3), typed_number("3")
     (-0.0025, 0.02, 3.0)
     >>> typed_number("1,234.5")

@@ -47,16 +47,7 @@ def changes(code: str, values: Values, document: TOMLDocument, best: Best) -> li
 
 
 def start_from_best(document: TOMLDocument, best: Best) -> bool:
-    """Make identified values the first guesses of parameters that have bounds; return whether there are any.
-
-    >>> import tomlkit
-    >>> document = tomlkit.parse("[parameters]\\nrate = { lower = 0.0, upper = 2.0 } # of decay\\n")
-    >>> start_from_best(document, {"rate": 0.123456789})
-    True
-    >>> print(tomlkit.dumps(document), end="")
-    [parameters]
-    rate = { lower = 0.0, upper = 2.0, start = 0.123457 } # of decay
-    """
+    """Make identified values the first guesses of parameters that have bounds; return whether there are any."""
     parameters = table_at(document, "parameters")
     known = {name: value for name, value in best.items() if name in parameters}
     for name, value in known.items():

@@ -41,7 +41,6 @@ def _lines(kind: str, old: list[str], new: list[str]) -> list[Line]:
 
 def as_text(lines: list[Line]) -> str:
     """Return differences as a text with a mark before each line.
-
     >>> print(as_text([("removed", "b = 2"), ("added", "b = 3")]))
     − b = 2
     + b = 3

@@ -21,12 +21,10 @@ STEADY = 2.0
 
 @dataclass
 class Remaining:
-    """How much of the stage of a run is done, by its events.
-
-    Only a stage whose amount of work is settled beforehand has a remaining time: draws of a sampler, values of a sweep,
-    simulations of a swarm. A least-squares method stops where it converges, so nothing is said of it. What follows the
-    stage, such as profiles and the report, is not part of the number. ``planned`` are the simulations that the search
-    of an identification takes; None where they are not settled beforehand.
+    """How much of the stage of a run is done, by its events. Only a stage whose amount of work is settled beforehand
+    has a remaining time: draws of a sampler, values of a sweep, simulations of a swarm. A least-squares method stops
+    where it converges, so nothing is said of it. What follows the stage, such as profiles and the report, is not part
+    of the number. ``planned`` are the simulations that the search of an identification takes; None if not settled.
     """
 
     planned: int | None = None

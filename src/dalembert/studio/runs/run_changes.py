@@ -90,11 +90,7 @@ def continued(workspace: Workspace, folder: RunFolder, name: str, text: str) -> 
 
 
 def renamed_files(text: str, places: dict[str, str]) -> str:
-    """Return a study's text with other names of files; comments and order stay.
-
-    >>> renamed_files('[data] # measured\\nfile = "../rig/a.csv"\\n', {"../rig/a.csv": "a.csv"})
-    '[data] # measured\\nfile = "a.csv"\\n'
-    """
+    """Return a study's text with other names of files; comments and order stay."""
     if all(given == place for given, place in places.items()):
         return text
     document = tomlkit.parse(text)

@@ -100,11 +100,10 @@ _CHANGED = f"""params => {{
 
 
 class RunGrid:
-    """The table. ``rows`` are those of :class:`~dalembert.studio.runs.run_list.RunList`, the newest first. The table
-    begins with the first ones, so that the page is small; :meth:`show` adds the others. ``on_select`` is called with
-    the names of the selected runs. ``on_key`` is called with ``"Enter"`` or ``"Delete"`` and the ``id`` of the focused
-    row, whose run may just have been renamed. ``on_change`` is called with a run, ``"run"``, ``"tags"`` or ``"note"``,
-    and the text that the user entered there.
+    """Table of the runs. ``rows``: those of :class:`~dalembert.studio.runs.run_list.RunList`, the newest first. The
+    first ones are shown, so that the page is small; :meth:`show` adds the others. ``on_select`` takes the names of the
+    selected runs; ``on_key`` takes ``"Enter"`` or ``"Delete"`` and the ``id`` of the focused row, whose run may just
+    have been renamed; ``on_change`` takes a run, ``"run"``, ``"tags"`` or ``"note"``, and the text entered there.
     """
 
     def __init__(

@@ -23,11 +23,9 @@ _WATCHED = ("state.json", NOTE)
 
 @dataclass
 class RunList:
-    """The runs of a folder as rows.
-
-    A row has ``id``, which stays when the run is renamed, ``run``, ``study``, ``title``, ``task``, ``state``,
-    ``message``, ``findings`` (text), ``severity`` (a number to sort by), ``doubts`` (messages), ``values`` (text),
-    ``misfit``, ``duration`` (s), ``date`` (UTC), ``tags`` and ``note``. A number that is not known is None.
+    """The runs of a folder as rows. A row has ``id``, which stays when the run is renamed, ``run``, ``study``,
+    ``title``, ``task``, ``state``, ``message``, ``findings`` (text), ``severity`` (to sort by), ``doubts`` (messages),
+    ``values`` (text), ``misfit``, ``duration`` (s), ``date`` (UTC), ``tags`` and ``note``. Unknown numbers are None.
     """
 
     root: Path

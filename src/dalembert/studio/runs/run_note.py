@@ -39,7 +39,6 @@ def write_note(run: Path, note: Note) -> None:
 
 def tags_of(text: str) -> tuple[str, ...]:
     """Return the tags of a text with commas, each once.
-
     >>> tags_of("rig 2, cold,, cold ")
     ('rig 2', 'cold')
     """

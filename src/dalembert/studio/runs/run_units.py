@@ -30,7 +30,6 @@ def run_units(folder: RunFolder, names: Iterable[str]) -> dict[str, Unit]:
 
 def value_unit(document: Mapping[str, Any], name: str) -> Unit:
     """Return the unit of a value: that in which the study writes the parameter, or the SI unit that it states.
-
     >>> parameters = {"angle": {"lower": "-60 deg", "upper": 0, "unit": "rad"}, "drag": {"lower": 0, "unit": "N*s"}}
     >>> study = {"parameters": parameters, "experiments": [{"name": "high", "local": ["drag"]}]}
     >>> value_unit(study, "angle")[0], value_unit(study, "drag"), value_unit(study, "high.drag")
@@ -63,7 +62,6 @@ def in_unit(value: Any, unit: Unit) -> Any:
 
 def values_text(best: Mapping[str, Any], units: Mapping[str, Unit]) -> str:
     """Return identified values with their standard deviations and units in one line.
-
     >>> best = {"values": {"drag": 0.1999, "angle": -0.5}, "deviations": {"drag": 0.00123, "angle": None}}
     >>> values_text(best, {"angle": ("mrad", 1e-3)})
     'drag = 0.1999 ± 0.0012, angle = -500 mrad'
@@ -79,7 +77,6 @@ def values_of(best: Mapping[str, Any], units: Mapping[str, Unit]) -> dict[str, s
 
 def with_deviation(value: object, deviation: object, unit: Unit = PLAIN) -> str:
     """Return an identified value and its standard deviation, with two digits, if they are known, and the unit.
-
     >>> with_deviation(0.7853981, 1.23e-4), with_deviation(2.0, None), with_deviation(None, None)
     ('0.785398 ± 0.00012', '2', '')
     >>> with_deviation(0.5, 0.01, ("mrad", 1e-3)), with_deviation(0.5, None, ("m", 1.0))

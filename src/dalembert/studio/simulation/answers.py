@@ -47,11 +47,10 @@ class Source:
 
 @dataclass(frozen=True)
 class Simulated:
-    """A simulation as a page shows it. ``film`` is that of a mechanism, see
-    :func:`~dalembert.report.player.film.film_of`. ``misfit`` is the weighted sum of squares of the residuals, None
-    without data. ``residuals`` are root mean squares by channel, in ``units``. ``seconds`` is the time of the
-    simulation, ``computed`` that with film and curves. ``hint`` says why nothing is simulated, though the study is
-    valid.
+    """A simulation as a page shows it. ``film``: of a mechanism, see :func:`~dalembert.report.player.film.film_of`;
+    ``misfit``: weighted sum of squares of the residuals, None without data; ``residuals``: root mean squares by
+    channel, in ``units``; ``seconds``: time of the simulation; ``computed``: that with film and curves; ``hint``: why
+    nothing is simulated, though the study is valid.
     """
 
     film: dict[str, Any] | None = None

@@ -25,10 +25,9 @@ OVER_FREQUENCY = "frequency_response"
 
 @dataclass(frozen=True, eq=False)
 class StudyMotion:
-    """One motion or response of a study, which is as the experiment changes it. ``model`` maps parameters to channels;
-    it is None where no channel is known. ``data`` are what the channels are compared with. ``end`` is the last time of
-    the motion of a mechanism, s; 0 without a motion. ``named`` returns the name of a parameter of the model among those
-    of all experiments.
+    """A motion or response of a study, as the experiment changes it. ``model``: from parameters to channels, None where
+    no channel is known; ``data``: what the channels are compared with; ``end``: last time of the motion of a mechanism,
+    s; 0 without a motion; ``named`` returns the name of a parameter of the model among those of all experiments.
     """
 
     study: "Study"

@@ -56,7 +56,6 @@ class StudyFolder:
 
 def has_words(texts: Iterable[str], words: str) -> bool:
     """Return True if some of the texts have each word of a search.
-
     >>> has_words(["A motion of a mechanism", "A pendulum"], "PENDULUM motion"), has_words([], "x")
     (True, False)
     """

@@ -38,13 +38,11 @@ class StartFailed(SolveError):
 
 @dataclass(frozen=True)
 class Effort:
-    """What a study spends its time with.
-
-    ``part(share)`` computes a share, between 0 and 1, of what ``source`` says in words, and returns the share that it
-    computed; 1 where that cannot be cut. ``shortest``: share to begin with. ``simulations``: number that the whole of
-    it stands for; ``least``, ``most``: expected numbers of simulations, None where the method decides on the way.
-    ``response``: size of the response of a simulation, bytes, 0 if the checkpoint keeps none; ``kept``: number of
-    responses that the checkpoint keeps at once, all if None.
+    """What a study spends its time with. ``part(share)`` computes a share, between 0 and 1, of what ``source`` says in
+    words, and returns the share that it computed; 1 where that cannot be cut. ``shortest``: share to begin with;
+    ``simulations``: number that the whole of it stands for; ``least``, ``most``: expected numbers of simulations, None
+    where the method decides on the way; ``response``: size of the response of a simulation, bytes, 0 if the checkpoint
+    keeps none; ``kept``: number of responses that it keeps at once, all if None.
     """
 
     part: Callable[[float], float]

@@ -29,11 +29,9 @@ OF_THE_RUN = "run-"
 
 @dataclass
 class EventLog:
-    """Events of a run, appended to a file and handed to listeners as they come.
-
-    ``path``: ``events.jsonl``; a last line that a kill cut short is removed when the log is opened again. A run that is
-    resumed does again what it did, in the same order: as many events as the log has of what a run does are handed to
-    ``listeners``, and not written a second time.
+    """Events of a run, appended to a file and handed to listeners as they come. ``path``: ``events.jsonl``; a last line
+    that a kill cut short is removed when the log is opened again. A run that is resumed does again what it did, in the
+    same order: as many events as the log has of what a run does are handed to ``listeners``, and not written again.
     """
 
     path: Path

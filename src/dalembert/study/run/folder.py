@@ -263,11 +263,9 @@ def sha256(path: Path) -> str:
 
 
 def new_folder(name: str, out: Path | None = None, *, force: bool = False) -> RunFolder:
-    """Folder for a new run, made empty.
-
-    Without ``out`` it is ``runs/<name>``, or ``runs/<name>-2`` and so on while those are taken. With ``out`` or
-    ``force`` it is the one named, and what a run left there is removed only if ``force`` says so. A run that was
-    refused before it computed anything takes no folder.
+    """Return a folder for a new run, made empty. Without ``out`` it is ``runs/<name>``, or ``runs/<name>-2`` and so on
+    while those are taken. With ``out`` or ``force`` it is the one named, and what a run left there is removed only if
+    ``force`` says so. A run that was refused before it computed anything takes no folder.
     """
     path = out or Path("runs") / name
     if out is None and not force:

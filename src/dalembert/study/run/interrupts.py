@@ -13,10 +13,9 @@ DELAY = 0.05
 
 @contextmanager
 def kept_interrupts() -> Iterator[None]:
-    """A block in which no Ctrl-C is lost that arrives inside a callback.
-
-    Python drops what a callback of the garbage collector, a destructor or a callback of a C library raises, a
-    KeyboardInterrupt too. It is sent to the main thread again, until it arrives outside a callback.
+    """Block in which no Ctrl-C is lost that arrives inside a callback. Python drops what a callback of the garbage
+    collector, a destructor or a callback of a C library raises, a KeyboardInterrupt too. It is sent to the main thread
+    again, until it arrives outside a callback.
     """
     former = sys.unraisablehook
 

@@ -46,13 +46,9 @@ def _row(folder: RunFolder) -> dict[str, str]:
 
 def counted(state: dict) -> str:
     """Return the numbers of errors and warnings about a result in words; empty if there are none.
-
-    >>> counted({"findings": [{"severity": "warning"}, {"severity": "note"}, {"severity": "warning"}]})
-    '2 warnings'
-    >>> counted({"findings": [{"severity": "warning"}, {"severity": "error"}]})
-    '1 error, 1 warning'
-    >>> counted({"findings": [{"severity": "note"}]})
-    ''
+    >>> found = ["warning", "error", "warning"], ["warning", "note"], ["note"]
+    >>> [counted({"findings": [{"severity": kind} for kind in kinds]}) for kinds in found]
+    ['1 error, 2 warnings', '1 warning', '']
     """
     severities = [finding.get("severity") for finding in state.get("findings") or []]
     counts = {severity: severities.count(severity) for severity in ("error", "warning")}

@@ -20,11 +20,9 @@ MOST_LISTED = 8
 
 @dataclass
 class ProgressText:
-    """How far a run is, in words, from its events.
-
-    ``names``: of the unknowns, for the best values; ``last``: the last text, and how much is done of how much, None
-    where that is not known; ``units``: units in which the unknowns are listed, and their sizes in SI units; without a
-    unit for others.
+    """How far a run is, in words, from its events. ``names``: of the unknowns, for the best values; ``last``: the last
+    text, and how much is done of how much, None where that is not known; ``units``: in which the unknowns are listed,
+    and their sizes in SI units; without a unit for others.
     """
 
     names: tuple[str, ...] = ()
@@ -147,11 +145,8 @@ class Watch:
 
 def duration_text(seconds: float) -> str:
     """Return a duration with two digits.
-
-    >>> [duration_text(value) for value in (2.345e-4, 0.1234, 41.7, 250.0, 7400.0)]
-    ['0.23 ms', '0.12 s', '42 s', '4.2 min', '2.1 h']
-    >>> [duration_text(value) for value in (9e5, 1.33e9, 1e15)]
-    ['10 days', '42 years', '3.2e+07 years']
+    >>> [duration_text(value) for value in (2.345e-4, 0.1234, 41.7, 250.0, 7400.0, 9e5, 1.33e9, 1e15)]
+    ['0.23 ms', '0.12 s', '42 s', '4.2 min', '2.1 h', '10 days', '42 years', '3.2e+07 years']
     """
     units = ((365.25 * DAY, " years"), (DAY, " days"), (3600.0, " h"), (60.0, " min"), (1.0, " s"))
     for size, unit in units:
@@ -163,7 +158,6 @@ def duration_text(seconds: float) -> str:
 
 def size_text(size: float) -> str:
     """Return a size in bytes with two digits.
-
     >>> [size_text(value) for value in (512, 48_000, 2.4e8, 3.1e12)]
     ['0.51 kB', '48 kB', '240 MB', '3.1 TB']
     """

@@ -132,10 +132,9 @@ def resume_run(folder: RunFolder, *, listener: Listener | None = None, executor:
 
 @dataclass(frozen=True, eq=False)
 class Attempt:
-    """The part of a run that one process computes, from its start or from where it is resumed.
-
-    ``folder``: locked; ``facts``: of the study, for the first event and for the state of the run; ``earlier``: seconds
-    that the run took before it was resumed; ``began``: value of ``perf_counter`` at its start.
+    """The part of a run that one process computes, from its start or from where it is resumed. ``folder``: locked;
+    ``facts``: of the study, for the first event and for the state of the run; ``earlier``: seconds that the run took
+    before it was resumed; ``began``: value of ``perf_counter`` at its start.
     """
 
     study: Study

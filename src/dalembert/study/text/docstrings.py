@@ -15,7 +15,6 @@ _UNIT = re.compile(r"^(?:(?:N|kg|m|s|rad|Pa|V|A|Ohm)(?:\^[\d()/]+|³)?[ /]?)+(?:
 @cache
 def meanings(target: type) -> dict[str, str]:
     """Return the meaning of each argument of a class, without a leading unit; arguments without one are left out.
-
     >>> from dalembert import RigidBar
     >>> meanings(RigidBar)["angle"], "length" in meanings(RigidBar)
     ('Initial angle from the x axis, rad.', False)

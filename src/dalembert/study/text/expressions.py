@@ -61,10 +61,9 @@ _LONGEST = 500
 
 @dataclass(frozen=True)
 class Expression:
-    """Arithmetic in named numbers, which may be complex: ``+ - * / **``, brackets, functions and pi.
-
-    The functions are sin, cos, tan, asin, acos, sqrt, exp, log, abs, and of two numbers atan2 (y, then x) and hypot. In
-    complex numbers they decide by real parts and carry the complex step.
+    """Arithmetic in named numbers, which may be complex: ``+ - * / **``, brackets, functions and pi. The functions are
+    sin, cos, tan, asin, acos, sqrt, exp, log, abs, and of two numbers atan2 (y, then x) and hypot. In complex numbers
+    they decide by real parts and carry the complex step.
     """
 
     text: str
@@ -205,7 +204,6 @@ def _unit(text: object) -> Unit | None:
 
 def kind_of(expression: Expression, known: Kinds) -> Unit | None:
     """Return the unit of an expression; None where a factor without a unit leaves it open.
-
     >>> known = {"L": readings("m")[0], "F": readings("N")[0]}
     >>> kind_of(Expression.of("F*L"), known) == readings("N*m")[0], kind_of(Expression.of("0.5*L"), known)
     (True, None)

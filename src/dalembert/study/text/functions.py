@@ -23,10 +23,8 @@ _WAYS = "'model.py:function' (a file beside the study) or 'package.module:functi
 
 @dataclass(frozen=True)
 class FunctionReference:
-    """A function by name, imported when it is first needed.
-
-    ``text``: as the study file writes it; ``path``: the file, None if a module is named; ``folder``: of the study, from
-    which the function's own imports are resolved.
+    """A function by name, imported when it is first needed. ``text``: as the study file writes it; ``path``: the file,
+    None if a module is named; ``folder``: of the study, from which the function's own imports are resolved.
     """
 
     text: str

@@ -75,8 +75,7 @@ def _placed(document: Any, path: list[str | int], text: str) -> str:
 
 
 def place(document: Any, path: Iterable[str | int]) -> str:
-    """Name of a place in a study file, as its author would say it.
-
+    """Return the name of a place in a study file, as its author would say it.
     >>> study = {"model": {"body": [{"name": "OA", "start": ["1 kg", 0]}]}}
     >>> place(study, ["model", "body", 0, "start", 0])
     "[[model.body]] 'OA', start, entry 1"

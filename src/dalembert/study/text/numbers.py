@@ -28,14 +28,8 @@ UNIT = "x-unit"
 
 
 def read_number(value: object, unit: str | None, names: Iterable[str] | None = ()) -> float | Expression:
-    """Number in SI units, or an expression of names; ``names`` None leaves those unchecked.
-
-    Names with units, as :func:`kinds_of` gives them, must measure what the unit does.
-
-    >>> read_number("400 mm", "m"), read_number("pi/4", "rad")
-    (0.4, 0.7853981633974483)
-    >>> read_number("-theta1", "rad", ["theta1"]).text
-    '-theta1'
+    """Return a number in SI units, or an expression of names; ``names`` None leaves those unchecked. Names with units,
+    as :func:`kinds_of` gives them, must measure what the unit does.
     """
     if isinstance(value, float) and math.isfinite(value):
         return float(value)

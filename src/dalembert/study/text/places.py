@@ -28,10 +28,8 @@ Position = tuple[float | Expression, ...]
 
 @dataclass(frozen=True)
 class Place:
-    """Where something stands: at a point of a body, or at a position on the ground.
-
-    ``body``, ``point``: their names, empty for the ground; ``position``: (x, y) or (x, y, angle), in space (x, y, z),
-    on the ground; where the other side stands if None.
+    """Where something stands: at a point of a body, or on the ground. ``body``, ``point``: their names, empty for the
+    ground; ``position`` on the ground: (x, y) or (x, y, angle), in space (x, y, z); None: where the other side stands.
     """
 
     body: str = ""
@@ -45,15 +43,7 @@ class Place:
 
 
 def read_place(value: object, names: Iterable[str] | None = None, *, bare: bool = True, space: bool = False) -> Place:
-    """Place from what a study file says, in the plane or in ``space``.
-
-    ``bare`` allows ``"ground"`` without a position.
-
-    >>> read_place("AB.node2")
-    Place(body='AB', point='node2', position=None)
-    >>> str(read_place({"x": "300 mm", "y": 0}))
-    'ground(0.3, 0.0)'
-    """
+    """Return the place that a study file states, in the plane or in ``space``; ``bare`` allows ``"ground"`` alone."""
     match value:
         case "ground" if bare:
             return Place()

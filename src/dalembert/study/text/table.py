@@ -32,12 +32,10 @@ _READERS = __name__.rsplit(".", 2)[0]  # the package that reads studies
 
 @dataclass
 class Context:
-    """Surroundings of a study file while it is read.
-
-    ``folder``: files named in the study are relative to it; ``names``: parameters and constants, which an expression
-    may use, with their units; ``series``: names of the parameters of each series, which a list of numbers may name as a
-    whole; ``files``: where a file named in the study lies if not relative to the folder, as a run folder keeps copies;
-    ``used``: files that were asked for.
+    """Surroundings of a study file while it is read. ``folder``: files named in the study are relative to it;
+    ``names``: parameters and constants, which an expression may use, with their units; ``series``: names of the
+    parameters of each series, which a list of numbers may name as a whole; ``files``: where a file named in the study
+    lies if not relative to the folder, as a run folder keeps copies; ``used``: files that were asked for.
     """
 
     folder: Path = field(default_factory=Path)

@@ -46,12 +46,10 @@ class PathProblem(Protocol):
 
 @dataclass(frozen=True)
 class PathPoint:
-    """A point of a curve.
-
-    ``fold``: whether the curve turns back here, or where the turn is sharp, just before; ``returned``: whether the
-    curve comes back here to the frequencies that were asked for; ``stable``: 1, 0, or -1 where it is not known;
-    ``marker``: kind of the bifurcation that lies here, or nothing; ``across_fold``: whether stability is not known
-    because a fold lies between the motion and its perturbations.
+    """A point of a curve. ``fold``: whether the curve turns back here, or where the turn is sharp, just before;
+    ``returned``: whether the curve comes back here to the frequencies that were asked for; ``stable``: 1, 0, or -1
+    where it is not known; ``marker``: kind of the bifurcation that lies here, or nothing; ``across_fold``: whether
+    stability is not known because a fold lies between the motion and its perturbations.
     """
 
     solution: Solution

@@ -34,10 +34,8 @@ case for it: a point of 480 unknowns took 28 ms densely and 31 by the structure,
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Residual, forces and states of contacts at a point.
-
-    ``residual`` (q, coefficients); ``forces`` (rows, coefficients): of all elements, by the rows that they see;
-    ``states`` (cells, samples): of each friction block.
+    """Residual, forces and states of contacts at a point. ``residual`` (q, coefficients); ``forces``
+    (rows, coefficients): of all elements, by the rows that they see; ``states`` (cells, samples): by friction block.
     """
 
     residual: np.ndarray
@@ -141,10 +139,9 @@ class Balance:
     def residual(
         self, linear: np.ndarray, unknowns: np.ndarray, omega: float, tangent: Tangent | None = None, rate: float = 1.0
     ) -> Evaluation:
-        """Residual from its linear part; the elements' part of the tangent is added to ``tangent``.
-
-        Without a tangent, in complex numbers where the linear part or the elements' numbers are complex. ``rate`` is
-        the derivative of ω by the parameter of the tangent's slope.
+        """Return the residual from its linear part; the elements' part of the tangent is added to ``tangent``. Without
+        a tangent, in complex numbers where the linear part or the elements' numbers are complex. ``rate``: derivative
+        of ω by the parameter of the tangent's slope.
         """
         kind = np.result_type(linear, unknowns, self._kind)
         acting = np.zeros((len(self.lowered.row_names), self.series.count), dtype=kind)

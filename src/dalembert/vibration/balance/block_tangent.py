@@ -39,12 +39,10 @@ KRYLOV, CYCLES = 100, 4
 
 @dataclass(frozen=True)
 class BlockTangent:
-    """Derivatives of the residual by their structure, filled while the elements are evaluated.
-
-    ``slope`` (q, coefficients): by ω; ``reference`` (q,): stiffness of each coordinate's contact if it sticks; 0 where
-    there is none, unless only elements hold a part; ``rigid`` (q,); ``held``: mean motions that the elements alone may
-    hold, if there are any; ``active``: coordinates (cells, columns) and blocks of m
-    (cells, unknowns, unknowns).
+    """Derivatives of the residual by their structure, filled while the elements are evaluated. ``slope``
+    (q, coefficients): by ω; ``reference`` (q,): stiffness of each coordinate's contact if it sticks; 0 where there is
+    none, unless only elements hold a part; ``rigid`` (q,); ``held``: mean motions that the elements alone may hold, if
+    there are any; ``active``: coordinates (cells, columns) and blocks of m (cells, unknowns, unknowns).
     """
 
     point: CondensedStructure

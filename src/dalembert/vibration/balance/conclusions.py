@@ -18,10 +18,8 @@ LEFT = 0.1
 
 @dataclass(frozen=True)
 class Unconverged:
-    """A point that is not converged.
-
-    ``frequency``: Hz; ``residual``: norm of the residual divided by that of the forces; ``cause``: None if the cause is
-    not known.
+    """A point that is not converged. ``frequency``: Hz; ``residual``: norm of the residual divided by that of the
+    forces; ``cause``: None if the cause is not known.
     """
 
     frequency: float

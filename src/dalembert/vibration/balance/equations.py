@@ -27,11 +27,9 @@ SIZES = 10.0 ** np.arange(-9, 7, 3)
 
 @dataclass(frozen=True)
 class Equations:
-    """A lowered system and a method.
-
-    ``lowered``: real; ``checkpoint``: from which solutions are read, and to which new ones are added. A path goes from
-    one solution to the next, so it takes the same way again, bit for bit. Where a solution is known, its forces and its
-    Jacobian are evaluated once, in place of once an iteration.
+    """A lowered system and a method. ``lowered``: real; ``checkpoint``: from which solutions are read, and to which new
+    ones are added. A path goes from one solution to the next, so it takes the same way again, bit for bit. Where a
+    solution is known, its forces and its Jacobian are evaluated once, in place of once an iteration.
     """
 
     lowered: Lowered
@@ -72,10 +70,9 @@ class Equations:
         plane: CrossingPlane | None = None,
         point: CondensedStructure | None = None,
     ) -> Solution:
-        """Solve the equations by Newton's method from a guess. Samples are doubled until they suffice.
-
-        If nothing holds the structure along a motion, too few samples may leave a mean force along it, which no mean
-        position balances. More samples remove this force.
+        """Solve the equations by Newton's method from a guess. Samples are doubled until they suffice. If nothing holds
+        the structure along a motion, too few samples may leave a mean force along it, which no mean position balances.
+        More samples remove this force.
         """
         fresh = partial(self.newton, unknowns, omega, samples, plane, point)
         if self.checkpoint is None:
@@ -203,13 +200,11 @@ def equations(
     stability: bool = False,
     derivatives: bool = False,
 ) -> Equations:
-    """Return the equations of a system. Their kernels are compiled or loaded.
-
-    ``checkpoint``: where solutions are stored; ``residuals``, ``stability``, ``derivatives``: what is computed in
-    addition to residuals with their Jacobians: residuals alone (:meth:`Equations.solve` needs them), the stability of
-    solutions by the time map, derivatives with respect to parameters. Raises InputError for parts on degrees of freedom
-    that the structure lacks, and for odd harmonics alone where a force has a mean or even harmonics; ModelError for
-    rigid contacts that depend on each other, and for mean forces along a motion that nothing holds.
+    """Return the equations of a system, their kernels compiled or loaded. ``checkpoint``: where solutions are stored;
+    ``residuals``, ``stability``, ``derivatives``: what is computed besides residuals with their Jacobians: residuals
+    alone (:meth:`Equations.solve` needs them), the stability of solutions by the time map, derivatives by parameters.
+    Parts on degrees of freedom that the structure lacks, odd harmonics alone where a force has a mean or even
+    harmonics, rigid contacts that depend on each other, and mean forces along a motion that nothing holds are refused.
     """
     lowered = lower(system).real
     if method.odd_only:

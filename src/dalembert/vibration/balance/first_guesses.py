@@ -56,10 +56,9 @@ def first_guesses(balance: Balance, method: HarmonicBalance, point: CondensedStr
 
 @np.errstate(over="ignore", invalid="ignore")
 def at_rest(balance: Balance, point: CondensedStructure) -> np.ndarray:
-    """Return the unknowns (q, coefficients) of the place of rest, or where the search for it ended.
-
-    Newton's method with an exact line search on the potential energy, whose slope along a step is that of the forces.
-    Where no element is touched, the energy falls on a line, and the search ends at the element that stops the motion.
+    """Return the unknowns (q, coefficients) of the place of rest, or where the search for it ended. Newton's method
+    with an exact line search on the potential energy, whose slope along a step is that of the forces. Where no element
+    is touched, the energy falls on a line, and the search ends at the element that stops the motion.
     """
     # Harmonic 0 alone: four samples of a constant, which the sums take as any other motion.
     still = Balance(balance.lowered, Fourier((0,), 4), balance.events)
@@ -106,10 +105,7 @@ def _lowest(still: Balance, mean: CondensedStructure, places: np.ndarray, step: 
 @dataclass(frozen=True)
 class Loading:
     """The equations at one frequency, with the part of the varying forces as the parameter in place of the frequency.
-
-    Static forces act from the beginning: they may be what presses the contacts.
-
-    ``point``: at the frequency, with all of the force.
+    Static forces act from the beginning: they may press the contacts. ``point``: there, with the whole force.
     """
 
     balance: Balance

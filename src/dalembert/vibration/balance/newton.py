@@ -31,10 +31,8 @@ VERIFIED = 1e-8
 
 @dataclass(frozen=True)
 class CrossingPlane:
-    """A plane across a path in scaled unknowns: direction · (y - place) = 0, with y = (U/size, ω/width).
-
-    ``direction`` (unknowns + 1,); ``unknowns`` (q, coefficients); ``omega``: a place on the plane; ``size``, ``width``:
-    scales of U and of ω.
+    """A plane across a path in scaled unknowns: direction · (y - place) = 0, with y = (U/size, ω/width). ``direction``
+    (unknowns + 1,); ``unknowns`` (q, coefficients), ``omega``: a point on the plane.
     """
 
     direction: np.ndarray
@@ -51,11 +49,10 @@ class CrossingPlane:
 
 @dataclass(frozen=True)
 class Solution:
-    """Last iterate of Newton's method, converged or not.
-
-    ``unknowns`` (q, coefficients); ``scale``: size of the forces that are in balance, N; ``error``: residual as part of
-    the forces; ``sampling_error``: change of the residual with twice the samples, as part of the forces; ``distance``:
-    from the plane across the path on which it was sought, in the plane's scales; 0 without a plane.
+    """Last iterate of Newton's method, converged or not. ``unknowns`` (q, coefficients); ``scale``: size of the forces
+    that are in balance, N; ``error``: residual as part of the forces; ``sampling_error``: change of the residual with
+    twice the samples, as part of the forces; ``distance``: from the plane across the path on which it was sought, in
+    the plane's scales; 0 without a plane.
     """
 
     omega: float
@@ -111,10 +108,8 @@ def correct(
     plane: CrossingPlane | None = None,
     point: CondensedStructure | None = None,
 ) -> Solution:
-    """Solve by Newton's method from a guess, at ω or on a plane.
-
-    ``structure`` returns the condensed structure at a value of ω, or of another parameter of the path; ``point`` is
-    that at ω if it is known.
+    """Solve by Newton's method from a guess, at ω or on a plane. ``structure`` returns the condensed structure at a
+    value of ω, or of another parameter of the path; ``point`` is that at ω if it is known.
     """
 
     def place(unknowns: np.ndarray, omega: float, point: CondensedStructure | None, step: bool = True) -> Solution:

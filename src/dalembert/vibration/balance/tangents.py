@@ -10,10 +10,8 @@ from dalembert.vibration.interface.free_motions import HeldByElements
 
 @dataclass(frozen=True)
 class DenseTangent:
-    """Derivatives of the residual.
-
-    ``jacobian`` (q, coefficients, q, coefficients); ``slope`` (q, coefficients): by ω; ``held``: mean motions that the
-    elements alone may hold, if there are any.
+    """Derivatives of the residual. ``jacobian`` (q, coefficients, q, coefficients); ``slope`` (q, coefficients): by ω;
+    ``held``: mean motions that the elements alone may hold, if there are any.
     """
 
     jacobian: np.ndarray
@@ -74,7 +72,6 @@ def bordered(
     tolerance: float = EXACT,
 ) -> tuple[np.ndarray, float]:
     """Return the solution of the bordered system, which is regular at folds: changes of U/size and ω/width.
-
     ``direction`` (unknowns + 1,): the row; ``top`` (q, coefficients): right-hand side, as part of the force;
     ``tolerance``: as :class:`BlockTangent` takes it.
     """

@@ -28,10 +28,8 @@ TAILS = 3
 
 @dataclass(frozen=True)
 class Truncation:
-    """Truncation error of a motion.
-
-    ``frequency``: Hz; ``error``: as part of the motion; NaN if no motion with more harmonics is converged; ``heavy``:
-    whether rigid contacts carry mass, so that the error falls slowly.
+    """Truncation error of a motion. ``frequency``: Hz; ``error``: as part of the motion; NaN if no motion with more
+    harmonics is converged; ``heavy``: whether rigid contacts carry mass, so that the error falls slowly.
     """
 
     frequency: float
@@ -99,10 +97,8 @@ def _chosen(method: HarmonicBalance, error: float) -> Finding:
 
 
 def hardest(unknowns: np.ndarray, converged: np.ndarray, small: float = SMALL) -> list[int]:
-    """Numbers of the motions (points, q, coefficients) by which harmonics are chosen.
-
-    They are the largest, and those whose upper half of harmonics is the largest part of the motion, or of ``small``
-    times the largest motion.
+    """Return numbers of the motions (points, q, coefficients) by which harmonics are chosen. They are the largest, and
+    those whose upper half of harmonics is the largest part of the motion, or of ``small`` times the largest motion.
     """
     places = np.flatnonzero(converged)
     if not len(places):
@@ -144,7 +140,6 @@ class HarmonicLevel(Protocol[M]):
 
 def enough_harmonics(first: HarmonicLevel[M], motions: Sequence[M]) -> tuple[HarmonicBalance, Truncation | None]:
     """Return the method whose truncation errors of some motions are small, up to the limit, and the largest of them.
-
     The error is None where the harmonics are more than those of the motions: all motions have to be computed with them
     first. If a motion is not found with more harmonics, the method has these: other motions may lead to it.
     """
@@ -213,10 +208,8 @@ class ForcedLevel:
 
 
 def truncation(problem: Equations, solution: Solution, least: float = 0.0, afresh: bool = True) -> Truncation:
-    """Return the truncation error at a solution.
-
-    ``least``: amplitude, m, of which the error is a part at least; ``afresh``: whether the motion with more harmonics
-    is also sought without a start.
+    """Return the truncation error at a solution. ``least``: amplitude, m, of which the error is a part at least;
+    ``afresh``: whether the motion with more harmonics is also sought without a start.
     """
     what = "truncation" if afresh else "truncation from here"
     change, size = problem.once(what, solution, lambda: np.array(_change(problem, solution, afresh))).tolist()

@@ -38,11 +38,9 @@ class Local(NamedTuple):
 
 @dataclass(frozen=True)
 class Uncondensed:
-    """A system in its retained and interior coordinates.
-
-    ``lowered``: real. Rigid contacts of the velocity kind are taken as such of the displacement kind, which say the
-    same of a solution and also of its mean; ``condensation``: which splits the structure; ``events``: as
-    :class:`Balance` takes it.
+    """A system in its retained and interior coordinates. ``lowered``: real. Rigid contacts of the velocity kind are
+    taken as such of the displacement kind, which say the same of a solution and also of its mean; ``condensation``:
+    which splits the structure; ``events``: as :class:`Balance` takes it.
     """
 
     lowered: Lowered

@@ -39,10 +39,8 @@ def check_laws(
     vector: np.ndarray,
     displacements: Mapping[str, np.ndarray],
 ) -> None:
-    """Raise where a law of the user's loses the complex step of a parameter.
-
-    ``displacements``: of each element with a law of the user's, over a period, m. Raises InputError, which names the
-    parameter and the element.
+    """Raise InputError, which names the parameter and the element, where a law of the user's loses the complex step of
+    a parameter. ``displacements``: of each element with such a law, over a period, m.
     """
 
     def forces(system: VibrationSystem) -> Iterator[Part]:

@@ -38,13 +38,12 @@ DECOUPLED = 1e-10
 
 @dataclass(frozen=True)
 class CondensedStructure:
-    """A condensed structure at one frequency, and the matrices that recover all coordinates.
-
-    ``omega``: rad/s; ``frequencies`` (orders,): h ω, rad/s; ``stiffness``, ``slope`` (orders, q, q), complex: Z_q and
-    its derivative by ω; ``force``, ``force_slope`` (orders, q), complex; ``follow`` (orders, l, q), complex: Z_ll⁻¹
-    Z_lq: the interior follows q by the negative of it; ``free`` (orders, l), complex: Z_ll⁻¹ f_l: the interior with q
-    held; ``kept``: factors that serve all iterations here; ``shared``: what all frequencies have in common; ``rate``:
-    derivative of ω by what ``slope`` and ``force_slope`` are derivatives by: 1, unless that is not ω.
+    """A condensed structure at one frequency, and the matrices that recover all coordinates. ``omega``: rad/s;
+    ``frequencies`` (orders,): h ω, rad/s; ``stiffness``, ``slope`` (orders, q, q), complex: Z_q and its derivative by
+    ω; ``force``, ``force_slope`` (orders, q), complex; ``follow`` (orders, l, q), complex: Z_ll⁻¹ Z_lq: the interior
+    follows q by the negative of it; ``free`` (orders, l), complex: Z_ll⁻¹ f_l: the interior with q held; ``kept``:
+    factors that serve all iterations here; ``shared``: what all frequencies have in common; ``rate``: derivative of ω
+    by what ``slope`` and ``force_slope`` are derivatives by: 1, unless that is not ω.
     """
 
     omega: float
@@ -154,10 +153,9 @@ class Condensation:
         )
 
     def full(self, retained: np.ndarray, interior: np.ndarray) -> np.ndarray:
-        """Return all degrees of freedom (orders, n) from the retained and the interior ones.
-
-        If nothing holds the structure along the motions :attr:`free`, its mean position (order 0) is not determined
-        along them. The one without a part along them is returned, which has the smallest norm.
+        """Return all degrees of freedom (orders, n) from the retained and the interior ones. If nothing holds the
+        structure along the motions :attr:`free`, its mean position (order 0) is not determined along them. The one
+        without a part along them is returned, which has the smallest norm.
         """
         motion = retained @ self.retained.T + np.asarray((self.back @ interior.T).T)
         if self.free.size:
@@ -165,11 +163,8 @@ class Condensation:
         return motion
 
     def _set_free(self, motions: np.ndarray) -> None:
-        """Keep the motions (l, motions) that nothing holds where the coordinates of the elements are held.
-
-        They carry mass and no mean force, so that periodic motions exist, each about any mean position.
-
-        Raises ModelError for motions without mass, and for static forces along them.
+        """Keep the motions (l, motions) that nothing holds where the coordinates of the elements are held. They must
+        carry mass and no static force, else ModelError: periodic motions then exist, each about any mean position.
         """
         if not motions.size:
             return
@@ -229,12 +224,9 @@ class Condensation:
         return 2 * FLOATING * np.abs(self.inner[0])
 
     def _off_resonance(self, s: np.ndarray, inner: Any, right: np.ndarray | None = None) -> Any:
-        """Return the dynamic stiffness of the interior modes, with a small value in place of zero.
-
-        That is exact where nothing moves such a mode, and close to it where the retained coordinates hold it.
-
-        Raises SolveError where forces, the last of the right-hand sides, move one that the retained coordinates do not
-        hold.
+        """Return the dynamic stiffness of the interior modes, with a small value in place of zero. That is exact where
+        nothing moves such a mode, and close to it where the retained coordinates hold it. SolveError if forces, the
+        last of the right-hand sides, move one that the retained coordinates do not hold.
         """
         if self._pins.size:
             inner = self._pinned(inner)

@@ -14,7 +14,6 @@ DEPENDENT = 1e-10
 @dataclass(frozen=True)
 class Coordinates:
     r"""Retained coordinates :math:`q = S x`, and :math:`x = T_q q + T_l x_l` with interior ones that x holds itself.
-
     ``rows`` (q,): which of the elements' rows are the retained coordinates; ``combination`` (elements' rows, q): all
     elements' rows from the retained ones; ``retained`` (n, q): T_q; ``interior`` (n, n - q): T_l.
     """
@@ -26,10 +25,8 @@ class Coordinates:
 
 
 def coordinates(rows: Any, first: np.ndarray) -> Coordinates:
-    """Coordinates of a structure from the rows (elements' rows, n) that its elements see.
-
-    ``rows`` (elements' rows, n); ``first``: rows that are to be retained coordinates themselves; they must be
-    independent.
+    """Return coordinates of a structure from the rows (elements' rows, n) that its elements see. ``first``: rows that
+    are to be retained coordinates themselves; they must be independent.
     """
     count, n = rows.shape
     columns = np.flatnonzero(np.diff(rows.indptr))

@@ -54,21 +54,18 @@ def _unresisted(stiffness: Any, basis: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class HeldByElements:
-    """Mean motions that the structure does not resist, so that its elements alone may hold them.
-
-    ``motions`` (q, motions): of the retained coordinates; ``stiffness`` (motions, motions): by which the elements' mean
-    forces change with them, N/m, where all contacts and stops are closed. Sliders, which remember, have none: their
-    mean force does not depend on the mean position.
+    """Mean motions that the structure does not resist, so that its elements alone may hold them. ``motions``
+    (q, motions): of the retained coordinates; ``stiffness`` (motions, motions): by which the elements' mean forces
+    change with them, N/m, where all contacts and stops are closed. Sliders, which remember, have none: their mean force
+    does not depend on the mean position.
     """
 
     motions: np.ndarray
     stiffness: np.ndarray
 
     def unresisted(self, forces: np.ndarray, largest: float) -> np.ndarray:
-        """Return the motions (q, motions) that no element resists either.
-
-        ``forces`` (unknowns, motions): of the tangent under each motion; ``largest``: stiffness, N/m, of which those
-        that are rounding are parts.
+        """Return the motions (q, motions) that no element resists either. ``forces`` (unknowns, motions): of the
+        tangent under each motion; ``largest``: stiffness, N/m, of which those that are rounding are parts.
         """
         # Combinations of the free motions under which the elements answer with no force: right singular vectors of
         # value 0.
@@ -76,11 +73,10 @@ class HeldByElements:
         return self.motions @ shapes[sizes <= RESISTED * largest].T
 
     def support(self, motions: np.ndarray, largest: float) -> np.ndarray:
-        """Return a stiffness (q, q) that holds motions φ which no element resists.
-
-        With the stiffness K of closed contacts, it is :math:`φ (φ^T K φ) φ^T`. Where the forces are in balance it does
-        not act: of all mean positions the solution is the nearest one. Where a mean force is left, the mean position
-        moves by what the closed contacts would yield, towards contact, and along sliders not.
+        """Return a stiffness (q, q) that holds motions φ which no element resists. With the stiffness K of closed
+        contacts, it is :math:`φ (φ^T K φ) φ^T`. Where the forces are in balance it does not act: of all mean positions
+        the solution is the nearest one. Where a mean force is left, the mean position moves by what the closed contacts
+        would yield, towards contact, and along sliders not.
         """
         among = self.motions.T @ motions
         closed, shapes = np.linalg.eigh(among.T @ self.stiffness @ among)

@@ -25,11 +25,9 @@ ELASTIC = "elastic"
 
 @dataclass(frozen=True)
 class FrictionBlock:
-    """Sliders of one shape and one kind of law.
-
-    ``kind``: "elastic", "displacement", "velocity"; ``rows`` (cells, tangents + normal): among the rows of all
-    elements; ``contacts`` (cells,): which contact a cell belongs to; ``numbers`` (cells, 5): as
-    :mod:`dalembert.vibration.laws.friction_law` takes them; stiffnesses of rigid contacts are their penalties.
+    """Sliders of one shape and one kind of law. ``kind``: "elastic", "displacement", "velocity"; ``rows``
+    (cells, tangents + normal): among all elements' rows; ``contacts`` (cells,): contact of each cell; ``numbers``
+    (cells, 5): as :mod:`dalembert.vibration.laws.friction_law` takes them; stiffnesses of rigid contacts are penalties.
     """
 
     kind: str
@@ -52,10 +50,9 @@ class FrictionBlock:
 
 @dataclass(frozen=True)
 class Lowered:
-    """A vibrating system as arrays.
-
-    ``row_names``: names of the coordinates that elements see, such as ``"foot.x"``; ``matrix`` (rows, n); ``contacts``:
-    names of the friction contacts; ``functions``: rows of each element whose law is a function of arrays.
+    """A vibrating system as arrays. ``row_names``: names of the coordinates that elements see, such as ``"foot.x"``;
+    ``matrix`` (rows, n); ``contacts``: names of the friction contacts; ``functions``: rows of each element whose law is
+    a function of arrays.
     """
 
     structure: Structure

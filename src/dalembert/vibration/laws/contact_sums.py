@@ -49,13 +49,10 @@ def sums_for(numbers: np.ndarray, shape: Shape, events: bool) -> "type[PlainSums
 
 @dataclass(frozen=True)
 class _Sums:
-    """Forces of the contacts of a block from their displacements (contacts, columns, coefficients).
-
-    ``forces`` returns coefficients of forces, as those of displacements, and states (contacts, samples); complex
-    numbers too. ``with_slopes`` returns the same, and Jacobians (contacts, columns · coefficients,
-    columns · coefficients).
-
-    ``numbers`` (contacts, 5).
+    """Forces of the contacts of a block, with ``numbers`` (contacts, 5), from their displacements
+    (contacts, columns, coefficients). ``forces`` returns coefficients of forces, as those of displacements, and states
+    (contacts, samples); complex numbers too. ``with_slopes`` returns the same, and Jacobians (contacts, columns ·
+    coefficients, columns · coefficients).
     """
 
     kernels: ClassVar[tuple[Any, Any, Any]]

@@ -77,10 +77,9 @@ def place_at_limit(sign, contact, table, place):
 
 @inner
 def add_correction(weights, contact, h, theta, table, values, result, slopes, move, gradient):
-    """Add the correction for an event at which the force jumps by a combination of signals.
-
-    To its coefficients (coefficients,), and their derivatives (coefficients, unknowns) if there are any; ``move``
-    (unknowns,) is the derivative of the event's angle.
+    """Add the correction for an event at which the force jumps by a combination of signals, to its coefficients
+    (coefficients,), and their derivatives (coefficients, unknowns) if there are any; ``move`` (unknowns,) is the
+    derivative of the event's angle.
     """
     count = table.shape[1]
     b1, b2, b3, b4 = bernoulli(theta, h)
@@ -142,7 +141,6 @@ class Contact(NamedTuple):
 
 class Sums(NamedTuple):
     """What a march writes: forces at samples (columns, samples), states (samples,), corrections (columns, -).
-
     ``sampled`` (columns, samples, unknowns) and ``slopes`` (columns, coefficients, unknowns): derivatives of forces and
     of corrections. ``place`` and ``move`` (unknowns,): those of the slider and of an event's angle, without entries if
     no derivatives are asked for; ``gradient`` (unknowns,) is workspace.

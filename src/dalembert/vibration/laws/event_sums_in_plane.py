@@ -64,7 +64,6 @@ def solved(grads, unknowns, first, second):
 @inner
 def settle(direct, numbers, normal, wanted, waving, signals, y, before, sums, scratch, grads):
     """Periods until the slider returns to where it was: its state there, and whether that does not depend on its past.
-
     By Newton's method on its two numbers if ``direct``, else from one period to the next, with gradients from rest on.
     ``before`` keeps the numbers at the start of the last period.
     """

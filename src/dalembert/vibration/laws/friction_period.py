@@ -103,10 +103,8 @@ def _period(d, z, force, forces, states, kept, numbers, tangents, normal, memory
 
 @inner
 def _settle(d, z, before, force, forces, states, kept, numbers, tangents, normal, memory, direct):
-    """Periods until the slider returns to where it was, from z = 0, in ``before`` and ``z``.
-
-    By the period's derivative (Newton) if ``direct``, from one period to the next if not. Returns how many samples of
-    all these periods did not stick.
+    """Periods until the slider returns to where it was, from z = 0, in ``before`` and ``z``. By the period's derivative
+    (Newton) if ``direct``, else from one period to the next. Returns how many of all their samples did not stick.
     """
     scale, last, moving = largest(d), np.inf, 0
     # From rest: where a contact sticks all period, its force depends on the past, and this past is the convention.
@@ -133,7 +131,6 @@ def _settle(d, z, before, force, forces, states, kept, numbers, tangents, normal
 @inner
 def balanced(d, z, before, force, forces, states, kept, numbers, tangents, normal, memory):
     """Periodic motion of a slider, directly where its place does not depend on its past: that, and whether it moves.
-
     Writes forces (columns, samples) and states (samples,); ``before`` and ``z`` are the slider's place at the start and
     at the end of the period, ``kept`` the derivative of one by the other.
     """
@@ -148,12 +145,11 @@ def balanced(d, z, before, force, forces, states, kept, numbers, tangents, norma
 
 @inner
 def line(d, force, states, numbers):
-    """A slider in one dimension that remembers, under a constant load: the law of :func:`update` in scalars.
-
-    Writes forces and states of the periodic motion, each (samples,). Returns whether its place does not depend on its
-    past, since it slips in each period, and whether it slips at all. Slip determines the place of the slider. So once
-    it slips in the same direction at the same sample of the first and of the second period, the rest of the second
-    period equals that of the first and is not computed.
+    """A slider in one dimension that remembers, under a constant load: the law of :func:`update` in scalars. Writes
+    forces and states of the periodic motion, each (samples,). Returns whether its place does not depend on its past,
+    since it slips in each period, and whether it slips at all. Slip determines the place of the slider. So once it
+    slips in the same direction at the same sample of the first and of the second period, the rest of the second period
+    equals that of the first and is not computed.
     """
     stiffness, limit = numbers[TANGENTIAL], numbers[FRICTION] * numbers[LOAD]
     z, begins, forgets = 0.0 * d[0], False, False

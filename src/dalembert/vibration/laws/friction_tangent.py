@@ -40,7 +40,6 @@ def _line_slopes(states, stiffness, synthesis, slopes):
 @inner
 def _slopes(d, z, force, states, moved, kept, slopes, past, numbers, tangents, normal, memory, synthesis):
     """One period's derivatives of the forces by the displacements' coefficients, (columns, samples, unknowns).
-
     ``moved`` (tangents, unknowns) is carried on: the derivative of the slider's place. ``kept`` becomes that of the end
     by the start, and ``past`` (tangents, samples, tangents) that of the forces by it.
     """
@@ -97,10 +96,8 @@ def _slopes(d, z, force, states, moved, kept, slopes, past, numbers, tangents, n
 def _differentiate(
     d, z, before, force, states, kept, slopes, past, moved, numbers, tangents, normal, memory, synthesis, forgets
 ):  # fmt: skip
-    """Slopes of a balanced contact.
-
-    Where the slider's place over the period does not depend on where it was before, from a single period; else carried
-    through all periods from rest, as the place itself.
+    """Slopes of a balanced contact. Where the slider's place over the period does not depend on where it was before,
+    from a single period; else carried through all periods from rest, as the place itself.
     """
     moved[:] = 0.0
     if forgets or not memory:
@@ -135,10 +132,9 @@ def forces_and_slopes(
     displacements: Reals3, result: Reals3, states: Bytes2, jacobians: Reals4, scratch: Reals,
 ) -> None:  # fmt: skip
     """Forces and Jacobians (contacts, columns, coefficients, unknowns); the workspace has a contact's derivatives.
-
     These are, by samples, those of forces by displacements (columns, samples, unknowns) and by the slider's place at
-    the start of the period (tangents, samples, tangents); the latter's harmonics (coefficients, tangents); those of
-    that place by displacements (tangents, unknowns).
+    the start of the period (tangents, samples, tangents), with harmonics (coefficients, tangents); and those of that
+    place by displacements (tangents, unknowns).
     """
     columns, samples, count = displacements.shape[1], displacements.shape[2], synthesis.shape[1]
     unknowns, at = columns * count, address_of(scratch)

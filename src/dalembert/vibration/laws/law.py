@@ -26,7 +26,6 @@ call_law = any_law.at
 
 class Law:
     """A law of an element, compiled when it is first needed; :func:`law` makes it.
-
     ``function(u, v, z, numbers, force)`` has displacements and velocities of the columns that the element sees
     (columns,), m and m/s, the internal state (states,) and the element's numbers. It writes the internal forces
     (columns,), N, and moves the state.

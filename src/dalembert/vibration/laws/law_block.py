@@ -23,10 +23,9 @@ class LawSums(Protocol):
 
 @dataclass(frozen=True)
 class LawBlock:
-    """Elements of one kind and one law.
-
-    ``element``: one of them: law, events and internal numbers are those of all; ``names``: of the elements; ``rows``
-    (elements, columns): among the rows of all elements; ``numbers`` (elements, numbers).
+    """Elements of one kind and one law. ``element``: one of them: law, events and internal numbers are those of all;
+    ``names``: of the elements; ``rows`` (elements, columns): among the rows of all elements; ``numbers``
+    (elements, numbers).
     """
 
     element: Any

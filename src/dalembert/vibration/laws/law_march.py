@@ -34,11 +34,9 @@ UNPERTURBED = -1
 
 
 class Rule(NamedTuple):
-    """Quadrature of a period.
-
-    ``offsets`` and ``weights`` (nodes,) of the nodes in an interval, as parts of it; ``nodes`` (2, intervals · nodes,
-    coefficients): waves and their derivatives at the nodes; ``orders`` of the harmonics, and 1 in ``mean`` if 0 is
-    among them.
+    """Quadrature of a period. ``offsets`` and ``weights`` (nodes,) of the nodes in an interval, as parts of it;
+    ``nodes`` (2, intervals · nodes, coefficients): waves and their derivatives at the nodes; ``orders`` of the
+    harmonics, and 1 in ``mean`` if 0 is among them.
     """
 
     offsets: Reals
@@ -180,10 +178,9 @@ def _act(law, z, largest, scratch):
 
 @inner
 def _march(law, motion, z, largest, rule, scratch, sampled, pieces):
-    """A period from a state (states,), which it replaces by the end.
-
-    It writes the forces at nodes ``sampled`` (columns, nodes) of intervals without events, and adds the integrals over
-    all others to ``pieces`` (columns, coefficients).
+    """A period from a state (states,), which it replaces by the end. It writes the forces at nodes ``sampled``
+    (columns, nodes) of intervals without events, and adds the integrals over all others to ``pieces``
+    (columns, coefficients).
     """
     nodes = len(rule.offsets)
     intervals = rule.nodes.shape[1] // nodes
@@ -222,7 +219,6 @@ def marches(
     largest: Reals, sampled: Complexes3, pieces: Complexes3,
 ) -> None:  # fmt: skip
     """A march of some periods in each direction from each start (directions, states), which it replaces by the end.
-
     ``sampled`` (directions, columns, nodes) and ``pieces`` (directions, columns, coefficients), see :func:`_march`, are
     of the last period.
     """

@@ -48,7 +48,6 @@ LAYER = 4.0
 
 class Sums(NamedTuple):
     """What a march writes: forces at samples (columns, samples), states (samples,), corrections (columns, -).
-
     ``sampled`` (columns, samples, -) and ``slopes`` (columns, coefficients, -): derivatives of forces and of
     corrections by what columns of gradients are of.
     """

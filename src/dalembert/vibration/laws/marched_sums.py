@@ -37,10 +37,8 @@ BEYOND = np.errstate(over="ignore", invalid="ignore")
 
 @dataclass(frozen=True)
 class MarchedSums:
-    """Sums of laws with internal state or events.
-
-    ``events``: whether the law's events divide the intervals. The intervals then have Gauss's nodes; else each sample
-    is a node.
+    """Sums of laws with internal state or events. ``events``: whether the law's events divide the intervals. The
+    intervals then have Gauss's nodes; else each sample is a node.
     """
 
     block: LawBlock

@@ -68,10 +68,9 @@ def law_derivatives(
     law: Address, numbers: Complexes2, place: Complexes3, velocity: Complexes3, start: Complexes2, directions: int,
     scratch: SampledSumsWorkspace, moved: Complexes, force: Reals3, slopes: Reals4,
 ) -> None:  # fmt: skip
-    """Forces (elements, columns, samples), and derivatives of forces and next state, at each sample.
-
-    ``start`` (elements, states) are the states before the first sample; ``moved`` (states,) is workspace. ``slopes``
-    (elements, columns + states, directions, samples), by displacements, velocities and states before.
+    """Forces (elements, columns, samples), and derivatives of forces and next state, at each sample. ``start``
+    (elements, states) are the states before the first sample; ``moved`` (states,) is workspace. ``slopes`` (elements,
+    columns + states, directions, samples), by displacements, velocities and states before.
     """
     columns, states = len(scratch.u), len(scratch.state)
     for e in range(len(place)):

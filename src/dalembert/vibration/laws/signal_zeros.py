@@ -144,8 +144,7 @@ def zero(weights, shift, order, low, high, rising, signals, table):
 
 @inner
 def crossing(weights, shift, order, begin, end, here, there, signals, table, values):
-    """The first angle after ``begin`` where a combination of signals becomes positive, or a negative number.
-
+    """Return the first angle after ``begin`` where a combination of signals becomes positive, or a negative number.
     ``here`` and ``there`` are the values (orders, signals) at both ends. Of two zeros between them the first is found
     by the maximum that they enclose.
     """

@@ -64,10 +64,8 @@ def solved(radau, j):
 
 @inner
 def step(begin, end, phi, friction, signals, tables, stages, radau):
-    """One step of φ: its change, and whether it was found.
-
-    ``radau`` (7, 3) keeps the changes κ of the stages, their φ, and the inverse of their matrix (rows 2 to 4); the
-    derivative of the stages by the end of the step (row 5).
+    """One step of φ: its change, and whether it was found. ``radau`` (7, 3) keeps the changes κ of the stages, their φ,
+    and the inverse of their matrix (rows 2 to 4); the derivative of the stages by the end of the step (row 5).
     """
     # Stages κ_j with φ_j = φ + Σ a_ji κ_i and L_j κ_j = h a'_j · n(φ_j): multiplied by L, so that L = 0 is regular.
     size, found, done = end - begin, False, False

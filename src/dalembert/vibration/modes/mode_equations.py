@@ -102,7 +102,6 @@ class _Trial:
 @dataclass(frozen=True)
 class Softened:
     """The elements with a part of their nonlinearity: the rest of their force is linear about the position at rest.
-
     ``part``: from 0 (linear) to 1; ``rest``, ``force`` (q, coefficients): retained coordinates and forces at rest;
     ``stiffness`` (q · coefficients, q · coefficients): at rest.
     """

@@ -65,8 +65,7 @@ class Amplitude:
 
 
 def highest_order(*kinds: str) -> int:
-    """Highest harmonic that kinds of amplitude name; 1 if they name none.
-
+    """Return the highest harmonic that kinds of amplitude name; 1 if they name none.
     >>> highest_order("peak", "harmonic 5")
     5
     """

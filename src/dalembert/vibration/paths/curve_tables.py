@@ -42,7 +42,6 @@ def curve_facts(curve: "FrequencyCurve", dofs: Sequence[str], kind: str) -> dict
 
 def orders_text(orders: Sequence[int]) -> str:
     """Return harmonics in a few words.
-
     >>> orders_text((0, 1, 2, 3)), orders_text((1, 3, 5)), orders_text((1, 3, 5, 7, 9))
     ('0 to 3', '1, 3, 5', '1, 3 … 9')
     """

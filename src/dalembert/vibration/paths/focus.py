@@ -51,8 +51,7 @@ def movers(curve: "FrequencyCurve", most: int = MOST) -> tuple[str, ...]:
 
 
 def foremost(sizes: dict[str, float], most: int = MOST) -> tuple[str, ...]:
-    """The names with the largest numbers, in the order given.
-
+    """Return the names with the largest numbers, in the order given.
     >>> foremost({"a": 1.0, "b": 3.0, "c": 2.0}, 2)
     ('b', 'c')
     """

@@ -15,10 +15,8 @@ ADVICE = {
 def end_findings(
     places: np.ndarray, converged: np.ndarray, ends: tuple[float, float], what: str, unit: str
 ) -> tuple[Finding, ...]:
-    """Return the finding on a path that did not reach its end.
-
-    ``places`` (points,): values of what the path leads over, in its order; ``converged`` (points,); ``what``, ``unit``:
-    of the values.
+    """Return the finding on a path that did not reach its end. ``places`` (points,): values of what the path leads
+    over, in its order; ``converged`` (points,); ``what``, ``unit``: of the values.
     """
     (begin, end), last = ends, float(places[-1])
     if np.isclose(last, end, rtol=1e-12, atol=0.0):  # a point that was not found there has its finding

@@ -175,11 +175,9 @@ class _PosedCurve:
 
 @dataclass(frozen=True)
 class _FollowedCurve:
-    """The points of a curve with a number of harmonics.
-
-    ``arrays``: those that a curve keeps, by name, (points, ...). ``unconverged``: causes, of the points that are not
-    converged. ``across_fold``: frequencies, Hz, of the points whose stability is unknown because of a fold.
-    ``largest``: the largest motion, None if it is not to be checked.
+    """The points of a curve with a number of harmonics. ``arrays``: those that a curve keeps, by name, (points, ...).
+    ``unconverged``: causes, of the points that are not converged. ``across_fold``: frequencies, Hz, of the points whose
+    stability is unknown because of a fold. ``largest``: the largest motion, None if it is not to be checked.
     """
 
     equations: Equations

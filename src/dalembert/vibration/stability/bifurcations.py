@@ -66,7 +66,6 @@ def judged(problem: Equations, path: Iterable[PathPoint], located: bool) -> Iter
 
 def fold_findings(frequencies: Sequence[float], folds: np.ndarray, harmonics: int) -> tuple[Finding, ...]:
     """Return the finding on points whose stability is not known because a fold lies between motion and perturbations.
-
     ``frequencies``: of these points, Hz; ``folds`` (folds,): frequencies of the folds, Hz. The steps of a time map move
     a fold a little, which is no finding; ``harmonics``: of the curve.
     """

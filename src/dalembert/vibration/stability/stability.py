@@ -34,11 +34,9 @@ FORGOTTEN = 1e-12
 
 @dataclass(frozen=True)
 class Exponents:
-    """Floquet exponents of a periodic motion.
-
-    ``values`` (exponents,), complex: in parts of ω, those that grow fastest first; ``error``: of their real parts, in
-    parts of ω; infinite where it is not known; ``across_fold``: whether a fold lies between the motion and the one with
-    all harmonics, to which the exponents belong.
+    """Floquet exponents of a periodic motion. ``values`` (exponents,), complex: in parts of ω, those that grow fastest
+    first; ``error``: of their real parts, in parts of ω; infinite where it is not known; ``across_fold``: whether a
+    fold lies between the motion and the one with all harmonics, to which the exponents belong.
     """
 
     values: np.ndarray
@@ -62,10 +60,9 @@ def remembers(problem: Equations) -> bool:
 
 
 def exponents(problem: Equations, solution: Solution, way: str = AUTOMATIC) -> Exponents:
-    """Floquet exponents at a solution: by Hill's method, or by the time map where there are contacts with friction.
-
-    The stiffness of a stop switches, so that its harmonics fall slowly. Where one is touched, the exponents are those
-    with twice the harmonics, and their change is the error.
+    """Return Floquet exponents at a solution: by Hill's method, or by the time map where there are contacts with
+    friction. The stiffness of a stop switches, so that its harmonics fall slowly. Where one is touched, the exponents
+    are those with twice the harmonics, and their change is the error.
     """
     if way == TIME_MAP or (way == AUTOMATIC and remembers(problem)):
         # Hill's matrix lacks the memory of sliders: multipliers of 2.7 for a motion whose largest is 0.94 (three masses
@@ -88,10 +85,9 @@ def exponents(problem: Equations, solution: Solution, way: str = AUTOMATIC) -> E
 
 
 def _across_fold(problem: Equations, solution: Solution, values: np.ndarray) -> bool:
-    r"""Whether exponents with more harmonics than the balance lie on the other side of a fold.
-
-    With all harmonics, the determinant of the balance has the sign of :math:`\det(1 - \Phi)`, where Φ is the map of
-    disturbances over a period: each real multiplier above 1 changes it.
+    r"""Return True if exponents with more harmonics than the balance lie on the other side of a fold. With all
+    harmonics, the determinant of the balance has the sign of :math:`\det(1 - \Phi)`, where Φ is the map of disturbances
+    over a period: each real multiplier above 1 changes it.
     """
     # A real multiplier above 1 is an exponent with a whole imaginary part in parts of ω.
     turns = np.abs(np.imag(values) - np.round(np.imag(values)))

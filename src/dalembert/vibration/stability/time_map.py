@@ -28,17 +28,15 @@ MEMORY = 4_000_000
 
 
 class Laws(NamedTuple):
-    """Linearised laws on the q retained coordinates and z internal numbers, at each sample.
-
-    Internal are the places of sliders that slip, and, of other laws with a memory, their states and their forces at the
-    end of the step before.
+    """Linearised laws on the q retained coordinates and z internal numbers, at each sample. Internal numbers are the
+    places of slipping sliders, and, of other laws with a memory, their states and forces at the end of the step before.
 
     ``reaction`` (samples, q, q): forces at the end of a step by displacements there; ``memory`` (samples, q, z): the
-    same by internal numbers at its begin; ``following`` (samples, z, q): internal numbers at the end by displacements
-    there; ``keeping`` (samples, z, z): the same by internal numbers at the begin; ``stiffness``, ``release`` (samples,
-    q, q) and (samples, q, z): the same forces by displacements and internal numbers at the end, from which the next
-    step begins; ``damping``, ``ended`` (samples, q, q), ``turning`` (samples, z, q): forces at the end of a step,
-    forces from which the next one begins, and internal numbers, by velocities there.
+    same by internal numbers at its begin; ``following`` (samples, z, q), ``keeping`` (samples, z, z): internal numbers
+    at the end by the same two; ``stiffness`` (samples, q, q), ``release`` (samples, q, z): the same forces by
+    displacements and internal numbers at the end, from which the next step begins; ``damping``, ``ended``
+    (samples, q, q), ``turning`` (samples, z, q): forces at the end of a step, forces from which the next one begins,
+    and internal numbers, by velocities there.
     """
 
     reaction: np.ndarray
@@ -61,10 +59,9 @@ class Held(NamedTuple):
 
 
 def monodromy(system: Uncondensed, linear: np.ndarray, unknowns: np.ndarray, omega: float) -> np.ndarray:
-    """Disturbances after a period from those before, (states, states): displacements, velocities, sliders that slip.
-
-    ``linear``, ``unknowns`` (q, coefficients): linear part of the balance, and the motion. Raises InputError for
-    coordinates that only together with others have a mass.
+    """Return disturbances after a period from those before, (states, states): displacements, velocities, sliders that
+    slip. ``linear``, ``unknowns`` (q, coefficients): linear part of the balance, and the motion. A coordinate that only
+    together with others has a mass is refused.
     """
     mass = system.matrices[1]
     light = _massless(mass)

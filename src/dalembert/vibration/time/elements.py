@@ -20,10 +20,9 @@ PERIODS = 3
 
 
 class Ruled(NamedTuple):
-    """Elements that follow a law.
-
-    ``laws`` (elements,): addresses. ``layout`` (elements, 5): see above. ``rows`` (elements, columns), ``numbers``: of
-    all elements, one after the other. ``u``, ``v``, ``z`` and ``force`` are workspace for one of them.
+    """Elements that follow a law. ``laws`` (elements,): addresses. ``layout`` (elements, 5): see above. ``rows``
+    (elements, columns), ``numbers``: of all elements, one after the other. ``u``, ``v``, ``z`` and ``force`` are
+    workspace for one of them.
     """
 
     laws: Integers
@@ -37,10 +36,8 @@ class Ruled(NamedTuple):
 
 
 class Elements(NamedTuple):
-    """Elements of a system.
-
-    Cells of friction: ``rows`` (cells, 3), ``tangents``, ``normal`` (0 or 1), ``numbers`` (cells, 5) as the friction
-    law takes them, ``contacts`` (cells,). ``ruled``: elements that follow a law.
+    """Elements of a system. Cells of friction: ``rows`` (cells, 3), ``tangents``, ``normal`` (0 or 1), ``numbers``
+    (cells, 5) as the friction law takes them, ``contacts`` (cells,). ``ruled``: elements that follow a law.
     """
 
     rows: Integers2
@@ -65,10 +62,8 @@ class Instant(NamedTuple):
 
 
 class Reaction(NamedTuple):
-    """What elements answer to displacements of the rows that they see.
-
-    ``force`` (rows,); ``slopes`` (rows, rows); ``moved`` (cells, 2): where sliders go; ``next``: states of laws after;
-    ``states`` (contacts,).
+    """What elements answer to displacements of the rows that they see. ``force`` (rows,); ``slopes`` (rows, rows);
+    ``moved`` (cells, 2): where sliders go; ``next``: states of laws after; ``states`` (contacts,).
     """
 
     force: Reals

@@ -31,10 +31,8 @@ _C_FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_
 
 @dataclass(frozen=True)
 class Spectral:
-    """A structure in its modes.
-
-    ``shapes`` (n, modes); ``mass``, ``stiffness``, ``damping`` (modes,): diagonals; ``coupled`` (modes, modes) or (0,
-    0): the damping where it couples modes.
+    """A structure in its modes. ``shapes`` (n, modes); ``mass``, ``stiffness``, ``damping`` (modes,): diagonals;
+    ``coupled`` (modes, modes) or (0, 0): the damping where it couples modes.
     """
 
     shapes: np.ndarray
@@ -78,10 +76,8 @@ def spectral(structure: Any, omega: float) -> Spectral:
 
 @dataclass(frozen=True)
 class ModalSystem:
-    """A lowered system in its modes, at one frequency.
-
-    ``lowered``: real; ``steps``: of a period; ``stand_in``: stiffness of the springs in place of rigid contacts, in
-    multiples of the penalties.
+    """A lowered system in its modes, at one frequency. ``lowered``: real; ``steps``: of a period; ``stand_in``:
+    stiffness of the springs in place of rigid contacts, in multiples of the penalties.
     """
 
     lowered: Lowered
@@ -194,13 +190,10 @@ class ModalSystem:
 
 
 def _matched(elements: Elements, compliance: np.ndarray) -> tuple[Elements, np.ndarray]:
-    r"""Elements whose cells have the stiffness of what is behind them, and what that shifts their displacements by.
-
-    A cell of stiffness k at u says of its force what one of stiffness :math:`\rho` says at
-    :math:`u + (1/\rho - 1/k) \lambda`. With :math:`1/\rho = y + 1/k` and y the compliance of a step behind it, a
-    single contact is solved at once, whatever k is.
-
-    Returns the elements, and the shifts (rows,) :math:`1/\rho - 1/k`; 0 where there is no cell.
+    r"""Return elements whose cells have the stiffness of what is behind them, and the shifts of their displacements
+    (rows,), :math:`1/\rho - 1/k`; 0 where there is no cell. A cell of stiffness k at u says of its force what one of
+    stiffness :math:`\rho` says at :math:`u + (1/\rho - 1/k) \lambda`. With :math:`1/\rho = y + 1/k` and y the
+    compliance of a step behind it, a single contact is solved at once, whatever k is.
     """
     numbers, shifts = elements.numbers.copy(), np.zeros(len(compliance))
     for cell, rows, tangents, normal in zip(numbers, elements.rows, elements.tangents, elements.normal, strict=True):

@@ -47,12 +47,10 @@ class Scheme(NamedTuple):
 
 
 class ModalStructure(NamedTuple):
-    """A structure in modes.
-
-    ``mass``, ``damping``, ``stiffness`` and ``inverse`` (S⁻¹) are diagonals (n,); where modes are coupled by damping,
-    ``coupled`` and ``solver`` are whole matrices of C and S⁻¹ instead, else empty. ``seen`` (rows, n) is L, ``pushed``
-    (rows, n) S⁻¹ L^T transposed, ``compliance`` (rows, rows) b L S⁻¹ L^T - 1/rho + 1/k; ``force`` (steps, n) acts at
-    the steps' ends.
+    """A structure in modes. ``mass``, ``damping``, ``stiffness`` and ``inverse`` (S⁻¹) are diagonals (n,); where modes
+    are coupled by damping, ``coupled`` and ``solver`` are whole matrices of C and S⁻¹ instead, else empty. ``seen``
+    (rows, n) is L, ``pushed`` (rows, n) S⁻¹ L^T transposed, ``compliance`` (rows, rows) b L S⁻¹ L^T - 1/rho + 1/k;
+    ``force`` (steps, n) acts at the steps' ends.
     """
 
     mass: Reals

@@ -46,8 +46,7 @@ def outline(places: np.ndarray, faces: np.ndarray) -> go.Scatter3d:
 
 
 def triangles(faces: np.ndarray) -> np.ndarray:
-    """Triangles (count, 3) of faces of three or four corners.
-
+    """Return triangles (count, 3) of faces of three or four corners.
     >>> triangles(np.array([[0, 1, 2, 3]])).tolist()
     [[0, 1, 2], [0, 2, 3]]
     """

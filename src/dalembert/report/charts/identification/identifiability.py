@@ -88,7 +88,6 @@ def labelled_points(x: np.ndarray, rows: Sequence[str], texts: Sequence[str], at
 
 def combination(row: np.ndarray, names: Sequence[str], most: int = 3) -> str:
     """Return a direction in words, its largest parts first, ``most`` at most.
-
     >>> combination(np.array([0.6, -0.8, 0.01]), ["a", "b", "c"])
     '−0.80 b + 0.60 a'
     """

@@ -12,17 +12,14 @@ from dalembert.tables import shown
 
 @dataclass(frozen=True)
 class Film:
-    """The frames of an animated figure, and the play button and slider that show them.
-
-    ``labels``: texts at the slider, one for each frame; ``seconds``: duration of one pass through all frames, s;
-    ``name``, ``unit``: of the quantity that the labels give, such as time and s; ``pace``: the speed in words, such as
-    "10 times slower"; ``endless``: whether the first frame follows the last one, as in a period; ``asks``: what the
-    slider is for, as a text for screen readers, ``name`` if not given; ``frames``: names of the plotly frames, their
-    numbers from 0 if not given; ``y``: vertical position of the controls, as a part of the height of the plot from its
-    lower edge.
-
-    ``redraw``: whether plotly draws each frame anew. False is faster and suffices if only lines of a plane figure
-    change; with other changes the figure stays as it was.
+    """The frames of an animated figure, and the play button and slider that show them. ``labels``: text at the slider
+    for each frame; ``seconds``: duration of one pass through all frames, s; ``name``, ``unit``: of the quantity that
+    the labels give, such as time and s; ``pace``: the speed in words, such as "10 times slower"; ``endless``: whether
+    the first frame follows the last one, as in a period; ``redraw``: whether plotly draws each frame anew: False is
+    faster and suffices if only lines of a plane figure change; with other changes the figure stays as it was; ``asks``:
+    what the slider is for, for screen readers, ``name`` if not given; ``frames``: names of the plotly frames, their
+    numbers from 0 if not given; ``y``: vertical position of the controls, as a part of the plot's height from its lower
+    edge.
     """
 
     labels: Sequence[str]
@@ -71,8 +68,7 @@ class Film:
 
 
 def slowness(ratio: float) -> str:
-    """Speed of a film in words, from its duration relative to that of the motion.
-
+    """Return the speed of a film in words, from its duration relative to that of the motion.
     >>> slowness(800.0), slowness(0.2), slowness(1.01)
     ('800 times slower than real', '5 times faster than real', 'in real time')
     """

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from dalembert.errors import InputError
-from dalembert.studio.editor.entries import like, put, table_at, unit_among
+from dalembert.studio.editor.entries import first_guess, like, put, table_at, unit_among
 
 
 @dataclass(frozen=True)
@@ -46,8 +46,8 @@ def use_as_start(document: Any, values: Mapping[str, float]) -> None:
             f"{sensors[0]} has no first guess: [sensors] gives bounds only. Choose 'Use as value', or reset it."
         )
     for name in values.keys() - sensors:
-        value, home = values[name], _home(document, name)
-        put(home.table, home.key, start=home.like("start", value))
+        home = _home(document, name)
+        put(home.table, home.key, start=first_guess(values[name], home.given))
 
 
 def use_as_value(document: Any, name: str, value: float) -> None:

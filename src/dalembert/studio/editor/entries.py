@@ -67,6 +67,21 @@ def like(entry: object, number: float, table: Mapping[str, Any] | None = None) -
     return f"{number / size:.{DIGITS}g} {unit}" if unit else float(f"{number:.{DIGITS}g}")
 
 
+def first_guess(value: float, table: Mapping[str, Any]) -> Any:
+    """Return a value (SI units) as the ``start`` of a parameter's table; the entry of a bound that it reaches.
+    >>> bounds = {"lower": "-60 deg", "upper": 1.0}
+    >>> first_guess(0.5, bounds), first_guess(1.0, bounds), first_guess(-2.0, bounds)
+    ('28.6479 deg', 1.0, '-60 deg')
+    """
+    entry = like(table.get("start", table.get("lower")), value, table)
+    written = number_of(entry)  # rounded, so that it may lie outside of bounds that the value itself keeps
+    for side, sign in (("lower", 1.0), ("upper", -1.0)):
+        bound = number_of(table.get(side))
+        if written is not None and bound is not None and sign * written <= sign * bound:
+            return table[side].unwrap() if isinstance(table[side], Item) else table[side]
+    return entry
+
+
 def put(parent: Any, name: str | int, **entries: Any) -> None:
     """Set entries of a table, which is made if it is not there; None removes an entry.
     >>> document = tomlkit.parse("a = { b = 1, c = 2 } # kept\\n")

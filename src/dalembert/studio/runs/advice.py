@@ -6,7 +6,7 @@ from typing import Any
 
 from tomlkit import TOMLDocument
 
-from dalembert.studio.editor.entries import like, number_of, put, table_at, units_of
+from dalembert.studio.editor.entries import first_guess, like, number_of, put, table_at, units_of
 
 Values = Mapping[str, Any]
 Best = Mapping[str, float]
@@ -51,11 +51,7 @@ def start_from_best(document: TOMLDocument, best: Best) -> bool:
     parameters = table_at(document, "parameters")
     known = {name: value for name, value in best.items() if name in parameters}
     for name, value in known.items():
-        table = parameters[name]
-        bounds = [number_of(table.get(side)) for side in ("lower", "upper")]
-        if None not in bounds:
-            value = min(max(value, bounds[0]), bounds[1])  # type: ignore[type-var]  the rounded value may lie outside
-        put(parameters, name, start=like(table.get("start", table.get("lower")), value, table))
+        put(parameters, name, start=first_guess(value, parameters[name]))
     return bool(known)
 
 

@@ -644,7 +644,10 @@ CASES: dict[str, Case] = {
     ),
     "coarse steps that bias no parameter": Case(
         lambda: da.identify(Stepped(method=quick_in_steps), exact(1e-3, 1e-3), starts=1),
-        ("The integrator biases no parameter by more than 0.5 standard deviations.", "With converged steps the misfit"),
+        (
+            "The integrator biases no parameter by more than 0.5 standard deviations.",
+            "A fit with converged steps",
+        ),
     ),
     "too narrow bands": Case(
         lambda: da.identify(

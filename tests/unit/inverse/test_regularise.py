@@ -170,7 +170,11 @@ def test_parameters_that_nothing_determines_are_named() -> None:
     ):
         da.regularise(flat, blurred(0.01)[1], smooth=["u0", "u1", "u2"])
     with refused(
-        InputError, snapshot("regularise: smooth names a parameter twice. Name each once, in the order of the series")
+        InputError,
+        snapshot(
+            "regularise: smooth names 'u0' more than once. Name each parameter once, in the order in which the values "
+            "change smoothly"
+        ),
     ):
         da.regularise(*blurred(0.01), smooth=[*COEFFICIENTS, "u0"])
 

@@ -46,6 +46,7 @@ def integrator_bias(optimum: Optimum) -> Iterator[Finding]:
         f"The integrator biases {name!r} by {f'{bias.bias[worst]:.2g} {unit}'.rstrip()}, {ratios[worst]:.2g} times "
         f"its standard deviation (estimated by one simulation {bias.how})."
     )
+    # The part of the response's error that no parameters make up is beyond three deviations of the noise.
     if white and bias.corrected > misfit and bias.remainder > 9 * variance:
         yield Finding(
             "integration-bias", "note", values,
@@ -56,9 +57,9 @@ def integrator_bias(optimum: Optimum) -> Iterator[Finding]:
         values["change"] = float(change)
         yield Finding(
             "integration-bias", "note", values,
-            f"The integrator biases no parameter by more than {LARGE:g} standard deviations. With converged steps the "
-            f"misfit changes by {change:.2g} of its standard deviations.",
-            "Use a smaller step or a tighter tolerance for the best misfit.",
+            f"The integrator biases no parameter by more than {LARGE:g} standard deviations. A fit with converged "
+            f"steps would change the misfit by {change:.2g} of its standard deviations.",
+            "Use a smaller step or a tighter tolerance if the misfit matters.",
         )  # fmt: skip
         return
     ratio = np.sqrt(bias.misfit / max(misfit, np.finfo(float).tiny))

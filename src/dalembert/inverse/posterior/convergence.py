@@ -27,7 +27,7 @@ class Convergence:
 
 
 def convergence(draws: np.ndarray) -> Convergence:
-    """Diagnostics of draws (chains, draws, parameters); NaN where there are too few."""
+    """Return the diagnostics of draws (chains, draws, parameters), NaN for chains of fewer than four draws."""
     count = draws.shape[2]
     if draws.shape[1] < FEWEST:
         return Convergence(*np.full((4, count), np.nan))

@@ -9,7 +9,7 @@ from scipy.linalg import cho_factor, cho_solve, solve_triangular
 
 from dalembert.argument_readers import check_integer, names_of
 from dalembert.data import Measurements
-from dalembert.errors import InputError, SolveError, counted, listed, require_known
+from dalembert.errors import InputError, SolveError, counted, listed, repeated, require_known
 from dalembert.findings import Finding
 from dalembert.forward import ForwardModel
 from dalembert.forward.adjoint import AUTO, GRADIENTS
@@ -122,8 +122,11 @@ def regularise(
             f"regularise: {len(chosen)} smooth parameters have no differences of order {order}. "
             "Name more of them, or lower the order"
         )
-    if len(set(chosen)) < len(chosen):
-        raise InputError("regularise: smooth names a parameter twice. Name each once, in the order of the series")
+    if several := repeated(chosen):
+        raise InputError(
+            f"regularise: smooth names {listed(list(map(repr, several)))} more than once. Name each parameter once, in "
+            "the order in which the values change smoothly"
+        )
     penalty = differences(np.array([names.index(name) for name in chosen]), len(names), order)
     first = model.parameters.start if start is None else start
     vector = model.parameters.real_vector(first)  # pyright: ignore[reportArgumentType]

@@ -33,7 +33,7 @@ class SegmentNode:
     chart: StateChart | None = None  # what the numbers are in a model that can begin anew at them
 
     def unknowns(self, track: Track) -> list[Parameter]:
-        """The numbers as parameters."""
+        """The state at the cut as parameters; those of a chart, independent coordinates, have a scale and no log."""
         free = self.chart is not None
         return [
             Parameter(

@@ -11,7 +11,7 @@ from dalembert.errors import InputError
 from dalembert.forward import Checkpoint
 from dalembert.vibration.balance.balance import Balance
 from dalembert.vibration.balance.first_guesses import first_guesses
-from dalembert.vibration.balance.harmonic_balance import AUTOMATIC, MOST_SAMPLES, HarmonicBalance
+from dalembert.vibration.balance.harmonic_balance import AUTO, MOST_SAMPLES, HarmonicBalance
 from dalembert.vibration.balance.newton import CrossingPlane, Solution, correct, scale_of
 from dalembert.vibration.balance.preparation import prepare_balance
 from dalembert.vibration.fourier import Fourier
@@ -125,7 +125,7 @@ class Equations:
             if not solution.converged and solution.error > before / 2:  # what is left is not of the samples
                 break
         alternates = solution.error <= self.method.sampling and not solution.converged
-        if alternates and plane is None and self.method.samples == AUTOMATIC:  # on a path, a shorter step is cheaper
+        if alternates and plane is None and self.method.samples == AUTO:  # on a path, a shorter step is cheaper
             # Other numbers of samples have their kinks at other motions; from their solution the first number often
             # converges.
             numbers = (int(part * samples) for part in RESAMPLED if part * samples <= MOST_SAMPLES)
@@ -183,7 +183,7 @@ class Equations:
         return b"harmonic balance" + self.lowered.fingerprint(self.method).encode()
 
     def _doubles(self, solution: Solution) -> bool:
-        return self.method.samples == AUTOMATIC and solution.samples < MOST_SAMPLES
+        return self.method.samples == AUTO and solution.samples < MOST_SAMPLES
 
     def _sampling_error(self, solution: Solution) -> float:
         """Residual with twice the samples, as part of the forces."""

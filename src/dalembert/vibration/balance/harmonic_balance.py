@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from dalembert.arguments import Checked, limited
 from dalembert.errors import InputError, counted
 
-AUTOMATIC = "automatic"
+AUTO = "auto"
 AUTO = "auto"
 """Harmonics that are chosen by the truncation error."""
 MOST_HARMONICS = 1000
@@ -28,8 +28,8 @@ class HarmonicBalance(Checked):
     odd_only : bool
         Keep odd harmonics only: for motions that are their own opposite half a period later. Forces with a mean or
         even harmonics, such as those of stops and static forces, raise InputError.
-    samples : int or "automatic"
-        Samples of a period at which the elements' forces are evaluated. Automatic: doubled until twice as many change
+    samples : int or "auto"
+        Samples of a period at which the elements' forces are evaluated. ``"auto"``: doubled until twice as many change
         the balance of forces by less than ``sampling``.
     events : bool
         Whether contact and slip events between samples are found and the sums over samples corrected there, for stops
@@ -46,7 +46,7 @@ class HarmonicBalance(Checked):
         Halvings of a step, after which the point is marked as not converged. With 0, a first point is not sought along
         a path over the force either.
     resolution : float
-        Largest step of a curve between two frequencies, as a fraction of their distance.
+        Largest step of a curve that is followed from one frequency to another, as a fraction of their distance.
     truncation : float
         Largest truncation error of a motion, as part of it: 2.5 times the change of its largest amplitude with
         2 H + 1 harmonics. A larger one is the finding ``"few-harmonics"``.
@@ -81,7 +81,7 @@ class HarmonicBalance(Checked):
 
     harmonics: int | str = limited(9, least=1, most=MOST_HARMONICS)
     odd_only: bool = False
-    samples: int | str = AUTOMATIC
+    samples: int | str = AUTO
     events: bool = True
     sampling: float = limited(1e-4, above=0, below=1)
     tolerance: float = limited(1e-10, above=0, below=1)
@@ -103,7 +103,7 @@ class HarmonicBalance(Checked):
         most = self.most_harmonics if isinstance(self.harmonics, str) else self.harmonics
         needed = 2 * most + 1
         if isinstance(self.samples, str):
-            if self.samples != AUTOMATIC:
+            if self.samples != AUTO:
                 raise InputError(f"HarmonicBalance: samples is {self.samples!r}; expected a number or 'automatic'")
         elif self.samples < needed:
             raise InputError(

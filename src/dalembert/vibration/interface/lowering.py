@@ -209,10 +209,11 @@ class _Rows:
         if not all(stiffness.real > 0 for stiffness in stiffnesses):
             raise ModelError(
                 f"the rigid contact coordinate {self.names[row]!r} lies on a degree of freedom without stiffness; "
-                "give its law Rigid(penalty=...) in N/m"
+                "give its law Rigid(penalty=...) in N/m, about the stiffness of the structure there"
             )
-        # Both ends in series, each with everything else held: the diagonal of K. It is the stiffness in place of the
-        # structure for the harmonics above the kept ones, and the best penalty.
+        # Both ends in series, each with everything else held: the diagonal of K. To harmonics above the kept ones the
+        # penalty answers in place of the structure, so that its stiffness leaves the smallest error
+        # (docs/theory/harmonic-balance.md, "What the penalty does").
         return 1 / sum(1 / stiffness for stiffness in stiffnesses)
 
 

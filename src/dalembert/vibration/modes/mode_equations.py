@@ -21,7 +21,7 @@ from scipy.linalg import eig
 
 from dalembert.errors import InputError, SolveError
 from dalembert.vibration.balance.equations import Equations
-from dalembert.vibration.balance.harmonic_balance import AUTOMATIC, MOST_SAMPLES
+from dalembert.vibration.balance.harmonic_balance import AUTO, MOST_SAMPLES
 from dalembert.vibration.balance.newton import ROUNDING, line_search
 from dalembert.vibration.balance.uncondensed import Local, Uncondensed
 from dalembert.vibration.fourier import Fourier
@@ -250,7 +250,7 @@ class ModeEquations:
         """Solve as :meth:`solve` does, without a look at the checkpoint."""
         method = self.problem.method
         motion = self._corrected(guess, plane, samples)
-        while motion.converged and method.samples == AUTOMATIC and motion.samples < MOST_SAMPLES:
+        while motion.converged and method.samples == AUTO and motion.samples < MOST_SAMPLES:
             if self._at(self.system(2 * motion.samples), motion, plane).error <= method.sampling:
                 break
             # More samples where twice as many change the balance by `sampling`, as for forced motions.

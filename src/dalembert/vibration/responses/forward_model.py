@@ -171,14 +171,15 @@ class FrequencyResponse:
         return self._linearise(vector)
 
     def check_derivatives(self, vector: np.ndarray) -> None:
-        """Compare the complex step with differences of the system's numbers at a vector (parameters,).
+        """Compare the complex step with differences of the properties of all components at a vector (parameters,).
 
-        Nothing is solved. Laws of the user's are compared by the next derivative, at its first solution.
+        Nothing is solved, and laws of the user's are not compared here: the next :meth:`jacobian` or :meth:`linearise`
+        does, at the first point that it solves.
 
         Raises
         ------
         InputError
-            With the parameter, the component and its number, where the builder drops the imaginary part.
+            With the parameter, the component and its property, where the builder drops the imaginary part.
         """
         if self.derivative == COMPLEX_STEP:
             self._compared.once(vector, lambda thorough: check_numbers(self.builder, self.parameters, vector, thorough))

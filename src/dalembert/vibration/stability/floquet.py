@@ -9,13 +9,13 @@ from dalembert.vibration.balance.equations import equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.curve_points import restarted
-from dalembert.vibration.stability.stability import AUTOMATIC, HILL, TIME_MAP, exponents
+from dalembert.vibration.stability.stability import AUTO, HILL, TIME_MAP, exponents
 from dalembert.vibration.system.system import VibrationSystem
 
 
 @takes_checked("way")
 @single_thread()
-def floquet_multipliers(system: VibrationSystem, curve: FrequencyCurve, point: int, way: str = AUTOMATIC) -> np.ndarray:
+def floquet_multipliers(system: VibrationSystem, curve: FrequencyCurve, point: int, way: str = AUTO) -> np.ndarray:
     """Return the Floquet multipliers: the factors by which small perturbations of a periodic motion grow in a period.
 
     Parameters
@@ -24,7 +24,7 @@ def floquet_multipliers(system: VibrationSystem, curve: FrequencyCurve, point: i
         That of the curve.
     curve : FrequencyCurve
     point : int
-    way : {"automatic", "hill", "time map"}
+    way : {"auto", "hill", "time map"}
         Hill's method in frequency, which has the accuracy of the harmonics (twice as many as the curve's where a stop
         is touched) but does not know the memory of sliders, or
         trapezoidal steps of the linearised motion over a period, whose error falls with their square. Automatic: the
@@ -53,7 +53,7 @@ def floquet_multipliers(system: VibrationSystem, curve: FrequencyCurve, point: i
     >>> float(np.prod(factors).real.round(6)), float(np.exp(-0.1 / 0.15).round(6))  # exp(-c T/m), Liouville's formula
     (0.513417, 0.513417)
     """
-    require_known("way", way, (AUTOMATIC, HILL, TIME_MAP), "floquet_multipliers")
+    require_known("way", way, (AUTO, HILL, TIME_MAP), "floquet_multipliers")
     problem = equations(system, HarmonicBalance(**curve.provenance["method"]), stability=way != HILL)
     begin = restarted(problem, curve, point, "floquet_multipliers")
     factors = np.exp(2 * np.pi * exponents(problem, begin, way).values)

@@ -11,7 +11,7 @@ from dalembert.vibration.fourier import Fourier, in_orders
 from dalembert.vibration.stability.hill import hill
 from dalembert.vibration.stability.time_map import monodromy
 
-HILL, TIME_MAP, AUTOMATIC = "hill", "time map", "automatic"
+HILL, TIME_MAP, AUTO = "hill", "time map", "auto"
 NEUTRAL = 1e-8
 """Growth, in parts of ω, that is none: rounding of undamped motions."""
 SPLIT = 1e-6
@@ -59,12 +59,12 @@ def remembers(problem: Equations) -> bool:
     return bool(problem.lowered.blocks) or any(block.remembers for block in problem.lowered.laws)
 
 
-def exponents(problem: Equations, solution: Solution, way: str = AUTOMATIC) -> Exponents:
+def exponents(problem: Equations, solution: Solution, way: str = AUTO) -> Exponents:
     """Return Floquet exponents at a solution: by Hill's method, or by the time map where there are contacts with
     friction. The stiffness of a stop switches, so that its harmonics fall slowly. Where one is touched, the exponents
     are those with twice the harmonics, and their change is the error.
     """
-    if way == TIME_MAP or (way == AUTOMATIC and remembers(problem)):
+    if way == TIME_MAP or (way == AUTO and remembers(problem)):
         # Hill's matrix lacks the memory of sliders: multipliers of 2.7 for a motion whose largest is 0.94 (three masses
         # with sliders, cubic springs and a stop, at 1.63 rad/s).
         values = _held(problem, problem.once(TIME_MAP, solution, lambda: _by_time_map(problem, solution)))

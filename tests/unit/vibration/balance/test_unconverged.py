@@ -105,6 +105,6 @@ def test_other_numbers_of_samples_are_tried_where_newtons_method_alternates() ->
     peak = np.max(seen)
     made = system(law(kinked), damping=0.5)
     assert not frequency_response(made, at, method, check=False).converged[0]
-    found = frequency_response(made, at, replace(method, samples="automatic"))
+    found = frequency_response(made, at, replace(method, samples="auto"))
     assert found.samples == [80]
     np.testing.assert_allclose(found.response, exact.response, atol=1e-6)

@@ -41,9 +41,9 @@ _TURNING = Turning(relative_angle, _rate, _acceleration, _twist)
 def drive_kind(
     name: str, command: Callable[..., Any], numbers: tuple[str, ...] = (), integers: tuple[str, ...] = ()
 ) -> Kind:
-    """Kind of a motor, from ``command(x, v, p, m, inputs)``, which returns its voltage or current.
-
-    ``numbers``, ``integers``: columns of the command; they follow those of all motors.
+    """Kind of a motor, from ``command(x, v, p, m, inputs)``, which returns its voltage, or its current where
+    the integer ``by_current`` is 1. Its arguments are those of a residual (:class:`Declaration`), with all columns.
+    ``numbers``, ``integers``: further columns of the command; they follow those of all motors.
     """
     properties = drive_properties(command, _TURNING)
     return pair_kind(name, (*NUMBERS, *numbers), (*INTEGERS, *integers), **properties)

@@ -94,7 +94,9 @@ class SweepWorkspace(NamedTuple):
 def sweep_workspace(
     layout: Layout, width: int, work: int, parts: tuple[ResidualDerivatives, ResidualDerivatives, ResidualDerivatives]
 ) -> SweepWorkspace:
-    """Workspace for a sweep over vectors of ``width``, without the masses."""
+    """Workspace for a sweep over vectors of ``width``; its masses are zero, and filled before the sweep. ``work``:
+    address of a call; ``parts``: derivatives of the residual by q, v and a.
+    """
     right, mu, of_q, of_v, *past = np.zeros((8, width))
     factors = storage(layout)
     return SweepWorkspace(

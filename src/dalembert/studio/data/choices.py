@@ -102,7 +102,7 @@ class Choices:
             self.start if self.start in (None, "first") else self.begin or 0.0,
             "refuse" if self.missing == "refuse" else "leave-out",
             self.wraps,
-            None if self.between is None else (_seconds(self.between[0]), _seconds(self.between[1])),
+            None if self.between is None else (si(self.between[0], "s"), si(self.between[1], "s")),
             self.decimate,
         )
 
@@ -135,7 +135,8 @@ def of_table(table: Mapping[str, Any]) -> Choices:
     columns: list[Any] = [table.get("time"), *table.get("columns", {}).values()]
     numbers: dict[str, Key] = {str(key): key for key in columns if isinstance(key, int)}
     between = table.get("between")
-    is_range = isinstance(between, list) and len(between) == 2 and None not in map(_seconds, between)
+    if not isinstance(between, list) or len(between) != 2 or None in map(_seconds, between):
+        between = None
     return Choices(
         str(table.get("file", "")),
         None if "sampling" in table else table.get("time", "t"),
@@ -147,7 +148,7 @@ def of_table(table: Mapping[str, Any]) -> Choices:
         table.get("missing", "refuse"),
         tuple(table.get("wraps", ())),
         table.get("decimate"),
-        (between[0], between[1]) if is_range else None,
+        None if between is None else (between[0], between[1]),
         table.get("sampling"),
     )
 

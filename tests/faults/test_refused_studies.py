@@ -313,9 +313,16 @@ def test_what_would_take_longer_than_the_limit_is_left_out():
     assert expected in done.stdout.splitlines()
 
 
+OTHERS = [["schema"], ["new"], ["run", "study.toml"], ["report", "old"]]
+
+
 @pytest.mark.parametrize(
     "command",
-    [["check", "study.toml"], ["schema"], ["list"], ["new"], ["run", "study.toml"], ["report", "old"]],
+    [
+        ["check", "study.toml"],
+        ["list"],
+        *(pytest.param(command, marks=pytest.mark.slow) for command in OTHERS),
+    ],
     ids=" ".join,
 )
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no such pipes")

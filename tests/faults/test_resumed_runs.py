@@ -97,7 +97,7 @@ STUDIES |= {
     "values = { count = 17 }\n",
     "compared integrators": MECHANISM,
 }
-QUICK = ("least-squares", "sweep")
+QUICK = ("sweep",)
 """The others are slow tests."""
 KILLS = 2
 MANY = 25

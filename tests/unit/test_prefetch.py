@@ -154,6 +154,7 @@ def test_a_model_that_cannot_be_differentiated_is_refused_as_here(client):
         linearised(model, next(asked))
 
 
+@pytest.mark.slow  # of batches, `make test` has the same in test_distributed
 def test_a_worker_that_is_killed_costs_a_retry(client, started, data):
     def slow(rate, damping):
         time.sleep(0.01)

@@ -120,6 +120,7 @@ def test_auto_passes_the_flat_four_bar(reference, record_evidence, tolerance: fl
     np.testing.assert_array_equal(response.evaluate(np.array([[model["gravity"]]])).only()[0, -1], ours)
 
 
+@pytest.mark.slow
 def test_a_run_that_stays_in_a_singular_position_ends(reference) -> None:
     """A step may end there to rounding: the accelerations cannot be resolved, and the steps become rounding.
 

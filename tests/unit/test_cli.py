@@ -168,7 +168,7 @@ def test_what_is_wrong_with_a_model_is_told_with_the_file_too(dalembert, tmp_pat
     (tmp_path / "bar.toml").write_text(f"[solver]\nstep = 0.1\n[simulate]\nend = 1\n[[model.body]]\n{bar}")
     checked = dalembert("check", "bar.toml")
     assert (checked.returncode, checked.stdout) == (2, "")
-    assert checked.stderr == "bar.toml: RigidBar 'bar': mass is -0.5 kg; expected a positive number\n"
+    assert checked.stderr == "bar.toml: [model]: RigidBar 'bar': mass is -0.5 kg; expected a positive number\n"
 
 
 @pytest.mark.parametrize(

@@ -63,8 +63,7 @@ class SystemBuilder:
             coordinates = [
                 {joint: resolved(entry, values, f"[model], {key}") for joint, entry in at.items()} for key, at in stated
             ]
-            with placed("[model]"):
-                system.pose(*coordinates)
+            system.pose(*coordinates)
         return system
 
     def _system(self, options: dict[str, Any]) -> "BaseSystem":
@@ -72,8 +71,7 @@ class SystemBuilder:
             from dalembert.multibody.spatial import SpatialSystem as System
         else:
             from dalembert.multibody import System
-        with placed("[model]"):
-            return System(**options)
+        return System(**options)
 
 
 def robot_of(robot: RobotTable, values: Values, signals: Values, options: Mapping[str, Any]) -> "SpatialSystem":

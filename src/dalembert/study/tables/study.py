@@ -21,7 +21,7 @@ from dalembert.study.tables.inputs import MeasuredInput
 from dalembert.study.tables.parameters import ParameterTable, parameters_of
 from dalembert.study.tables.structure_builder import StructureBuilder
 from dalembert.study.tables.study_file import StudyFile
-from dalembert.study.text.table import StudyTable, placed
+from dalembert.study.text.table import StudyTable, naming, placed
 
 if TYPE_CHECKING:
     from dalembert.data import Bands, Measurements
@@ -178,7 +178,8 @@ class Study(Displayed):
 
     def system(self, vector: np.ndarray | None = None) -> Any:
         """The mechanism or the structure at a parameter vector (parameters,), by default at the first guesses."""
-        return self.builder(**self.parameters.mapping(self.parameters.start if vector is None else vector))
+        with naming("model"):
+            return self.builder(**self.parameters.mapping(self.parameters.start if vector is None else vector))
 
     def equations(self) -> "Equations":
         """The structure's equations at the first guesses; what nothing holds is found here."""
@@ -186,7 +187,7 @@ class Study(Displayed):
 
         system = self.system()
         balance = self.balance.keeping(system.highest_harmonic).first()
-        with placed("[model]"):
+        with naming("model"):
             result = equations(system, balance)
         result.lowered.coordinates  # noqa: B018 (contacts that cannot be told apart are told as such)
         with placed(self.file.model.holding, ModelError):

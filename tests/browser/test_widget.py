@@ -11,7 +11,7 @@ from dalembert.parameters import Parameters
 
 pytest.importorskip("anywidget")
 from dalembert.widget import sliders
-from dalembert.widget.frontend import script
+from dalembert.widget.frontend import MechanismSliders
 
 SHARED = ("look", "parameters", "asked", "answered", "film", "curves", "message")
 PAGE = """
@@ -55,7 +55,7 @@ def opened(chromium):
     page = chromium.page(width=1000, height=620)
     page.expose_function("answer", answer)
     state = {name: getattr(widget, name) for name in SHARED}
-    page.set_content(PAGE % (json.dumps(state), json.dumps(script()).replace("</", "<\\/")))
+    page.set_content(PAGE % (json.dumps(state), json.dumps(MechanismSliders._esm).replace("</", "<\\/")))
     wait_until(page, "document.querySelector('[data-part=rod]')?.getAttribute('d')")
     return page, widget
 

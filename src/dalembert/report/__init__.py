@@ -6,6 +6,7 @@ _NAMES = {
     "contents": "figures",
     "look": "dark",
     "page": "report",
+    "player.animation": "Animation",
     "registry": "sections_of",
     "section": "ReportSection",
 }

@@ -3,6 +3,7 @@ from dalembert.report import charts as charts
 from dalembert.report.contents import figures as figures
 from dalembert.report.look import dark as dark
 from dalembert.report.page import report as report
+from dalembert.report.player.animation import Animation as Animation
 from dalembert.report.registry import sections_of as sections_of
 from dalembert.report.section import ReportSection as ReportSection
 from dalembert.tables import Table as Table

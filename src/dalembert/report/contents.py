@@ -8,6 +8,7 @@ import plotly.graph_objects as go
 
 from dalembert.report.headline import Headline
 from dalembert.report.options import ReportOptions, report_options
+from dalembert.report.player.animation import Animation
 from dalembert.report.registry import registered_sections
 from dalembert.report.section import Block, Section, Source
 from dalembert.results import fixed_facts
@@ -72,7 +73,7 @@ def contents(result: object, options: ReportOptions) -> tuple[Headline, *tuple[S
     return headline, *rest, *options.sections, *provenance(getattr(result, "provenance", {}), options.study)
 
 
-def figures(result: object, *supplements: object, **options: Any) -> dict[str, go.Figure]:
+def figures(result: object, *supplements: object, **options: Any) -> dict[str, go.Figure | Animation]:
     """Every figure that a report of the result would show, by name.
 
     Parameters
@@ -83,12 +84,12 @@ def figures(result: object, *supplements: object, **options: Any) -> dict[str, g
 
     Returns
     -------
-    dict of str to plotly.graph_objects.Figure
+    dict of str to plotly.graph_objects.Figure or Animation
         For a fit ``"parameters"``, ``"responses-1"``, ``"convergence"``, ``"correlation"`` …, from response
         sensitivity ``"l-curve"`` and ``"steps"``, from multiple shooting ``"gaps"`` too, for a trajectory
-        ``"mechanism"``, ``"energies"``, ``"violations"``, ``"newton"``, for bounds ``"bands-1"`` …, for methods
-        compared ``"methods"`` and ``"differences"`` too, for intervals from bands ``"intervals"``,
-        ``"residual-bands-1"`` …, for a set ``"paving-1"`` …, for a sweep ``"sweep-1"`` …, for profiles
+        ``"mechanism"``, an :class:`Animation`, ``"energies"``, ``"violations"``, ``"newton"``, for bounds
+        ``"bands-1"`` …, for methods compared ``"methods"`` and ``"differences"`` too, for intervals from bands
+        ``"intervals"``, ``"residual-bands-1"`` …, for a set ``"paving-1"`` …, for a sweep ``"sweep-1"`` …, for profiles
         ``"profile-1"`` …, for a prediction ``"prediction-1"`` …, for designs ``"ranking"`` and ``"horizons"``, for a
         response over frequency ``"frequency-curve"``, ``"hysteresis"``, ``"contact-states"``, ``"harmonic-content"`` ….
 

@@ -2,10 +2,8 @@
 
 import base64
 import hashlib
-import json
 import os
 from collections.abc import Sequence
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -16,9 +14,13 @@ from plotly.offline import get_plotlyjs
 from dalembert import __version__
 from dalembert.files import write_text
 from dalembert.report.contents import contents
+from dalembert.report.inline import inline_json
 from dalembert.report.look import DARK, FONT, LIGHT, exchanged, template
 from dalembert.report.options import report_options
-from dalembert.report.section import SAFE
+from dalembert.report.player import PICTURES, module, player_files
+from dalembert.report.section import Motion
+
+SCRIPT = Path(__file__).parent / "templates" / "page.js"
 
 
 def report(
@@ -66,22 +68,24 @@ def report(
     paragraphs = notes.strip().split("\n\n") if isinstance(notes, str) else notes
     sections = contents(result, report_options(supplements, notes=[text for text in paragraphs if text], **options))
     templates = environment()
-    player = files("dalembert.report").joinpath("templates", "page.js").read_text(encoding="utf-8")
-    scripts = [Markup(get_plotlyjs()), Markup(player)]
+    motions = [plot.figure for section in sections for plot in section.plots if isinstance(plot, Motion)]
+    player = player_files(in_space=any(motion.scene.dimensions == 3 for motion in motions))
+    script = module((*player, PICTURES, SCRIPT) if motions else [SCRIPT])
+    scripts = [Markup(get_plotlyjs()), Markup(script)]
     look = {"template": template().to_plotly_json(), "dark": exchanged()}
-    page = templates.get_template("page.html").render(
+    text = templates.get_template("page.html").render(
         title=sections[0].title,
         sections=sections,
         environment=templates,
         style=Markup(templates.get_template("page.css").render(light=LIGHT, dark=DARK, font=Markup(FONT))),
         scripts=scripts,
         policy=_policy(scripts),
-        look=Markup(json.dumps(look).translate(SAFE)),
+        look=inline_json(look),
         version=__version__,
     )
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_text(path, page)
+    write_text(path, text)
     return path
 
 

@@ -14,10 +14,10 @@ from markupsafe import Markup
 from plotly.io import to_json
 
 from dalembert.forward import Coordinate
+from dalembert.report.inline import inline_json
+from dalembert.report.player import PAGE_LOOKS
+from dalembert.report.player.animation import Animation
 from dalembert.tables import Table, labelled
-
-SAFE = str.maketrans({"<": "\\u003c", ">": "\\u003e", "&": "\\u0026"})
-"""Characters that could end a script element, as JSON may write them."""
 
 MOST_ROWS = 5000
 """Numbers of a series up to which a page holds them."""
@@ -55,7 +55,26 @@ class Plot:
         bare = self.figure.to_dict()  # a copy as a Figure would check all of it again
         for key in ("template", "title", "updatemenus", "sliders"):
             bare["layout"].pop(key, None)
-        return Markup((to_json(bare, validate=False) or "").translate(SAFE))
+        return inline_json(to_json(bare, validate=False) or "")
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A mechanism in motion, the name of its place in the page, and a sentence on how to read it."""
+
+    macro: ClassVar[str] = "motion"
+    name: str
+    figure: Animation
+    caption: str = ""
+
+    @property
+    def title(self) -> str:
+        return self.figure.title
+
+    @property
+    def element(self) -> Markup:
+        """The picture and the film, in the colours of the page."""
+        return self.figure.element(self.name, PAGE_LOOKS)
 
 
 @dataclass(frozen=True)
@@ -93,7 +112,7 @@ class Source:
     text: str
 
 
-Block = str | Plot | Row | Table | Listed | Download | Source
+Block = str | Plot | Motion | Row | Table | Listed | Download | Source
 """What stands in a section; a str is a paragraph, left out if it is empty."""
 
 
@@ -111,10 +130,10 @@ class Section:
         return self.heading.lower().replace(" ", "-")
 
     @property
-    def plots(self) -> list[Plot]:
+    def plots(self) -> list[Plot | Motion]:
         """All figures."""
         rows = [block.plots if isinstance(block, Row) else [block] for block in self.blocks]
-        return [plot for row in rows for plot in row if isinstance(plot, Plot)]
+        return [plot for row in rows for plot in row if isinstance(plot, Plot | Motion)]
 
     def html(self, environment: Environment) -> Markup:
         """The section, rendered by its template."""

@@ -11,7 +11,7 @@ import traitlets
 from dalembert.errors import DalembertError
 from dalembert.multibody import Trajectory
 from dalembert.parameter import Parameter
-from dalembert.report.player import BROWSER, LOOK
+from dalembert.report.player import LOOK, module, player_files
 from dalembert.report.player.film import film_of
 from dalembert.report.sections.motion_sections import measured
 from dalembert.tables import shown
@@ -19,22 +19,12 @@ from dalembert.widget.sliders import Source
 
 MOST = 200
 """Measured points of a channel that are drawn."""
-SCRIPTS = (
-    *(BROWSER / name for name in ("solids.js", "space.js", "plane.js", "index.js")),
-    Path(__file__).with_name("sliders.js"),
-)
-
-
-def script() -> str:
-    """The JavaScript of the widget as one module."""
-    texts = [path.read_text(encoding="utf-8") for path in SCRIPTS]
-    return "\n".join(line for text in texts for line in text.splitlines() if not line.startswith("import "))
 
 
 class MechanismSliders(anywidget.AnyWidget):
     """A mechanism in motion with a slider for each parameter."""
 
-    _esm = script()
+    _esm = module((*player_files(), Path(__file__).with_name("sliders.js")))
     look = traitlets.Dict(LOOK).tag(sync=True)
     parameters = traitlets.List().tag(sync=True)
     asked = traitlets.Dict({"number": 0, "values": {}}).tag(sync=True)

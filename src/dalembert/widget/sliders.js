@@ -1,6 +1,6 @@
 // A mechanism with sliders for its parameters: the front end of an anywidget.
 import { element, Player } from "./index.js";
-import { svgElement } from "./plane.js";
+import { svgElement } from "./shapes.js";
 
 const STEPS = 400; // of a slider
 const WIDTH = 420, HEIGHT = 90; // of a curve, in pixels

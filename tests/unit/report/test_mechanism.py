@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
+from dalembert.report.charts.motion.playback import Playback
 
 from dalembert.report.charts import mechanism
-from dalembert.report.charts.motion.playback import Playback
 from dalembert.report.section import Plot
 from stand_ins import motion
 

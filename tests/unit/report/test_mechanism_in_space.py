@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from dalembert.report.charts.motion.playback import Playback
 
 import dalembert as da
 from dalembert.errors import InputError
 from dalembert.multibody.spatial import Shape
 from dalembert.report import charts, figures, report
-from dalembert.report.charts.motion.playback import Playback
 from dalembert.report.section import Plot
 from spatial_pendulum import SOLVER, TRUE, build, motion, records, response
 

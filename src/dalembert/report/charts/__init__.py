@@ -28,7 +28,6 @@ _NAMES = {
     "identification.search": "convergence starts",
     "identification.specimens": "specimens",
     "motion.diagnostics": "energies newton violations work_precision",
-    "motion.moving_mechanism": "mechanism",
     "motion.outputs": "outputs sweep",
 }
 __getattr__, __dir__ = lazy_names(

@@ -57,6 +57,5 @@ from dalembert.report.charts.motion.diagnostics import energies as energies
 from dalembert.report.charts.motion.diagnostics import newton as newton
 from dalembert.report.charts.motion.diagnostics import violations as violations
 from dalembert.report.charts.motion.diagnostics import work_precision as work_precision
-from dalembert.report.charts.motion.moving_mechanism import mechanism as mechanism
 from dalembert.report.charts.motion.outputs import outputs as outputs
 from dalembert.report.charts.motion.outputs import sweep as sweep

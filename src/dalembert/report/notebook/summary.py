@@ -1,24 +1,21 @@
 """What a notebook shows of a result or a model, as HTML."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import singledispatch
 from html import escape
 from typing import Any
 
-import numpy as np
-import plotly.graph_objects as go
-
 from dalembert.multibody import Trajectory
 from dalembert.multibody.model.system import BaseSystem
 from dalembert.report.charts.motion.diagnostics import energies
-from dalembert.report.charts.motion.moving_mechanism import mechanism
 from dalembert.report.contents import contents
 from dalembert.report.headline import headline_of
 from dalembert.report.look import FONT
 from dalembert.report.notebook.figure import figure_svg
 from dalembert.report.options import ReportOptions
 from dalembert.report.pictures import picture
+from dalembert.report.player.animation import Animation
 from dalembert.structure import Structure
 from dalembert.vibration import VibrationSystem
 
@@ -74,8 +71,6 @@ class Summary:
 NOT_FIRST = ("parameters",)
 """Figures that say what the key values say already."""
 MOST_FINDINGS = 3
-POSES = 7
-"""Of a motion that is drawn."""
 
 
 @singledispatch
@@ -94,7 +89,7 @@ def shown_in_notebook(result: Any) -> Summary | None:
     """
     headline, *sections = contents(result, ReportOptions())
     drawn = (plot.figure for section in sections for plot in section.plots if plot.name not in NOT_FIRST)
-    figure = next(filter(None, map(figure_svg, drawn)), None)
+    figure = next(filter(None, map(_svg, drawn)), None)
     findings = [
         str(finding) for finding in headline.findings if finding.doubtful and str(finding) not in headline.status
     ]
@@ -117,10 +112,8 @@ def html_of(value: object) -> str | None:
 @shown_in_notebook.register
 def _(result: Trajectory) -> Summary:
     headline = headline_of(result)
-    still = picture(result.system) if len(result.system.AXES) == 3 else figure_svg(_motion(result), height=320)
-    pictures = [still, figure_svg(energies(result), height=320)]
-    shown = [one for one in pictures if one]
-    return Summary(headline.title, headline.verdict, headline.badge, [headline.status], headline.facts, shown)
+    pictures = [Animation.of(result.drawing()).svg, _svg(energies(result))]
+    return Summary(headline.title, headline.verdict, headline.badge, [headline.status], headline.facts, pictures)
 
 
 @shown_in_notebook.register
@@ -157,11 +150,6 @@ def _named(parts: Any, most: int = 8) -> list[str]:
     return names if len(names) <= most else [*names[:most], f"and {len(names) - most} more"]
 
 
-def _motion(result: Trajectory) -> go.Figure:
-    """The mechanism at its start, with faint poses along its motion."""
-    drawing = result.drawing()
-    poses = np.unique(np.linspace(0, len(drawing.times) - 1, POSES).round().astype(int))
-    lines, joints = (
-        {name: lines_of_part[poses] for name, lines_of_part in part.items()} for part in (drawing.lines, drawing.joints)
-    )
-    return mechanism(replace(drawing, times=drawing.times[poses], lines=lines, joints=joints))
+def _svg(figure: Any) -> str | None:
+    """A figure as SVG; None for one that is not made of lines and points in the plane."""
+    return figure.svg if isinstance(figure, Animation) else figure_svg(figure)

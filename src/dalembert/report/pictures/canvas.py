@@ -24,6 +24,7 @@ def between(light: str, dark: str, share: float = 0.15) -> str:
 
 
 INK = between(LIGHT.muted, DARK.muted, 0.3)
+FAINT = between(LIGHT.grid, DARK.grid, 0.3)
 COLOURS = tuple(between(*pair) for pair in zip(LIGHT.series, DARK.series, strict=True))
 """Of bodies, as in the figures of reports."""
 
@@ -117,6 +118,31 @@ class Canvas:
         for step in (-10, -3, 4, 11):
             self.stroke(np.array([[x + step, y + 15], [x + step - 5, y + 20]]), INK, 1)
 
+    def axes(self) -> None:
+        """Positions along the lower and the left edge, at round values in m."""
+        (width, height), step = self.size, round_below(min(self.size) / self.scale / 3)
+        zero = self.at(np.zeros(2))[0]
+        for direction, end in ((0, width), (1, height)):
+            first, last = sorted(
+                (sign * (pixel - zero[direction]) / self.scale / step) for sign, pixel in ((1, 0), (1, end))
+            )
+            for number in range(int(np.ceil(first)), int(np.floor(last)) + 1):
+                at = zero[direction] + number * step * self.scale
+                value = f"{round(-number * step if direction else number * step, 12) + 0.0:g}".replace("-", "−")
+                if direction and 20 < at < height - 20:
+                    self.stroke(np.array([[0, at], [4, at]]), INK, 1)
+                    self.label(np.array([7, at + 4]), value)
+                elif not direction and 50 < at < width - 40:
+                    self.stroke(np.array([[at, height], [at, height - 4]]), INK, 1)
+                    self.label(np.array([at + 3, height - 6]), value)
+        self.label(np.array([7, 13]), "y (m)")
+        self.label(np.array([width - 32, height - 6]), "x (m)")
+
+    def label(self, pixel: np.ndarray, words: str) -> None:
+        """Small words that begin at a pixel."""
+        x, y = pixel
+        self._lines.append(f'<text x="{x:.1f}" y="{y:.1f}" font-size="11" fill="{INK}">{escape(words)}</text>')
+
     def spring(self, first: np.ndarray, second: np.ndarray, turns: int = 7) -> None:
         """A zigzag between two pixels; a dot where they meet."""
         span = second - first
@@ -133,12 +159,21 @@ class Canvas:
         """The picture; ``label`` describes it for screen readers."""
         width, height = self.size
         shown = f'width="{self.zoom * width:g}" height="{self.zoom * height:g}"'
-        role = "group" if self.choosable else "img"
+        role, style = ("group", "max-width:100%") if self.choosable else ("img", "max-width:100%;height:auto")
         return (
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" {shown} '
-            f'role="{role}" aria-label="{escape(label)}" font-family="{escape(FONT)}" style="max-width:100%">'
+            f'role="{role}" aria-label="{escape(label)}" font-family="{escape(FONT)}" style="{style}">'
             f"{''.join(self._lines)}</svg>"
         )
+
+
+def round_below(length: float) -> float:
+    """Return the largest length of 1, 2 or 5 times a power of ten that is not above a length.
+    >>> round_below(0.34), round_below(7.0)
+    (0.2, 5.0)
+    """
+    decade = 10.0 ** np.floor(np.log10(length))
+    return float(decade * next(digit for digit in (5, 2, 1) if digit * decade <= length * (1 + 1e-9)))
 
 
 def message_picture(words: str, size: tuple[int, int] = SIZE) -> str:

@@ -5,7 +5,7 @@ from itertools import groupby
 
 import numpy as np
 
-from dalembert.report.pictures.canvas import COLOURS, INK, SIZE, Canvas, between, moved
+from dalembert.report.pictures.canvas import COLOURS, FAINT, INK, SIZE, Canvas, between, moved
 from dalembert.report.pictures.labels import draw_labels
 from dalembert.report.pictures.projection import Projection
 from dalembert.report.pictures.row import row_picture
@@ -27,16 +27,20 @@ def scene_picture(
     box: np.ndarray | None = None,
     choosable: bool = False,
     labels: bool = False,
+    axes: bool = False,
 ) -> str:
     """Return the SVG picture of a scene in its first frame. Each part is a group ``<g class="ROLE" data-part="NAME">``.
     ``label``: for screen readers; ``size``: pixels; ``box`` (2, 2): corners of the picture, m, around all points if not
-    given; ``choosable``: whether the parts are buttons; ``labels``: whether those of the scene are drawn.
+    given; ``choosable``: whether the parts are buttons; ``labels``: whether those of the scene are drawn; ``axes``:
+    whether the edges of a picture in the plane have values in m.
     """
     if not scene.to_scale:
         return row_picture(scene, label, size, choosable)
     view = Projection.of(scene.dimensions)
     corners = view(scene.positions) if box is None else box
     canvas = Canvas.around(corners, size, choosable)
+    if axes and view.flat:
+        canvas.axes()
     shapes = _from_far_to_near(scene, view)
     for (role, name), part in groupby(shapes, lambda shape: (shape.role, shape.name)):
         with canvas.part(name, role):
@@ -50,23 +54,34 @@ def scene_picture(
 
 
 def _from_far_to_near(scene: Scene, view: Projection) -> list[Primitive]:
-    """Shapes with each body as a surface or as a line: surfaces before lines, and the farthest of them first."""
-    surfaces = {shape.part: shape for shape in scene.primitives if shape.kind == "surface"}
+    """Shapes with each body as a surface or as a line: surfaces before lines, and the farthest of them first. Paths and
+    measured positions are behind them.
+    """
+    behind = [shape for shape in scene.primitives if shape.role in BEHIND]
+    primitives = [shape for shape in scene.primitives if shape.role not in BEHIND]
+    surfaces = {shape.part: shape for shape in primitives if shape.kind == "surface"}
     if sum(len(shape.faces) for shape in surfaces.values() if shape.faces is not None) > MOST_FACES:
         surfaces = {}
-    lines = [shape for shape in scene.primitives if shape.kind == "line"]
-    depth = {shape.part: float(view.depth(shape.points[0]).mean()) for shape in [*surfaces.values(), *lines]}
+    lines = [shape for shape in primitives if shape.kind == "line" and shape.role != "axis"]
+    depth = {shape.part: float(np.nanmean(view.depth(shape.points[0]))) for shape in [*surfaces.values(), *lines]}
     bodies = {shape.part: shape for shape in lines} | surfaces
     ordered = sorted(bodies.values(), key=lambda shape: (shape.kind == "line", depth[shape.part]))
-    first = next((k for k, shape in enumerate(scene.primitives) if shape.kind in ("line", "surface")), 0)
-    symbols = [shape for shape in scene.primitives if shape.kind not in ("line", "surface")]
-    return [*symbols[:first], *ordered, *symbols[first:]]
+    first = next((k for k, shape in enumerate(primitives) if shape.kind in ("line", "surface")), 0)
+    symbols = [shape for shape in primitives if shape.kind not in ("line", "surface") or shape.role == "axis"]
+    return [*behind, *symbols[:first], *ordered, *symbols[first:]]
+
+
+BEHIND = ("outline", "path", "measured")
+"""Roles of what is drawn behind the bodies."""
 
 
 def _line(canvas: Canvas, view: Projection, shape: Primitive) -> None:
     points = shape.points[0]
     pixels = canvas.at(view(points))
-    if float(np.ptp(pixels, axis=0).max()) < NEAR:
+    if shape.role in ("outline", "path", "axis"):
+        styles = {"outline": (FAINT, 2.5, ""), "path": (INK, 1.2, "0.5 3.5"), "axis": (_colour(shape), 2, "")}
+        canvas.stroke(pixels, *styles[shape.role])
+    elif float(np.ptp(pixels, axis=0).max()) < NEAR:
         canvas.circle(pixels[0], 8, _colour(shape))
     else:
         canvas.stroke(pixels, _colour(shape), 5 if len(np.unique(points, axis=0)) < 5 or view.flat else 3)

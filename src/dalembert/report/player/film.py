@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dalembert.report.charts.motion.playback import Playback
+from dalembert.report.player.playback import Playback
 from dalembert.report.scene.motion import motion_scene
 from dalembert.report.scene.scene import Scene
 
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from dalembert.multibody import Drawing
 
 FINE = 6001
-PRINT_ONLY = ("outline", "axis")
-"""Roles that only figures of reports show."""
+REPORT_ONLY = ("outline", "axis")
+"""Roles that only reports show."""
 
 
 def frames(end: float) -> np.ndarray:
@@ -32,15 +32,16 @@ def film_of(drawing: "Drawing", measured: Mapping[str, np.ndarray], rows: np.nda
     return encoded(motion_scene(drawing, rows, paths={}, measured=measured))
 
 
-def encoded(scene: Scene) -> dict[str, Any]:
+def encoded(scene: Scene, *, complete: bool = False) -> dict[str, Any]:
     """Return a scene as ``space.js`` and ``plane.js`` take it. ``positions``: single precision in base64, of each shape
     in turn (frames or 1, count, 2 or 3), m, and of one with poses (frames, 4, 3). Bodies with a surface have no lines.
+    ``complete``: with outlines of poses and axes of bodies, as in reports.
     """
     surfaces = {shape.part for shape in scene.primitives if shape.kind == "surface"}
     drawn = [
         shape
         for shape in scene.primitives
-        if shape.role not in PRINT_ONLY and (shape.kind != "line" or shape.part not in surfaces)
+        if (complete or shape.role not in REPORT_ONLY) and (shape.kind != "line" or shape.part not in surfaces)
     ]
     shapes: list[dict[str, Any]] = []
     for shape in drawn:

@@ -20,6 +20,8 @@ POSES = 6
 """Of the outline of a motion."""
 PATH, MEASURED = 2000, 150
 """Points of a path, and measured positions of a point."""
+DEVIATION = 2e-4
+"""Of a simplified path, as part of its size."""
 AXIS = 0.09
 """Length of the axes of a body as part of the drawing's size."""
 STILL = 1e-9
@@ -43,9 +45,7 @@ def motion_scene(drawing: Drawing, frames: np.ndarray, *, paths: Lines, measured
     if in_space and drawing.ground is not None:
         ground = drawing.ground
         shapes.append(Primitive("surface", "ground", "", ground.corners[None], faces=ground.triangles))
-    shapes += [
-        Primitive("line", "path", name, path[None, :: max(1, len(path) // PATH)]) for name, path in paths.items()
-    ]
+    shapes += [Primitive("line", "path", name, simplified_path(path)[None]) for name, path in paths.items()]
     for name, positions in measured.items():
         known = positions[np.isfinite(positions).all(axis=1)]
         shapes.append(Primitive("crosses", "measured", name, known[None, :: max(1, len(known) // MEASURED)]))
@@ -74,6 +74,26 @@ def thinned(lines: Lines) -> dict[str, np.ndarray]:
         for name, line in lines.items()
         for points in [line.shape[1]]
     }
+
+
+def simplified_path(path: np.ndarray) -> np.ndarray:
+    """Return those of the points (samples, 2 or 3) of a path that its shape needs (Ramer, Douglas and Peucker).
+    >>> simplified_path(np.array([[0.0, 0], [1, 0], [2, 0], [2, 1], [2, 2]])).tolist()
+    [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0]]
+    """
+    path = path[:: max(1, len(path) // PATH)]
+    kept, pieces = {0, len(path) - 1}, [(0, len(path) - 1)]
+    limit = DEVIATION * float(np.nanmax(np.ptp(path, axis=0)))
+    while pieces:
+        first, last = pieces.pop()
+        inner, chord = path[first + 1 : last] - path[first], path[last] - path[first]
+        share = np.clip(inner @ chord / (chord @ chord or 1.0), 0.0, 1.0)
+        distances = np.linalg.norm(inner - share[:, None] * chord, axis=1)
+        if len(inner) and float(distances.max()) > limit:
+            middle = first + 1 + int(distances.argmax())
+            kept.add(middle)
+            pieces += [(first, middle), (middle, last)]
+    return path[sorted(kept)]
 
 
 def joined(lines: Lines) -> np.ndarray:
@@ -107,26 +127,3 @@ def _axes(axes: Lines, length: float) -> list[Primitive]:
 def _ray(axes: np.ndarray, number: int, length: float) -> np.ndarray:
     """Origin of a body and the end of one of its axes, (frames, 2, 3)."""
     return np.stack([axes[:, 0], axes[:, 0] + length * axes[:, number]], axis=1)
-
-
-def unfolded(line: np.ndarray) -> np.ndarray:
-    """Return a line (frames, points, 3) with gaps for pieces that go back or have no length: WebGL cannot draw them.
-    >>> there_and_back = np.array([[[0.0, 0, 0], [1, 0, 0], [0, 0, 0], [0, 0, 0], [0, 1, 0]]])
-    >>> unfolded(there_and_back)[0, :, :2].tolist()
-    [[0.0, 0.0], [1.0, 0.0], [nan, nan], [0.0, 0.0], [0.0, 1.0]]
-    """
-    first = line[0]
-    pieces: list[list[int]] = []
-    for end in range(1, len(first)):
-        back = end > 1 and np.array_equal(first[end], first[end - 2])
-        if back or np.array_equal(first[end], first[end - 1]):
-            continue
-        if pieces and pieces[-1][-1] == end - 1:
-            pieces[-1].append(end)
-        else:
-            pieces.append([end - 1, end])
-    if not pieces:
-        return line[:, :1]
-    gap = np.full((len(line), 1, 3), np.nan)
-    parts = [part for piece in pieces for part in (line[:, piece], gap)]
-    return np.concatenate(parts[:-1], axis=1)

@@ -15,7 +15,8 @@ class Primitive:
     ``surface`` and ``mesh`` (faces; those of finite elements show their sides), ``edges`` (pairs of points),
     ``dashes``, ``points``, ``crosses``, ``joint``, ``ground``, ``spring``, ``arrow``, ``turn``, ``ring``, ``dot``,
     ``point``; of a row of masses also ``mass`` and ``element``. ``role``: of the part ``name``: ``body``, ``joint``,
-    ``load``, ``channel``, ``point``, ``measured``, ``path``, ``spring``, ``contact``, ``force`` or ``ground``.
+    ``load``, ``channel``, ``point``, ``measured``, ``path``, ``outline`` (of poses), ``axis`` (of bodies), ``spring``,
+    ``contact``, ``force`` or ``ground``.
 
     ``points`` (frames, points, 2 or 3): m, one frame if it does not move, or has poses; ``colour``: number in the
     series of a palette, or ``INK``; ``faces`` (faces, 3 or 4): corners of the faces among the points; ``along``
@@ -87,6 +88,14 @@ class Scene:
         """All known points of all frames, (points, 2 or 3), m."""
         points = np.concatenate([shape.positions.reshape(-1, self.dimensions) for shape in self.primitives])
         return points[np.isfinite(points).all(axis=1)]
+
+    def at(self, frame: int) -> "Scene":
+        """Return the scene at rest, as it is in a frame."""
+        still = (
+            replace(shape, points=shape.positions[[frame if len(shape.positions) > 1 else 0]], poses=None)
+            for shape in self.primitives
+        )
+        return replace(self, primitives=tuple(still), times=self.times[[frame]])
 
     @property
     def parts(self) -> set[str]:

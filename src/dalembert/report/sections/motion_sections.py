@@ -13,8 +13,9 @@ from dalembert.report import charts
 from dalembert.report.headline import headline_of
 from dalembert.report.look import plain
 from dalembert.report.options import ReportOptions
+from dalembert.report.player.animation import Animation
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Block, Plot, Row, Section, numbered, samples
+from dalembert.report.section import Block, Motion, Plot, Row, Section, numbered, samples
 from dalembert.tables import Table
 
 if TYPE_CHECKING:
@@ -38,17 +39,20 @@ def mechanisms(
 
 def _film(
     place: str, experiment: str, trajectory: Trajectory, points: tuple[str, ...], data: Measurements | None
-) -> Plot:
+) -> Motion:
     """The mechanism with the paths of points, of the measured ones if none are named, and measured positions."""
     drawing = trajectory.drawing()
     axes = _axes(drawing)
     crosses = {} if data is None else measured(data.channels, data.values, axes)
     known = set(trajectory.channel_names)
     followed = points or tuple(point for point in crosses if _channels(point, axes) <= known)
-    title = plain(experiment) or HEADING
-    figure = charts.mechanism(drawing, paths=paths(trajectory, drawing, followed), measured=crosses, title=title)
+    lines = paths(trajectory, drawing, followed)
+    figure = Animation.of(drawing, paths=lines, measured=crosses, title=experiment or HEADING)
+    named = {"Path": list(lines), "Measured": list(crosses)}
+    which = "".join(f" {kind}: {', '.join(names)}." for kind, names in named.items() if names)
     turned = " Drag to turn, scroll to zoom." if len(axes) == 3 else ""
-    return Plot(place, figure, f"Drawn to scale; faint outlines are poses along the motion.{turned}")
+    how = f"Drawn to scale, {figure.pace}; faint outlines are poses along the motion."
+    return Motion(place, figure, f"{how}{which}{turned}")
 
 
 def paths(trajectory: Trajectory, drawing: Drawing, points: tuple[str, ...]) -> dict[str, np.ndarray]:

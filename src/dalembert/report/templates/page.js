@@ -53,7 +53,7 @@
   function player(box) {
     const place = document.getElementById(box.dataset.for);
     const [button, slider, output] = ["button", "input", "output"].map((tag) => box.querySelector(tag));
-    const { labels, seconds, before, after, endless, redraw } = JSON.parse(document.querySelector(`[data-for="${place.id}"].figure`).textContent).layout.meta;
+    const { labels, seconds, before, after, endless } = JSON.parse(document.querySelector(`[data-for="${place.id}"].figure`).textContent).layout.meta;
     let began = null;
 
     function show(number) {
@@ -61,7 +61,7 @@
       slider.value = number;
       output.textContent = `${before}${labels[number]}${after}`;
       slider.setAttribute("aria-valuetext", `${labels[number]}${after === " s" ? " seconds" : after}`);
-      const still = { mode: "immediate", frame: { duration: 0, redraw }, transition: { duration: 0 } };
+      const still = { mode: "immediate", frame: { duration: 0, redraw: true }, transition: { duration: 0 } };
       return Plotly.animate(place, { data: frame.data, traces: frame.traces }, still).catch(() => {});
     }
     function turn(on) {
@@ -93,6 +93,7 @@
 
   function offer(button) { // a picture of the figure as it is seen, with pixels fine enough to be printed
     const place = document.getElementById(button.dataset.figure);
+    if (!place.dataset.drawn) return;
     const format = button.textContent.toLowerCase();
     button.addEventListener("click", () => {
       const { clientWidth: width, clientHeight: height } = place;
@@ -103,7 +104,7 @@
 
   const sources = [...document.querySelectorAll("script.figure")];
   const all = () => Promise.all(sources.map(draw));
-  document.querySelectorAll(".player").forEach(player);
+  document.querySelectorAll(".player[data-for]").forEach(player);
   all().then(() => {
     document.querySelectorAll("[data-figure]").forEach(offer);
     document.documentElement.dataset.ready = "yes";

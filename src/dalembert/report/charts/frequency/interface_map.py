@@ -4,9 +4,10 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.report.charts.frequency.contacts import COLOURS
+from dalembert.report.charts.frequency.film import Film
 from dalembert.report.charts.frequency.shapes import SECONDS
-from dalembert.report.charts.motion.playback import Film, slowness
 from dalembert.report.look import LIGHT, plain, themed
+from dalembert.report.player.playback import slowness
 from dalembert.report.scene.structure import edges
 from dalembert.tables import prefixed
 from dalembert.vibration import Deformation

@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import plotly.graph_objects as go
 
-from dalembert.report.charts.motion.playback import Film, slowness
+from dalembert.report.charts.frequency.film import Film
 from dalembert.report.look import LIGHT, themed
+from dalembert.report.player.playback import slowness
 from dalembert.report.scene.structure import edges
 from dalembert.structure import ModeShapes
 from dalembert.tables import labelled, prefixed, shown

@@ -1,5 +1,6 @@
 // Plays the motion of a mechanism: its drawing, a button and the time. Notebooks and pages share it.
-import { Plane, svgElement } from "./plane.js";
+import { Plane } from "./plane.js";
+import { svgElement } from "./shapes.js";
 import { BY_KEY, RADIAN, Space } from "./space.js";
 
 const STYLE = `
@@ -24,9 +25,10 @@ export function element(parent, tag, properties = {}) {
 }
 
 export class Player {
-  // look: colours of the scene; label: for screen readers; onFrame(share): called with each frame that is shown.
-  constructor(root, look, label, onFrame = () => {}) {
-    Object.assign(this, { root, onFrame, playing: false });
+  // look: colours of the scene; label: for screen readers; onFrame(share): called with each frame that is shown;
+  // options: of the scene.
+  constructor(root, look, label, onFrame = () => {}, options = {}) {
+    Object.assign(this, { root, onFrame, options, playing: false });
     root.classList.add("player");
     element(root, "style", { textContent: STYLE });
     this.view = element(root, "div", { className: "player-scene", role: "img", ariaLabel: label });
@@ -51,9 +53,9 @@ export class Player {
     this.scene?.close();
     this.inSpace = inSpace;
     this.view.tabIndex = inSpace ? 0 : -1;
-    const space = inSpace ? Space.on(this.view, this.look) : null;
+    const space = inSpace ? Space.on(this.view, this.look, this.options) : null;
     if (space) return space;
-    const plane = new Plane(this.view, this.look);
+    const plane = new Plane(this.view, this.look, this.options);
     if (inSpace) this.makeTurnable(plane);
     return plane;
   }
@@ -76,6 +78,11 @@ export class Player {
     this.time.max = film.times.length - 1;
     if (plays && !this.playing && !matchMedia("(prefers-reduced-motion: reduce)").matches) this.play();
     else this.seek(this.scene.frame);
+  }
+
+  recolour(look) {
+    this.look = look;
+    this.scene?.recolour(look);
   }
 
   close() {
@@ -130,10 +137,10 @@ export class Player {
     if (!this.scene?.film) return;
     const { times } = this.scene.film, frame = this.scene.frame;
     const decimals = Math.max(0, 2 - Math.floor(Math.log10(Math.max(times.at(-1), 1e-12))));
-    const time = `${times[frame].toFixed(decimals)} s`;
+    const time = times[frame].toFixed(decimals);
     this.time.value = frame;
-    this.time.setAttribute("aria-valuetext", time);
-    this.clock.textContent = `t = ${time}`;
+    this.time.setAttribute("aria-valuetext", `${time} seconds`);
+    this.clock.textContent = `t = ${time} s`;
     this.onFrame(frame / Math.max(this.last, 1));
   }
 }

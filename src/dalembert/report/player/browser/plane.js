@@ -1,18 +1,9 @@
 // A scene in the plane as SVG, and a scene in space where there is no WebGL. It needs no library.
-import { boxOf, decoded } from "./solids.js";
+import { boxOf, colourOf, decoded, svgElement } from "./shapes.js";
 
-const SVG = "http://www.w3.org/2000/svg";
-const MARGIN = 24; // pixels
+const MARGIN = 24, BESIDE = 56, BELOW = 34; // pixels; beside and below the picture with the values of axes
 const RADIUS = 5; // of a joint, in pixels
 const CIRCLE = `M${-RADIUS} 0a${RADIUS} ${RADIUS} 0 1 0 ${2 * RADIUS} 0a${RADIUS} ${RADIUS} 0 1 0 ${-2 * RADIUS} 0`;
-
-export function svgElement(parent, tag, attributes, text = "") {
-  const one = document.createElementNS(SVG, tag);
-  for (const [name, value] of Object.entries(attributes)) one.setAttribute(name, value);
-  one.textContent = text;
-  parent.append(one);
-  return one;
-}
 
 // A length of 1, 2 or 5 times a power of ten that is at most a given one.
 function round(length) {
@@ -21,10 +12,10 @@ function round(length) {
 }
 
 export class Plane {
-  // look: { series: colours of bodies, ink, paper }, which are read on a light and on a dark page
-  constructor(root, look) {
+  // look: see colourOf; axes: whether they have values, in place of the length of a bar
+  constructor(root, look, { axes = false } = {}) {
     const svg = svgElement(root, "svg", { class: "player-plane" });
-    Object.assign(this, { svg, look, frame: 0, yaw: -0.6, pitch: 0.35, box: null });
+    Object.assign(this, { svg, look, axes, frame: 0, yaw: -0.6, pitch: 0.35, box: null });
     this.sizes = new ResizeObserver(() => this.build());
     this.sizes.observe(svg);
   }
@@ -42,7 +33,19 @@ export class Plane {
     const old = this.box?.low.length === film.dimensions ? this.box : null;
     this.box = boxOf(shapes, film.dimensions, old); // of all motions so far: the picture does not jump while a value changes
     if (this.box.grown || !same) this.build();
-    else this.draw();
+    else this.draw(true);
+  }
+
+  recolour(look) {
+    this.look = look;
+    this.build();
+  }
+
+  // The picture as it is seen.
+  picture() {
+    const copy = this.svg.cloneNode(true);
+    copy.setAttribute("font-family", "system-ui, sans-serif");
+    return copy;
   }
 
   // Coordinates of the picture: as they are in the plane, seen from a direction in space.
@@ -57,13 +60,15 @@ export class Plane {
     const corners = Array.from({ length: 2 ** low.length }, (_, corner) => this.flat(...low.map((value, k) => ((corner >> k) & 1 ? high[k] : value))));
     const ends = [0, 1].map((k) => corners.map((one) => one[k])).map((all) => [Math.min(...all), Math.max(...all)]);
     const size = Math.max(...ends.map(([first, last]) => last - first), 1e-9);
-    const rooms = [this.width - 2 * MARGIN, this.height - 2 * MARGIN];
+    const hasAxes = this.axes && !this.turns, [beside, below] = hasAxes ? [BESIDE, BELOW] : [MARGIN, MARGIN];
+    const rooms = [this.width - beside - MARGIN, this.height - below - MARGIN];
     const factor = Math.min(...ends.map(([first, last], k) => rooms[k] / Math.max(last - first, 0.2 * size)));
     const [across, up] = ends.map(([first, last]) => (first + last) / 2);
-    this.factor = factor;
+    const centre = [beside + rooms[0] / 2, MARGIN + rooms[1] / 2];
+    Object.assign(this, { factor, hasAxes });
     this.at = (...position) => {
       const [x, y] = this.flat(...position);
-      return [this.width / 2 + factor * (x - across), this.height / 2 - factor * (y - up)];
+      return [centre[0] + factor * (x - across), centre[1] - factor * (y - up)];
     };
   }
 
@@ -75,19 +80,50 @@ export class Plane {
     svg.setAttribute("viewBox", `0 0 ${this.width} ${this.height}`);
     svg.replaceChildren();
     this.fit();
-    const ink = { fill: "none", stroke: look.ink, "stroke-width": 1.25 }, words = { class: "player-name", fill: look.ink };
+    const ink = { fill: "none", stroke: look.ink, "stroke-width": 1.25 };
+    const words = { class: "player-name", fill: look.ink, "font-size": 13 };
     const ring = { class: "player-joint", fill: look.paper, stroke: look.ink, "stroke-width": 2 };
     this.drawn = this.shapes.map((shape) => {
-      const stroke = shape.colour < 0 ? look.ink : look.series[shape.colour % look.series.length];
-      if (shape.kind === "crosses") return svgElement(svg, "path", { ...ink, class: "player-measured" });
-      if (shape.role === "joint") return this.part(shape.name, { ...ring, d: shape.kind === "ground" ? "M0 0L-8 12H8Z" : CIRCLE });
-      return this.part(shape.name, { class: "player-body", fill: "none", stroke, "stroke-width": shape.faces ? 0.5 : 5 });
+      const { role } = shape, stroke = colourOf(shape, look), line = { fill: "none", stroke, class: `player-${role}` };
+      if (shape.kind === "crosses") return this.part(`${shape.name} measured`, { ...ink, class: "player-measured" });
+      if (role === "outline") return svgElement(svg, "path", { ...line, "stroke-width": 3 });
+      if (role === "path") return this.part(`path of ${shape.name}`, { ...line, "stroke-width": 1.5, "stroke-dasharray": "1.5 4" });
+      if (role === "axis") return this.part(`${shape.name} axis`, { ...line, "stroke-width": 2 });
+      if (role === "joint") return this.part(shape.name, { ...ring, d: shape.kind === "ground" ? "M0 0L-8 12H8Z" : CIRCLE });
+      return this.part(shape.name, { ...line, "stroke-width": shape.faces ? 0.5 : 5 });
     });
     this.names = this.shapes.map((shape) => (shape.role === "body" ? svgElement(svg, "text", words, shape.name) : null));
-    const length = round(this.width / 4 / this.factor), end = this.width - 12, bottom = this.height - 10;
+    if (this.hasAxes) this.scales();
+    else this.bar(ink, words);
+    this.draw(true);
+  }
+
+  // Values at the lower and the left edge.
+  scales() {
+    const style = { fill: this.look.muted, "font-size": 12 }, tick = { stroke: this.look.muted, fill: "none" };
+    const bottom = this.height - BELOW, step = round((Math.min(this.width, 1.4 * this.height) / 4) / this.factor);
+    const [zero, high] = [this.at(0, 0), this.at(step, step)], size = high[0] - zero[0];
+    const value = (k) => String(+(k * step).toPrecision(6)).replace("-", "−");
+    for (let k = Math.ceil((BESIDE - zero[0]) / size); zero[0] + k * size <= this.width - 12; k++) {
+      const x = zero[0] + k * size;
+      svgElement(this.svg, "path", { ...tick, d: `M${x} ${bottom}v4` });
+      svgElement(this.svg, "text", { ...style, x, y: bottom + 16, "text-anchor": "middle" }, value(k));
+    }
+    for (let k = Math.ceil((zero[1] - bottom) / size); zero[1] - k * size >= 12; k++) {
+      const y = zero[1] - k * size;
+      svgElement(this.svg, "path", { ...tick, d: `M${BESIDE} ${y}h-4` });
+      svgElement(this.svg, "text", { ...style, x: BESIDE - 7, y: y + 4, "text-anchor": "end" }, value(k));
+    }
+    svgElement(this.svg, "path", { ...tick, d: `M${BESIDE} 4V${bottom}H${this.width - 4}` });
+    svgElement(this.svg, "text", { ...style, x: this.width - 6, y: this.height - 3, "text-anchor": "end" }, "x (m)");
+    svgElement(this.svg, "text", { ...style, x: 4, y: 14 }, "y (m)");
+  }
+
+  // The length of a bar, as a scale.
+  bar(ink, words) {
+    const { svg } = this, length = round(this.width / 4 / this.factor), end = this.width - 12, bottom = this.height - 10;
     svgElement(svg, "path", { ...ink, d: `M${end - length * this.factor} ${bottom - 5}v5h${length * this.factor}v-5` });
     svgElement(svg, "text", { ...words, x: end, y: bottom - 9, "text-anchor": "end" }, `${+length.toPrecision(1)} m`);
-    this.draw();
   }
 
   part(name, style) {
@@ -96,9 +132,11 @@ export class Plane {
     return one;
   }
 
-  draw() {
+  // Moves what moves in the frame; all: what is at rest too.
+  draw(all = false) {
     if (!this.drawn) return;
     this.shapes.forEach((shape, k) => {
+      if (!all && shape.frames === 1) return;
       const numbers = shape.at(this.frame), across = this.film.dimensions;
       const points = Array.from({ length: shape.count }, (_, one) => this.at(...numbers.subarray(one * across, (one + 1) * across)));
       if (shape.role === "joint") this.drawn[k].setAttribute("transform", `translate(${points[0].join(" ")})`);

@@ -14,41 +14,6 @@ export function rgb(colour) {
   return [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16) / 255);
 }
 
-// Shapes with their part, and with their positions in a frame: (count, dimensions) in one array.
-export function decoded(scene) {
-  const numbers = new Float32Array(Uint8Array.from(atob(scene.positions), (one) => one.charCodeAt(0)).buffer), count = scene.times.length;
-  let next = 0;
-  const taken = (size) => numbers.subarray(next, (next += size));
-  return scene.shapes.map((shape) => {
-    const size = shape.count * scene.dimensions, all = taken(shape.moves ? count * size : size), poses = shape.posed ? taken(12 * count) : null;
-    const at = (frame) => (poses ? posed(all, poses.subarray(12 * frame, 12 * frame + 12)) : shape.moves ? all.subarray(frame * size, (frame + 1) * size) : all);
-    return { ...shape, part: `${shape.role} ${shape.name}`.trim(), at, frames: poses || shape.moves ? count : 1 };
-  });
-}
-
-// Points in the axes of a body, in the fixed axes.
-function posed(points, [x, y, z, ...axes]) {
-  const found = new Float32Array(points.length);
-  for (let k = 0; k < points.length; k += 3)
-    for (let axis = 0; axis < 3; axis++)
-      found[k + axis] = [x, y, z][axis] + points[k] * axes[axis] + points[k + 1] * axes[3 + axis] + points[k + 2] * axes[6 + axis];
-  return found;
-}
-
-// Lowest and highest corner of shapes over all their frames, together with an older box.
-export function boxOf(shapes, dimensions, old) {
-  const low = Array(dimensions).fill(Infinity), high = Array(dimensions).fill(-Infinity);
-  const measure = (numbers) => numbers.forEach((value, place) => {
-    if (!Number.isFinite(value)) return;
-    low[place % dimensions] = Math.min(low[place % dimensions], value);
-    high[place % dimensions] = Math.max(high[place % dimensions], value);
-  });
-  for (const shape of shapes) for (let frame = 0; frame < shape.frames; frame++) measure(shape.at(frame));
-  if (old) [old.low, old.high].forEach(measure);
-  const grown = !old || low.some((value, k) => value < old.low[k]) || high.some((value, k) => value > old.high[k]);
-  return { low, high, grown };
-}
-
 export class Solids {
   // size: of the scene in m; symbols are parts of it.
   constructor(size) {
@@ -136,7 +101,12 @@ export class Solids {
         break;
       case "line":
         if (shape.count === 1) this.ball(first, 3 * radius);
-        for (let k = 1; k < shape.count; k++) if (length(plus(at(k), at(k - 1), -1)) > 1e-9 * this.size) this.tube(at(k - 1), at(k), radius);
+        for (let k = 1; k < shape.count; k++)
+          if (length(plus(at(k), at(k - 1), -1)) > 1e-9 * this.size) {
+            if (shape.role === "outline" || shape.role === "path") this.segment(at(k - 1), at(k));
+            else if (shape.role === "axis") this.tube(at(k - 1), at(k), radius / 2, radius / 2, 6);
+            else this.tube(at(k - 1), at(k), radius);
+          }
         break;
       case "edges":
         for (let k = 0; k < shape.count; k += 2) this.segment(at(k), at(k + 1));

@@ -1,5 +1,6 @@
 // A scene in space, drawn with WebGL: turned, moved and enlarged by pointer and keys, with labels above it.
-import { Solids, boxOf, decoded, dot, plus, rgb } from "./solids.js";
+import { boxOf, colourOf, decoded, svgElement } from "./shapes.js";
+import { Solids, dot, plus, rgb } from "./solids.js";
 
 const EYE = [0.5586, 0.3785], FIELD = (35 * Math.PI) / 360; // azimuth and height of the eye; half of the field of view
 const REACH = 9; // pixels beside a thin part at which a click meets it
@@ -32,21 +33,23 @@ function program(gl) {
 }
 
 export class Space {
-  // root: holds canvas and labels; look: { series, ink }; onChoose(part): called with the part that is clicked, or null.
+  // root: holds canvas and labels; look: see colourOf; onChoose(part): called with the part that is clicked, or null;
+  // hovers: whether the name of the part below the pointer is shown; scrolls: whether a finger scrolls the page.
   static on(root, look, options = {}) {
     const canvas = document.createElement("canvas"), gl = canvas.getContext("webgl2", { antialias: true });
     return gl ? new Space(root, canvas, gl, look, options) : null;
   }
 
-  constructor(root, canvas, gl, look, { onChoose = null, zooms = false }) {
+  constructor(root, canvas, gl, look, { onChoose = null, zooms = false, hovers = false, scrolls = false }) {
     Object.assign(this, { root, canvas, gl, look, onChoose, frame: 0, chosen: [], wrong: [], box: null, labels: [] });
-    Object.assign(canvas.style, { display: "block", width: "100%", height: "100%", touchAction: "none" });
+    Object.assign(canvas.style, { display: "block", width: "100%", height: "100%", touchAction: scrolls ? "pan-y" : "none" });
     this.words = document.createElement("div");
     Object.assign(this.words.style, { position: "absolute", inset: "0", pointerEvents: "none", overflow: "hidden" });
     root.append(canvas, this.words);
     this.program = program(gl);
     this.buffers = [gl.createBuffer(), gl.createBuffer()];
     this.listen(zooms);
+    if (hovers) canvas.addEventListener("pointermove", (event) => event.buttons || !this.triangles || (canvas.title = this.pick(event) ?? ""));
     this.sizes = new ResizeObserver(() => this.render());
     this.sizes.observe(root);
   }
@@ -108,6 +111,26 @@ export class Space {
     this.draw();
   }
 
+  recolour(look) {
+    this.look = look;
+    this.name(this.film.times.length > 1);
+    this.draw();
+  }
+
+  // The picture as it is seen, with so many pixels a pixel.
+  picture(ratio) {
+    const { clientWidth: width, clientHeight: height } = this.root, svg = svgElement(null, "svg", { viewBox: `0 0 ${width} ${height}` });
+    this.paint(ratio);
+    svgElement(svg, "image", { width, height, href: this.canvas.toDataURL() });
+    this.paint();
+    const words = { "font-size": 12, "font-family": "system-ui, sans-serif" };
+    for (const { element } of this.labels) {
+      const [x, y] = element.style.transform.match(/-?[\d.]+/g) ?? [];
+      if (element.style.display !== "none") svgElement(svg, "text", { ...words, x: +x + 4, y: +y + 13, fill: element.style.color }, element.textContent);
+    }
+    return svg;
+  }
+
   fit() {
     if (!this.box) return;
     const [yaw, pitch] = this.target ? [this.yaw, this.pitch] : EYE;
@@ -160,8 +183,7 @@ export class Space {
     const solids = new Solids(this.size), number = (part) => this.parts.indexOf(part);
     for (const shape of this.shapes) {
       const mark = this.wrong.includes(shape.part) ? "wrong" : this.chosen.includes(shape.part) ? "chosen" : null;
-      const colour = shape.colour < 0 ? this.look.ink : this.look.series[shape.colour % this.look.series.length];
-      solids.add(shape, this.frame, mark ? MARKS[mark] : rgb(colour), number(shape.part));
+      solids.add(shape, this.frame, mark ? MARKS[mark] : rgb(colourOf(shape, this.look)), number(shape.part));
     }
     this.around = solids.surround(this.box.low, this.box.high, this.film.gravity, number);
     Object.assign(this, { solids, triangles: new Float32Array(solids.triangles), lines: new Float32Array(solids.lines), stale: true });
@@ -191,8 +213,8 @@ export class Space {
     });
   }
 
-  paint() {
-    const { gl, canvas, root } = this, ratio = window.devicePixelRatio || 1, view = this.matrix();
+  paint(ratio = window.devicePixelRatio || 1) {
+    const { gl, canvas, root } = this, view = this.matrix();
     const [width, height] = [Math.round(root.clientWidth * ratio), Math.round(root.clientHeight * ratio)];
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
     gl.viewport(0, 0, width, height);

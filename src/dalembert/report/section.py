@@ -68,10 +68,6 @@ class Motion:
     caption: str = ""
 
     @property
-    def title(self) -> str:
-        return self.figure.title
-
-    @property
     def element(self) -> Markup:
         """The picture and the film, in the colours of the page."""
         return self.figure.element(self.name, PAGE_LOOKS)

@@ -4,10 +4,11 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from html import escape
+from typing import Any
 
 import numpy as np
 
-from dalembert.report.look import DARK, FONT, LIGHT
+from dalembert.report.look import DARK, FONT, LIGHT, faint
 
 SIZE = (360, 225)
 """Width and height in pixels."""
@@ -24,7 +25,7 @@ def between(light: str, dark: str, share: float = 0.15) -> str:
 
 
 INK = between(LIGHT.muted, DARK.muted, 0.3)
-FAINT = between(LIGHT.grid, DARK.grid, 0.3)
+FAINT = faint(INK, 0.3)
 COLOURS = tuple(between(*pair) for pair in zip(LIGHT.series, DARK.series, strict=True))
 """Of bodies, as in the figures of reports."""
 
@@ -96,12 +97,10 @@ class Canvas:
             f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius:g}" fill="{fill}" stroke="{stroke}" stroke-width="2"/>'
         )
 
-    def text(self, pixel: np.ndarray, words: str, colour: str = INK) -> None:
-        """Words about a pixel."""
-        x, y = pixel
-        self._lines.append(
-            f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="middle" font-size="12" fill="{colour}">{escape(words)}</text>'
-        )
+    def text(self, pixel: Any, words: str, colour: str = INK, *, size: int = 12, anchor: str = "middle") -> None:
+        """Words about a pixel, or from it on with the anchor ``start``."""
+        style = f'text-anchor="{anchor}" font-size="{size}" fill="{colour}"'
+        self._lines.append(f'<text x="{pixel[0]:.1f}" y="{pixel[1]:.1f}" {style}>{escape(words)}</text>')
 
     def arrow(self, tail: np.ndarray, head: np.ndarray, colour: str) -> None:
         """An arrow between two pixels."""
@@ -119,29 +118,18 @@ class Canvas:
             self.stroke(np.array([[x + step, y + 15], [x + step - 5, y + 20]]), INK, 1)
 
     def axes(self) -> None:
-        """Positions along the lower and the left edge, at round values in m."""
+        """Round positions in m along the lower and the left edge."""
         (width, height), step = self.size, round_below(min(self.size) / self.scale / 3)
-        zero = self.at(np.zeros(2))[0]
-        for direction, end in ((0, width), (1, height)):
-            first, last = sorted(
-                (sign * (pixel - zero[direction]) / self.scale / step) for sign, pixel in ((1, 0), (1, end))
-            )
-            for number in range(int(np.ceil(first)), int(np.floor(last)) + 1):
-                at = zero[direction] + number * step * self.scale
-                value = f"{round(-number * step if direction else number * step, 12) + 0.0:g}".replace("-", "−")
-                if direction and 20 < at < height - 20:
-                    self.stroke(np.array([[0, at], [4, at]]), INK, 1)
-                    self.label(np.array([7, at + 4]), value)
-                elif not direction and 50 < at < width - 40:
-                    self.stroke(np.array([[at, height], [at, height - 4]]), INK, 1)
-                    self.label(np.array([at + 3, height - 6]), value)
-        self.label(np.array([7, 13]), "y (m)")
-        self.label(np.array([width - 32, height - 6]), "x (m)")
-
-    def label(self, pixel: np.ndarray, words: str) -> None:
-        """Small words that begin at a pixel."""
-        x, y = pixel
-        self._lines.append(f'<text x="{x:.1f}" y="{y:.1f}" font-size="11" fill="{INK}">{escape(words)}</text>')
+        first, last = ((self.low + self.high) / 2 + sign * np.array(self.size) / self.scale / 2 for sign in (-1, 1))
+        for number in range(int(min(first) // step), int(max(last) // step) + 1):
+            x, y = self.at(np.full(2, number * step))[0]
+            words = f"{round(number * step, 12):g} m".replace("-", "−")
+            if 24 < x < width - 40:
+                self.stroke(np.array([(x, height), (x, height - 4)]), INK, 1)
+                self.text((x + 3, height - 6), words, size=11, anchor="start")
+            if 16 < y < height - 24:
+                self.stroke(np.array([(0, y), (4, y)]), INK, 1)
+                self.text((7, y + 4), words, size=11, anchor="start")
 
     def spring(self, first: np.ndarray, second: np.ndarray, turns: int = 7) -> None:
         """A zigzag between two pixels; a dot where they meet."""

@@ -15,6 +15,8 @@ MOST_FACES = 1500
 """Faces of all surfaces above which bodies are drawn as lines."""
 MANY_FACES = 1200
 """Faces of a mesh above which their sides are not drawn."""
+BEHIND = ("outline", "path", "measured")
+"""Roles of what is drawn behind the bodies."""
 NEAR = 4.0
 """Distance in pixels below which two points count as one."""
 
@@ -27,21 +29,20 @@ def scene_picture(
     box: np.ndarray | None = None,
     choosable: bool = False,
     labels: bool = False,
-    axes: bool = False,
 ) -> str:
     """Return the SVG picture of a scene in its first frame. Each part is a group ``<g class="ROLE" data-part="NAME">``.
     ``label``: for screen readers; ``size``: pixels; ``box`` (2, 2): corners of the picture, m, around all points if not
-    given; ``choosable``: whether the parts are buttons; ``labels``: whether those of the scene are drawn; ``axes``:
-    whether the edges of a picture in the plane have values in m.
+    given; ``choosable``: whether the parts are buttons; ``labels``: whether those of the scene are drawn. The edges of
+    a motion in the plane have values in m.
     """
     if not scene.to_scale:
         return row_picture(scene, label, size, choosable)
     view = Projection.of(scene.dimensions)
     corners = view(scene.positions) if box is None else box
     canvas = Canvas.around(corners, size, choosable)
-    if axes and view.flat:
+    if view.flat and len(scene.times) > 1:
         canvas.axes()
-    shapes = _from_far_to_near(scene, view)
+    shapes = _from_far_to_near(scene.start, view)
     for (role, name), part in groupby(shapes, lambda shape: (shape.role, shape.name)):
         with canvas.part(name, role):
             for shape in part:
@@ -54,9 +55,7 @@ def scene_picture(
 
 
 def _from_far_to_near(scene: Scene, view: Projection) -> list[Primitive]:
-    """Shapes with each body as a surface or as a line: surfaces before lines, and the farthest of them first. Paths and
-    measured positions are behind them.
-    """
+    """Shapes with each body as a surface or as a line: surfaces before lines, the farthest first, and paths behind."""
     behind = [shape for shape in scene.primitives if shape.role in BEHIND]
     primitives = [shape for shape in scene.primitives if shape.role not in BEHIND]
     surfaces = {shape.part: shape for shape in primitives if shape.kind == "surface"}
@@ -69,10 +68,6 @@ def _from_far_to_near(scene: Scene, view: Projection) -> list[Primitive]:
     first = next((k for k, shape in enumerate(primitives) if shape.kind in ("line", "surface")), 0)
     symbols = [shape for shape in primitives if shape.kind not in ("line", "surface") or shape.role == "axis"]
     return [*behind, *symbols[:first], *ordered, *symbols[first:]]
-
-
-BEHIND = ("outline", "path", "measured")
-"""Roles of what is drawn behind the bodies."""
 
 
 def _line(canvas: Canvas, view: Projection, shape: Primitive) -> None:

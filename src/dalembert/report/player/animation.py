@@ -3,7 +3,6 @@
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -25,19 +24,6 @@ from dalembert.report.scene.scene import Scene
 
 WIDTH, LOWEST, HIGHEST = 720, 260, 460
 """Size of the picture, pixels."""
-PAGE = """<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{title}</title>
-<style>:root {{ color-scheme: light dark; }} body {{ font: 15px {font}; max-width: 1080px; margin: 1rem auto; }}</style>
-</head>
-<body>
-{body}
-</body>
-</html>
-"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,23 +77,25 @@ class Animation:
         """The speed of the player, in words."""
         return Playback.of(self.scene.times).pace
 
-    @cached_property
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the picture, pixels."""
+        points = Projection.of(self.scene.dimensions)(self.scene.positions)
+        across, up = np.maximum(np.ptp(points, axis=0), 1e-9)
+        return WIDTH, int(np.clip(WIDTH * up / across, LOWEST, HIGHEST))
+
+    @property
     def svg(self) -> str:
         """The mechanism at its start, with outlines, paths and measured positions, as SVG."""
-        box = Projection.of(self.scene.dimensions)(self.scene.positions)
-        across, up = np.maximum(np.ptp(box, axis=0), 1e-9)
-        size = WIDTH, int(np.clip(WIDTH * up / across, LOWEST, HIGHEST))
-        return scene_picture(self.scene.at(0), self.title, size, box=box, axes=True)
+        return scene_picture(self.scene, self.title, self.size)
 
     def element(self, name: str = "", looks: Sequence[Mapping[str, Any]] = (LOOK,)) -> Markup:
-        """The picture and the film, which a script of the page plays. ``name``: of its place in the page; ``looks``:
-        colours on a light and on a dark page.
-        """
-        place = f' id="figure-{escape(name)}"' if name else ""
-        shape = self.svg.partition('viewBox="0 0 ')[2].partition('"')[0].replace(" ", " / ")
+        """The picture and the film for a script. ``name``: of its place; ``looks``: on a light and on a dark page."""
+        place = f'id="figure-{escape(name)}" ' if name else ""
+        width, height = self.size
         film = inline_json({**encoded(self.scene, complete=True), "looks": looks})
         return Markup(
-            f'<div class="film"{place} data-label="{escape(self.title)}" style="--shape:{shape}">'
+            f'<div {place}class="dalembert-film" data-label="{escape(self.title)}" style="--shape:{width} / {height}">'
             f'<div class="film-still">{self.svg}</div>'
             f'<script type="application/json" data-name="{escape(name)}">{film}</script></div>'
         )
@@ -129,6 +117,7 @@ class Animation:
             The file written.
         """
         path = Path(path)
-        whole = PAGE.format(title=escape(self.title), font=FONT, body=self._playing(*PAGE_LOOKS))
-        write_text(path, self.svg if path.suffix.lower() == ".svg" else whole)
+        style = f"<style>:root {{color-scheme: light dark}} body {{font: 15px {FONT}; max-width: 1080px}}</style>"
+        head = f'<!DOCTYPE html>\n<html lang="en"><meta charset="utf-8"><title>{escape(self.title)}</title>{style}\n'
+        write_text(path, self.svg if path.suffix.lower() == ".svg" else head + self._playing(*PAGE_LOOKS))
         return path

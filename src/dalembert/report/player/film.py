@@ -51,10 +51,6 @@ def encoded(scene: Scene, *, complete: bool = False) -> dict[str, Any]:
         item |= {} if shape.faces is None else {"faces": shape.faces.tolist()}
         item |= {} if shape.along is None else {"along": shape.along.tolist()}
         shapes.append(item)
-    labels = [
-        {"role": label.role, "name": label.name, "at": label.at.tolist(), "text": label.text, "colour": label.colour}
-        for label in scene.labels
-    ]
     numbers = [part for shape in drawn for part in (shape.points, shape.poses) if part is not None]
     positions = np.concatenate([part.astype("<f4").ravel() for part in numbers])
     return {
@@ -62,7 +58,7 @@ def encoded(scene: Scene, *, complete: bool = False) -> dict[str, Any]:
         "times": [round(time, 9) for time in scene.times.tolist()],
         "seconds": Playback.of(scene.times).seconds,
         "shapes": shapes,
-        "labels": labels,
+        "labels": [{**vars(label), "at": label.at.tolist()} for label in scene.labels],
         "gravity": None if scene.gravity is None else scene.gravity.tolist(),
         "positions": b64encode(positions.tobytes()).decode(),
     }

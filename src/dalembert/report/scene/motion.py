@@ -89,7 +89,7 @@ def simplified_path(path: np.ndarray) -> np.ndarray:
         inner, chord = path[first + 1 : last] - path[first], path[last] - path[first]
         share = np.clip(inner @ chord / (chord @ chord or 1.0), 0.0, 1.0)
         distances = np.linalg.norm(inner - share[:, None] * chord, axis=1)
-        if len(inner) and float(distances.max()) > limit:
+        if len(inner) and not float(distances.max()) <= limit:
             middle = first + 1 + int(distances.argmax())
             kept.add(middle)
             pieces += [(first, middle), (middle, last)]

@@ -89,13 +89,11 @@ class Scene:
         points = np.concatenate([shape.positions.reshape(-1, self.dimensions) for shape in self.primitives])
         return points[np.isfinite(points).all(axis=1)]
 
-    def at(self, frame: int) -> "Scene":
-        """Return the scene at rest, as it is in a frame."""
-        still = (
-            replace(shape, points=shape.positions[[frame if len(shape.positions) > 1 else 0]], poses=None)
-            for shape in self.primitives
-        )
-        return replace(self, primitives=tuple(still), times=self.times[[frame]])
+    @property
+    def start(self) -> "Scene":
+        """The scene as it is in its first frame."""
+        still = (replace(shape, points=shape.positions[:1], poses=None) for shape in self.primitives)
+        return replace(self, primitives=tuple(still), times=self.times[:1])
 
     @property
     def parts(self) -> set[str]:

@@ -53,14 +53,14 @@
   function player(box) {
     const place = document.getElementById(box.dataset.for);
     const [button, slider, output] = ["button", "input", "output"].map((tag) => box.querySelector(tag));
-    const { labels, seconds, before, after, endless } = JSON.parse(document.querySelector(`[data-for="${place.id}"].figure`).textContent).layout.meta;
+    const { labels, seconds, name, unit, endless } = JSON.parse(document.querySelector(`[data-for="${place.id}"].figure`).textContent).layout.meta;
     let began = null;
 
     function show(number) {
       const frame = place.frames[number];
       slider.value = number;
-      output.textContent = `${before}${labels[number]}${after}`;
-      slider.setAttribute("aria-valuetext", `${labels[number]}${after === " s" ? " seconds" : after}`);
+      output.textContent = `${name} ${labels[number]} ${unit}`;
+      slider.setAttribute("aria-valuetext", `${labels[number]} ${unit}`.trim());
       const still = { mode: "immediate", frame: { duration: 0, redraw: true }, transition: { duration: 0 } };
       return Plotly.animate(place, { data: frame.data, traces: frame.traces }, still).catch(() => {});
     }

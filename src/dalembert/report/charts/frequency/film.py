@@ -31,13 +31,9 @@ class Film:
             {"label": "▶ play", "method": "animate", "args": [None, {**play, "fromcurrent": True}]},
             {"label": "❚❚ pause", "method": "animate", "args": [[None], still]},
         ]
-        steps = [
-            {"label": label, "method": "animate", "args": [[str(number)], still]}
-            for number, label in enumerate(self.labels)
-        ]
+        steps = [{"label": text, "method": "animate", "args": [[str(k)], still]} for k, text in enumerate(self.labels)]
         place: dict[str, Any] = {"xanchor": "left", "y": 0, "yanchor": "top"}
-        before, after = f"{self.name} ", f" {self.unit}"
-        shown = {"prefix": before, "suffix": after + (f", {self.pace}" if self.pace else "")}
+        shown = {"prefix": f"{self.name} ", "suffix": f" {self.unit}" + (f", {self.pace}" if self.pace else "")}
         menu = {"type": "buttons", "direction": "left", "showactive": False, "buttons": buttons}
         slider = {
             "steps": steps,
@@ -46,9 +42,8 @@ class Film:
             "minorticklen": 0,
             "font": {"color": "rgba(0, 0, 0, 0)", "size": 1},
         }
-        kept = {key: getattr(self, key) for key in ("seconds", "pace", "endless", "name")}
         return {
             "updatemenus": [{**place, **menu, "x": 0, "pad": {"t": 22, "r": 10}}],
             "sliders": [{**place, **slider, "x": 0.26, "len": 0.74, "pad": {"t": 4}}],
-            "meta": {"labels": list(self.labels), **kept, "before": before, "after": after.rstrip()},
+            "meta": {**vars(self), "labels": list(self.labels)},
         }

@@ -4,15 +4,15 @@ import { svgElement } from "./shapes.js";
 
 const darkness = matchMedia("(prefers-color-scheme: dark)");
 const LAYOUT = `
-.film .player-scene { height: auto; aspect-ratio: var(--shape); min-height: 240px; max-height: 520px }
-@media screen { .film-still { display: none } }
-@media print { .film > .player { display: none !important } }
+.dalembert-film .player-scene { height: auto; aspect-ratio: var(--shape); min-height: 240px; max-height: 520px }
+@media screen { .dalembert-film[data-plays] > .film-still { display: none } }
+@media print { .dalembert-film > .player { display: none !important } }
 `;
 
 function play(box) {
   const film = JSON.parse(box.querySelector("script").textContent), { looks } = film;
   const look = () => looks[darkness.matches ? looks.length - 1 : 0];
-  const options = { axes: true, zooms: true, hovers: true, scrolls: matchMedia("(pointer: coarse)").matches };
+  const options = { complete: true, zooms: true, scrolls: matchMedia("(pointer: coarse)").matches };
   element(box, "style", { textContent: LAYOUT });
   const player = new Player(element(box, "div"), look(), box.dataset.label, undefined, options);
   player.show(film, { plays: false });
@@ -39,4 +39,4 @@ async function save(player, format, paper, name) {
   Object.assign(document.createElement("a"), { href: URL.createObjectURL(blob), download: `${name}.${format}` }).click();
 }
 
-document.querySelectorAll(".film:not([data-plays])").forEach(play);
+document.querySelectorAll(".dalembert-film:not([data-plays])").forEach(play);

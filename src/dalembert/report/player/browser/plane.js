@@ -12,10 +12,10 @@ function round(length) {
 }
 
 export class Plane {
-  // look: see colourOf; axes: whether they have values, in place of the length of a bar
-  constructor(root, look, { axes = false } = {}) {
+  // look: see colourOf; complete: whether the axes have values, in place of the length of a bar
+  constructor(root, look, { complete = false } = {}) {
     const svg = svgElement(root, "svg", { class: "player-plane" });
-    Object.assign(this, { svg, look, axes, frame: 0, yaw: -0.6, pitch: 0.35, box: null });
+    Object.assign(this, { svg, look, complete, frame: 0, yaw: -0.6, pitch: 0.35, box: null });
     this.sizes = new ResizeObserver(() => this.build());
     this.sizes.observe(svg);
   }
@@ -60,7 +60,7 @@ export class Plane {
     const corners = Array.from({ length: 2 ** low.length }, (_, corner) => this.flat(...low.map((value, k) => ((corner >> k) & 1 ? high[k] : value))));
     const ends = [0, 1].map((k) => corners.map((one) => one[k])).map((all) => [Math.min(...all), Math.max(...all)]);
     const size = Math.max(...ends.map(([first, last]) => last - first), 1e-9);
-    const hasAxes = this.axes && !this.turns, [beside, below] = hasAxes ? [BESIDE, BELOW] : [MARGIN, MARGIN];
+    const hasAxes = this.complete && !this.turns, [beside, below] = hasAxes ? [BESIDE, BELOW] : [MARGIN, MARGIN];
     const rooms = [this.width - beside - MARGIN, this.height - below - MARGIN];
     const factor = Math.min(...ends.map(([first, last], k) => rooms[k] / Math.max(last - first, 0.2 * size)));
     const [across, up] = ends.map(([first, last]) => (first + last) / 2);
@@ -141,8 +141,11 @@ export class Plane {
       const points = Array.from({ length: shape.count }, (_, one) => this.at(...numbers.subarray(one * across, (one + 1) * across)));
       if (shape.role === "joint") this.drawn[k].setAttribute("transform", `translate(${points[0].join(" ")})`);
       else this.drawn[k].setAttribute("d", this.path(shape, points));
-      const [x, y] = points[shape.count >> 1] ?? [];
-      if (x >= 0 || x < 0) this.names[k]?.setAttribute("transform", `translate(${x + 9} ${y - 9})`);
+      const [x, y] = points[shape.count >> 1] ?? [], name = this.names[k];
+      if (!name || Number.isNaN(x)) return;
+      const isLast = x + 9 + 7 * shape.name.length > this.width;
+      name.setAttribute("transform", `translate(${isLast ? x - 9 : x + 9} ${y - 9})`);
+      name.setAttribute("text-anchor", isLast ? "end" : "start");
     });
   }
 

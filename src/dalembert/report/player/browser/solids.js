@@ -15,9 +15,9 @@ export function rgb(colour) {
 }
 
 export class Solids {
-  // size: of the scene in m; symbols are parts of it.
-  constructor(size) {
-    Object.assign(this, { size, unit: 0.009 * size, triangles: [], lines: [], colour: NEUTRAL, part: -1 });
+  // size: of the scene in m; symbols are parts of it; crosses: whether measured positions are crosses, and not dots.
+  constructor(size, crosses = false) {
+    Object.assign(this, { size, crosses, unit: 0.009 * size, triangles: [], lines: [], colour: NEUTRAL, part: -1 });
   }
 
   corner(list, point) {
@@ -114,8 +114,14 @@ export class Solids {
       case "dashes":
         this.dashes(first, at(1));
         break;
-      case "points":
       case "crosses":
+        if (this.crosses) {
+          const arms = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+          for (let k = 0; k < shape.count; k++) for (const arm of arms) this.segment(plus(at(k), arm, -radius), plus(at(k), arm, radius));
+          break;
+        }
+      // falls through
+      case "points":
         for (let k = 0; k < shape.count; k++) this.ball(at(k), 0.35 * radius, 5);
         break;
       case "spring":

@@ -13,8 +13,8 @@ void main() { at = position; shade = colour; gl_Position = view * vec4(position,
 const FRAGMENT = `#version 300 es
 precision highp float; uniform vec3 eye; uniform float lit; uniform float opacity; in vec3 at; in vec3 shade; out vec4 pixel;
 void main() {
-  float facing = abs(dot(normalize(cross(dFdx(at), dFdy(at))), normalize(eye - at)));
-  vec3 colour = shade * mix(1.0, 0.62 + 0.5 * facing, lit);
+  float facing = abs(dot(normalize(cross(dFdx(at), dFdy(at))), normalize(eye - at))); // not a number on a line
+  vec3 colour = lit > 0.0 ? shade * (0.62 + 0.5 * facing) : shade;
   pixel = vec4(min(colour, 1.0) * opacity, opacity);
 }`;
 
@@ -34,14 +34,15 @@ function program(gl) {
 
 export class Space {
   // root: holds canvas and labels; look: see colourOf; onChoose(part): called with the part that is clicked, or null;
-  // hovers: whether the name of the part below the pointer is shown; scrolls: whether a finger scrolls the page.
+  // complete: whether it is larger, with crosses and the name of the part below the pointer; scrolls: whether a finger
+  // scrolls the page.
   static on(root, look, options = {}) {
     const canvas = document.createElement("canvas"), gl = canvas.getContext("webgl2", { antialias: true });
     return gl ? new Space(root, canvas, gl, look, options) : null;
   }
 
-  constructor(root, canvas, gl, look, { onChoose = null, zooms = false, hovers = false, scrolls = false }) {
-    Object.assign(this, { root, canvas, gl, look, onChoose, frame: 0, chosen: [], wrong: [], box: null, labels: [] });
+  constructor(root, canvas, gl, look, { onChoose = null, zooms = false, complete = false, scrolls = false }) {
+    Object.assign(this, { root, canvas, gl, look, onChoose, complete, frame: 0, chosen: [], wrong: [], box: null, labels: [] });
     Object.assign(canvas.style, { display: "block", width: "100%", height: "100%", touchAction: scrolls ? "pan-y" : "none" });
     this.words = document.createElement("div");
     Object.assign(this.words.style, { position: "absolute", inset: "0", pointerEvents: "none", overflow: "hidden" });
@@ -49,7 +50,7 @@ export class Space {
     this.program = program(gl);
     this.buffers = [gl.createBuffer(), gl.createBuffer()];
     this.listen(zooms);
-    if (hovers) canvas.addEventListener("pointermove", (event) => event.buttons || !this.triangles || (canvas.title = this.pick(event) ?? ""));
+    if (complete) canvas.addEventListener("pointermove", (event) => event.buttons || !this.triangles || (canvas.title = this.pick(event) ?? ""));
     this.sizes = new ResizeObserver(() => this.render());
     this.sizes.observe(root);
   }
@@ -134,7 +135,7 @@ export class Space {
   fit() {
     if (!this.box) return;
     const [yaw, pitch] = this.target ? [this.yaw, this.pitch] : EYE;
-    Object.assign(this, { target: plus(this.box.low, this.box.high).map((value) => value / 2), far: 2.1 * this.size, yaw, pitch });
+    Object.assign(this, { target: plus(this.box.low, this.box.high).map((value) => value / 2), far: (this.complete ? 1.7 : 2.1) * this.size, yaw, pitch });
     this.render();
   }
 
@@ -180,7 +181,7 @@ export class Space {
   // Make triangles and lines of the frame.
   draw() {
     if (!this.shapes) return;
-    const solids = new Solids(this.size), number = (part) => this.parts.indexOf(part);
+    const solids = new Solids(this.size, this.complete), number = (part) => this.parts.indexOf(part);
     for (const shape of this.shapes) {
       const mark = this.wrong.includes(shape.part) ? "wrong" : this.chosen.includes(shape.part) ? "chosen" : null;
       solids.add(shape, this.frame, mark ? MARKS[mark] : rgb(colourOf(shape, this.look)), number(shape.part));

@@ -128,7 +128,7 @@ class Result(Summarised):
             ) from error
 
     def figures(self, *supplements: object, **options: Any) -> dict[str, Any]:
-        """Plotly figures by name; arguments as those of :func:`dalembert.report.figures`."""
+        """Figures by name; arguments as those of :func:`dalembert.report.figures`."""
         return resolve_name("dalembert.report:figures")(self, *supplements, **options)
 
     def report(self, path: str | Path, *supplements: object, **options: Any) -> Any:

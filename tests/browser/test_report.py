@@ -1,5 +1,7 @@
 """The report in a real browser: drawn, silent, dark where asked, and moving."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -11,7 +13,7 @@ from stand_ins import band_fit, comparison, fit, motion, parameter_set, propagat
 
 pytestmark = pytest.mark.slow
 NASTY = "<img src=x onerror=\"document.title='run'\">"
-LAST_BODY = "[...document.querySelectorAll('#figure-mechanism .scatterlayer .js-line')].at(-1).getAttribute('d')"
+LAST_BODY = "[...document.querySelectorAll('#figure-mechanism .player-body')].at(-1).getAttribute('d')"
 
 
 @pytest.fixture(scope="module")
@@ -26,8 +28,10 @@ def _colour(hexadecimal: str) -> str:
 
 def test_every_figure_is_drawn_and_nothing_is_asked_for_or_refused(chromium, path):
     page = chromium.open(path)
-    drawn = page.evaluate("[...document.querySelectorAll('.canvas[data-drawn]')].map((place) => place.id)")
-    assert drawn == [f"figure-{name}" for name in figures(fit(), motion())]
+    places = "[...document.querySelectorAll('.canvas[data-drawn], .dalembert-film[data-plays]')]"
+    assert page.evaluate(f"{places}.map((place) => place.id)") == [
+        f"figure-{name}" for name in figures(fit(), motion())
+    ]
     assert chromium.requests == [path.as_uri()]
     assert chromium.complaints == []
 
@@ -80,7 +84,7 @@ def test_play_moves_the_mechanism_to_its_end_in_real_time(chromium, path):
             const button = document.querySelector(".player button"), began = performance.now();
             button.click();
             const watch = setInterval(() => {
-                if (button.getAttribute("aria-pressed") === "true") return;
+                if (button.getAttribute("aria-label") === "Pause") return;
                 clearInterval(watch);
                 done((performance.now() - began) / 1000);
             }, 10);
@@ -91,13 +95,32 @@ def test_play_moves_the_mechanism_to_its_end_in_real_time(chromium, path):
     assert page.evaluate(LAST_BODY) != before
 
 
+def test_a_film_begins_when_it_is_asked_for_and_follows_the_page_into_the_dark(chromium, path):
+    page = chromium.open(path)
+    page.wait_for_timeout(300)
+    assert page.evaluate("document.querySelector('.player output').textContent") == "t = 0.00 s"
+    stroke = "document.querySelector('#figure-mechanism .player-body').getAttribute('stroke')"
+    assert page.evaluate(stroke) == LIGHT.series[0]
+    page.emulate_media(color_scheme="dark")
+    wait_until(page, f"{stroke} === '{DARK.series[0]}'")
+    assert chromium.complaints == []
+
+
+@pytest.mark.parametrize("printed", [True, False])
+def test_the_picture_is_printed_and_the_player_is_seen(chromium, path, printed):
+    page = chromium.open(path)
+    page.emulate_media(media="print" if printed else "screen")
+    assert page.locator(".film-still").is_visible() == printed
+    assert page.locator("#figure-mechanism .player").is_visible() != printed
+
+
 def test_the_player_obeys_the_keyboard(chromium, path):
     page = chromium.open(path)
     page.evaluate("document.querySelector('.player button').focus()")
     page.keyboard.press("Enter")
-    wait_until(page, "document.querySelector('.player button').getAttribute('aria-pressed') === 'true'")
+    wait_until(page, "document.querySelector('.player button').getAttribute('aria-label') === 'Pause'")
     page.keyboard.press("Enter")
-    wait_until(page, "document.querySelector('.player button').getAttribute('aria-pressed') === 'false'")
+    wait_until(page, "document.querySelector('.player button').getAttribute('aria-label') === 'Play'")
     page.keyboard.press("Tab")
     page.keyboard.press("Home")
     page.keyboard.press("ArrowRight")
@@ -113,9 +136,13 @@ def test_the_slider_shows_the_mechanism_at_its_time(chromium, path):
             slider.dispatchEvent(new Event("input"));
         })()"""
     )
-    figure = figures(fit(), motion())["mechanism"]
-    shown = "document.getElementById('figure-mechanism').calcdata.at(-1)[0].x"
-    wait_until(page, f"Math.abs({shown} - {float(figure.frames[25].data[-1].x[0])}) < 1e-6")
+    scene = figures(fit(), motion())["mechanism"].scene
+    joint, fixed = (next(one for one in scene.primitives if one.name == name).points for name in ("A", "O"))
+    moved = [page.locator(f"#figure-mechanism [data-part={name}]").last.get_attribute("transform") for name in "AO"]
+    pixels = np.array([re.findall(r"-?[\d.]+", one) for one in moved], dtype=float)
+    right, down = pixels[0] - pixels[1]
+    across, up = joint[25, 0] - fixed[0, 0]
+    assert np.arctan2(-down, right) == pytest.approx(np.arctan2(up, across), abs=1e-3)
     assert page.evaluate("document.querySelector('.player output').textContent") == "t = 1.02 s"
 
 
@@ -131,19 +158,58 @@ def test_a_mechanism_in_space_moves_and_turns(chromium, tmp_path):
             slider.dispatchEvent(new Event("input"));
         })()"""
     )
-    frame = figures(in_space())["mechanism"].frames[40]
-    joints = "document.getElementById('figure-mechanism')._fullData.find((trace) => trace.name === 'joints')"
-    expected = next(float(data.z[0]) for data in frame.data if len(data.z) == 1)
-    wait_until(page, f"Math.abs({joints}.z[0] - {expected}) < 1e-6")
-    eye = "JSON.stringify(document.getElementById('figure-mechanism')._fullLayout.scene._scene.getCamera().eye)"
-    before = page.evaluate(eye)
-    box = page.locator("#figure-mechanism").bounding_box()
+    label = "[...document.querySelectorAll('#figure-mechanism span')].find((one) => one.textContent === 'two')"
+    seen = f"{label}?.style.transform"
+    wait_until(page, seen)
+    before = page.evaluate(seen)
+    box = page.locator("#figure-mechanism canvas").bounding_box()
     page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     page.mouse.down()
     page.mouse.move(box["x"] + box["width"] / 2 + 90, box["y"] + box["height"] / 2 + 20, steps=4)
     page.mouse.up()
-    wait_until(page, f"{eye} !== '{before}'")
+    wait_until(page, f"{seen} !== '{before}'")
+    turned = page.evaluate(seen)
+    page.locator(".player-scene").press("ArrowLeft")
+    wait_until(page, f"{seen} !== '{turned}'")
+    turned = page.evaluate(seen)
+    page.locator(".player input").press("End")
+    wait_until(page, f"{seen} !== '{turned}'")
     assert chromium.requests == [path.as_uri()]
+
+
+NOTEBOOK = """html => {
+    const cell = document.body.appendChild(document.createElement("div"));
+    cell.innerHTML = html;
+    for (const script of cell.querySelectorAll("script")) {
+        const copy = document.createElement("script");
+        for (const { name, value } of script.attributes) copy.setAttribute(name, value);
+        copy.textContent = script.textContent;
+        script.replaceWith(copy);
+    }
+}"""
+"""Shows HTML as notebooks do, which start its scripts themselves."""
+
+
+def test_notebooks_play_each_film_that_they_show(chromium):
+    from spatial_pendulum import motion as in_space
+
+    page = chromium.page()
+    page.set_content("<!DOCTYPE html><body></body>")
+    for count, trajectory in enumerate((motion(), in_space()), start=1):
+        page.evaluate(NOTEBOOK, figures(trajectory)["mechanism"]._repr_html_())
+        wait_until(page, f"document.querySelectorAll('.dalembert-film[data-plays] .player').length === {count}")
+    page.get_by_role("button", name="Play").first.click()
+    wait_until(page, "document.querySelector('.player output').textContent === 't = 2.00 s'")
+    assert page.evaluate("document.querySelectorAll('.player').length") == 2
+    assert chromium.complaints == []
+
+
+def test_a_saved_film_plays(chromium, tmp_path):
+    page = chromium.page()
+    page.goto(figures(motion())["mechanism"].save(tmp_path / "film.html").as_uri())
+    page.get_by_role("button", name="Play").click()
+    wait_until(page, "document.querySelector('.player output').textContent === 't = 2.00 s'")
+    assert chromium.complaints == []
 
 
 def test_a_phone_scrolls_down_and_never_sideways(chromium, path):
@@ -157,7 +223,7 @@ def test_a_phone_scrolls_down_and_never_sideways(chromium, path):
 
 def test_each_control_can_be_reached_by_tab_and_each_has_a_name(chromium, path):
     page = chromium.open(path)
-    names, wanted = [], {"To the result", "▶ Play", "Time in seconds", "Download as CSV", "Identified values"}
+    names, wanted = [], {"To the result", "Play", "Time", "Download as CSV", "Identified values"}
     while not wanted <= set(names):
         assert len(names) < 100, f"Tab never came to {wanted - set(names)}"
         move_focus(page)
@@ -166,7 +232,7 @@ def test_each_control_can_be_reached_by_tab_and_each_has_a_name(chromium, path):
                 "(document.activeElement.getAttribute('aria-label') || document.activeElement.textContent).trim()"
             )
         )
-    assert "" not in names[: names.index("Time in seconds") + 1]
+    assert "" not in names[: names.index("Time") + 1]
 
 
 def test_a_sweep_is_drawn(chromium, tmp_path):

@@ -27,7 +27,7 @@ async function save(player, format, paper, name) {
   const { clientWidth: width, clientHeight: height } = player.view, scale = Math.max(2, 2000 / width);
   const picture = player.scene.picture(scale);
   for (const [key, value] of Object.entries({ width, height })) picture.setAttribute(key, value);
-  picture.prepend(svgElement(picture, "rect", { width, height, style: `fill: ${paper}` }));
+  picture.prepend(svgElement(picture, "rect", { width, height, fill: paper }));
   let blob = new Blob([new XMLSerializer().serializeToString(picture)], { type: "image/svg+xml" });
   if (format === "png") {
     const image = new Image(), canvas = Object.assign(document.createElement("canvas"), { width: scale * width, height: scale * height });

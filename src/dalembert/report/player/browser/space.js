@@ -135,7 +135,8 @@ export class Space {
   fit() {
     if (!this.box) return;
     const [yaw, pitch] = this.target ? [this.yaw, this.pitch] : EYE;
-    Object.assign(this, { target: plus(this.box.low, this.box.high).map((value) => value / 2), far: (this.complete ? 1.7 : 2.1) * this.size, yaw, pitch });
+    const [far, down] = this.complete ? [1.75, 0.1] : [2.1, 0], middle = plus(this.box.low, this.box.high).map((value) => value / 2);
+    Object.assign(this, { target: plus(middle, [0, 0, -down * this.size]), far: far * this.size, yaw, pitch });
     this.render();
   }
 

@@ -1098,7 +1098,7 @@ CASES: dict[str, Case] = {
         ("outputs-1",),
     ),
     "a motion that rests": Case(lambda: _pendulum(0.0), ("The motion was simulated to its end.",)),
-    "a fit with its motion": Case(_moved_fit, ("Drawn to scale;",), ("mechanism", "energies")),
+    "a fit with its motion": Case(_moved_fit, ("Drawn to scale, played",), ("mechanism", "energies")),
     "experiments with their motions": Case(
         _moved_experiments,
         ("Not drawn: b.", "a: The 95 % band of the response"),

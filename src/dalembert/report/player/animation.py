@@ -100,11 +100,7 @@ class Animation:
             f'<script type="application/json" data-name="{escape(name)}">{film}</script></div>'
         )
 
-    def _repr_html_(self) -> str:
-        return self._playing(LOOK)
-
-    def _playing(self, *looks: Mapping[str, Any]) -> str:
-        """The picture and the film with the script that plays it."""
+    def _repr_html_(self, looks: Sequence[Mapping[str, Any]] = (LOOK,)) -> str:
         script = module((*player_files(in_space=self.scene.dimensions == 3), PICTURES))
         return f'{self.element(looks=looks)}<script type="module">\n{script}\n</script>'
 
@@ -119,5 +115,5 @@ class Animation:
         path = Path(path)
         style = f"<style>:root {{color-scheme: light dark}} body {{font: 15px {FONT}; max-width: 1080px}}</style>"
         head = f'<!DOCTYPE html>\n<html lang="en"><meta charset="utf-8"><title>{escape(self.title)}</title>{style}\n'
-        write_text(path, self.svg if path.suffix.lower() == ".svg" else head + self._playing(*PAGE_LOOKS))
+        write_text(path, self.svg if path.suffix.lower() == ".svg" else head + self._repr_html_(PAGE_LOOKS))
         return path

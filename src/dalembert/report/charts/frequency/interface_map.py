@@ -4,7 +4,7 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.report.charts.frequency.contacts import COLOURS
-from dalembert.report.charts.frequency.film import Film
+from dalembert.report.charts.frequency.film_controls import Film
 from dalembert.report.charts.frequency.shapes import SECONDS
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.player.playback import slowness

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import plotly.graph_objects as go
 
-from dalembert.report.charts.frequency.film import Film
+from dalembert.report.charts.frequency.film_controls import Film
 from dalembert.report.look import LIGHT, themed
 from dalembert.report.player.playback import slowness
 from dalembert.report.scene.structure import edges

@@ -39,8 +39,9 @@ class Choices:
     """How the columns of a file are to be used. ``file`` is a name beside the study, ``time`` and ``channels`` are
     columns. ``units`` has only the units that were chosen; the others are guessed. ``start``: time of the file at which
     the motion begins, as in `[data]`: a number (s), a text such as ``"1.5 s"`` or ``"first"``, or another entry;
-    ``missing``: ``"refuse"``, ``"leave-out"``, or a list of words that stand for missing values; ``between``: times
-    between which samples are kept, as in `[data]`; ``sampling``: samples per second of a file without times.
+    ``missing``: ``"refuse"``, ``"leave-out"``, or a list of words that stand for missing values; ``between``: times,
+    or frequencies, between which samples are kept, as in `[data]`; ``sampling``: samples per second of a file without
+    times.
     """
 
     file: str
@@ -75,7 +76,7 @@ class Choices:
     @property
     def begin(self) -> float | None:
         """Time of the file at which the motion begins, s; None where no number says it."""
-        return _seconds(self.start)
+        return _number(self.start, "s")
 
     @property
     def used(self) -> tuple[Key | None, ...]:
@@ -95,6 +96,7 @@ class Choices:
 
     def use(self, preview: Preview, units: Mapping[str, str]) -> Use:
         """The same for a search of problems; ``units`` are the SI units of channels."""
+        lower, upper = (_number(end, "s") for end in self.between or (None, None))
         return Use(
             self.time,
             {column.key: self.unit(preview, column.key) for column in preview.columns},
@@ -102,7 +104,7 @@ class Choices:
             self.start if self.start in (None, "first") else self.begin or 0.0,
             "refuse" if self.missing == "refuse" else "leave-out",
             self.wraps,
-            None if self.between is None else (si(self.between[0], "s"), si(self.between[1], "s")),
+            None if lower is None or upper is None else (lower, upper),
             self.decimate,
         )
 
@@ -135,7 +137,7 @@ def of_table(table: Mapping[str, Any]) -> Choices:
     columns: list[Any] = [table.get("time"), *table.get("columns", {}).values()]
     numbers: dict[str, Key] = {str(key): key for key in columns if isinstance(key, int)}
     between = table.get("between")
-    if not isinstance(between, list) or len(between) != 2 or None in map(_seconds, between):
+    if not isinstance(between, list) or len(between) != 2 or None in (_number(end, None) for end in between):
         between = None
     return Choices(
         str(table.get("file", "")),
@@ -153,10 +155,10 @@ def of_table(table: Mapping[str, Any]) -> Choices:
     )
 
 
-def _seconds(time: object) -> float | None:
-    """A time of a study file in s; None if it is no number and no text such as ``"1.5 s"``."""
+def _number(value: object, unit: str | None) -> float | None:
+    """A number of a study file in an SI unit (None: any); None if it is no number and no text such as ``"1.5 s"``."""
     try:
-        return si(time, "s")
+        return si(value, unit)
     except InputError:
         return None
 

@@ -154,3 +154,9 @@ def test_times_with_their_unit_stay_as_they_were_written(own):
         (1.5, 2),
     )
     assert (table_of(choices, own)["start"], table_of(choices, own)["between"]) == ("1510 ms", ["1.5 s", "2 s"])
+
+
+def test_ranges_of_frequencies_stay_as_they_were_written(own):
+    choices = of_table({"file": "own.txt", "columns": {ANGLE: "angle_deg"}, "between": ["10 Hz", "20 Hz"]})
+    assert choices.use(own, CHANNELS).between is None
+    assert table_of(choices, own)["between"] == ["10 Hz", "20 Hz"]

@@ -105,8 +105,12 @@ def no_text(path: object, error: UnicodeDecodeError) -> str:
 
 
 def listed(words: Sequence[str]) -> str:
-    """Words in a row, ``a, b and c``."""
-    return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
+    """Words in a row, ``a, b and c``; ``""`` if there are none.
+
+    >>> listed(["a", "b", "c"]), listed(["a"]), listed([])
+    ('a, b and c', 'a', '')
+    """
+    return " and ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
 
 
 def counted(number: int, what: str) -> str:

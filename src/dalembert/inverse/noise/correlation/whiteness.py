@@ -59,8 +59,11 @@ def is_first_order(series: Series, first: float, values: np.ndarray, basis: np.n
 def p_value_of_period(values: np.ndarray, fitted: float = 0.0) -> float:
     """Return the probability of a periodic part at least as large in white noise (places,): Fisher's g test. Each of
     the ``fitted`` parameters that a fit took out of the values leaves half a frequency less. Source: R. A. Fisher,
-    Tests of significance in harmonic analysis, Proceedings of the Royal Society A 125 (1929).
+    Tests of significance in harmonic analysis, Proceedings of the Royal Society A 125 (1929). Constant values have no
+    periodic part: 1.
     """
+    if not np.ptp(values):
+        return 1.0
     power = np.abs(np.fft.rfft(values - np.mean(values))[1:]) ** 2
     count, share = max(len(power) - fitted / 2, 1.0), float(np.max(power) / np.sum(power))
     return min(1.0, count * (1 - share) ** (count - 1))

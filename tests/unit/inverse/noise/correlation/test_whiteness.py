@@ -97,6 +97,7 @@ def test_each_channel_of_each_experiment_is_a_series():
 
 def test_a_period_is_seen_and_white_noise_is_taken_for_one_as_often_as_the_level_says():
     assert p_value_of_period(np.cos(np.arange(64.0))) < 1e-9
+    assert [p_value_of_period(np.full(64, level)) for level in (0.0, 0.1)] == [1.0, 1.0]
     rng = np.random.default_rng(0)
     values = np.array([p_value_of_period(rng.standard_normal(64)) for _ in range(2000)])
     for level in (0.02, 0.1, 0.5):

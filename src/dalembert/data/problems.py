@@ -262,8 +262,8 @@ def outliers(values: np.ndarray) -> np.ndarray:
 
     A value is far if it differs from the median of the values around it, and from a cubic polynomial through the two on
     each side, by more than ten standard deviations of the scatter about such polynomials (1.4826 times the median of
-    the absolute differences there), the change over three usual steps there, and 2 % of the range of the values. Fewer
-    than 25 values are not judged.
+    the absolute differences there), 3.5 times the median of the changes per sample there, and 2 % of the span from the
+    1 % to the 99 % quantile of the values. Fewer than 25 values are not judged.
     """
     if len(values) < LOCAL:
         return np.zeros(0, dtype=int)

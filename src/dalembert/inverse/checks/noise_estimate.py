@@ -11,7 +11,6 @@ from dalembert.inverse.identification.assess import Optimum
 from dalembert.inverse.least_squares.estimate import left_vectors
 from dalembert.inverse.noise.correlation.correlated_residuals import NoiseProcess
 from dalembert.inverse.noise.correlation.correlation import correlated_series, period_of
-from dalembert.inverse.noise.correlation.series import Series
 from dalembert.inverse.noise.likelihood.channel_noise import ChannelNoise
 from dalembert.inverse.noise.likelihood.estimate_noise import NoiseFit
 from dalembert.inverse.noise.models.correlated_noise import AutoregressiveNoise, OrnsteinUhlenbeckNoise
@@ -72,7 +71,7 @@ def _left_correlated(noise: NoiseFit) -> Iterator[Finding]:
     if not left:
         return
     worst = min(left, key=lambda signal: left[signal])
-    first = _first(worst, white)
+    first = autocorrelation(white[worst.rows], (len(worst.rows), 1))
     names = listed([repr(signal.name) for signal in left])
     yield Finding(
         "noise-model-too-simple",
@@ -82,10 +81,6 @@ def _left_correlated(noise: NoiseFit) -> Iterator[Finding]:
         f"autocorrelation {first:.2f}).",
         "Take AutoregressiveNoise, OrnsteinUhlenbeckNoise or a higher order, or check the model structure.",
     )
-
-
-def _first(series: Series, white: np.ndarray) -> float:
-    return autocorrelation(white[series.rows], (len(series.rows), 1))
 
 
 def _processes(noise: NoiseFit) -> Iterator[NoiseProcess]:

@@ -3,14 +3,10 @@
 from collections.abc import Callable, Iterator
 from typing import TypeAlias
 
-from dalembert.inverse.mistakes.clipped import clipped
-from dalembert.inverse.mistakes.clock_rate import clock_rate
-from dalembert.inverse.mistakes.dropouts import dropouts
-from dalembert.inverse.mistakes.late_clock import late_clock
+from dalembert.inverse.mistakes.confused_channels import swapped_channels, wrong_sign
 from dalembert.inverse.mistakes.record import FittedRecord, Mistake
-from dalembert.inverse.mistakes.repeated_samples import repeated_samples
-from dalembert.inverse.mistakes.swapped_channels import swapped_channels
-from dalembert.inverse.mistakes.wrong_sign import wrong_sign
+from dalembert.inverse.mistakes.spoiled_samples import clipped, dropouts, repeated_samples
+from dalembert.inverse.mistakes.wrong_clocks import clock_rate, late_clock
 
 Hypothesis: TypeAlias = Callable[[FittedRecord], Iterator[Mistake]]
 """The mistakes of one kind that a record may have."""

@@ -99,9 +99,8 @@ def refitted(record: FittedRecord, supposed: Supposed) -> Supposed:
     spacing = float(np.min(np.diff(mistake.numbers))) if numbered else 0.0
     numbers = supposed.number + spacing * np.array([-1.0, 0.0, 1.0]) if numbered else np.array([np.nan])
     reach = supposed.number + (1 + STEP) * (numbers - supposed.number) if numbered else numbers
-    kept = np.all(
-        [_kept(record, mistake.shown(supposed.at.response.ravel(), float(number_at))) for number_at in reach], axis=0
-    )
+    shown = [mistake.shown(supposed.at.response.ravel(), float(number_at)) for number_at in reach]
+    kept = np.all(np.isfinite(shown), axis=0) & (record.problem.weights.ravel() > 0)
     known: dict[bytes, Linearisation] = {search.points(supposed.at.vector).tobytes(): supposed.at}
 
     def at(point: np.ndarray) -> Linearisation:
@@ -158,11 +157,6 @@ def refitted(record: FittedRecord, supposed: Supposed) -> Supposed:
     squares[kept] = left[: np.count_nonzero(kept)] ** 2
     squares[mistake.blamed] = 0.0
     return Supposed(mistake, end, number(minimum.x), ratio, problem.compared, squares)
-
-
-def _kept(record: FittedRecord, shown: np.ndarray) -> np.ndarray:
-    """Mask (values,) of the values that are compared with what a record shows (values,)."""
-    return np.isfinite(shown) & (record.problem.weights.ravel() > 0)
 
 
 def _compared(record: FittedRecord, shown: np.ndarray, kept: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -1,4 +1,4 @@
-"""The times of a record are shifted."""
+"""Clocks of records that are shifted, too fast or too slow."""
 
 from collections.abc import Iterator
 from functools import partial
@@ -9,10 +9,10 @@ from dalembert.findings import Finding
 from dalembert.inverse.mistakes.clocks import RESOLUTION, Clock, clocks
 from dalembert.inverse.mistakes.record import FittedRecord, Mistake, Verdict
 
-LONGEST = 0.25
+LONGEST_DELAY = 0.25
 """Longest delay, as a part of the record."""
 
-STEPS = 48
+DELAYS = 48
 """Most delays that are tried on each side."""
 
 
@@ -23,18 +23,18 @@ def late_clock(record: FittedRecord) -> Iterator[Mistake]:
     """
     for clock in clocks(record, channels=True):
         step = clock.period / RESOLUTION
-        count = int(min(STEPS, LONGEST * clock.length // step))
+        count = int(min(DELAYS, LONGEST_DELAY * clock.length // step))
         if count:
             numbers = step * np.arange(-count, count + 1)
             late = partial(_late, clock)
-            yield Mistake(late, partial(_finding, clock), numbers[numbers != 0], least=step, shown_at=late)
+            yield Mistake(late, partial(_delay_finding, clock), numbers[numbers != 0], least=step, shown_at=late)
 
 
 def _late(clock: Clock, response: np.ndarray, delay: float, rows: np.ndarray | None = None) -> np.ndarray:
     return clock.read(response, lambda along: along - delay, rows)
 
 
-def _finding(clock: Clock, verdict: Verdict) -> Finding:
+def _delay_finding(clock: Clock, verdict: Verdict) -> Finding:
     late, size = verdict.number > 0, f"{abs(verdict.number):.3g}"
     several = len({signal.experiment for signal in clock.series}) > 1
     whose = f"of {clock.name!r}" if clock.name else "of all records" if several else "of the record"
@@ -60,3 +60,36 @@ def _of_channel(clock: Clock, delay: float) -> str:
         bounds = f"[{delay / 2:.2g}, {1.5 * delay:.2g}]"
         return f"Identify the delay of its sensor: [sensors] {clock.series[0].channel!r} = {{ delay = {bounds} }}."
     return "Check its times, and the delays of the other channels."
+
+
+LARGEST_RATE = 0.1
+"""Largest relative error of a clock."""
+
+RATES = 40
+"""Most errors that are tried on each side."""
+
+
+def clock_rate(record: FittedRecord) -> Iterator[Mistake]:
+    """Yield the mistake for the clock of each experiment, and of all."""
+    for clock in clocks(record, channels=False):
+        step = clock.period / RESOLUTION / clock.length  # the error at the end of the record
+        count = int(min(RATES, np.ceil(LARGEST_RATE / step)))
+        numbers = min(step, LARGEST_RATE / count) * np.arange(-count, count + 1)
+        stretched = partial(_stretched, clock)
+        yield Mistake(stretched, partial(_rate_finding, clock), numbers[numbers != 0], shown_at=stretched)
+
+
+def _stretched(clock: Clock, response: np.ndarray, error: float, rows: np.ndarray | None = None) -> np.ndarray:
+    return clock.read(response, lambda along: along / (1 + error), rows)
+
+
+def _rate_finding(clock: Clock, verdict: Verdict) -> Finding:
+    percent = f"{100 * abs(verdict.number):.3g} %"
+    whose = f" of {clock.name!r}" if clock.name else ""
+    return Finding(
+        "suspect-clock-rate",
+        "warning",
+        {"record": clock.name, "error": verdict.number, "explained": verdict.explained},
+        f"The clock{whose} seems to be {percent} too {'fast' if verdict.number > 0 else 'slow'}. {verdict.sentence}",
+        f"Check the sampling rate. If it is wrong, divide the times by {1 + verdict.number:.5g}.",
+    )

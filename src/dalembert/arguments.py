@@ -180,14 +180,13 @@ def _test(kind: Any) -> Callable[[Any], bool]:
         )
     if origin is Mapping:
         return lambda value: isinstance(value, Mapping) and all(map(inner[1], value.values()))
-    if kind is Any or not isinstance(kind, type) or (getattr(kind, "_is_protocol", False) and not _is_runtime(kind)):
+    if (
+        kind is Any
+        or not isinstance(kind, type)
+        or (getattr(kind, "_is_protocol", False) and not getattr(kind, "_is_runtime_protocol", False))
+    ):
         return lambda value: True
     return lambda value: isinstance(value, kind)
-
-
-def _is_runtime(protocol: Any) -> bool:
-    """Whether instances of a protocol can be recognised by their members."""
-    return getattr(protocol, "_is_runtime_protocol", False)
 
 
 def _finite_floats(value: Any) -> bool:

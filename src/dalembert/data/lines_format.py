@@ -72,7 +72,8 @@ def columns_of(
         _refuse_wrong_marks(path, lines[:HEAD], time, text)
     _refuse_rows(path, text)
     if trial is not None:
-        text = _of_trial(path, text, _places(path, text)(trial.column), trial)
+        mask = of_trial(path, _labels(path, text, _places(path, text)(trial.column)), trial)
+        text = replace(text, rows=[row for row, belongs in zip(text.rows, mask, strict=True) if belongs])
     if time == "t" and text.named is None:
         time = 1
     first, labels, wanted = _choice(path, text, time, names, trial)
@@ -198,11 +199,6 @@ def _refuse_twice(path: Path, labels: Sequence[str], wanted: Sequence[int], time
             raise DataError(f"{path}: {label!r} and {same[0]!r} are one column; expected one channel for a column")
         if place == time:
             raise times_as_channel(path, label)
-
-
-def _of_trial(path: Path, text: Layout, place: int, trial: Trial) -> Layout:
-    mask = of_trial(path, _labels(path, text, place), trial)
-    return replace(text, rows=[row for row, belongs in zip(text.rows, mask, strict=True) if belongs])
 
 
 def _labels(path: Path, text: Layout, place: int) -> list[str]:

@@ -165,13 +165,9 @@ def _first_numbers(rows: Sequence[Row], width: int, decimal: str) -> int:
 
 def _has_numbers(cells: Sequence[str], numeric: Sequence[int], width: int, decimal: str) -> bool:
     """Whether at least half of the cells in columns of numbers are some; of a line of another length all of them."""
-    filled = [cells[column] for column in numeric if column < len(cells) and _filled(cells[column])]
+    filled = [cells[column] for column in numeric if column < len(cells) and cells[column].lower() not in GAPS]
     numbers = sum(is_number(cell, decimal) for cell in filled)
     return bool(filled) and (2 * numbers >= len(filled) if len(cells) == width else numbers == len(filled))
-
-
-def _filled(cell: str) -> bool:
-    return cell.lower() not in GAPS
 
 
 def _above(lines: Sequence[Line], before: float, separator: str, width: int, time: str | int | None) -> list[Row]:

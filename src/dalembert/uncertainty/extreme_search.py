@@ -135,7 +135,9 @@ class ExtremeSearch:
                 # A point that was run before, or next to a failed run, brings nothing.
                 expected[(near < 0) | (apart < SAME)] = -np.inf
                 # One point for each output and side is enough for a round: its run changes all expansions.
-                first = _first(output, expected)
+                # Sorted by groups, and in each by falling values, the first row of a group has its largest value.
+                order = np.lexsort((-expected, output))
+                first = order[np.unique(output[order], return_index=True)[1]]
                 first = first[expected[first] > least[output[first]]]
                 gain = expected[first] - (least - self._least[outputs])[output[first]]
                 parts.append(Wanted(points[first], outputs[output[first]], np.full(len(first), side), gain))
@@ -170,10 +172,3 @@ def _reach(slopes: np.ndarray, hessians: np.ndarray, lower: np.ndarray, upper: n
     # |g·u + u·H u/2| is at most Σ |g_i| far_i + Σ |H_ij| far_i far_j/2 for |u_i| <= far_i.
     rise = np.einsum("nmf,nf->nm", np.abs(slopes), far)
     return rise + np.einsum("nmfg,nf,ng->nm", np.abs(hessians), far, far) / 2
-
-
-def _first(groups: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Place of the largest value of each group."""
-    # Sorted by groups, and in each by falling values, the first row of a group has its largest value.
-    order = np.lexsort((-values, groups))
-    return order[np.unique(groups[order], return_index=True)[1]]

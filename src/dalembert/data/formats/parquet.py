@@ -32,8 +32,4 @@ def _columns(path: Path) -> dict[str, np.ndarray]:
     with reading(path, "Parquet"):
         parquet = library("pyarrow.parquet", path, "Parquet files")
         table = parquet.read_table(path)
-        return {name: _array(table.column(place)) for place, name in enumerate(table.column_names)}
-
-
-def _array(column) -> np.ndarray:
-    return np.asarray(column.to_numpy())
+        return {name: np.asarray(table.column(place).to_numpy()) for place, name in enumerate(table.column_names)}

@@ -84,7 +84,8 @@ def walked(
         path.append((root, here[1]))
         branch.rows.append((here[0], search.vectors(here[1])))
         problem.journal.tell(Profiled(problem.model.parameters.names[k], here[0], problem.journal.simulations))
-        way = _way(path, k)
+        move = path[-1][1] - path[-2][1]
+        way = move / move[k]
         step = _step(path, k, goal)
     if path[-1][0] >= goal:
         last = path[-1][1].copy()
@@ -148,12 +149,6 @@ def least(problem: MisfitProblem, k: int, guess: np.ndarray, walk: ProfileWalk) 
 
 def _root(excess: float) -> float:
     return float(np.sqrt(max(excess, 0.0)))
-
-
-def _way(path: list[tuple[float, np.ndarray]], k: int) -> np.ndarray:
-    """How the coordinates follow coordinate k, from the last two points."""
-    move = path[-1][1] - path[-2][1]
-    return move / move[k]
 
 
 def _step(path: list[tuple[float, np.ndarray]], k: int, goal: float) -> float:

@@ -130,7 +130,11 @@ def base_parameters(regressor: np.ndarray, names: Sequence[str], *, noise: float
     seen = np.flatnonzero(sizes > ROUNDING * sizes.max())
     sizes = sizes * (1.0 + TIE * np.arange(len(sizes)))
     threshold = max(ROUNDING, SAFETY * noise)
-    triangle, order = _triangle(stacked[:, seen] / sizes[seen])
+    scaled = stacked[:, seen] / sizes[seen]
+    # A first QR without pivoting makes the table small.
+    small = np.linalg.qr(scaled, mode="r") if len(scaled) > scaled.shape[1] else scaled
+    factors = qr(small, mode="r", pivoting=True)
+    triangle, order = np.asarray(factors[0])[: scaled.shape[1]], np.asarray(factors[-1])
     pivots = np.abs(np.diagonal(triangle)) / np.abs(triangle[0, 0])
     rank = int(np.count_nonzero(pivots > threshold))
     first, rest = seen[order[:rank]], seen[order[rank:]]
@@ -145,13 +149,6 @@ def base_parameters(regressor: np.ndarray, names: Sequence[str], *, noise: float
     base = tuple(names[k] for k in first)
     findings = tuple(_findings(pivots, rank, condition))
     return BaseParameters(names, base, first, combinations[sort], pivots, threshold, condition, findings)
-
-
-def _triangle(scaled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """R and the order of the columns of QR with pivoting; a first QR without makes the table small."""
-    small = np.linalg.qr(scaled, mode="r") if len(scaled) > scaled.shape[1] else scaled
-    factors = qr(small, mode="r", pivoting=True)
-    return np.asarray(factors[0])[: scaled.shape[1]], np.asarray(factors[-1])
 
 
 def _findings(pivots: np.ndarray, rank: int, condition: float) -> Iterator[Finding]:

@@ -115,7 +115,8 @@ def identify_inertias(
     inertial, tail = values[: 10 * len(links)].reshape(-1, 10), slice(10 * len(links), None)
     before = known[: 10 * len(links)].reshape(-1, 10)
     logs = log_cholesky(inertial)
-    by_logs = _log_gradient(problem, values, logs)
+    slope = problem.slope(values)
+    by_logs = np.array([log_cholesky_jacobian(row).T @ slope[10 * k : 10 * k + 10] for k, row in enumerate(logs)])
     eigenvalues = smallest_eigenvalues(inertial, before)
     residuals = measured - table @ values
     success = decrement < _settled(problem, values)
@@ -271,12 +272,6 @@ def _covariance_root(problem: ConsistentProblem, values: np.ndarray) -> np.ndarr
     scale = np.linalg.norm(rows, axis=0)
     scale[scale == 0] = 1.0
     return np.linalg.pinv(rows / scale) / scale[:, None]
-
-
-def _log_gradient(problem: ConsistentProblem, values: np.ndarray, logs: np.ndarray) -> np.ndarray:
-    """Gradient (links, 10) of half the objective by the log-Cholesky parameters."""
-    slope = problem.slope(values)
-    return np.array([log_cholesky_jacobian(row).T @ slope[10 * k : 10 * k + 10] for k, row in enumerate(logs)])
 
 
 def _findings(links: Sequence[str], eigenvalues: np.ndarray) -> Iterator[Finding]:

@@ -7,7 +7,6 @@ import numpy as np
 
 from dalembert.findings import Finding
 from dalembert.inverse.misfit.residuals import Residuals
-from dalembert.inverse.noise.correlation.series import Series
 
 SIGNIFICANT = 4.0
 """Delay in its standard deviations from which it is suspected."""
@@ -88,15 +87,11 @@ def _rates(residuals: Residuals) -> dict[str, np.ndarray]:
     for signal in residuals.series:
         if signal.unit == TIME and len(signal.rows) > 2:
             column = rates.setdefault(signal.channel, np.zeros(len(weights)))
-            column[signal.rows] = weights[signal.rows] * _rate(residuals, signal)
+            response = residuals.at.response.ravel()[signal.rows]
+            if residuals.problem.data.wrapping[signal.rows[0] % residuals.at.response.shape[1]]:
+                response = np.unwrap(response)
+            column[signal.rows] = weights[signal.rows] * np.gradient(response, signal.along)
     return {**rates, "": sum(rates.values(), np.zeros(len(weights)))} if len(rates) > 1 else rates
-
-
-def _rate(residuals: Residuals, signal: Series) -> np.ndarray:
-    response = residuals.at.response.ravel()[signal.rows]
-    if residuals.problem.data.wrapping[signal.rows[0] % residuals.at.response.shape[1]]:
-        response = np.unwrap(response)
-    return np.gradient(response, signal.along)
 
 
 def _estimated(residuals: Residuals, name: str, rate: np.ndarray) -> _Estimated | None:

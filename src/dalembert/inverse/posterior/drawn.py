@@ -1,6 +1,5 @@
 """Draws of the chains, and the posterior with all that is computed at them."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -56,7 +55,11 @@ def posterior_of(drawn: DrawnChains, blocks: int) -> Posterior:
     block_of = _blocks(likelihood, blocks)
     experiment_of = np.unique(places.experiment, return_inverse=True)[1].ravel()
     groups = np.arange(len(places.row)), block_of, experiment_of
-    of_values, of_blocks, of_experiments = _left_out(likelihood, flat[kept], groups)
+    # A Metropolis chain repeats a vector where it rejects: each distinct one is simulated once.
+    distinct, back = np.unique(flat[kept], axis=0, return_inverse=True)
+    parts = np.array_split(distinct, max(1, len(distinct) // TOGETHER))
+    densities = zip(*(likelihood.left_out(part, *groups) for part in parts), strict=True)
+    of_values, of_blocks, of_experiments = [np.concatenate(of_parts)[back.ravel()] for of_parts in densities]
     replicas = likelihood.replicas(flat[replicated], length.seed)
     findings = (
         *separate_modes(drawn.modes, chains.places, drawn.sampler),
@@ -109,15 +112,6 @@ def posterior_of(drawn: DrawnChains, blocks: int) -> Posterior:
 def _spaced(count: int, most: int) -> np.ndarray:
     """Numbers of at most ``most`` of ``count`` draws, evenly spaced."""
     return np.unique(np.linspace(0, count - 1, min(count, max(most, 1))).astype(int))
-
-
-def _left_out(likelihood: Likelihood, vectors: np.ndarray, groups: Sequence[np.ndarray]) -> list[np.ndarray]:
-    """Log densities of groups of values after all others, (vectors, groups) each."""
-    # A Metropolis chain repeats a vector where it rejects: each distinct one is simulated once.
-    distinct, back = np.unique(vectors, axis=0, return_inverse=True)
-    parts = np.array_split(distinct, max(1, len(distinct) // TOGETHER))
-    densities = zip(*(likelihood.left_out(part, *groups) for part in parts), strict=True)
-    return [np.concatenate(of_parts)[back.ravel()] for of_parts in densities]
 
 
 def _blocks(likelihood: Likelihood, blocks: int) -> np.ndarray:

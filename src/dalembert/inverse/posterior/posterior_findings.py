@@ -17,7 +17,6 @@ from dalembert.inverse.posterior.unbounded import UnboundedCoordinates
 from dalembert.inverse.problem.prior import ALONE
 from dalembert.inverse.problem.prior_conflicts import prior_conflicts
 from dalembert.inverse.problem.simulated import named
-from dalembert.parameter import Parameter
 from dalembert.parameters import Parameters
 
 CLOSE = 0.02  # distance to a bound, relative to that of the bounds, that counts as at the bound
@@ -72,7 +71,15 @@ def draw_findings(parameters: Parameters, draws: np.ndarray) -> Iterator[Finding
         quantiles = prior.within(np.linspace(0.005, 0.995, 100), item.lower, item.upper)
         before, after = float(np.std(quantiles)), float(np.std(draws[:, k]))
         if after**2 > ALONE * before**2:
-            yield _dominated(item, before, after)
+            yield Finding(
+                "prior-dominates",
+                "warning",
+                {"parameters": item.name, "prior": before, "deviation": after},
+                f"The data add nothing to the prior of {item.name!r}: its standard deviation is {before:.3g} in the "
+                f"prior and {after:.3g} in the posterior.",
+                "Check that the prior and the bounds are not too narrow, or measure a quantity that depends on "
+                f"{item.name!r}.",
+            )
             continue
         for side, near in (("lower", inside[:, k] < CLOSE), ("upper", inside[:, k] > 1 - CLOSE)):
             share, bound = float(np.mean(near)), float(getattr(item, side))
@@ -84,17 +91,6 @@ def draw_findings(parameters: Parameters, draws: np.ndarray) -> Iterator[Finding
                     f"{100 * share:.0f} % of the draws of {item.name!r} are at its {side} bound {bound:.6g}.",
                     "Widen the bound if the true value may lie beyond it.",
                 )
-
-
-def _dominated(item: Parameter, before: float, after: float) -> Finding:
-    return Finding(
-        "prior-dominates",
-        "warning",
-        {"parameters": item.name, "prior": before, "deviation": after},
-        f"The data add nothing to the prior of {item.name!r}: its standard deviation is {before:.3g} in the prior and "
-        f"{after:.3g} in the posterior.",
-        f"Check that the prior and the bounds are not too narrow, or measure a quantity that depends on {item.name!r}.",
-    )
 
 
 def _between(parameters: Parameters, draws: np.ndarray) -> np.ndarray:

@@ -86,7 +86,12 @@ class ParameterSet(EndedResult):
 
     def contains(self, points: np.ndarray) -> np.ndarray:
         """For points (n, parameters): 1.0 where one lies in the set, 0.0 where not, NaN where it is not known."""
-        inside, boundary = (np.array([_in_any(boxes, point) for point in points], dtype=bool) for boxes in self._paved)
+        inside, boundary = (
+            np.array(
+                [np.any(np.all((boxes[:, 0] <= point) & (point <= boxes[:, 1]), axis=1)) for point in points], bool
+            )
+            for boxes in self._paved
+        )
         return np.where(inside, 1.0, np.where(boundary, np.nan, 0.0))
 
     @property
@@ -119,7 +124,3 @@ class ParameterSet(EndedResult):
             for caption, box in boxes.items()
             if box is not None
         )
-
-
-def _in_any(boxes: np.ndarray, point: np.ndarray) -> bool:
-    return bool(np.any(np.all((boxes[:, 0] <= point) & (point <= boxes[:, 1]), axis=1)))

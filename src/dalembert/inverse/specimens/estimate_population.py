@@ -115,7 +115,11 @@ def estimated(estimates: Estimates, *, correlated: bool = False, level: float = 
     ends = [_interval(likelihood, form, unknowns, number, best, level) for number in range(k)]
     lower, upper = np.array(ends).T * scale
     new = [new_specimen(values[:, number], variances[:, number], level) for number in range(k)]
-    tests = [_alone(values[:, [number]], variances[:, number]) for number in range(k)]
+    # Cochran's Q: the squares of the differences from the mean, in deviations, without a spread.
+    tests = [
+        Likelihood(values[:, [number]], np.diag(variances[:, number])).residual_product(np.zeros((1, 1)))
+        for number in range(k)
+    ]
     p_value = np.array([chdtrc(len(values) - 1, size) for size in tests])
     units = np.where(spread > 0, spread, 1.0)
     correlation = between / np.outer(units, units)
@@ -169,11 +173,6 @@ def _interval(
 
 def _root(function: Callable[[float], float], first: float, second: float) -> float:
     return float(root_scalar(function, bracket=(first, second), method="brentq", xtol=1e-5).root)
-
-
-def _alone(values: np.ndarray, variances: np.ndarray) -> float:
-    """Cochran's Q of one parameter: the squares of its differences from the mean, in deviations, without a spread."""
-    return Likelihood(values, np.diag(variances)).residual_product(np.zeros((1, 1)))
 
 
 def _findings(estimates: Estimates, lower: np.ndarray, upper: np.ndarray, level: float) -> list[Finding]:

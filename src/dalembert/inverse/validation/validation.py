@@ -80,7 +80,10 @@ class Split:
         weights = np.where(self.fitted, 0.0, self.whole.weights)
         squares = self.whole.unweighted_residual(response) ** 2
         of_fit = self.whole.weights - weights
-        misfit, fitted = (_rms(squares, weights_here) for weights_here in (weights, of_fit))
+        misfit, fitted = (
+            float(np.sqrt(np.sum(weights_here * squares) / max(1, np.count_nonzero(weights_here))))
+            for weights_here in (weights, of_fit)
+        )
         return Validation(self.what, weights, misfit, fitted, explained(self.whole, response, weights, fitted))
 
     def whole_table(self, table: np.ndarray, missing: float) -> np.ndarray:
@@ -189,7 +192,3 @@ def _in_words(model: JointModel, lengths: Mapping[str, float]) -> str:
         for name, length in lengths.items()
     ]
     return f"the experiment{'s' if len(texts) > 1 else ''} {', '.join(texts)}"
-
-
-def _rms(squares: np.ndarray, weights: np.ndarray) -> float:
-    return float(np.sqrt(np.sum(weights * squares) / max(1, np.count_nonzero(weights))))

@@ -159,7 +159,8 @@ def built(
             side = bodies[parent.name].point(parent.seat(name))
         joints[name] = _connect(system, tree, link.joint, joint_names[name], side, bodies[link.name], slip)
         if name in torques:
-            _drive(system, link.joint, side, bodies[link.name], torques[name])
+            kind, at = Force if link.joint.kind == PRISMATIC else Torque, bodies[link.name].point(AXIS)
+            system.add(kind(f"{link.joint.name} drive", at, z=torques[name], follower=True, against=side))
     at = {name: coordinate(tree, own, q, q_rates)[0] for name, own in described.items()}
     for own in described.values():
         if own.mimic:
@@ -256,9 +257,3 @@ def _connect(
         slides = joint.kind == PRISMATIC
         system.add(Armature(f"{name} armature", a, body.point("origin"), joint.armature, joint.axis, slides))
     return made
-
-
-def _drive(system: SpatialSystem, joint: TreeJoint, a: Side, body: RigidBody, course: Course) -> None:
-    """Add the torque, or the force, of a joint about its axis, and its opposite on the parent."""
-    kind = Force if joint.kind == PRISMATIC else Torque
-    system.add(kind(f"{joint.name} drive", body.point(AXIS), z=course, follower=True, against=a))

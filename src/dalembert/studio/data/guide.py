@@ -2,7 +2,6 @@
 
 import tomllib
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 import tomlkit
@@ -122,7 +121,7 @@ class DataGuide:
             arguments = self.draft.path, text, file, choices, self._before
             examined = await self._worker.ask("data", examine, *arguments)
         except DalembertError as error:
-            self.examined, self.suspects, self.error = None, (), _short(error, self.draft.path)
+            self.examined, self.suspects, self.error = None, (), str(error).replace(f"{self.draft.path.parent}/", "")
             return
         if examined is None or (self.file, self.choices) != (file, choices):  # there is a newer request
             return
@@ -226,8 +225,3 @@ def _use_robust_loss(document: tomlkit.TOMLDocument, scale: float | None) -> Non
 def _estimate_offset(document: tomlkit.TOMLDocument, values: Any) -> None:
     sensors = document.setdefault("sensors", tomlkit.table(is_super_table=True))
     sensors.setdefault(values["channel"], tomlkit.table())["offset"] = [values["lower"], values["upper"]]
-
-
-def _short(error: DalembertError, study: Path) -> str:
-    """The sentence of an error without the folder of the study."""
-    return str(error).replace(f"{study.parent}/", "")

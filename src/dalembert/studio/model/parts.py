@@ -92,10 +92,7 @@ def _names(table: str, part: Any) -> list[str]:
     if table == "force":
         return [part.dof, f"{part.dof}.x"]
     if table == "spring" and not hasattr(part, "name"):
-        first, second = (_node(end) for end in (part.first, part.second))
+        ends = part.first, part.second
+        first, second = ("ground" if end is None else end.rpartition(".")[0] or end for end in ends)
         return [f"{first} – {second}", f"{second} – {first}"]
     return [part.name]
-
-
-def _node(end: str | None) -> str:
-    return "ground" if end is None else end.rpartition(".")[0] or end

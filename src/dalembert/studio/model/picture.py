@@ -123,7 +123,11 @@ def _mechanism(
     from dalembert.report.pictures.projection import Projection
     from dalembert.report.scene.mechanism import mechanism_scene
 
-    marks, message, mistake = _marks(study, system), "", ""
+    shown = {channel.rpartition(".")[0] for channel in shown_channels(study)}
+    points = [f"{body.name}.{point}" for body in system.bodies for point in body.point_names]
+    declared = {f"{body.name}.{point}" for body in system.bodies for point in getattr(body, "points", ())}
+    marks = [point for point in points if point in shown or point in declared][:MOST_POINTS]
+    message, mistake = "", ""
     try:
         drawn = sketch(system, marks=marks)
     except (ModelError, SolveError) as error:
@@ -159,14 +163,6 @@ def _drawn(scene: "Scene", label: str, places: dict[str, Place], channels: Itera
     absent = absent_parts(places, scene.parts | {f"channel {name}" for name in channels})
     in_space = encoded(scene) if scene.dimensions == 3 else None
     return Picture(svg, in_space, tuple(scene.parts), places, absent=tuple(absent), **state)
-
-
-def _marks(study: "Study", system: Any) -> list[str]:
-    """Points of bodies that a table names, and those whose channels are shown."""
-    shown = {channel.rpartition(".")[0] for channel in shown_channels(study)}
-    points = [f"{body.name}.{point}" for body in system.bodies for point in body.point_names]
-    declared = {f"{body.name}.{point}" for body in system.bodies for point in getattr(body, "points", ())}
-    return [point for point in points if point in shown or point in declared][:MOST_POINTS]
 
 
 def _channels(study: "Study", drawn: "Sketch") -> dict[str, tuple[np.ndarray, list[str]]]:

@@ -42,7 +42,8 @@ class FormField:
         else:
             self.element = ui.input()
         self.element.props(f'outlined dense stack-label label="{field.key}{_unit(field.unit)}" hide-bottom-space')
-        self.element.props["placeholder"] = "required" if field.required else _default(field.default)
+        default = "" if field.default is None else f"default {shown(field.default)}"
+        self.element.props["placeholder"] = "required" if field.required else default
         self.element.props["aria-description"] = field.meaning
         self.element.classes("w-full")
         if enter is not None:
@@ -91,10 +92,6 @@ class FormField:
 
 def _unit(unit: str | None) -> str:
     return f", {unit}" if unit else ""
-
-
-def _default(value: object) -> str:
-    return "" if value is None else f"default {shown(value)}"
 
 
 TAB = "forms", "Forms", "edit_note"

@@ -68,6 +68,8 @@ def row(folder: RunFolder) -> Row:
     state = folder.state()
     best = state.get("best") or {}
     note = read_note(folder.path)
+    notes = _numbers(state)["note"]
+    parts = [counted(dict(state)), f"{notes} note{'s' * (notes > 1)}" if notes else ""]
     return {
         "run": folder.path.name,
         "study": study_name(folder, state),
@@ -75,8 +77,8 @@ def row(folder: RunFolder) -> Row:
         "task": str(state.get("task", "")),
         "state": str(state["state"]),
         "message": str(state.get("message", "")),
-        "findings": _counted(state),
-        "severity": _severity(state),
+        "findings": ", ".join(filter(None, parts)),
+        "severity": sum(_WEIGHTS[severity] * count for severity, count in _numbers(state).items()),
         "doubts": doubts(state),
         "values": values_text(best, run_units(folder, best.get("values") or {})),
         "misfit": _misfit(folder, best),
@@ -108,18 +110,6 @@ def _changed(path: str) -> int:
         return os.stat(path).st_mtime_ns  # noqa: PTH116  Path objects would double the time
     except OSError:
         return 0
-
-
-def _counted(state: Mapping[str, Any]) -> str:
-    """Numbers of errors, warnings and notes in words."""
-    notes = _numbers(state)["note"]
-    parts = [counted(dict(state)), f"{notes} note{'s' * (notes > 1)}" if notes else ""]
-    return ", ".join(filter(None, parts))
-
-
-def _severity(state: Mapping[str, Any]) -> int:
-    """Number that orders runs by their errors, then warnings, then notes."""
-    return sum(_WEIGHTS[severity] * count for severity, count in _numbers(state).items())
 
 
 def _numbers(state: Mapping[str, Any]) -> dict[Severity, int]:

@@ -1,7 +1,6 @@
 """A user's note and tags of a run: a small file in the run's folder."""
 
 import json
-from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -42,8 +41,4 @@ def tags_of(text: str) -> tuple[str, ...]:
     >>> tags_of("rig 2, cold,, cold ")
     ('rig 2', 'cold')
     """
-    return _unique(part.strip() for part in text.split(","))
-
-
-def _unique(texts: Iterable[str]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(filter(None, texts)))
+    return tuple(dict.fromkeys(filter(None, map(str.strip, text.split(",")))))

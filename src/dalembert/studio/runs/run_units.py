@@ -45,14 +45,10 @@ def value_unit(document: Mapping[str, Any], name: str) -> Unit:
     written = unit_in(document, name)
     if written != PLAIN:
         return written
-    stated = table_at(shared, _common(document, name)).get("unit", "")
-    return str(stated or (inertial_unit(name) if "." in name else "")), 1.0
-
-
-def _common(document: Mapping[str, Any], name: str) -> str:
-    """Name of a parameter without that of its experiment."""
     names = (f"{table.get('name')}." for table in document.get("experiments", ()))
-    return next((name.removeprefix(prefix) for prefix in names if name.startswith(prefix)), name)
+    bare = next((name.removeprefix(prefix) for prefix in names if name.startswith(prefix)), name)
+    stated = table_at(shared, bare).get("unit", "")
+    return str(stated or (inertial_unit(name) if "." in name else "")), 1.0
 
 
 def in_unit(value: Any, unit: Unit) -> Any:

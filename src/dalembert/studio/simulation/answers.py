@@ -112,17 +112,13 @@ def influences(kept: Kept, source: Source, name: str, values: Mapping[str, float
         for item, value in zip(parameters, vector.tolist(), strict=True)
     ]
     moves = np.sqrt(np.mean(jacobian[:, columns] ** 2, axis=0)) * np.array(spans)
-    sizes = moves / _ranges(own, response[:, columns], np.max(moves, axis=1, initial=0.0))[:, None]
-    effects = dict(zip(map(own.named, parameters.names), np.nan_to_num(sizes).T.tolist(), strict=True))
-    return Influences(tuple(channels[column] for column in columns), effects)
-
-
-def _ranges(own: StudyMotion, response: np.ndarray, largest: np.ndarray) -> np.ndarray:
-    """What effects on channels are relative to: the range of response or data; of a channel at rest the largest one."""
-    ranges = np.ptp(response, axis=0)
+    largest = np.max(moves, axis=1, initial=0.0)
+    ranges = np.ptp(response[:, columns], axis=0)
     if own.data is not None:
         ranges = np.fmax(ranges, np.nanmax(own.data.values, axis=0) - np.nanmin(own.data.values, axis=0))
-    return np.where(ranges > REST * largest, ranges, np.maximum(largest, 1e-300))
+    sizes = moves / np.where(ranges > REST * largest, ranges, np.maximum(largest, 1e-300))[:, None]
+    effects = dict(zip(map(own.named, parameters.names), np.nan_to_num(sizes).T.tolist(), strict=True))
+    return Influences(tuple(channels[column] for column in columns), effects)
 
 
 def _part(kept: Kept, source: Source, name: str) -> StudyMotion:

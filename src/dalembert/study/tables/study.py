@@ -49,12 +49,6 @@ def _watched(file: StudyFile) -> Iterator[str]:
     yield from (channel.partition(" ")[0] for channel in measured_channels(file))
 
 
-def _require_channels(channels: Sequence[str], model: ForwardModel) -> None:
-    names = [channel.name for channel in model.channels]
-    for name in channels:
-        require_known("channel", name, names)
-
-
 def _refuse_outside(files: str, times: np.ndarray) -> None:
     if files and times[0] < 0:
         raise DataError(
@@ -211,7 +205,9 @@ class Study(Displayed):
         forward = self._forward(channels, samples)
         if self.file.model.forward is not None:
             with placed(self._named_in):
-                _require_channels(channels, forward)
+                names = [channel.name for channel in forward.channels]
+                for name in channels:
+                    require_known("channel", name, names)
         else:
             self.system()  # what is wrong with the model itself is told as such
             with placed(self._named_in):

@@ -132,7 +132,8 @@ def maximum(
         objective = Objective(parameters, of_model, restricted(here), held)
         linear, gain = scored(here, objective, search, linear_expansion(likelihood, here.at))
         step = search.points(linear.vector) - search.points(here.vector)
-        before, size = size, _size(objective, here, search, step)
+        # Half the square of the step in standard deviations.
+        before, size = size, 0.5 * float(step @ objective.slopes(here, search.slope(here.vector))[1] @ step)
         settled = size < CLOSE or before / 4 < size < NEAR
         value = objective.value(here)
         try:
@@ -260,8 +261,3 @@ def _step(
     scaled = matrix / np.sqrt(size[:, None] * size) + damping * np.eye(len(free))
     step[free] = np.linalg.lstsq(scaled, gradient[free] / np.sqrt(size), rcond=1e-14)[0] / np.sqrt(size)
     return np.clip(point + step, search.lower, search.upper) - point
-
-
-def _size(objective: Objective, here: Expansion, search: SearchCoordinates, step: np.ndarray) -> float:
-    """Return half the square of a step (parameters,) in standard deviations."""
-    return 0.5 * float(step @ objective.slopes(here, search.slope(here.vector))[1] @ step)

@@ -78,21 +78,14 @@ def noise_parameters(problem: MisfitProblem, channels: tuple[ChannelNoise, ...])
                     f"noise of channel {channel.series.channel!r}: experiments share its parameters, but have "
                     "different noise models; give all the same, or models with local=True"
                 )
-            by_name[full] = model, _joint(before, extent), bare
+            size, step = max(before.size, extent.size), min(before.step, extent.step)
+            joint = replace(before, size=size, step=step, length=max(before.length, extent.length))
+            by_name[full] = model, joint, bare
     return Parameters(tuple(_named(name, *entry) for name, entry in by_name.items()))
 
 
 def _named(name: str, model: NoiseModel, extent: Extent, bare: str) -> Parameter:
     return replace(next(item for item in model.parameters(extent) if item.name == bare), name=name)
-
-
-def _joint(first: Extent, second: Extent) -> Extent:
-    return replace(
-        first,
-        size=max(first.size, second.size),
-        step=min(first.step, second.step),
-        length=max(first.length, second.length),
-    )
 
 
 def _extent(problem: MisfitProblem, series: Series) -> Extent:

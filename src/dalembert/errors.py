@@ -1,4 +1,4 @@
-"""Errors that tell a user what is wrong, where, what was given, what is expected and what to do."""
+"""Errors whose messages state what is wrong, where, what was expected and what to do."""
 
 import sysconfig
 import traceback
@@ -28,7 +28,7 @@ class ModelError(DalembertError):
 
 
 class SolveError(DalembertError):
-    """A solver that could not go on; the message names the time and the component."""
+    """A solver failed; the message names the time and the component."""
 
 
 class ClusterError(SolveError):
@@ -49,7 +49,7 @@ def unwritable(path: object, reason: object) -> StorageError:
 
 
 def not_begun(error: StorageError) -> StorageError:
-    """The same error of a run that has no state yet, so that nothing can go on with it."""
+    """The same error of a run that has no state yet and cannot be resumed."""
     return StorageError(str(error).replace(_BEGUN, _NOT_BEGUN))
 
 
@@ -128,7 +128,7 @@ def shown(value: object) -> str:
 
 
 def told(error: BaseException) -> str:
-    """What an error says, in one line: one of ours as it is, any other with its type and place in the user's code."""
+    """Message of an error in one line; an error of another package has its type and place in the user's code before."""
     if isinstance(error, DalembertError):
         return str(error)
     if isinstance(error, SyntaxError):

@@ -103,7 +103,7 @@ def labelled(name: str, unit: str) -> str:
 
 
 MOST_FACTS = 4
-"""Parameters up to which the value of each is a fact of its own; more are in a table alone."""
+"""Parameters up to which each value is a separate fact; more are only in a table."""
 
 
 @dataclass(frozen=True)

@@ -264,7 +264,7 @@ def unit_of(dof: str) -> str:
 
 
 def inertial_unit(parameter: str) -> str:
-    """Unit of an inertial parameter of a link by the end of its name; empty where that does not tell it.
+    """Unit of an inertial parameter of a link by the end of its name; empty for other names.
 
     >>> [inertial_unit(f"arm.{entry}") for entry in ("mass", "first_x", "second_xy", "friction")]
     ['kg', 'kg*m', 'kg*m^2', '']

@@ -25,7 +25,7 @@ def read_bands(
     frequency: str | None = None,
     sampling: float | None = None,
 ) -> Bands:
-    """Bands from a file of any format that :func:`read` knows.
+    """Bands from a file of any format that :func:`read` reads.
 
     Parameters
     ----------

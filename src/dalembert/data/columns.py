@@ -51,7 +51,7 @@ class Columns:
         Raises
         ------
         DataError
-            For a unit that is unknown, that is no mere multiple of an SI unit, or that is no time for the times; for a
+            For a unit that is unknown, that is not a multiple of an SI unit, or that is no time for the times; for a
             unit of a column that there is not.
         """
         for name in units or {}:

@@ -30,7 +30,7 @@ class Derivative:
     Parameters
     ----------
     values : array, shape (samples,)
-        In the channel's unit by that of the coordinate; NaN where too few samples lie beside each other.
+        In the channel's unit by that of the coordinate; NaN where a run without gaps is too short.
     noise : array, shape (samples,)
         Standard deviation that the channel's noise leaves in each value. Neighbouring values share their noise.
     bias : float
@@ -89,7 +89,7 @@ def derivative(
     Raises
     ------
     DataError
-        For a channel that there is not, or with too few samples beside each other.
+        For a channel that there is not, or without a run of enough samples without gaps.
     InputError
         For an order, a window or a degree that cannot be meant.
 

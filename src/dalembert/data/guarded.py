@@ -1,4 +1,4 @@
-"""Compiled readers of others, in processes of their own: over some damaged files they end the whole process."""
+"""Compiled readers of other packages, in separate processes, since some damaged files crash the process."""
 
 import json
 import pickle

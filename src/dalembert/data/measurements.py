@@ -192,7 +192,7 @@ class Measurements(Record):
         """The measurements and a channel ``name`` beside them, a derivative of another one.
 
         Its deviation, where the data have deviations, is ``deviation``, or else the error that
-        :func:`~dalembert.data.derivative` tells, which takes the same arguments.
+        :func:`~dalembert.data.derivative` returns, which takes the same arguments.
 
         Examples
         --------

@@ -1,4 +1,4 @@
-"""Opening files of data by libraries, each of which has errors of its own."""
+"""Open data files by libraries, and convert their errors."""
 
 import warnings
 from collections.abc import Iterator

@@ -13,7 +13,7 @@ from dalembert.vibration import Deformation
 
 SERIES, SINGLE = ".pvd", ".vtu"
 PERIOD = 48
-"""Instants of a period unless told."""
+"""Default number of instants of a period."""
 
 
 def export_vtk(
@@ -49,7 +49,7 @@ def export_vtk(
     path : path
         The files of a series, one an instant, lie in a folder of the same name beside it.
     frames : int, optional
-        At most so many instants, evenly over the motion; all output times of a trajectory and 48 of a period if not
+        Largest number of instants, evenly over the motion; all output times of a trajectory and 48 of a period if not
         given.
     points : int
         Pieces that a beam element is drawn with.

@@ -157,7 +157,7 @@ class Checkpoint:
         return known
 
     def close(self) -> None:
-        """Write what has come, and let go of the file."""
+        """Write the results that wait, and close the file."""
         with self._lock:
             try:
                 if self._file.in_transaction:  # a full disk ends it

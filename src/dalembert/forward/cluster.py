@@ -32,7 +32,7 @@ M = TypeVar("M", bound=Callable[..., Any])
 
 @contextmanager
 def connected(executor: Executor) -> Iterator["Client | None"]:
-    """A client of the scheduler at an address, closed at the end; one that is given stays open.
+    """A client of the scheduler at an address, closed at the end; an existing client is not closed.
 
     Raises
     ------
@@ -137,7 +137,7 @@ def _refuse_other(worker: dict[str, str], process: dict[str, str]) -> None:
 class Received:
     """A model or a function on a worker.
 
-    It goes on to another worker as the bytes that it came in. A model in use cannot be pickled: its caches change.
+    It is sent to another worker as the bytes that were received. A model in use cannot be pickled: its caches change.
     """
 
     def __init__(self, packed_content: bytes) -> None:
@@ -192,7 +192,7 @@ def _logged(client: "Client") -> list[Mapping[str, str]]:
 
 @contextmanager
 def futures_of(client: "Client", what: str) -> Iterator["list[Future]"]:
-    """A list for what is asked: it is taken from the cluster where it is no longer wanted, and losses are told."""
+    """A list for futures: those no longer needed are cancelled, and lost ones are reported."""
     futures: list[Future] = []
     try:
         yield futures

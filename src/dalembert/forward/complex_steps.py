@@ -146,7 +146,7 @@ class _Intervals(NamedTuple):
         return np.all(self.slopes == 0, axis=0)
 
     def steps(self, numbers: Callable[[complex], np.ndarray], least: int) -> Lost | None:
-        """A number that jumps in at least so many intervals; in fewer than most, only one that is constant between."""
+        """The number that jumps in ``least`` intervals or more; in fewer than most, it is constant between jumps."""
         count = np.where(self.flat | (least == _MOST), np.sum(self.differ, axis=0), 0)
         if np.any(count >= least):
             noise = _NOISY * _noise(numbers, self.ends[0], self.ends[-1] - self.ends[0])

@@ -117,7 +117,7 @@ class _Answering(Wrapped):
 
 
 class _Unknown(BaseException):
-    """Something is asked that no checkpoint knows; no failure of a simulation, which methods go on after."""
+    """A result is needed that no checkpoint has. It is no failure of a simulation, after which methods continue."""
 
 
 @dataclass(frozen=True)

@@ -20,10 +20,10 @@ TOGETHER = 64  # vectors of a batch that are computed between two records
 
 @dataclass(frozen=True)
 class Recorded(Wrapped):
-    """A forward model that answers from a checkpoint what it holds, and adds to it what it does not.
+    """A forward model that reads known responses from a checkpoint and adds new ones to it.
 
-    Whatever method asks, and however long it has run: begun anew after it was killed, it is told the same answers, bit
-    for bit, and so takes the same way, in little time until it comes to what was not computed yet.
+    A method that is started again after it was killed gets the same responses, bit for bit. So it repeats its steps in
+    little time until it needs a response that was not computed yet.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ class Recorded(Wrapped):
         Its answer to a vector must not depend on the others of a batch.
     checkpoint : Checkpoint
     label : str
-        Tells this model from others in the same checkpoint, beside its fingerprint.
+        Distinguishes this model from others in the same checkpoint, with its fingerprint.
 
     Examples
     --------
@@ -109,7 +109,7 @@ class Recorded(Wrapped):
         self._once("check_derivatives", vector, compared)
 
     def _once(self, what: str, vector: np.ndarray, compute: Callable[[], Sequence[np.ndarray]]) -> Sequence[np.ndarray]:
-        """Arrays that are known or computed; a solver that could not go on says so again."""
+        """Arrays from the checkpoint, or computed; a stored failure of a solver is raised again."""
         key = self.key(what, np.asarray(vector, dtype=float))
         known = self.checkpoint.recall(key)
         if known is not None and len(known) == 1 and known[0].dtype == np.uint8:

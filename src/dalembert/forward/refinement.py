@@ -1,4 +1,4 @@
-"""The same model, computed more exactly: what tells how far numerical errors move its response."""
+"""The same model with smaller numerical errors, to estimate how far these move its response."""
 
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable

@@ -38,7 +38,7 @@ class StateChart:
     whole : bool
         Whether all numbers of the state are named, so that a motion can be read but not begun.
     turning : tuple of str
-        Channels that are angles which the state gives up to whole turns.
+        Channels of angles that the state determines only up to whole turns.
     """
 
     names: tuple[str, ...]

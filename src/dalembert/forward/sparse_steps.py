@@ -2,7 +2,7 @@
 
 Columns that share no row are moved together (Curtis, Powell and Reid 1974), so the price is that of as many steps as a
 number has parameters. Which parameters a number depends on is found by moving groups, every second or fourth parameter
-and random ones: where one parameter of a group moves a number, two steps with different weights tell which one.
+and random ones: where one parameter of a group moves a number, two steps with different weights show which one.
 """
 
 from collections.abc import Callable, Iterator

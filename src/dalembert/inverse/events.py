@@ -1,4 +1,4 @@
-"""What a running identification tells: one small dataclass an event, the same for progress bar, log and result."""
+"""Events of an identification, one dataclass each, for progress bar, log and result."""
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields, is_dataclass

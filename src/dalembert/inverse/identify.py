@@ -76,7 +76,7 @@ def identify(
         models, with the orders that were chosen. If not given, the noise is independent, and correlated residuals are
         allowed for after the fit.
     polish : bool
-        Whether least squares goes on from where another method ends.
+        Whether least squares continues from where another method ends.
     horizon : {"growing", None}
         For least squares: ``"growing"`` fits an eighth, a quarter, a half of the samples, then all, each from the end
         of the one before; None fits all samples at once. Each of several experiments is cut at the same part of its
@@ -91,8 +91,8 @@ def identify(
         given, 1.345, 1.287 and 2.385, which cost 5 % of the efficiency where there are no outliers.
     validation : float, name or names of experiments, or mapping of name to float, optional
         Share of the samples, those at the end, or experiments that are not fitted, but predicted. A mapping gives the
-        length of the first part of each experiment that is fitted all the same, in the unit of its coordinate (s): the
-        parameters of its own, such as its initial state, come from there. 0 fits none of it.
+        length of the first part of each experiment that is fitted all the same, in the unit of its coordinate (s): its
+        local parameters, such as its initial state, come from there. 0 fits none of it.
     shooting : MultipleShooting, optional
         Least squares in segments that must meet, in place of the growing horizon: for chaotic motion.
     derivative : {"auto", "direct", "adjoint"}

@@ -35,7 +35,7 @@ class Firefly(Checked):
     exponent : float
         ν, of the distance.
     resolution : float
-        Share of the box's width below which two places count as one; 0 tells apart all that numbers can.
+        Share of the box's width below which two places count as one; 0 distinguishes all floating-point numbers.
 
     Notes
     -----

@@ -88,7 +88,7 @@ class Minimum:
         Why it stopped, in a sentence.
     iterations, evaluations : int
     stationary : bool
-        Whether it stopped because x moves no more; going on with finer settings would change nothing.
+        Whether it stopped because x no longer moves; finer settings would change nothing.
     rough : bool
         Whether it stopped because the misfit is rough: it does not fall where its derivatives foresee a fall.
     left_out : array, shape (directions, parameters), optional

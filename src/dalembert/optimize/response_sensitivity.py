@@ -58,7 +58,7 @@ class ResponseSensitivity(SquaresMinimiser):
     - a step that meets a bound is the minimum of the same linear model between the bounds;
     - where a descent creeps along directions that the residuals do not identify between the bounds, it ends by Gauss
       and Newton's steps in the other directions;
-    - where the L-curve has no corner, every direction is told by the data, and the step is Gauss and Newton's. As the
+    - where the L-curve has no corner, the data determine every direction, and the step is Gauss and Newton's. As the
       residual falls towards zero the corner moves towards μ = 0 with it, so that convergence is quadratic.
 
     Source: Lu & Wang, An enhanced response sensitivity approach for structural damage identification, International

@@ -56,7 +56,7 @@ class Stopping:
             raise Stopped("converged: the sum of squares falls no more")
 
     def tried(self, least: float) -> None:
-        """Judge the progress after a trial point; ``least`` is the smallest sum of squares so far."""
+        """Judge the progress after a step; ``least`` is the smallest sum of squares so far."""
         self._trials.append((least, self.foreseen))
         if len(self._trials) <= self.window:
             return

@@ -14,9 +14,9 @@ from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress
 
 @dataclass(frozen=True)
 class SwarmState:
-    """A swarm between two iterations: all that is needed to go on, and to go on with the same bits.
+    """A swarm between two iterations: all that is needed to continue with the same bits.
 
-    Each iteration draws from a generator of its own, seeded with (seed, iteration), so no generator's inner state
+    Each iteration draws from a separate generator, seeded with (seed, iteration), so no generator's inner state
     has to be kept.
 
     Parameters

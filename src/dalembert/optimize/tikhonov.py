@@ -113,7 +113,7 @@ class Regularised:
         """Weight at the corner of the L-curve, where its curvature is largest; :attr:`least` if none is ``sharp``.
 
         A curvature below 1 is a bend over a factor of e or more in both norms: no corner. So it is where every
-        direction is told by the data, and Gauss and Newton's step needs no regularisation.
+        direction is determined by the data, and Gauss and Newton's step needs no regularisation.
 
         Source: Hansen, Analysis of discrete ill-posed problems by means of the L-curve, SIAM Review 34 (1992).
         """

@@ -74,7 +74,7 @@ def pairs(structure: Structure, first: str, second: str, tolerance: float) -> Pa
     Raises
     ------
     InputError
-        For an unknown set, a structure without nodes, or a node of the first set without a partner of its own.
+        For an unknown set, a structure without nodes, or a node of the first set without a partner.
     """
     from scipy.spatial import KDTree
 

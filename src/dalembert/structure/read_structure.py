@@ -132,7 +132,7 @@ def write_structure(structure: Structure, path: str | Path) -> None:
 
 
 def _of_role(role: str, matrices: Mapping[str, NamedMatrix], name: str | None, alone: bool) -> NamedMatrix | None:
-    """The matrix of a file for a role: the named one, the only one of a file of its own, or one with a usual name."""
+    """The matrix of a file for a role: the named one, the only one of a separate file, or one with a usual name."""
     if name is not None:
         if name not in matrices:
             raise DataError(unknown("matrix", name, matrices, f"read_structure: {role}"))

@@ -1,4 +1,4 @@
-"""Runs as processes of their own, which go on whatever happens to the studio or to the browser."""
+"""Runs as separate processes, which continue if the studio or the browser ends."""
 
 import os
 import signal
@@ -28,7 +28,7 @@ class Jobs:
         self._begin(folder, ["run", str(old), "--out", str(folder)])
 
     def resume(self, folder: Path) -> None:
-        """Go on with a run."""
+        """Resume a run."""
         self._begin(folder, ["resume", str(folder)])
 
     def complaint(self, folder: Path) -> str:
@@ -54,7 +54,7 @@ class Jobs:
         return "" if job is None else job.said().strip() or job.progress()
 
     def tidy(self) -> None:
-        """Let go of processes that have ended well."""
+        """Forget processes that have ended without an error."""
         ended = [folder for folder, job in self._started.items() if job.process.poll() == 0]
         for folder in ended:
             del self._started[folder]
@@ -114,7 +114,7 @@ def stop(folder: RunFolder) -> None:
 
 
 def _require_running(folder: RunFolder) -> dict[str, Any]:
-    """State of a run that is going on."""
+    """State of a run, refused unless it is running."""
     state = folder.state()
     if state["state"] != RUNNING:
         raise InputError(f"{folder.path.name} is not running: it is {state['state']}")

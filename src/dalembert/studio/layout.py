@@ -1,4 +1,4 @@
-"""The parts of a page: beside each other, and as tabs."""
+"""The parts of a page, in columns and as tabs."""
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager

@@ -1,4 +1,4 @@
-"""Study files: read, checked, run in folders of their own; the names are imported where they are first used."""
+"""Study files: read, checked, and run in separate folders; names are imported where they are first used."""
 
 from dalembert.lazy import lazy_names
 

@@ -1,7 +1,7 @@
 """The JSON schema of study files as a file, which needs no import of tasks and kinds.
 
-The package contains the schema of its own kinds, `study.schema.json`. `make schema` writes it in some seconds, as this
-imports all kinds.
+The package contains the schema of the built-in kinds, `study.schema.json`. `make schema` writes it in some seconds, as
+this imports all kinds.
 """
 
 import json

@@ -55,7 +55,7 @@ class Adaptive(Checked):
     Terms e and points (ζ_{e_1}, …, ζ_{e_d}) of Leja's sequence ζ belong together: one run more, one term more, and all
     runs are used. What a run adds to the polynomial (its surplus) is its distance to the value foretold, and no term is
     larger in the box than its surplus. A term is expected to be as large as the geometric mean of the surpluses one
-    degree below it. When all that is expected is below the tolerance and the held-out runs are not met, it goes on.
+    degree below it. When all that is expected is below the tolerance and the held-out runs are not met, it continues.
     Source of the idea: Gerstner & Griebel, Dimension-adaptive tensor-product quadrature (2003); Chkifa, Cohen &
     Schwab, High-dimensional adaptive sparse polynomial interpolation (2014).
 

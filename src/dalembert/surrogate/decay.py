@@ -125,7 +125,7 @@ def _pair(shells: np.ndarray, degree: int) -> np.ndarray:
 def _ratio(shells: np.ndarray, degree: int) -> np.ndarray:
     """Decay r a degree around ``degree``, shape (outputs,), at most ``SLOWEST``.
 
-    An output whose shells happen to grow is told to decay as the largest shells of all outputs do.
+    An output whose shells grow by chance is assumed to decay as the largest shells of all outputs do.
     """
     if degree < 2:
         return np.full(shells.shape[1], SLOWEST)

@@ -36,7 +36,7 @@ class ExtremesWorkspace(NamedTuple):
 
 
 def scratch(rows: Rows, starts: int) -> ExtremesWorkspace:
-    """Workspace for so many starts."""
+    """Workspace for a number of starts."""
     size = len(rows.degrees)
     return ExtremesWorkspace(
         *np.empty((5, size)),  # from ``eta`` to ``trial_gradient``

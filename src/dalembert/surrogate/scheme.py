@@ -1,4 +1,4 @@
-"""What every scheme returns to the fit: a polynomial on the reference box, and what its coefficients tell."""
+"""Result of every scheme: a polynomial on the reference box, and its estimated decay."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

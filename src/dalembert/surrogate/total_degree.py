@@ -37,9 +37,9 @@ class TotalDegree(Checked):
     Notes
     -----
     As published (Guo & Jin 2025, equations (5) to (13), after Wu et al. 2013): M = 2P runs on the smallest grid of
-    Chebyshev roots that has so many points, and p + 1 at least in each direction. Which ones, the paper leaves open: we
-    take a well-conditioned part by QR decompositions with pivoting, each of which chooses P points. A failed run is
-    left out, as long as there remain as many as terms.
+    Chebyshev roots that has M points, and p + 1 at least in each direction. The paper does not say which ones: we take
+    a well-conditioned part by QR decompositions with pivoting, each of which chooses P points. A failed run is left
+    out, as long as there remain as many as terms.
 
     Examples
     --------

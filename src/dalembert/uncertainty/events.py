@@ -1,4 +1,4 @@
-"""What a running propagation tells: one small dataclass an event, the same for progress bar and log."""
+"""Events of a propagation, one dataclass each, for progress bar and log."""
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass

@@ -22,7 +22,7 @@ class Expansions:
     slopes: np.ndarray  # (runs, outputs, f): by η
 
     def chunks(self) -> Iterator[np.ndarray]:
-        """Numbers of outputs, so many at a time that their Hessians are no large array."""
+        """Numbers of outputs, in parts whose Hessians are no large array."""
         runs, outputs, f = self.slopes.shape
         size = max(1, CHUNK // (runs * f * f))
         return (np.arange(first, min(first + size, outputs)) for first in range(0, outputs, size))

@@ -1,4 +1,4 @@
-"""The runs of a model that a method asks for: counted, told of, and none of them able to end the others."""
+"""The runs of a model for a method: counted, reported, and independent of failures of each other."""
 
 from dataclasses import dataclass, field
 

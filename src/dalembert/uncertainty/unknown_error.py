@@ -12,7 +12,7 @@ from dalembert.uncertainty.runs import Runs
 
 def unknown_error(runs: Runs, points: np.ndarray, reason: str, values: Mapping[str, Any], advice: str = "") -> Finding:
     """Return the finding "unknown-error" of bounds that runs at ``points`` (n, parameters) of the box reach.
-    ``reason``: what the method knows instead, in a sentence; ``values``: its numbers.
+    ``reason``: what the method has instead, in a sentence; ``values``: its numbers.
     """
     message, gaps = f"The error of the bounds is unknown. {reason}", {}
     if len(runs.free):

@@ -1,1 +1,1 @@
-"""What data can tell: before they are measured, and after they have been fitted."""
+"""What data determine: before they are measured, and after they have been fitted."""

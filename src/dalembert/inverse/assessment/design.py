@@ -1,4 +1,4 @@
-"""Which sensors, and for how long: the experiment that would tell the parameters best."""
+"""Sensors and durations of the experiment that determines the parameters best."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import combinations
@@ -30,7 +30,7 @@ def design(
     horizons: Sequence[float] | None = None,
     criterion: str = "D",
 ) -> Designs:
-    """Experiments ranked by how well they would tell the parameters, from one run with its sensitivities.
+    """Experiments ranked by how well they determine the parameters, from one run with its sensitivities.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What data would tell, asked before anything is solved."""
+"""Which parameters data would determine, before anything is solved."""
 
 from collections.abc import Mapping
 

@@ -85,7 +85,7 @@ def profile(
     s² is estimated from the residuals, that of F(1, freedom). For a linear response it is the value ∓ quantile ×
     deviation; where the response bends, or other parameters make up for the change, only the profile is right. A side
     ends at the first crossing, or open at the parameter's bound. A scan of the parameter between its bounds, one batch,
-    then looks for further intervals beyond, which are told beside.
+    then looks for further intervals beyond, which are returned separately.
 
     Where residuals are correlated, s² is multiplied by the square of the ratio of the parameter's deviation to that for
     independent residuals, so that the profile of a linear response has the curvature of the corrected covariance.

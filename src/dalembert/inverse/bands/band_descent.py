@@ -12,7 +12,7 @@ APART = 0.1  # chosen starts keep this part of the widths of the unknowns' bound
 
 
 def descend(problem: BandProblem, polynomial: ChebyshevPolynomial, method: LeastSquares, x: np.ndarray) -> Minimum:
-    """Least squares from unknowns x (d + k,), told to the journal as a start of its own."""
+    """Least squares from unknowns x (d + k,), recorded in the journal as a separate start."""
     unknowns, journal = problem.unknowns, problem.journal
     at = candidate(problem, polynomial, x)
 

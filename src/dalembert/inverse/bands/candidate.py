@@ -42,6 +42,6 @@ def slopes(problem: BandProblem, polynomial: ChebyshevPolynomial, at: Candidate)
 
 
 def gradients(polynomial: ChebyshevPolynomial, points: np.ndarray) -> np.ndarray:
-    """Gradient (outputs, d) of each output at a point of its own, points of shape (outputs, d)."""
+    """Gradient (outputs, d) of each output at a separate point, points of shape (outputs, d)."""
     distinct, row = np.unique(points, axis=0, return_inverse=True)
     return polynomial.gradient(distinct)[row.ravel(), np.arange(len(points))]

@@ -1,4 +1,4 @@
-"""The published way: a surrogate of its own for every candidate box, and a swarm of boxes."""
+"""The published method: a separate surrogate for every candidate box, and a swarm of boxes."""
 
 from dataclasses import dataclass, field
 
@@ -21,7 +21,7 @@ WIDENED = 1e-3
 
 @dataclass(frozen=True)
 class Nested(Checked):
-    """A swarm of candidate boxes, each bounded on a surrogate of its own; a whole swarm is one batch of runs.
+    """A swarm of candidate boxes, each bounded on a separate surrogate; a whole swarm is one batch of runs.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ class Nested(Checked):
         return eta, exponents, np.linalg.pinv(products(chebyshev(eta, exponents.max(axis=0)), exponents))
 
     def _told(self, problem: BandProblem, x: np.ndarray, message: str, seed: int) -> BandSolution:
-        """The best box once more, with a surrogate that also knows slopes in directions without width, and a check."""
+        """The best box once more, with a surrogate that also has slopes in directions without width, and a check."""
         search = problem.unknowns.search
         lower, upper = problem.unknowns.ends(x)
         least = WIDENED * (search.upper - search.lower)

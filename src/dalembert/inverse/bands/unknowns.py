@@ -34,7 +34,7 @@ class Unknowns:
         return self.region or (self.search.lower, self.search.upper)
 
     def around(self, lower: np.ndarray, upper: np.ndarray, radius: float, width: float) -> "Unknowns":
-        """The same unknowns, in a box (d,), (d,) grown by parts of its own radius and of the search box's width."""
+        """The same unknowns, in a box (d,), (d,) grown by parts of its radius and of the search box's width."""
         low, high = self.search.lower, self.search.upper
         margin = radius * (upper - lower) / 2 + width * (high - low)
         return replace(self, region=(np.maximum(lower - margin, low), np.minimum(upper + margin, high)))

@@ -14,7 +14,7 @@ from dalembert.inverse.problem.random_residuals import random_residuals
 from dalembert.optimize import Progress, Squares
 
 MANY = 30
-"""Values from which a test of their correlation tells residuals of a false minimum from noise."""
+"""Values from which a test of their correlation distinguishes residuals of a false minimum from noise."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,7 +130,7 @@ def descend(ladder: Sequence[MisfitProblem], method: Squares, point: np.ndarray,
 
 
 def recorded(problem: MisfitProblem, point: np.ndarray, descent: Callable[[], End]) -> End:
-    """End of a descent from a search point (parameters,), told to the journal as a start."""
+    """End of a descent from a search point (parameters,), recorded in the journal as a start."""
     values = problem.search.vectors(point)
     problem.journal.began(values)
     end = descent()

@@ -13,7 +13,7 @@ from dalembert.inverse.problem.problem import Linearisation, MisfitProblem
 TIME = "s"
 
 RANKED = 4000
-"""Most values by which mistakes are ranked: the standard deviation of a mean square of so many is 2 % of it."""
+"""Most values by which mistakes are ranked: the standard deviation of their mean square is 2 % of it."""
 
 GOLDEN = (5**0.5 - 1) / 2
 

@@ -1,4 +1,4 @@
-"""Measurements smoothed by local polynomials: what a segment begins with, and how exact the data are."""
+"""Measurements smoothed by local polynomials: initial states of segments, and noise levels."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

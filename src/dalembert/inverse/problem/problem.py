@@ -82,7 +82,7 @@ class MisfitProblem:
     def prefetched(self, work: Work[Item], items: Sequence[Item]) -> Generator[Item, None, None]:
         """Yield the items in their order; where the model is on a cluster, answers for work on each come first.
 
-        ``work`` is called on the workers with a problem that tells nobody of its events.
+        ``work`` is called on the workers with a problem that reports no events.
         """
         alone = replace(self, model=cast(Any, None), journal=Journal(self.samples))
         return forward.prefetched(self.model, partial(_posed, alone, work), items)

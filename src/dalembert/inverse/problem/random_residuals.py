@@ -23,7 +23,7 @@ def autocorrelation(residual: np.ndarray, shape: tuple[int, int], present: np.nd
 def random_residuals(
     residual: np.ndarray, shape: tuple[int, int], present: np.ndarray | None = None, *, deviations: float = 3.0
 ) -> bool:
-    """Whether residuals look like noise: their autocorrelation is within ``deviations`` of its own, 1/√values.
+    """Whether residuals look like noise: their autocorrelation is at most ``deviations`` times 1/√values.
 
     ``present`` (samples, channels) masks the values that are there, all if not given; the others' residuals are 0.
     """

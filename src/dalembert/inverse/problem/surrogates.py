@@ -22,9 +22,9 @@ def surrogate_of(
     held_out: int | None = None,
     groups: np.ndarray | None = None,
 ) -> Surrogate:
-    """Surrogate of (samples, channels) = ``shape`` outputs, told to the journal.
+    """Surrogate of (samples, channels) = ``shape`` outputs, recorded in the journal.
 
-    Each channel has a scale of its own, or the outputs that have one number in ``groups`` (outputs,).
+    Each channel has a separate scale, or the outputs that have one number in ``groups`` (outputs,).
     """
     samples, channels = shape
     before = len(journal.failures)

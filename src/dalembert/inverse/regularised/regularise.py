@@ -275,7 +275,7 @@ def _weight(weight: float | str, corner: float, discrepancy: float) -> float:
 
 @dataclass(frozen=True)
 class _Stage:
-    """A round of at most ``of``, which says when it goes on."""
+    """A round of at most ``of``, which reports each gradient."""
 
     journal: Journal
     number: int

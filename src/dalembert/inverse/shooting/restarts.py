@@ -53,7 +53,7 @@ def _check_named(track: Track, shooting: MultipleShooting) -> None:
 
 
 def check_restart(problem: MisfitProblem, shooting: MultipleShooting, values: np.ndarray) -> None:
-    """Refuse states with which a motion does not go on as it did: one run over two segments, the second one anew."""
+    """Refuse states from which a motion does not continue: compare one run with one restarted at the second segment."""
     for track in tracks(problem):
         if shooting.states is None:
             _check_begun(track, shooting.segments or 2, values[track.wiring])

@@ -31,7 +31,7 @@ USUAL = 8
 
 @dataclass(frozen=True)
 class MultipleShooting(Checked):
-    """The motion in segments with initial states of their own, which must meet; for chaotic motion.
+    """The motion in segments with separate initial states, which must meet; for chaotic motion.
 
     Parameters
     ----------
@@ -199,7 +199,7 @@ def _levels(problem: MisfitProblem, shooting: MultipleShooting, values: np.ndarr
 
 
 def _continued(chain: Chain, found: ChainEnd, cuts: list[Cut]) -> tuple[list[Cut], np.ndarray]:
-    """Motions in fewer segments, and the unknowns where the former ones ended."""
+    """Motions in fewer segments, and the unknowns where the longer chain ended."""
     ended = dict(zip(chain.segments.parameters.names, chain.search.vectors(found.point), strict=True))
     names = [one.name for cut in cuts for node in cut.nodes for one in node.unknowns(cut.track)]
     return cuts, np.array([ended[name] for name in (*chain.problem.model.parameters.names, *names)])

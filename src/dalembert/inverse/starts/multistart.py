@@ -87,7 +87,7 @@ def _beside(problem: MisfitProblem, method: Squares, best: End, most: int) -> li
 
 
 def horizons(problem: MisfitProblem, horizon: str | None) -> list[int]:
-    """Numbers of samples from short to all: an eighth, a quarter, a half, all, but none too few to tell anything."""
+    """Numbers of samples from short to all: an eighth, a quarter, a half, all; without numbers that are too few."""
     if horizon is None:
         return [problem.samples]
     least = max(3, -(-2 * len(problem.search.lower) // problem.weights.shape[1]))
@@ -149,9 +149,9 @@ def _screen(ladder: list[MisfitProblem], number: int, seed: int, spread: str) ->
 
 
 def _reproduced(problem: MisfitProblem, ends: list[End]) -> bool:
-    """Whether a second end cannot be told from the best one by the data, and the residuals look like noise. Two ends
-    cannot be told apart when misfit and linearised residuals differ by less than one variance of the noise,
-    misfit/(values − parameters).
+    """Whether the data do not distinguish a second end from the best one, and the residuals look like noise. Two ends
+    are the same if misfit and linearised residuals differ by less than one variance of the noise, misfit/(values −
+    parameters).
     """
     best, *others = sorted(ends, key=lambda end: end.misfit)
     at = best.linearisation

@@ -43,7 +43,7 @@ def runs(
 
 
 def polished(problem: MisfitProblem, method: Squares, best: End) -> End:
-    """Where least squares ends from ``best``, as a start of its own; ``best`` if it comes no further."""
+    """End of least squares from ``best``, as a separate start; ``best`` if the misfit does not fall."""
     journal, vector = problem.journal, problem.search.vectors(best.point)
     journal.began(vector)
     end = refine(problem, method, best)

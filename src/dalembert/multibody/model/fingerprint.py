@@ -1,4 +1,4 @@
-"""What tells a mechanism from others."""
+"""Hash by which mechanisms are distinguished."""
 
 import hashlib
 

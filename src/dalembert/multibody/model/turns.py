@@ -1,4 +1,4 @@
-"""Whole turns of angles that coordinates give up to whole turns, counted in the integration.
+"""Whole turns of angles that coordinates leave undetermined, counted in the integration.
 
 An angle a with the rate w at the time t follows the angle a_0 with the rate w_0 at the last end of a step, t_0: of
 a + 2 pi k it is the one nearest to a_0 + (t - t_0) (w + w_0)/2. So output times may be turns apart, and within a step

@@ -177,7 +177,7 @@ def work_precision(
         machine only ever adds.
     checkpoint : Checkpoint, optional
         Where the references and the rows are kept as they are found, with their times; begun again with the same file
-        the comparison goes on with those that are missing.
+        the comparison continues with those that are missing.
     on_row : callable, optional
         Is called with each `IntegratorRun` when it is there.
 

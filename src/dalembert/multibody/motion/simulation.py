@@ -69,7 +69,7 @@ def simulate(
     ModelError
         Where the mechanism cannot be assembled or has redundant constraints.
     SolveError
-        Where the solver could not go on, with time and component.
+        Where the solver failed, with time and component.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""XML with line numbers that knows which of its elements and attributes were read."""
+"""XML with line numbers that records which of its elements and attributes were read."""
 
 __all__ = ["Element", "parsed"]
 

@@ -1,4 +1,4 @@
-"""What the panel of measured data shows of a file, computed in a process of its own: files may be large."""
+"""Content of the panel of measured data, computed in a separate process, since files may be large."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace

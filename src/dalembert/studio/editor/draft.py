@@ -203,7 +203,7 @@ class Draft:
             self._tell("files")
 
     def reload(self) -> None:
-        """Take the text from the file. The former text can be brought back by :meth:`undo`."""
+        """Take the text from the file. :meth:`undo` restores the replaced text."""
         self._read()
         self.set_text(self._saved)
         self._note("same")

@@ -21,7 +21,7 @@ _TELLING = (
     ("mechanism", _KEYS["mechanism"]),
     ("structure", _KEYS["structure"]),
 )
-"""Kinds by the keys that tell them, the surest first."""
+"""Kinds by the keys that identify them, the most specific first."""
 
 
 def model_kind(document: Any) -> str:

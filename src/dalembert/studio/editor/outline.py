@@ -1,4 +1,4 @@
-"""What a page knows of a study; the study itself stays in the process that reads it."""
+"""Summary of a study for pages; the study itself stays in the process that reads it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -28,7 +28,7 @@ class SliderScale:
     item: Parameter
 
     def value(self, position: float) -> float:
-        """Value at a position, with as many digits as tell neighbouring positions apart."""
+        """Value at a position, with as many digits as distinguish neighbouring positions."""
         lower, upper, share = self.item.lower, self.item.upper, min(max(position / STEPS, 0.0), 1.0)
         if share in (0.0, 1.0):
             return upper if share else lower

@@ -1,4 +1,4 @@
-"""Figures of runs that go on, and of runs side by side."""
+"""Figures of unfinished runs, and of several runs together."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -93,7 +93,7 @@ def bare(figure: go.Figure) -> dict[str, Any]:
 
 
 def on_any_page(figure: go.Figure) -> go.Figure:
-    """The figure without a ground of its own, for a light and for a dark page."""
+    """The figure with a transparent background, for a light and for a dark page."""
     clear = "rgba(0,0,0,0)"
     figure.update_layout(paper_bgcolor=clear, plot_bgcolor=clear, font_color=NEUTRAL)
     figure.update_layout(margin={"l": 60, "r": 10, "t": 20, "b": 45})

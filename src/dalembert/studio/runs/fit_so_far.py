@@ -1,4 +1,4 @@
-"""The best fit so far beside the data, computed in a process of its own while the run goes on in another."""
+"""The best fit so far and the data, computed in a separate process during the run."""
 
 from dataclasses import dataclass
 from pathlib import Path

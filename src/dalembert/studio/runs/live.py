@@ -1,4 +1,4 @@
-"""A run's events while it goes on, and about how long its stage still takes."""
+"""Events of an unfinished run, and the estimated time left of its stage."""
 
 from collections import deque
 from collections.abc import Iterator, Mapping
@@ -47,7 +47,7 @@ class Remaining:
         self._seen.append((datetime.fromisoformat(event["at"]).timestamp(), float(amount)))
 
     def begin(self) -> None:
-        """Forget the speed, as the run begins or goes on: what is repeated has another one."""
+        """Forget the speed when a run begins or resumes: repeated work is faster."""
         self._seen.clear()
 
     def sentence(self) -> str:

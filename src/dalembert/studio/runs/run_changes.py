@@ -144,7 +144,7 @@ def _texts(table: Any) -> Iterator[tuple[Any, Any, str]]:
 
 
 def _idle(workspace: Workspace, name: str) -> RunFolder:
-    """The run of a name that is not going on."""
+    """The run of a name, refused while it is running."""
     folder = workspace.run(name)
     if folder.state()["state"] == RUNNING:
         raise InputError(f"{name} is running; stop it first")

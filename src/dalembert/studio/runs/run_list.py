@@ -126,7 +126,7 @@ def _misfit(folder: RunFolder, best: Mapping[str, Any]) -> float | None:
 
 
 def _duration(state: Mapping[str, Any]) -> float | None:
-    """Seconds of computation, those of a run that is going on included; None of a damaged state."""
+    """Seconds of computation, also of an unfinished run; None for a damaged state."""
     if "seconds" not in state:
         return None
     seconds = float(state["seconds"])

@@ -1,4 +1,4 @@
-"""A run: live while it goes on, with its report when it has ended."""
+"""Page of a run: live until it ends, then with its report."""
 
 import asyncio
 import json
@@ -39,7 +39,7 @@ SAYS = {
 
 
 def run_page(workspace: Workspace, jobs: Jobs, watcher: Worker, name: str) -> None:
-    """Watch a run, stop it or go on with it, and read its report."""
+    """Watch a run, stop or resume it, and read its report."""
     folder = RunFolder(workspace.runs_folder / name)
     with frame(name):
         page = _Page(workspace, folder, jobs, watcher)

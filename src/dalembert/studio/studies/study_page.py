@@ -83,7 +83,7 @@ def _copy(draft: Draft) -> None:
 
 
 async def _start(draft: Draft, services: PageServices, checking: Checking) -> None:
-    """Save, run in a process of its own, and go to the run's page."""
+    """Save, run in a separate process, and go to the run's page."""
     if draft.reading.text != draft.text:
         await checking.check()
     with complaints("save"):

@@ -24,7 +24,7 @@ STORAGE = "run-storage"
 """Kind of the event that says how much the run will write to the disk until it ends, before its first simulation."""
 
 OF_THE_RUN = "run-"
-"""How the kinds of events begin that tell of the run itself; the others tell of what it does."""
+"""Prefixes of the kinds of events that concern the run itself; others concern its computation."""
 
 
 @dataclass
@@ -92,7 +92,7 @@ def teller(emit: Emit, as_record: Callable[[Any], dict[str, Any]]) -> Callable[[
 
 
 def read_events(path: Path) -> Iterator[Event]:
-    """Events of a run, one that may still be going on included; without lines that are not whole or damaged."""
+    """Events of a run, also of an unfinished one, without incomplete or damaged lines."""
     if not path.exists():
         return
     with path.open("rb") as file:
@@ -112,7 +112,7 @@ def event_of(line: bytes) -> Event | None:
 
 
 def last_progress(path: Path, tail: int = 65536) -> Event | None:
-    """Last event of a run that tells a best value, from the end of its file."""
+    """Last event of a run with a best value, from the end of its file."""
     if not path.exists():
         return None
     with path.open("rb") as file:

@@ -1,4 +1,4 @@
-"""The folder of a run: what ran, what happened, what came out, and in which state it is."""
+"""The folder of a run: its study, events, results and state."""
 
 import hashlib
 import json

@@ -33,7 +33,7 @@ class ProgressText:
     _samples: int | None = field(default=None, init=False)
 
     def take(self, event: Event) -> bool:
-        """Take in an event; whether it told anything."""
+        """Take in an event; return whether it changed the text."""
         text, done, total = self._text(event)
         if text:
             self.last = text, done, total

@@ -234,7 +234,7 @@ def _end_by(error: BaseException, attempt: Attempt) -> None:
 
 
 def unknowns(study: Study) -> tuple[str, ...]:
-    """Names of the values that the events of a run tell."""
+    """Names of the values in the events of a run."""
     return TASKS[study.task].unknowns(study)
 
 

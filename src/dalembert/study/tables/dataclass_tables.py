@@ -75,7 +75,7 @@ def table_of(
     units: Mapping[str, str] = MappingProxyType({}),
     prefix: str = "",
 ) -> type[KindTable]:
-    """Table with the constructor's arguments of a dataclass as keys, and ``kind`` to tell it from others.
+    """Table with the constructor's arguments of a dataclass as keys, and ``kind`` to distinguish it from others.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def table_of(
 
 
 def any_of(tables: Iterable[type[StudyTable]], default: str = "") -> Any:
-    """Type of a key that takes any one of several tables, told apart by their ``kind``, or by the default one."""
+    """Type of a key that takes one of several tables, selected by ``kind`` or by the default kind."""
     tables = list(tables)
     if not default:
         union = reduce(or_, tables)
@@ -238,7 +238,7 @@ class _OrSeries:
 
 
 def _either(kinds: list[Any], lists: list[bool]) -> Any:
-    """Type of a key that takes one of several things; a list or a table are told apart by what is given."""
+    """Type of a key that takes one of several types, for example a list or a table."""
     if len(kinds) == 2 and lists == [True, False]:
         return alternative(lambda value: isinstance(value, list), *kinds)
     return reduce(or_, kinds)

@@ -116,7 +116,7 @@ def series_in(tables: Mapping[str, Any]) -> dict[str, tuple[str, ...]]:
 
 
 def with_series(tables: dict[str, ParameterTable]) -> dict[str, ParameterTable]:
-    """The tables of single parameters, those of a series in place of its own."""
+    """The tables of single parameters, with those of its members in place of a series."""
     result: dict[str, ParameterTable] = {}
     for name, table in tables.items():
         series_names = [name] if table.count is None else [f"{name}_{k + 1}" for k in range(table.count)]

@@ -140,7 +140,7 @@ def _refuse_late(table: DataTable, data: "Measurements") -> None:
 
 
 def _fine(study: Study, stamps: np.ndarray, sensors: dict[str, Sensor], start: Parameter | None = None) -> np.ndarray:
-    """Times of the solver's steps until the last reading, every so manyth of them where they are very many."""
+    """Times of the solver's steps until the last reading; of very many steps every n-th one."""
     delays = [sensor.delay for sensor in sensors.values() if sensor.delay is not None]
     least = min((item.lower if isinstance(item, Parameter) else item[0] for item in delays), default=0.0)
     end = float(stamps[-1]) - min(0.0, least) - (0.0 if start is None else start.lower)

@@ -1,4 +1,4 @@
-"""What an identification tells beyond its values: populations, profiles and predictions, and a look before it."""
+"""Tasks around an identification: populations, profiles and predictions, and a check before it."""
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path

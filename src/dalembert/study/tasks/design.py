@@ -1,4 +1,4 @@
-"""Design: which sensors, and for how long, would tell the parameters best."""
+"""Design: the sensors and durations that determine the parameters best."""
 
 from typing import Annotated, Any, Literal
 
@@ -21,7 +21,7 @@ Sets = Annotated[
 
 
 class DesignTable(StudyTable):
-    """Rank experiments by how well they would tell the parameters, before anything is measured."""
+    """Rank experiments by how well they determine the parameters, before anything is measured."""
 
     times: Times | None = Field(None, description="times of a mechanism's samples: a list, or a range")
     frequencies: Frequencies | None = Field(None, description="of a structure's response: a list, or a range")

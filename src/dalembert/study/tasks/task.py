@@ -50,12 +50,12 @@ class Outcome:
 
     @property
     def status(self) -> str:
-        """What came out, or what could not, in a sentence."""
+        """The result, or why there is none, in a sentence."""
         return self.result.status
 
     @property
     def summary(self) -> str:
-        """What came out, in a few lines for a terminal."""
+        """The result in a few lines for a terminal."""
         return self.result.summary()
 
     @property
@@ -158,7 +158,7 @@ class Task(ABC):
         return None
 
     def unknowns(self, study: Study) -> tuple[str, ...]:
-        """Names of the values that the events of a run tell."""
+        """Names of the values in the events of a run."""
         return study.parameters.names
 
     def foresight(self, study: Study) -> int:

@@ -65,7 +65,7 @@ class FunctionReference:
 
 @contextmanager
 def users_code() -> Iterator[None]:
-    """A block that calls functions of the user's: what they raise is told with its place in their file."""
+    """A block that calls functions of the user: errors in them are reported with the place in their file."""
     try:
         yield
     except MemoryError as error:

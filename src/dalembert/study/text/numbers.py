@@ -176,7 +176,7 @@ def pair(of: Any) -> Any:
 
 
 def row(of: Any, count: int) -> Any:
-    """Type of a key that takes a list of so many numbers of a type."""
+    """Type of a key that takes a list of a fixed number of numbers of a type."""
     return Annotated[list[of], Field(min_length=count, max_length=count)]
 
 

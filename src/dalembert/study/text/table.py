@@ -148,7 +148,7 @@ def completed(table: type[Table], **keys: Any) -> type[Table]:
 
 
 def alternative(is_first: Callable[[Any], bool], first: Any, other: Any) -> Any:
-    """Type of a key that takes one of two things, told apart by a test of what is given."""
+    """Type of a key that takes one of two types, selected by a test of the value."""
     return Annotated[
         Annotated[first, Tag("#1")] | Annotated[other, Tag("#2")],
         Discriminator(lambda value: "#1" if is_first(value) else "#2"),

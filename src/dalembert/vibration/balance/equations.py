@@ -112,7 +112,7 @@ class Equations:
             return correct(self.balance(number), self.condensation.at, self.method, unknowns, omega, plane, point)
 
         def back(candidate: Solution) -> Solution:
-            """The solution with the first number of samples, with which a curve goes on smoothly, if there is one."""
+            """The solution with the first number of samples, by which a curve stays smooth; None if there is none."""
             near = candidate.unknowns, candidate.omega
             first = correct(self.balance(samples), self.condensation.at, self.method, *near, plane, candidate.point)
             return first if first.converged else candidate

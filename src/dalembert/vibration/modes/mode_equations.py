@@ -7,7 +7,7 @@ periodic motion concept),
 
 so that ω and the damping ratio ζ belong to the amplitude as those of a linear mode do. The unknowns are the harmonics
 of all coordinates, ω, ξ = 2 ζ ω and the amplitude; the first harmonic of one degree of freedom has the amplitude as its
-cosine and no sine, and a plane across the path tells one motion from the next.
+cosine and no sine, and a plane across the path separates one motion from the next.
 """
 
 import hashlib

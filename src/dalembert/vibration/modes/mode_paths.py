@@ -17,7 +17,7 @@ CORNER = 1e-2
 RETRACED = 1e-3
 """Relative difference of frequencies below which a path has returned to its start."""
 BEHIND = 2.0
-"""Ratio by which the path between two amplitudes may turn back behind the first."""
+"""Ratio by which the path between two amplitudes may pass behind the first."""
 FIRST_PART, LEAST_PART = 0.125, 2.0**-10
 """First and smallest step of the part of the nonlinearity on the way from the linear mode."""
 SAME = 0.9

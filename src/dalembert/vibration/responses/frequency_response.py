@@ -104,12 +104,12 @@ def frequency_response(
         Degrees of freedom, nodes or sets of nodes whose motion is kept; all of a small structure, and of a large one
         those with forces and contacts, if not given.
     start : (FrequencyCurve, int), optional
-        A curve of the same system and the number of one of its points, from which to go on. Its harmonics are among
+        A curve of the same system and the number of one of its points, from which to continue. Its harmonics are among
         those of ``method``.
     stability : bool
         Whether the stability of each point is found too, and the places where it changes: by Hill's method, or with
         friction by the linearised motion over a period (see :func:`floquet_multipliers`). On paths between two
-        frequencies these places are points of their own; with given frequencies the first one behind is marked.
+        frequencies these places are separate points; with given frequencies the first one behind is marked.
     check : bool
         Whether the largest motion is computed again with twice the harmonics. A change is the finding
         ``"few-harmonics"``.
@@ -278,7 +278,7 @@ def _conclude(posed: _PosedCurve, followed: _FollowedCurve) -> FrequencyCurve:
 
 
 def _refine(posed: _PosedCurve, method: HarmonicBalance) -> FrequencyCurve:
-    """Return the curve with so many harmonics that its truncation errors are small, from few harmonics on."""
+    """Return the curve with enough harmonics for small truncation errors, starting from few."""
     start = posed.start
     level = method.keeping(posed.system.highest_harmonic).at_least(1 if start is None else start[0].orders[-1]).first()
     begin = start

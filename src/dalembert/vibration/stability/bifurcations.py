@@ -23,7 +23,7 @@ PLACED = 1e-4
 def judged(problem: Equations, path: Iterable[PathPoint], located: bool) -> Iterator[PathPoint]:
     """Yield points with their stability, and the points at which it changes.
 
-    ``located``: whether changes become points of their own; else the first point behind one is marked.
+    ``located``: whether changes become separate points; else the first point behind one is marked.
     """
     before: tuple[Solution, Exponents] | None = None
     folded, adjacent = False, True

@@ -27,8 +27,8 @@ def floquet_multipliers(system: VibrationSystem, curve: FrequencyCurve, point: i
     way : {"auto", "hill", "time map"}
         Hill's method in frequency, which has the accuracy of the harmonics (twice as many as the curve's where a stop
         is touched) but does not know the memory of sliders, or
-        trapezoidal steps of the linearised motion over a period, whose error falls with their square. Automatic: the
-        former without contacts with friction, the latter with such.
+        trapezoidal steps of the linearised motion over a period, whose error falls with their square. Automatic: Hill's
+        method without contacts with friction, the linearised motion with such.
 
     Returns
     -------

@@ -102,7 +102,7 @@ def _on_worker(targets: Sequence[Target], sampler: NUTS, length: Length, problem
 
 
 def _chain(sampler: NUTS, length: Length, on_draws: OnDraws, stop: Event, target: Target, chain: int) -> Chains:
-    """Sample one chain. nutpie calls Python from a thread of its own and ends the process where a function raises. So
+    """Sample one chain. nutpie calls Python from a separate thread and ends the process where a function raises. So
     the first error is kept, further calls return at once, and the error is raised at the end.
     """
     nutpie, count = package("nutpie", "the sampler NUTS"), len(target.centre)
@@ -149,7 +149,7 @@ def _chain(sampler: NUTS, length: Length, on_draws: OnDraws, stop: Event, target
 
 
 def _trace(nutpie: Any, compiled: Any, sampler: NUTS, length: Length, chain: int, errors: list[BaseException]) -> Any:
-    """What nutpie returns; the error of a function of ours where that is why it ended."""
+    """Result of nutpie; raises the error of the density if that ended it."""
     try:
         return nutpie.sample(
             compiled,

@@ -171,7 +171,11 @@ def _test(kind: Any) -> Callable[[Any], bool]:
         return callable
     inner = [_any_of(member) for member in typing.get_args(kind)]
     if origin is tuple and Ellipsis not in typing.get_args(kind):
-        return lambda value: _is_row(value) and len(value) == len(inner) and all(map(_holds, inner, value))
+        return lambda value: (
+            _is_row(value)
+            and len(value) == len(inner)
+            and all(test(entry) for test, entry in zip(inner, value, strict=True))
+        )
     if origin in (tuple, list, Sequence, Iterable):
         item = typing.get_args(kind)[0]
         many = _finite_floats if {float, complex} & set(kinds_of(item)) else lambda value: False
@@ -202,10 +206,6 @@ def _finite_floats(value: Any) -> bool:
 def _any_of(annotation: Any) -> Callable[[Any], bool]:
     tests = [_test(kind) for kind in kinds_of(annotation)]
     return lambda value: any(test(value) for test in tests)
-
-
-def _holds(test: Callable[[Any], bool], value: Any) -> bool:
-    return test(value)
 
 
 def takes_checked(*but: str) -> Callable[[Function], Function]:

@@ -43,12 +43,8 @@ class Unit:
         return Unit(self.scale * Fraction(scale), self.turns, self.exponents)
 
 
-def _base(name: str) -> Unit:
-    return Unit(exponents=tuple(int(name == base) for base in BASE))
-
-
 NONE = Unit()
-_KG, _M, _S, _A, _K, _RAD, _CYCLE, _COUNT = map(_base, BASE)
+_KG, _M, _S, _A, _K, _RAD, _CYCLE, _COUNT = (Unit(exponents=tuple(int(name == base) for base in BASE)) for name in BASE)
 _N = _KG * _M * _S**-2
 _J, _PA, _DEG = _N * _M, _N * _M**-2, Unit(Fraction(1, 180), 1, _RAD.exponents)
 _W = _J * _S**-1

@@ -124,9 +124,18 @@ def _searched(
     for start in range(0, len(low), size):
         box = least[start : start + size], most[start : start + size]
         values = scan.values(polynomial, spread, *box)
-        parts.append(
-            _pick(values, spread, *box) if method == "scan" else _refine(polynomial, values, spread, *box, starts)
-        )
+        if method == "scan":
+            parts.append(_pick(values, spread, *box))
+            continue
+        from dalembert.kernels.preparation import prepare
+        from dalembert.surrogate.extremes import extremes as refine  # compiled: not before it is needed
+        from dalembert.surrogate.extremes import scratch
+
+        prepare([refine])
+        refined, at = np.empty((2, *values.shape[:2])), np.empty((2, *values.shape[:2], low.shape[1]))
+        arrays = (np.ascontiguousarray(entry) for entry in (values, spread.grid, spread.sides, *box))
+        refine(*arrays, polynomial.rows, refined, at, scratch(polynomial.rows, starts))
+        parts.append((refined, at))
     extremes, at = (np.concatenate(entries, axis=1) for entries in zip(*parts, strict=True))
     inside = np.clip(polynomial.points(at), low[:, None], high[:, None])
     place = np.where(at == least[:, None], low[:, None], np.where(at == most[:, None], high[:, None], inside))
@@ -139,22 +148,3 @@ def _pick(values: np.ndarray, spread: scan.Scan, low: np.ndarray, high: np.ndarr
     part = spread.grid[places]
     at = np.where(part == 1, high[:, None], low[:, None] + part * (high - low)[:, None])
     return np.take_along_axis(values[None], places[..., None], axis=3)[..., 0], at
-
-
-def _refine(
-    polynomial: ChebyshevPolynomial,
-    values: np.ndarray,
-    spread: scan.Scan,
-    low: np.ndarray,
-    high: np.ndarray,
-    starts: int,
-) -> tuple[np.ndarray, np.ndarray]:
-    """As :func:`_pick`, refined."""
-    from dalembert.kernels.preparation import prepare
-    from dalembert.surrogate.extremes import extremes, scratch  # compiled: not before it is needed
-
-    prepare([extremes])
-    refined, at = np.empty((2, *values.shape[:2])), np.empty((2, *values.shape[:2], low.shape[1]))
-    arrays = (np.ascontiguousarray(entry) for entry in (values, spread.grid, spread.sides, low, high))
-    extremes(*arrays, polynomial.rows, refined, at, scratch(polynomial.rows, starts))
-    return refined, at

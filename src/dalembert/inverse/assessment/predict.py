@@ -77,7 +77,10 @@ def predict(model: ForwardModel | Experiment, fit: Fit, level: float = 0.95) -> 
         parameters, data, prefix, model = model.parameters, model.data, f"{model.name}.", model.model
     else:
         parameters = tuple(model.parameters)
-    wiring = _wiring([item.name for item in parameters], fit)
+    known = fit.parameters.names
+    for item in parameters:
+        require_known("parameter", item.name, known, "predict: the model has one that was not identified")
+    wiring = np.array([known.index(item.name) for item in parameters], dtype=int)
     response, slopes = linearised(model, fit.values[wiring])
     jacobian = np.zeros((*response.shape, len(fit.values)))
     jacobian[:, :, wiring] = slopes
@@ -136,14 +139,6 @@ def _ended(model: ForwardModel, names: Sequence[str], ends: Sequence[int | None]
         )
         advice = "Predict a shorter time, or determine the initial state more exactly."
         yield Finding("band-ends", "warning", {"channel": name, "at": at}, message, advice)
-
-
-def _wiring(names: list[str], fit: Fit) -> np.ndarray:
-    """Where parameters stand among the identified ones."""
-    known = fit.parameters.names
-    for name in names:
-        require_known("parameter", name, known, "predict: the model has one that was not identified")
-    return np.array([known.index(name) for name in names], dtype=int)
 
 
 def response_deviations(fit: Fit, jacobian: np.ndarray) -> np.ndarray:

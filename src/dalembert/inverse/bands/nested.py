@@ -52,7 +52,12 @@ class Nested(Checked):
             If not one candidate could be simulated.
         """
         unknowns, journal = problem.unknowns, problem.journal
-        eta, exponents, solve = self._design(len(unknowns.chosen))
+        if not len(unknowns.chosen):
+            raise InputError("no intervals were given; expected the name of at least one parameter")
+        # Coordinates (runs, k) of a surrogate's runs, exponents (terms, k), and values to coefficients (terms, runs).
+        eta = self.scheme.points(len(unknowns.chosen))
+        exponents = total_degree(len(unknowns.chosen), self.scheme.order)
+        solve = np.linalg.pinv(products(chebyshev(eta, exponents.max(axis=0)), exponents))
 
         def misfit(x: np.ndarray) -> np.ndarray:
             lower, upper = unknowns.ends(x)
@@ -84,13 +89,6 @@ class Nested(Checked):
                 f"{journal.failures[0]}; look at the model there, or change the bounds"
             )
         return self._told(problem, best.x, best.message, seed)
-
-    def _design(self, directions: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Coordinates (runs, k) of a surrogate's runs, exponents (terms, k), coefficients of values (terms, runs)."""
-        if directions == 0:
-            raise InputError("no intervals were given; expected the name of at least one parameter")
-        eta, exponents = self.scheme.points(directions), total_degree(directions, self.scheme.order)
-        return eta, exponents, np.linalg.pinv(products(chebyshev(eta, exponents.max(axis=0)), exponents))
 
     def _told(self, problem: BandProblem, x: np.ndarray, message: str, seed: int) -> BandSolution:
         """The best box once more, with a surrogate that also has slopes in directions without width, and a check."""

@@ -6,7 +6,6 @@ import numpy as np
 
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.experiments.blocks import blocks_of_records
-from dalembert.inverse.noise.likelihood.likelihood import Likelihood
 from dalembert.inverse.posterior.convergence import convergence
 from dalembert.inverse.posterior.model_variants import Remembered
 from dalembert.inverse.posterior.modes import PosteriorModes
@@ -52,7 +51,12 @@ def posterior_of(drawn: DrawnChains, blocks: int) -> Posterior:
     kept = _spaced(len(flat), int(MOST_VALUES // max(1, len(places.row))))
     replicated = _spaced(len(flat), REPLICAS)
     diagnostics = convergence(vectors)
-    block_of = _blocks(likelihood, blocks)
+    of_records = blocks_of_records(
+        likelihood.problem.weights > 0,
+        getattr(likelihood.problem.model, "parts", ()),
+        lambda samples: min(blocks, samples),
+    )
+    block_of = of_records.ravel()[np.concatenate([channel.series.rows for channel in likelihood.channels])]
     experiment_of = np.unique(places.experiment, return_inverse=True)[1].ravel()
     groups = np.arange(len(places.row)), block_of, experiment_of
     # A Metropolis chain repeats a vector where it rejects: each distinct one is simulated once.
@@ -112,11 +116,3 @@ def posterior_of(drawn: DrawnChains, blocks: int) -> Posterior:
 def _spaced(count: int, most: int) -> np.ndarray:
     """Numbers of at most ``most`` of ``count`` draws, evenly spaced."""
     return np.unique(np.linspace(0, count - 1, min(count, max(most, 1))).astype(int))
-
-
-def _blocks(likelihood: Likelihood, blocks: int) -> np.ndarray:
-    """Number of the block of each value, (values,): of at most ``blocks`` blocks of each record."""
-    problem = likelihood.problem
-    parts = getattr(problem.model, "parts", ())
-    numbers = blocks_of_records(problem.weights > 0, parts, lambda samples: min(blocks, samples))
-    return numbers.ravel()[np.concatenate([channel.series.rows for channel in likelihood.channels])]

@@ -11,34 +11,20 @@ from dalembert.errors import InputError, require_known, shown
 Curve = Callable[[np.ndarray], np.ndarray]
 
 
-def _huber(x: np.ndarray) -> np.ndarray:
-    return np.where(x <= 1, x**2, 2 * x - 1)
-
-
-def _huber_pull(x: np.ndarray) -> np.ndarray:
-    return np.minimum(x, 1)
-
-
-def _soft_l1(x: np.ndarray) -> np.ndarray:
-    return 2 * x**2 / (1 + np.sqrt(1 + x**2))  # 2 (√(1 + x²) − 1) without cancellation
-
-
-def _soft_l1_pull(x: np.ndarray) -> np.ndarray:
-    return x / np.sqrt(1 + x**2)
-
-
-def _cauchy(x: np.ndarray) -> np.ndarray:
-    return np.log1p(x**2)
-
-
-def _cauchy_pull(x: np.ndarray) -> np.ndarray:
-    return x / (1 + x**2)
-
-
 LOSSES: dict[str, tuple[Curve, Curve, Curve, float]] = {
-    "huber": (_huber, _huber_pull, lambda x: np.where(x <= 1, 1.0, 0.0), 1.345),
-    "soft-l1": (_soft_l1, _soft_l1_pull, lambda x: (1 + x**2) ** -1.5, 1.287),
-    "cauchy": (_cauchy, _cauchy_pull, lambda x: (1 - x**2) / (1 + x**2) ** 2, 2.385),
+    "huber": (
+        lambda x: np.where(x <= 1, x**2, 2 * x - 1),
+        lambda x: np.minimum(x, 1),
+        lambda x: np.where(x <= 1, 1.0, 0.0),
+        1.345,
+    ),
+    "soft-l1": (
+        lambda x: 2 * x**2 / (1 + np.sqrt(1 + x**2)),  # 2 (√(1 + x²) − 1) without cancellation
+        lambda x: x / np.sqrt(1 + x**2),
+        lambda x: (1 + x**2) ** -1.5,
+        1.287,
+    ),
+    "cauchy": (lambda x: np.log1p(x**2), lambda x: x / (1 + x**2), lambda x: (1 - x**2) / (1 + x**2) ** 2, 2.385),
 }
 """By name: ϱ(x) of a residual's size over the scale, half its first and second derivative, and the usual scale."""
 

@@ -1,6 +1,6 @@
 """Mean and spread of parameters that vary from one specimen to the next (mixed effects), from the specimens' fits."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -175,17 +175,14 @@ def _root(function: Callable[[float], float], first: float, second: float) -> fl
     return float(root_scalar(function, bracket=(first, second), method="brentq", xtol=1e-5).root)
 
 
-def _findings(estimates: Estimates, lower: np.ndarray, upper: np.ndarray, level: float) -> list[Finding]:
+def _findings(estimates: Estimates, lower: np.ndarray, upper: np.ndarray, level: float) -> Iterator[Finding]:
     count = len(estimates.specimens)
-    findings = [] if count >= FEW else [_few(count)]
+    if count < FEW:
+        message = f"There are {count} specimens. Their spread is uncertain."
+        advice = f"Measure at least {FEW} specimens, or use the upper ends of the spreads."
+        yield Finding("few-specimens", "warning", {"specimens": count, "expected": FEW}, message, advice)
     ends = zip(estimates.names, estimates.units, lower.tolist(), upper.tolist(), strict=True)
-    return [*findings, *(_equal(name, unit, above, level) for name, unit, below, above in ends if below == 0)]
-
-
-def _few(count: int) -> Finding:
-    message = f"There are {count} specimens. Their spread is uncertain."
-    advice = f"Measure at least {FEW} specimens, or use the upper ends of the spreads."
-    return Finding("few-specimens", "warning", {"specimens": count, "expected": FEW}, message, advice)
+    yield from (_equal(name, unit, above, level) for name, unit, below, above in ends if below == 0)
 
 
 def _equal(name: str, unit: str, upper: float, level: float) -> Finding:

@@ -97,24 +97,17 @@ class Observer:
                 weights = np.array([self.rows[column].weights for column in columns])
                 out[:, columns] = energies(model, x, v, still, still)[:, :2] @ weights.T
             else:
-                values = _outputs(kind, [self.rows[column] for column in columns], lowered, model, x, v, a, times)
+                rows = [self.rows[column] for column in columns]
+                numbers = np.array([row.numbers(lowered) for row in rows])
+                numbers = np.ascontiguousarray(numbers if model.dtype is complex else np.real(numbers), model.dtype)
+                block = OutputBlock(kind, *columns_of(rows), numbers)
+                values = block.read(model, (x, v, a), times if kind.observes_inputs else times[:0])
                 for place, column in enumerate(columns):
                     row = self.rows[column]
                     out[:, column] = values[:, place, row.output]
                     if (angle := row.angle) is not None and angle in turns:
                         out[:, column] += 2.0 * np.pi * turns[angle]
         return out
-
-
-def _outputs(
-    kind: Kind, rows: list[_Row], lowered: Lowered, model: BlockModel, x: np.ndarray, v: np.ndarray, a: np.ndarray,
-    times: np.ndarray,
-) -> np.ndarray:  # fmt: skip
-    """All outputs of components of a kind, (samples, components, outputs)."""
-    numbers = np.array([row.numbers(lowered) for row in rows])
-    numbers = np.ascontiguousarray(numbers if model.dtype is complex else np.real(numbers), dtype=model.dtype)
-    block = OutputBlock(kind, *columns_of(rows), numbers)
-    return block.read(model, (x, v, a), times if kind.observes_inputs else times[:0])
 
 
 def columns_of(rows: Sequence[_Row]) -> tuple[np.ndarray, np.ndarray]:

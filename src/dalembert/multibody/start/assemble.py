@@ -71,9 +71,18 @@ def assembled(
     _refuse_misalignment(system, lowered, start, x)
     lowered = lowered.moved(frames=frames, x=x)
     lowered = begin_at_rest(lowered) if rests else lowered
-    if system.stated.rates:
-        return lowered.moved(v=_moving(system, bodies, turns, lowered, begin))
-    return lowered.moved(v=initial_velocities(bodies, turns, lowered, model))
+    if not system.stated.rates:
+        return lowered.moved(v=initial_velocities(bodies, turns, lowered, model))
+    held = like(lower(moving(system, lowered), begin), lowered)
+    try:
+        rates = initial_velocities(bodies, turns, held, _model(held))
+    except ModelError as error:
+        raise ModelError(
+            f"the joints cannot have the stated rates {system.stated.described('rates')}: {error}"
+        ) from None
+    velocities = np.zeros_like(lowered.x)
+    velocities[: lowered.structure.n] = rates[: lowered.structure.n]
+    return lowered.moved(v=velocities)
 
 
 def _refuse_misalignment(system: BaseSystem, lowered: Lowered, placed: np.ndarray, closed: np.ndarray) -> None:
@@ -143,22 +152,6 @@ def _held(
     gaps = residual(held, _model(held), held.x, still, still)[n:]
     rows = held.structure.owners[n:]
     return held, {name: gaps[rows.index(name)] for name in names}
-
-
-def _moving(
-    system: BaseSystem, bodies: Sequence[BaseBody], turns: np.ndarray, lowered: Lowered, begin: float
-) -> np.ndarray:
-    """Initial velocities (N + 1,) with which the joints have the stated rates."""
-    held = like(lower(moving(system, lowered), begin), lowered)
-    try:
-        found = initial_velocities(bodies, turns, held, _model(held))
-    except ModelError as error:
-        raise ModelError(
-            f"the joints cannot have the stated rates {system.stated.described('rates')}: {error}"
-        ) from None
-    velocities = np.zeros_like(lowered.x)
-    velocities[: lowered.structure.n] = found[: lowered.structure.n]
-    return velocities
 
 
 def _model(lowered: Lowered) -> BlockModel:

@@ -98,7 +98,9 @@ def read_urdf(path: str | os.PathLike[str], impossible: str = REFUSE) -> Tree:
         )
 
     inertia, shapes, collisions = parts(root)
-    made = [_link(own, notes, *parts(_end(own, "child"))) for own in ordered]
+    made = [
+        Link(_end(own, "child"), _end(own, "parent"), _joint(own, notes), *parts(_end(own, "child"))) for own in ordered
+    ]
     if collisions or any(link.collisions for link in made):
         notes.append(Omission("contacts of collision shapes are not imported"))
     name = robot.word("name") or path.stem
@@ -226,16 +228,6 @@ def _file(file: str, path: Path) -> Path | None:
     folders = path.absolute().parents if scheme == "package" and separator else [path.absolute().parent]
     places = [folder / (name if separator else file) for folder in folders]
     return next((place for place in places if place.is_file()), None)
-
-
-def _link(
-    own: Element,
-    notes: list[Omission],
-    inertia: Inertia | None,
-    shapes: tuple[Shape, ...],
-    collisions: tuple[Shape, ...],
-) -> Link:
-    return Link(_end(own, "child"), _end(own, "parent"), _joint(own, notes), inertia, shapes, collisions)
 
 
 def _joint(own: Element, notes: list[Omission]) -> TreeJoint:

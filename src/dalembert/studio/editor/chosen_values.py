@@ -82,17 +82,12 @@ def _home(document: Any, name: str) -> _Home:
         local_name = name.removeprefix(experiment)
         if local_name in table.get("local", ()) and local_name in shared:
             if not hasattr(table["local"], "items"):
-                _tabulate(table)
+                locals_ = list(table["local"])
+                table["local"] = {}
+                for local in locals_:
+                    put(table["local"], local)
             return _Home(table["local"], local_name, shared[local_name])
     raise InputError(f"{name!r} is not described by a table of the study. Change the text where its value comes from.")
-
-
-def _tabulate(table: Any) -> None:
-    """Make a table of a list of local parameters."""
-    names = list(table["local"])
-    table["local"] = {}
-    for name in names:
-        put(table["local"], name)
 
 
 def _sensor(document: Any, name: str) -> Any:

@@ -2,7 +2,7 @@
 
 import json
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
@@ -44,8 +44,9 @@ class RunList:
 
     @property
     def known(self) -> list[Row]:
-        """The rows as they were read last."""
-        return _sorted(row for _, row in self._known.values())
+        """The rows as they were read last, the newest first."""
+        rows = (known_row for _, known_row in self._known.values())
+        return sorted(rows, key=lambda known_row: (known_row["date"], known_row["run"]), reverse=True)
 
     def _stamps(self) -> list[tuple[str, Stamp]]:
         """Names of the runs with the numbers of their folders, and when their files were changed."""
@@ -54,13 +55,9 @@ class RunList:
                 names = [(entry.name, entry.inode()) for entry in entries if entry.is_dir()]
         except FileNotFoundError:
             return []
-        stamps = ((name, (number, *_changes(f"{self.root}/{name}"))) for name, number in names)
+        watched = {name: (f"{self.root}/{name}/{file}" for file in _WATCHED) for name, _ in names}
+        stamps = ((name, (number, *map(_changed, watched[name]))) for name, number in names)
         return [(name, stamp) for name, stamp in stamps if stamp[1]]
-
-
-def _sorted(rows: Iterable[Row]) -> list[Row]:
-    """The rows, the newest first."""
-    return sorted(rows, key=lambda row: (row["date"], row["run"]), reverse=True)
 
 
 def row(folder: RunFolder) -> Row:
@@ -98,11 +95,6 @@ def study_name(folder: RunFolder, state: Mapping[str, Any]) -> str:
         return Path(json.loads(folder.inputs.read_text(encoding="utf-8"))["folder"]).name or name
     except (OSError, ValueError, TypeError, KeyError):
         return name
-
-
-def _changes(folder: str) -> Stamp:
-    """Times of change of the files that a row depends on; 0 for those that are not there."""
-    return tuple(map(_changed, (f"{folder}/{name}" for name in _WATCHED)))
 
 
 def _changed(path: str) -> int:

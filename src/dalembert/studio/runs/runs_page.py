@@ -68,7 +68,9 @@ class _Page:
             self._action("Compare", "compare_arrows", self.compare, lambda rows: len(rows) > 1)
             self._action("Rename", "edit", self.ask_name, lambda rows: len(rows) == 1 and not _running(rows))
             self._action("Run again", "replay", self.rerun, bool)
-            self._action("Resume", "play_arrow", self.resume, _resumable)
+            self._action(
+                "Resume", "play_arrow", self.resume, lambda rows: any(row["state"] in RESUMABLE for row in rows)
+            )
             self._action("Continue as a new study", "note_add", self.go_on, lambda rows: len(rows) == 1)
             self._action("Delete", "delete", self.delete, lambda rows: bool(rows) and not _running(rows))
             ui.space()
@@ -109,7 +111,9 @@ class _Page:
         self.about.clear()
         if len(chosen) == 1:
             with self.about:
-                _describe(chosen[0])
+                # The table has no room for how the run ended, and why its result is in doubt.
+                for text in filter(None, (chosen[0]["message"], *chosen[0]["doubts"])):
+                    ui.label(text).classes("text-sm break-words")
 
     def _chosen(self) -> list[Row]:
         return [row for row in self.rows if row["run"] in self.selected]
@@ -251,18 +255,8 @@ class _Page:
         self._show()
 
 
-def _describe(row: Row) -> None:
-    """What the table has no room for: how the run ended, and why its result is in doubt."""
-    for text in filter(None, (row["message"], *row["doubts"])):
-        ui.label(text).classes("text-sm break-words")
-
-
 def _running(rows: list[Row]) -> bool:
     return any(row["state"] == "running" for row in rows)
-
-
-def _resumable(rows: list[Row]) -> bool:
-    return any(row["state"] in RESUMABLE for row in rows)
 
 
 def _attribute(text: str) -> str:

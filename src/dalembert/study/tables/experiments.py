@@ -111,17 +111,14 @@ def wrong_experiments(file: Any) -> list[str]:
             unknown("constant", name, file.constants, where) for name in table.constants if name not in file.constants
         ]
         where = f"[[experiments]] {table.name!r}, local"
-        known = [*file.parameters, *_sensor_parameters(file.sensors, table)]
+        seen = {name: sensor for name, sensor in file.sensors.items() if reads(name, table.channels)}
+        of_sensors = (f"{name} {what}" for name in seen for what in QUANTITIES if getattr(seen[name], what) is not None)
+        known = [*file.parameters, *of_sensors]
         wrong += [unknown("parameter", name, known, where) for name in table.local if name not in known]
         wrong += _wrong_local(table, file, where)
         if table.arguments and not (file.model.function or file.model.forward):
             wrong.append(f"[[experiments]] {table.name!r}: arguments are for a function, and there is none")
     return wrong
-
-
-def _sensor_parameters(sensors: Mapping[str, SensorTable], table: DataTable) -> list[str]:
-    seen = [name for name in sensors if reads(name, table.channels)]
-    return [f"{name} {what}" for name in seen for what in QUANTITIES if getattr(sensors[name], what) is not None]
 
 
 def _wrong_local(table: ExperimentTable, file: Any, where: str) -> list[str]:

@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 
 from dalembert.inverse.noise.correlation.series import Series
-from dalembert.inverse.noise.likelihood.channel_noise import ChannelNoise
 from dalembert.inverse.noise.likelihood.guesses import guessed
 from dalembert.inverse.noise.likelihood.likelihood import Likelihood
 from dalembert.inverse.noise.likelihood.maximum import Objective, linear_expansion, scored
@@ -61,24 +60,15 @@ def _criteria(
     problem: MisfitProblem, alike: Sequence[Series], model: NoiseModel, at: Linearisation, most: int, *, known: bool
 ) -> Iterator[float]:
     """Yield the corrected Akaike criterion (AICc) of the autoregressive orders 0 to ``most`` of some series."""
-    number = sum(len(series.rows) for series in alike)
+    number, own = sum(len(series.rows) for series in alike), problem.model.parameters
+    held = frozenset(range(len(own)))
     for order in range(most + 1):
         channels, noise_parameters = noises_of(
             problem, {series: replace(model, order=order) for series in alike}, known=known
         )  # pyright: ignore[reportCallIssue]
         count = len(at.vector) + len(noise_parameters)
-        value = _largest(problem, channels, noise_parameters, at)
+        parameters = Parameters((*own.items, *noise_parameters.items), (*own.fixed, *noise_parameters.fixed))
+        expansion = linear_expansion(Likelihood(problem, {}, parameters, channels), at)
+        here = expansion(np.concatenate([at.vector, guessed(channels, noise_parameters, problem, at.response)]))
+        value = scored(here, Objective(parameters, own, None, held), SearchCoordinates(parameters), expansion)[0].value
         yield -2 * value + 2 * count + 2 * count * (count + 1) / max(number - count - 1, 1)
-
-
-def _largest(
-    problem: MisfitProblem, channels: tuple[ChannelNoise, ...], noise_parameters: Parameters, at: Linearisation
-) -> float:
-    """Return the largest log-likelihood of some channels over their noise parameters."""
-    model = problem.model.parameters
-    parameters = Parameters((*model.items, *noise_parameters.items), (*model.fixed, *noise_parameters.fixed))
-    alone = Likelihood(problem, {}, parameters, channels)
-    expansion = linear_expansion(alone, at)
-    here = expansion(np.concatenate([at.vector, guessed(channels, noise_parameters, problem, at.response)]))
-    objective = Objective(parameters, model, None, frozenset(range(len(model))))
-    return scored(here, objective, SearchCoordinates(parameters), expansion)[0].value

@@ -221,17 +221,13 @@ def followed(modes: Sequence[SpeedModes], count: int | None) -> tuple[np.ndarray
     roots[order[0]], whirl[order[0]] = known_roots, known_whirl
     for row in order[1:]:
         mode = modes[row]
-        cost = _distance(known_roots, known_shapes, known_whirl, mode)
+        # How unlike modes are, (known modes, modes).
+        sizes = np.linalg.norm(known_shapes, axis=0)[:, None] * np.linalg.norm(mode.shapes, axis=0)
+        alike = (np.abs(known_shapes.conj().T @ mode.shapes) / np.where(sizes > 0.0, sizes, 1.0)) ** 2
+        apart = np.abs(known_roots[:, None] - mode.roots) / np.maximum(np.abs(known_roots)[:, None], np.abs(mode.roots))
+        cost = (1.0 - alike) + apart + 0.5 * np.abs(known_whirl[:, None] - mode.whirl)
         for column, other in zip(*linear_sum_assignment(cost), strict=True):
             roots[row, column], whirl[row, column] = mode.roots[other], mode.whirl[other]
             known_roots[column], known_shapes[:, column] = mode.roots[other], mode.shapes[:, other]
             known_whirl[column] = mode.whirl[other]
     return roots, whirl
-
-
-def _distance(roots: np.ndarray, shapes: np.ndarray, whirl: np.ndarray, other: SpeedModes) -> np.ndarray:
-    """How unlike modes are, (modes, other modes)."""
-    sizes = np.linalg.norm(shapes, axis=0)[:, None] * np.linalg.norm(other.shapes, axis=0)
-    alike = (np.abs(shapes.conj().T @ other.shapes) / np.where(sizes > 0.0, sizes, 1.0)) ** 2
-    apart = np.abs(roots[:, None] - other.roots) / np.maximum(np.abs(roots)[:, None], np.abs(other.roots))
-    return (1.0 - alike) + apart + 0.5 * np.abs(whirl[:, None] - other.whirl)

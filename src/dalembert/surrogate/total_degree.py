@@ -80,7 +80,15 @@ class TotalDegree(Checked):
         number = self.runs(directions)
         # The smallest full grid with as many points; p + 1 in each direction determine the degree p.
         sides = max(self.order + 1, int(np.ceil(number ** (1 / max(directions, 1)) - 1e-9)))
-        grid = _grid(sides, directions, MOST_CANDIDATES * number, seed)
+        # Points of the root grid, all of them or ``most`` of them drawn at random, shape (points, directions).
+        most = MOST_CANDIDATES * number
+        line = roots(sides)
+        if sides**directions <= most:
+            places = np.indices((sides,) * directions).reshape(directions, -1).T
+        else:
+            drawn = np.random.default_rng((seed, 2)).integers(sides, size=(most, directions))
+            places = np.unique(drawn, axis=0)
+        grid = line[places]
         exponents = total_degree(directions, self.order)
         matrix = _matrix(grid, exponents)
         chosen: list[int] = []
@@ -103,14 +111,3 @@ class TotalDegree(Checked):
 
 def _matrix(eta: np.ndarray, exponents: np.ndarray) -> np.ndarray:
     return products(chebyshev(eta, exponents.max(axis=0, initial=0)), exponents)
-
-
-def _grid(sides: int, directions: int, most: int, seed: int) -> np.ndarray:
-    """Points of the root grid, all of them or ``most`` of them drawn at random, shape (points, directions)."""
-    line = roots(sides)
-    if sides**directions <= most:
-        places = np.indices((sides,) * directions).reshape(directions, -1).T
-    else:
-        drawn = np.random.default_rng((seed, 2)).integers(sides, size=(most, directions))
-        places = np.unique(drawn, axis=0)
-    return line[places]

@@ -43,7 +43,9 @@ class Lvm(LinesFormat):
             elif cells[0] == FIRST:  # names the channels of a segment
                 if not width:
                     width = len(cells) - (cells[-1] == COMMENT)
-                    table += [(number, cells[:width]), *_units(number, head.get(UNITS, []), width)]
+                    names = [*head.get(UNITS, []), *([""] * width)][: width - 1]
+                    known = [bool(readings(name)) for name in names if name]
+                    table += [(number, cells[:width]), *([(number, ["", *names])] if known and all(known) else [])]
             elif width and all(map(_is_numeric, filter(None, cells[:width]))) and any(cells[:width]):
                 time = cells[:1] if is_timed else [_time(path, head, sample)]
                 table.append((number, time + cells[1:width]))
@@ -54,12 +56,6 @@ class Lvm(LinesFormat):
 BEGIN, STEP, UNITS = "X0", "Delta_X", "Y_Unit_Label"
 SETTINGS = (BEGIN, STEP, UNITS)
 """Names of settings of a segment: its first time, the distance of its samples, and the units, of each channel."""
-
-
-def _units(number: int, units: list[str], width: int) -> list[tuple[int, list[str]]]:
-    names = [*units, *([""] * width)][: width - 1]
-    known = [bool(readings(name)) for name in names if name]
-    return [(number, ["", *names])] if known and all(known) else []
 
 
 def _time(path: Path, head: Mapping[str, list[str]], sample: int) -> str:

@@ -86,7 +86,10 @@ def walked(
         problem.journal.tell(Profiled(problem.model.parameters.names[k], here[0], problem.journal.simulations))
         move = path[-1][1] - path[-2][1]
         way = move / move[k]
-        step = _step(path, k, goal)
+        # Next step: that over which √excess would grow by a part of its threshold, at most twice the last one.
+        rise, run = path[-1][0] - path[-2][0], abs(path[-1][1][k] - path[-2][1][k])
+        wanted = min(STEP * goal, BEYOND * goal - path[-1][0])
+        step = 2 * run if rise <= 0 else min(2 * run, max(wanted * run / rise, run / 4))
     if path[-1][0] >= goal:
         last = path[-1][1].copy()
         last[k] = _crossing(problem, k, path, walk, branch)
@@ -149,13 +152,6 @@ def least(problem: MisfitProblem, k: int, guess: np.ndarray, walk: ProfileWalk) 
 
 def _root(excess: float) -> float:
     return float(np.sqrt(max(excess, 0.0)))
-
-
-def _step(path: list[tuple[float, np.ndarray]], k: int, goal: float) -> float:
-    """Next step: that over which √excess would grow by a part of its threshold, at most twice the last one."""
-    rise, run = path[-1][0] - path[-2][0], abs(path[-1][1][k] - path[-2][1][k])
-    wanted = min(STEP * goal, BEYOND * goal - path[-1][0])
-    return 2 * run if rise <= 0 else min(2 * run, max(wanted * run / rise, run / 4))
 
 
 def _crossing(

@@ -82,7 +82,13 @@ def diagnostic_findings(
     if (worst := _worst(series, "runs")) is not None:
         yield _of_runs(worst)
     if (worst := _worst(series, "period", enough=_strongly_periodic)) is not None:
-        yield _of_period(worst)
+        _, frequency, share = worst.periodic_part()
+        values = {"channel": worst.name, "period": 1 / frequency, "share": share, "p_value": worst.p_values["period"]}
+        size = f"{1 / frequency:.3g} {worst.series.unit}".rstrip()
+        power = f"{100 * share:.2g} % of their power has the period {size}"
+        message = f"The residuals of {worst.name!r} have a periodic part: {power}."
+        advice = "Look for its source, such as mains voltage, a motor, or a mode that the model lacks."
+        yield Finding("periodic-residuals", "note" if worst.correlated else "warning", values, message, advice)
     over = [(item, key) for key in ("size over response", "size over coordinate") if (item := _worst(series, key, 2))]
     if over:
         yield _of_size(*min(over, key=lambda pair: pair[0].p_values[pair[1]]), plain=plain)
@@ -141,16 +147,6 @@ def _of_runs(item: SeriesResiduals) -> Finding:
     )
     advice = "Look at the residuals over time for what the model lacks."
     return Finding("runs-of-signs", "warning", values, message, advice)
-
-
-def _of_period(item: SeriesResiduals) -> Finding:
-    _, frequency, share = item.periodic_part()
-    values = {"channel": item.name, "period": 1 / frequency, "share": share, "p_value": item.p_values["period"]}
-    size = f"{1 / frequency:.3g} {item.series.unit}".rstrip()
-    power = f"{100 * share:.2g} % of their power has the period {size}"
-    message = f"The residuals of {item.name!r} have a periodic part: {power}."
-    advice = "Look for its source, such as mains voltage, a motor, or a mode that the model lacks."
-    return Finding("periodic-residuals", "note" if item.correlated else "warning", values, message, advice)
 
 
 def _of_size(item: SeriesResiduals, test: str, *, plain: bool) -> Finding:

@@ -64,7 +64,13 @@ def contradictions(centred: Centred) -> Iterator[Finding]:
 
 def draw_findings(parameters: Parameters, draws: np.ndarray) -> Iterator[Finding]:
     """Yield findings on the posterior from draws (draws, parameters)."""
-    inside = _between(parameters, draws)
+    # Where draws lie between the bounds, from 0 to 1, in the coordinates of the search.
+    logs = UnboundedCoordinates(parameters).logarithmic
+    lower, upper, values = (
+        np.where(logs, np.log(np.where(logs, column, 1.0)), column)
+        for column in (parameters.lower, parameters.upper, draws)
+    )
+    inside = (values - lower) / (upper - lower)
     for k, item in enumerate(parameters):
         prior = item.distribution
         # The deviation of the prior within the bounds, from quantiles of equal probability.
@@ -91,16 +97,6 @@ def draw_findings(parameters: Parameters, draws: np.ndarray) -> Iterator[Finding
                     f"{100 * share:.0f} % of the draws of {item.name!r} are at its {side} bound {bound:.6g}.",
                     "Widen the bound if the true value may lie beyond it.",
                 )
-
-
-def _between(parameters: Parameters, draws: np.ndarray) -> np.ndarray:
-    """Where draws lie between the bounds, from 0 to 1, in the coordinates of the search."""
-    logs = UnboundedCoordinates(parameters).logarithmic
-    lower, upper, values = (
-        np.where(logs, np.log(np.where(logs, column, 1.0)), column)
-        for column in (parameters.lower, parameters.upper, draws)
-    )
-    return (values - lower) / (upper - lower)
 
 
 def separate_modes(modes: PosteriorModes, places: np.ndarray, sampler: Sampler) -> Iterator[Finding]:

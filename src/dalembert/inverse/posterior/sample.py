@@ -120,7 +120,11 @@ def sample(
     >>> bool(abs(posterior.deviations[0] - exact) < 0.15 * exact)
     True
     """
-    length = _length(chains, draws, warmup, seed, blocks)
+    least = {"seed": 0, "blocks": 2}
+    counts = {"chains": chains, "draws": draws, "warmup": warmup, "seed": seed, "blocks": blocks}
+    for name, number in counts.items():
+        check_integer("sample", name, number, least.get(name, 1))
+    length = Length(chains, draws, warmup, seed)
     requested = requested_sampler(sampler, surrogate)
     posed = pose_posterior(placed(model, executor), data, noise, weights, priors, on_event)
 
@@ -134,15 +138,6 @@ def sample(
     drawn = draw(all_modes, choice.sampler, length, _announced(on_event))
     posterior = posterior_of(drawn, blocks)
     return replace(posterior, findings=(*posterior.findings, *inherited(begin.fit, posed)))
-
-
-def _length(chains: int, draws: int, warmup: int, seed: int, blocks: int) -> Length:
-    """Return the checked length of the chains."""
-    least = {"seed": 0, "blocks": 2}
-    counts = {"chains": chains, "draws": draws, "warmup": warmup, "seed": seed, "blocks": blocks}
-    for name, number in counts.items():
-        check_integer("sample", name, number, least.get(name, 1))
-    return Length(chains, draws, warmup, seed)
 
 
 def _announced(on_event: OnEvent | None) -> OnDraws:

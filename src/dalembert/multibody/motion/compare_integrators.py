@@ -257,7 +257,15 @@ class _Comparison:
     def _row(self, method: str, solver: Integrator, known: np.ndarray) -> IntegratorRun:
         try:
             motion = self._simulated(solver)
-            seconds = _seconds(self.system, self.end, solver, self.times, self.repeats)
+            # Shortest time of the integration alone, to the output times and no others.
+            lowered, chosen = prepared(self.system, self.end, solver)
+            problem = make_problem(lowered, self.times)
+            seconds = np.inf
+            with in_complex_numbers(strict=False):
+                for _ in range(self.repeats):
+                    began = time.perf_counter()
+                    chosen.integrate([lowered], (), problem, self.end, logged=False)
+                    seconds = min(seconds, time.perf_counter() - began)
         except DalembertError as error:  # it ended early, or is not made for this mechanism
             return IntegratorRun(method, str(solver), failure=str(error))
         worst: Any = {level: float(np.max(values)) for level, values in motion.violations.items()}
@@ -277,19 +285,6 @@ class _Comparison:
     def _mechanism(self) -> str:
         with in_complex_numbers(strict=False):
             return fingerprint(lower(self.system), self.times, self.end, self.channels, self.reference)
-
-
-def _seconds(system: BaseSystem, end: float, solver: Integrator, times: np.ndarray, repeats: int) -> float:
-    """Shortest time of the integration alone, to the output times and no others."""
-    lowered, chosen = prepared(system, end, solver)
-    problem = make_problem(lowered, times)
-    best = np.inf
-    with in_complex_numbers(strict=False):
-        for _ in range(repeats):
-            began = time.perf_counter()
-            chosen.integrate([lowered], (), problem, end, logged=False)
-            best = min(best, time.perf_counter() - began)
-    return best
 
 
 def _distance(values: np.ndarray, known: np.ndarray) -> float:

@@ -56,7 +56,13 @@ def sketch(system: BaseSystem, points: int = 8, *, marks: Sequence[str] = (), as
     x = np.real(lowered.x)[None]
     located = dict(zip(marks, _positions(system, lowered, x, list(marks)), strict=True))
     drawing = draw(system, lowered, np.zeros(1), x, points)
-    return Sketch(system, drawing, _ends(system, lowered, x), located, _forces(system, lowered, x, drawing))
+    forces = {}  # along the fixed axes
+    for load in system.loads:
+        if load.kind.name in FORCES:
+            size = np.array([size_of(getattr(load, axis)) for axis in system.AXES])
+            follows = getattr(load, "follower", False) and isinstance(load.at, Point)
+            forces[load.name] = _axes(system, lowered, x, drawing, load.at) @ size if follows else size
+    return Sketch(system, drawing, _ends(system, lowered, x), located, forces)
 
 
 def is_grounded(component: Any) -> bool:
@@ -93,17 +99,6 @@ def _end(side: Any, points: Mapping[str, np.ndarray], joints: Mapping[str, np.nd
     if isinstance(side, BaseJoint):
         return joints[side.name].mean(axis=0) if side.name in joints else None
     return points[str(side)] if isinstance(side, Point) else _fixed(side)
-
-
-def _forces(system: BaseSystem, lowered: Lowered, x: np.ndarray, drawing: Drawing) -> dict[str, np.ndarray]:
-    """Forces along the fixed axes."""
-    found = {}
-    for load in system.loads:
-        if load.kind.name in FORCES:
-            size = np.array([size_of(getattr(load, axis)) for axis in system.AXES])
-            follows = getattr(load, "follower", False) and isinstance(load.at, Point)
-            found[load.name] = _axes(system, lowered, x, drawing, load.at) @ size if follows else size
-    return found
 
 
 def _axes(system: BaseSystem, lowered: Lowered, x: np.ndarray, drawing: Drawing, point: Point) -> np.ndarray:

@@ -35,7 +35,9 @@ def slip_findings(
     if largest == 0 or len(times) < 2:
         return
     angle, duration = _held(slip, times, rates)
-    travel = _travel(times, rates)
+    # The range of the joint's angle or position, rad or m.
+    steps = np.diff(times) * (rates[1:] + rates[:-1]) / 2
+    travel = float(np.ptp(np.concatenate([[0.0], np.cumsum(steps)]))) or 1.0
     creep = angle / travel
     most = CREEP / 2 * travel / duration if duration else np.inf  # the rate of creep is about the slip rate
     if creep > CREEP:
@@ -48,7 +50,10 @@ def slip_findings(
         advice = f"Set {setting} to {proposed:.2g} {unit} or less."
         yield Finding("slip-rate", "warning", values, message, advice)
         return
-    reversals = _reversals(slip, rates)
+    # How often a rate that is slow, but outside the smoothed zone, changes its sign from sample to sample.
+    sizes = np.abs(rates)
+    slow = (sizes > 2 * slip) & (sizes < SLOW * np.max(sizes))
+    reversals = int(np.sum(slow[1:] & slow[:-1] & (rates[1:] * rates[:-1] < 0)))
     if reversals >= REVERSALS:
         yield Finding(
             "stick-chatter",
@@ -58,7 +63,10 @@ def slip_findings(
             f"sample to sample, at more than twice its {setting} of {slip:.3g} {unit}. It may slip early.",
             f"Use RadauIIA, which follows the {setting}, or a larger {setting}.",
         )
-    change = _crossing(slip, rates)
+    # The largest change of the rate in a step that crosses zero or an edge of the zone; 0 for none.
+    inside = np.abs(rates) < slip
+    across = (rates[:-1] * rates[1:] < 0) | (inside[1:] != inside[:-1])
+    change = float(np.max(np.abs(np.diff(rates)), where=across, initial=0.0))
     if step is None or np.max(np.diff(times)) > 1.5 * step or not change or 2 * slip / change >= CROSSING:
         return
     proposed = max(slip, _rounded(min(SMOOTH / 2 * change, most, LARGE * largest)))
@@ -87,26 +95,6 @@ def _held(slip: float, times: np.ndarray, rates: np.ndarray) -> tuple[float, flo
     held = [slice(begin, end) for begin, end in edges if times[end - 1] - times[begin] > least]
     angle = sum(np.trapezoid(np.abs(rates[part]), times[part]) for part in held)
     return float(angle), float(sum(np.ptp(times[part]) for part in held))
-
-
-def _reversals(slip: float, rates: np.ndarray) -> int:
-    """Return how often a rate that is slow, but outside the smoothed zone, changes its sign from sample to sample."""
-    sizes = np.abs(rates)
-    slow = (sizes > 2 * slip) & (sizes < SLOW * np.max(sizes))
-    return int(np.sum(slow[1:] & slow[:-1] & (rates[1:] * rates[:-1] < 0)))
-
-
-def _travel(times: np.ndarray, rates: np.ndarray) -> float:
-    """Return the range of the joint's angle or position, rad or m."""
-    steps = np.diff(times) * (rates[1:] + rates[:-1]) / 2
-    return float(np.ptp(np.concatenate([[0.0], np.cumsum(steps)]))) or 1.0
-
-
-def _crossing(slip: float, rates: np.ndarray) -> float:
-    """Return the largest change of the rate in a step that crosses zero or an edge of the zone; 0 for none."""
-    inside = np.abs(rates) < slip
-    across = (rates[:-1] * rates[1:] < 0) | (inside[1:] != inside[:-1])
-    return float(np.max(np.abs(np.diff(rates)), where=across, initial=0.0))
 
 
 def _rounded(value: float) -> float:

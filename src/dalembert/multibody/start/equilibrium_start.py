@@ -26,7 +26,13 @@ def begin_at_rest(lowered: Lowered) -> Lowered:
 
     With the residual r(x, p) = 0 of the equilibrium, its derivative is dx/dp = -(dr/dx)^-1 dr/dp.
     """
-    _refuse_velocities(lowered)
+    moving = np.any(lowered.stated & (np.real(lowered.rates) != 0.0), axis=1)
+    if np.any(moving):
+        name = list(lowered.bodies)[int(np.argmax(moving))]
+        raise ModelError(
+            f"the mechanism starts at its equilibrium, and {name!r} has a velocity at the start. Leave the velocity "
+            "out, or start as placed: start='placed'"
+        )
     place, _ = resting_place(lowered)
     if lowered.is_complex:
         still = np.zeros(len(place), dtype=complex)
@@ -151,14 +157,3 @@ def _solution(matrix: csr_matrix, forces: np.ndarray) -> np.ndarray | None:
         step = lsqr(matrix, forces, atol=1e-14, btol=1e-14)[0]
         balanced = np.linalg.norm(matrix @ step - forces) <= 1e-9 * np.linalg.norm(forces)
         return step if balanced else None
-
-
-def _refuse_velocities(lowered: Lowered) -> None:
-    """Raise where a body that is to rest states a velocity."""
-    moving = np.any(lowered.stated & (np.real(lowered.rates) != 0.0), axis=1)
-    if np.any(moving):
-        name = list(lowered.bodies)[int(np.argmax(moving))]
-        raise ModelError(
-            f"the mechanism starts at its equilibrium, and {name!r} has a velocity at the start. Leave the velocity "
-            "out, or start as placed: start='placed'"
-        )

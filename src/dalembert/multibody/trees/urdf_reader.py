@@ -86,7 +86,11 @@ def read_urdf(path: str | os.PathLike[str], impossible: str = REFUSE) -> Tree:
     _refuse_repeated(path, robot, "joint")
     if not links:
         raise ModelError(f"{path}: the file has no <link>. A robot has at least one")
-    _refuse_missing_leaders(joints)
+    known = [joint.attributes["name"] for joint in joints]
+    for joint in joints:
+        mimic = joint.child("mimic") if KINDS.get(joint.attributes.get("type", ""), FIXED) != FIXED else None
+        if mimic is not None and (leader := mimic.required_word("joint")) not in known:
+            raise ModelError(f"{mimic.place}: {unknown('joint', leader, known)}")
     root, ordered = _ordered(path, list(links), joints)
 
     def parts(name: str) -> tuple[Inertia | None, tuple[Shape, ...], tuple[Shape, ...]]:
@@ -111,14 +115,6 @@ def _refuse_repeated(path: Path, robot: Element, tag: str) -> None:
     for name in repeated(own.attributes["name"] for own in robot.children if own.tag == tag):
         lines = [str(own.line) for own in robot.children if own.tag == tag and own.attributes["name"] == name]
         raise ModelError(f"{path.name}: {tag} {name!r} is in lines {listed(lines)}. Give each {tag} another name")
-
-
-def _refuse_missing_leaders(joints: Sequence[Element]) -> None:
-    known = [joint.attributes["name"] for joint in joints]
-    for joint in joints:
-        mimic = joint.child("mimic") if KINDS.get(joint.attributes.get("type", ""), FIXED) != FIXED else None
-        if mimic is not None and (leader := mimic.required_word("joint")) not in known:
-            raise ModelError(f"{mimic.place}: {unknown('joint', leader, known)}")
 
 
 def _end(joint: Element, side: str) -> str:

@@ -162,7 +162,11 @@ def _executed(
 ) -> Outcome:
     """Start, compute, write, end: the run of a study in a locked folder."""
     with EventLog(folder.events, (listener,) if listener else ()) as log:
-        attempt = _started(study, folder, log)
+        facts = {"study": study.name, "title": study.title, "task": study.task, "version": __version__}
+        earlier = float(folder.state().get("seconds") or 0.0) if folder.is_run else 0.0
+        folder.set_state(RUNNING, **facts, process=os.getpid(), seconds=earlier)
+        folder.pause.unlink(missing_ok=True)
+        attempt = Attempt(study, folder, log, facts, earlier, perf_counter())
         try:
             log.emit(first_event, **attempt.facts)
             folder.add_computed_with(this_process(versions()))
@@ -179,14 +183,6 @@ def _executed(
             raise
         _end(outcome, attempt)
     return outcome
-
-
-def _started(study: Study, folder: RunFolder, log: EventLog) -> Attempt:
-    facts = {"study": study.name, "title": study.title, "task": study.task, "version": __version__}
-    earlier = float(folder.state().get("seconds") or 0.0) if folder.is_run else 0.0
-    folder.set_state(RUNNING, **facts, process=os.getpid(), seconds=earlier)
-    folder.pause.unlink(missing_ok=True)
-    return Attempt(study, folder, log, facts, earlier, perf_counter())
 
 
 def _computed(attempt: Attempt) -> Outcome:

@@ -170,7 +170,12 @@ class SweepTask(ResultTask):
         total = sum(map(len, along.values()))
         curves, done = [], 0
         for name, values in along.items():
-            curve = _empty(study, model, name, values)
+            channels = [model.channels[column] for column in _columns(model, study.table.channels)]
+            shape = (len(values), len(channels))
+            unit = next(item.unit for item in study.parameters if item.name == name)
+            slopes = np.full(shape, np.nan) if study.table.sensitivities else None
+            names, units = tuple(c.name for c in channels), tuple(c.unit for c in channels)
+            curve = Curve(name, unit, values, names, units, np.full(shape, np.nan), slopes)
             for row, failure in _fill(study, model, curve):
                 done += 1
                 details = {"parameter": name, "value": float(curve.values[row]), "done": done, "total": total}
@@ -215,15 +220,6 @@ def values_along(parameters: Parameters, name: str, along: BoundsTable | tuple[f
 def _values(study: Study) -> dict[str, np.ndarray]:
     """Values of each parameter, shape (samples,)."""
     return {name: values_along(study.parameters, name, along) for name, along in study.table.over.items()}
-
-
-def _empty(study: Study, model: ForwardModel, name: str, values: np.ndarray) -> Curve:
-    channels = [model.channels[column] for column in _columns(model, study.table.channels)]
-    shape = (len(values), len(channels))
-    unit = next(item.unit for item in study.parameters if item.name == name)
-    slopes = np.full(shape, np.nan) if study.table.sensitivities else None
-    names, units = tuple(c.name for c in channels), tuple(c.unit for c in channels)
-    return Curve(name, unit, values, names, units, np.full(shape, np.nan), slopes)
 
 
 def _fill(study: Study, model: ForwardModel, curve: Curve) -> Iterator[tuple[int, str | None]]:

@@ -147,7 +147,18 @@ def frequency_response(
     >>> curve.amplitude("m").round(3).tolist()
     [3.625]
     """
-    posed = _pose(system, frequencies, continuation, observe, start, stability, checkpoint, on_point)
+    is_path = isinstance(frequencies, tuple)
+    require_force(system.forces, "frequency_response")
+    omegas = 2 * np.pi * positive_numbers(frequencies, "frequency_response", "frequencies", "Hz")
+    require_known("continuation", continuation, (NATURAL, ARC_LENGTH), "frequency_response")
+    if continuation == ARC_LENGTH and not is_path:
+        raise InputError(
+            "frequency_response: a path by arc length finds its own frequencies; give a tuple of two, (begin, end)"
+        )
+    if stability:
+        require_viscous(system.structure, "stability and Floquet multipliers")
+    settings = {"continuation": continuation, "frequencies": list(map(float, frequencies)) if is_path else "given"}
+    posed = _PosedCurve(system, omegas, is_path, settings, observe, start, stability, checkpoint, on_point)
     method = method or HarmonicBalance()
     if method.automatic:
         return _refine(posed, method)
@@ -187,30 +198,6 @@ class _FollowedCurve:
     unconverged: tuple[Unconverged, ...]
     across_fold: tuple[float, ...]
     largest: Solution | None
-
-
-def _pose(
-    system: VibrationSystem,
-    frequencies: np.ndarray | tuple[float, float],
-    continuation: str,
-    observe: Sequence[str] | None,
-    start: CurvePoint | None,
-    stability: bool,
-    checkpoint: Checkpoint | None,
-    on_point: OnPoint | None,
-) -> _PosedCurve:
-    is_path = isinstance(frequencies, tuple)
-    require_force(system.forces, "frequency_response")
-    omegas = 2 * np.pi * positive_numbers(frequencies, "frequency_response", "frequencies", "Hz")
-    require_known("continuation", continuation, (NATURAL, ARC_LENGTH), "frequency_response")
-    if continuation == ARC_LENGTH and not is_path:
-        raise InputError(
-            "frequency_response: a path by arc length finds its own frequencies; give a tuple of two, (begin, end)"
-        )
-    if stability:
-        require_viscous(system.structure, "stability and Floquet multipliers")
-    settings = {"continuation": continuation, "frequencies": list(map(float, frequencies)) if is_path else "given"}
-    return _PosedCurve(system, omegas, is_path, settings, observe, start, stability, checkpoint, on_point)
 
 
 def _follow(

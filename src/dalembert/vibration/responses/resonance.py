@@ -121,7 +121,21 @@ def track_resonance(
     posed = _PosedTrack(builder, parameter, unit, numbers, method, name, row, kind, checkpoint)
     curve, level, spent = _first_curve(posed, first, start)
     level, peaks, findings = _follow(posed, curve, level)
-    return _conclude(posed, level, peaks, spent, findings)
+    solves = np.array([count for _, count in peaks])
+    solves[0] += spent
+    return ResonanceTrack(
+        parameter=posed.parameter,
+        unit=posed.unit,
+        dof=posed.dof,
+        kind=posed.kind,
+        values=posed.values,
+        frequencies=np.array([peak.solution.omega / (2 * np.pi) if peak else np.nan for peak, _ in peaks]),
+        amplitudes=np.array([peak.amplitude if peak else np.nan for peak, _ in peaks]),
+        solves=solves,
+        converged=np.array([peak is not None for peak, _ in peaks]),
+        provenance={**versions(), "method": asdict(level)},
+        findings=findings,
+    )
 
 
 @dataclass(frozen=True)
@@ -164,7 +178,10 @@ def _follow(
     while True:
         problem = partial(posed.equations, level=level)
         first, value = problem(float(posed.values[0])), float(posed.values[0])
-        top = restarted(first, curve, _top(curve, posed.dof, Amplitude(posed.kind, curve.orders)), "track_resonance")
+        sizes = Amplitude(posed.kind, curve.orders).of(curve.harmonics(posed.dof))
+        if not np.any(np.isfinite(sizes)):
+            raise InputError("track_resonance: no point of the first curve was found; begin with another window")
+        top = restarted(first, curve, int(np.nanargmax(sizes)), "track_resonance")
         climber = _Climber(posed.row, Amplitude(posed.kind, level.orders))
         peaks = list(_followed(problem, climber, posed.values, _Peak(value, first, top)))
         if not posed.method.automatic:
@@ -173,30 +190,6 @@ def _follow(
         if better.highest == level.highest:
             return level, peaks, choice_findings(level, error)
         level = better
-
-
-def _conclude(
-    posed: _PosedTrack,
-    level: HarmonicBalance,
-    peaks: "list[tuple[_Peak | None, int]]",
-    spent: int,
-    findings: tuple[Finding, ...],
-) -> ResonanceTrack:
-    solves = np.array([count for _, count in peaks])
-    solves[0] += spent
-    return ResonanceTrack(
-        parameter=posed.parameter,
-        unit=posed.unit,
-        dof=posed.dof,
-        kind=posed.kind,
-        values=posed.values,
-        frequencies=np.array([peak.solution.omega / (2 * np.pi) if peak else np.nan for peak, _ in peaks]),
-        amplitudes=np.array([peak.amplitude if peak else np.nan for peak, _ in peaks]),
-        solves=solves,
-        converged=np.array([peak is not None for peak, _ in peaks]),
-        provenance={**versions(), "method": asdict(level)},
-        findings=findings,
-    )
 
 
 def _enough_harmonics(level: HarmonicBalance, peaks: "list[_Peak]") -> tuple[HarmonicBalance, Truncation | None]:
@@ -209,13 +202,6 @@ def _enough_harmonics(level: HarmonicBalance, peaks: "list[_Peak]") -> tuple[Har
         if error is not None and (largest is None or error.rank > largest.rank):
             largest = error
     return method, largest
-
-
-def _top(curve: FrequencyCurve, name: str, size: Amplitude) -> int:
-    sizes = size.of(curve.harmonics(name))
-    if not np.any(np.isfinite(sizes)):
-        raise InputError("track_resonance: no point of the first curve was found; begin with another window")
-    return int(np.nanargmax(sizes))
 
 
 @dataclass(frozen=True)

@@ -70,7 +70,8 @@ def exponents(problem: Equations, solution: Solution, way: str = AUTO) -> Expone
         values = _held(problem, problem.once(TIME_MAP, solution, lambda: _by_time_map(problem, solution)))
         return Exponents(values, across_fold=_across_fold(problem, solution, values))
     values = _held(problem, problem.once(HILL, solution, lambda: hill(problem, solution)))
-    if not _touches(problem, solution):
+    stops = [block.rows.ravel() for block in problem.lowered.laws if block.element.switches]
+    if not stops or not np.any(solution.evaluation.forces[np.concatenate(stops)]):
         return Exponents(values)
     method = problem.method.refined()
     if method is None or problem.lowered.structure.size * (2 * method.highest + 1) > LARGEST:
@@ -138,11 +139,6 @@ def _finer(finer: Equations, problem: Equations, solution: Solution) -> np.ndarr
     samples = max(finer.method.first_samples, solution.samples)
     better = finer.solve(begin, solution.omega, samples)
     return hill(finer, better) if better.converged else np.zeros(0, dtype=complex)
-
-
-def _touches(problem: Equations, solution: Solution) -> bool:
-    stops = [block.rows.ravel() for block in problem.lowered.laws if block.element.switches]
-    return bool(stops) and bool(np.any(solution.evaluation.forces[np.concatenate(stops)]))
 
 
 def _by_time_map(problem: Equations, solution: Solution) -> np.ndarray:

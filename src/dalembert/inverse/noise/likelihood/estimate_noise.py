@@ -57,7 +57,13 @@ def estimate_noise(problem: MisfitProblem, noise: Noise, at: Linearisation, *, k
 
     ``at``: at the plain minimum. ``known``: whether the weights of the problem are 1/variance.
     """
-    _check_count(problem)
+    count = len(problem.model.parameters)
+    if problem.compared < count:
+        values, parameters = counted(problem.compared, "value"), counted(count, "parameter")
+        raise InputError(
+            f"identify: {values} cannot determine {parameters} and the noise; "
+            "measure more samples, fix parameters, or leave noise out"
+        )
     noise_by_name, _ = picked_models(problem, noise, known=known)
     picked = ordered(problem, noise_by_name, at, known=known)
     likelihood, optimum = _largest(problem, picked, at, known=known)
@@ -76,17 +82,6 @@ def estimate_noise(problem: MisfitProblem, noise: Noise, at: Linearisation, *, k
         _weights(likelihood, optimum),
         _table_of(likelihood, optimum),
     )
-
-
-def _check_count(problem: MisfitProblem) -> None:
-    """Refuse fewer values than parameters, from which no noise can be estimated."""
-    count = len(problem.model.parameters)
-    if problem.compared < count:
-        values, parameters = counted(problem.compared, "value"), counted(count, "parameter")
-        raise InputError(
-            f"identify: {values} cannot determine {parameters} and the noise; "
-            "measure more samples, fix parameters, or leave noise out"
-        )
 
 
 def _largest(

@@ -82,7 +82,14 @@ class NUTS(Sampler):
             chains = list(ensemble(partial(_apart, targets, chain_of), several, on_stop=stop.set))
         placed = zip(chains, targets, strict=True)
         chains = [replace(chain, places=moved(chain.places, target, best)) for chain, target in placed]
-        return _joined(chains, self.max_depth)
+        statistics = {name: np.concatenate([part.statistics[name] for part in chains]) for name in STATISTICS}
+        return Chains(
+            np.concatenate([part.places for part in chains]),
+            np.concatenate([part.log_density for part in chains]),
+            statistics,
+            sum(part.simulations for part in chains),
+            tuple(_findings(statistics, self.max_depth)),
+        )
 
 
 def _silent(draws: int, of: int) -> None:
@@ -167,18 +174,6 @@ def _trace(nutpie: Any, compiled: Any, sampler: NUTS, length: Length, chain: int
         if errors:
             raise errors[0] from None
         raise
-
-
-def _joined(chains: list[Chains], max_depth: int) -> Chains:
-    """All chains as one, with what their statistics show."""
-    statistics = {name: np.concatenate([part.statistics[name] for part in chains]) for name in STATISTICS}
-    return Chains(
-        np.concatenate([part.places for part in chains]),
-        np.concatenate([part.log_density for part in chains]),
-        statistics,
-        sum(part.simulations for part in chains),
-        tuple(_findings(statistics, max_depth)),
-    )
 
 
 def _findings(statistics: dict[str, np.ndarray], max_depth: int) -> list[Finding]:

@@ -15,7 +15,7 @@ _EVEN = 0.05  # of the distance of samples: how far one of them may differ
 
 def filtered(data: Recorded, cutoff: float) -> Recorded:
     """Measurements without what is faster than a cutoff frequency (Hz); see `Measurements.filtered`."""
-    from scipy.signal import butter
+    from scipy.signal import butter, sosfiltfilt
 
     along = _times(data)
     if not is_real(cutoff) or not 0 < cutoff < np.inf:
@@ -31,7 +31,10 @@ def filtered(data: Recorded, cutoff: float) -> Recorded:
         period = int(np.ceil(rate / cutoff))
         sections = np.asarray(butter(ORDER, cutoff, fs=rate, output="sos"))
         values[present, column] = _between_gaps(along[present], known[present], sections, period)
-        gains[column] = _noise_gain(sections, period)
+        # Share of the standard deviation of white noise that passes: the root of the sum of the squared answer.
+        impulse = np.zeros(40 * period + 1)
+        impulse[20 * period] = 1.0
+        gains[column] = float(np.sqrt(np.sum(sosfiltfilt(sections, impulse, padlen=0) ** 2)))
     if not np.any(np.isfinite(values), axis=0).all():
         raise DataError(
             f"no stretch of samples is as long as the period of the cutoff frequency, {1 / cutoff:.3g} s; expected a "
@@ -119,12 +122,3 @@ def _between_gaps(times: np.ndarray, values: np.ndarray, sections: np.ndarray, p
         if length > period:
             result[run] = sosfiltfilt(sections, values[run], padlen=min(3 * period, length - 1))
     return result
-
-
-def _noise_gain(sections: np.ndarray, period: int) -> float:
-    """Share of the standard deviation of white noise that passes: the root of the sum of the squared answer."""
-    from scipy.signal import sosfiltfilt
-
-    impulse = np.zeros(40 * period + 1)
-    impulse[20 * period] = 1.0
-    return float(np.sqrt(np.sum(sosfiltfilt(sections, impulse, padlen=0) ** 2)))

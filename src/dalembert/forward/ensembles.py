@@ -40,7 +40,12 @@ def ensemble(
     """
     with connected(executor) as client:
         if client is not None:
-            yield from _on_cluster(work, items, client)
+            with futures_of(client, f"a part of an ensemble of {len(items)}") as futures:
+                futures += client.map(
+                    _done, [sent(client, work)] * len(items), items, sender=Sender(), pure=False, retries=RETRIES
+                )
+                for future in futures:
+                    yield future.result()
             return
     workers = min(workers or cores(), len(items))
     if workers < 2:
@@ -57,16 +62,6 @@ def ensemble(
         pool.shutdown(cancel_futures=True)
 
 
-def _on_cluster(work: Callable[[Item], Answer], items: Sequence[Item], client: Any) -> Generator[Answer, None, None]:
-    with futures_of(client, f"a part of an ensemble of {len(items)}") as futures:
-        futures += client.map(
-            _done, [sent(client, work)] * len(items), items, sender=Sender(), pure=False, retries=RETRIES
-        )
-        for future in futures:
-            yield future.result()
-
-
 def _done(work: Received, item: Any, sender: Sender) -> Any:
-    """Do the work on a worker."""
     with sender.alike():
         return work.content(item)

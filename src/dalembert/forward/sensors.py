@@ -122,7 +122,13 @@ class Sensors:
         along = model.coordinate
         stamps = along.values if times is None else samples_of(times, "Sensors", "times")
         unknowns = [entry for name, sensor in sensors.items() for entry in _unknowns(model, name, sensor)]
-        _refuse_twice(model, sensors)
+        # Refuse a quantity that two sensors give of one channel.
+        for channel in model.channels:
+            for what in QUANTITIES:
+                names = [name for name in owners(sensors, channel.name) if getattr(sensors[name], what) is not None]
+                if len(names) > 1:
+                    givers = " and by ".join(map(repr, names))
+                    raise InputError(f"Sensors: the {what} of {channel.name!r} is given by {givers}; expected one")
         unknowns += [] if start is None else [reading_parameter(START, start, along.unit, 0.0)]
         parameters = Parameters((*model.parameters.declared, *unknowns))
         entries = model, dict(sensors), parameters, Coordinate(along.name, along.unit, stamps), start
@@ -301,7 +307,6 @@ class Sensors:
 
 
 def _unknowns(model: ForwardModel, name: str, sensor: Sensor) -> list[Parameter]:
-    """Parameters of one sensor."""
     units = {channel.name: channel.unit for channel in model.channels if name in owners([name], channel.name)}
     if not units:
         require_known("channel", name, [channel.name for channel in model.channels], "Sensors")
@@ -330,16 +335,6 @@ def _unknowns(model: ForwardModel, name: str, sensor: Sensor) -> list[Parameter]
 def owners(sensors: Iterable[str], channel: str) -> list[str]:
     """Names of the sensors of a channel: its own, and those of its component."""
     return [name for name in sensors if channel == name or channel.startswith(f"{name}.")]
-
-
-def _refuse_twice(model: ForwardModel, sensors: Mapping[str, Sensor]) -> None:
-    """Refuse a quantity that two sensors give of one channel."""
-    for channel in model.channels:
-        for what in QUANTITIES:
-            names = [name for name in owners(sensors, channel.name) if getattr(sensors[name], what) is not None]
-            if len(names) > 1:
-                givers = " and by ".join(map(repr, names))
-                raise InputError(f"Sensors: the {what} of {channel.name!r} is given by {givers}; expected one")
 
 
 def reading_parameter(name: str, bounds: Bounds, unit: str, perfect: float) -> Parameter:

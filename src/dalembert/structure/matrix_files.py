@@ -49,19 +49,15 @@ def matrix_market(path: Path) -> Matrices:
     with path.open("rb") as stream:
         first = stream.readline()
     if not first.startswith(b"%%MatrixMarket"):
-        return _abaqus(path)
+        # ``*MATRIX OUTPUT, FORMAT=MATRIX INPUT``: the lower or the upper triangle, or all.
+        table = np.loadtxt(path, delimiter=",", comments=["*"], ndmin=2)
+        rows, columns = ([_dof(*entry) for entry in table[:, at : at + 2].astype(int)] for at in (0, 2))
+        dofs = tuple(dict.fromkeys(rows + columns))
+        places = {name: place for place, name in enumerate(dofs)}
+        row_places, other = ([places[name] for name in names] for names in (rows, columns))
+        return {path.stem: NamedMatrix(completed(row_places, other, table[:, 4], len(dofs)), dofs)}
     matrix = guarded(path, "Matrix Market", "scipy.io", "mmread")
     return {path.stem: _named(matrix)}
-
-
-def _abaqus(path: Path) -> Matrices:
-    """``*MATRIX OUTPUT, FORMAT=MATRIX INPUT``: the lower or the upper triangle, or all."""
-    table = np.loadtxt(path, delimiter=",", comments=["*"], ndmin=2)
-    rows, columns = ([_dof(*entry) for entry in table[:, at : at + 2].astype(int)] for at in (0, 2))
-    dofs = tuple(dict.fromkeys(rows + columns))
-    places = {name: place for place, name in enumerate(dofs)}
-    row_places, other = ([places[name] for name in names] for names in (rows, columns))
-    return {path.stem: NamedMatrix(completed(row_places, other, table[:, 4], len(dofs)), dofs)}
 
 
 def calculix(path: Path) -> Matrices:

@@ -46,7 +46,6 @@ class Guard:
         await (answer or self.app)(scope, receive, send)
 
     def _refusal(self, request: HTTPConnection) -> Response | None:
-        """Answer to what may not be requested."""
         headers = request.headers
         host = headers.get("host", "")
         if not self.token and host.rpartition(":")[0] not in LOCAL and host not in LOCAL:
@@ -65,7 +64,6 @@ class Guard:
         return None
 
     def _has_token(self, request: HTTPConnection) -> bool:
-        """Whether the address has the token."""
         return self._is_token(request.query_params.get("token", ""))
 
     def _is_token(self, token: str) -> bool:

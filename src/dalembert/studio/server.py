@@ -81,7 +81,6 @@ def application(root: Path, *, far: bool = False) -> FastAPI:
 
 
 def _add_pages(workspace: Workspace, jobs: Jobs, watcher: Worker, listed: RunList) -> None:
-    """Add the pages that a browser shows."""
     from nicegui import ui
 
     @ui.page("/")

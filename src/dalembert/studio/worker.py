@@ -216,7 +216,6 @@ class Worker:
         return content
 
     def _ending(self) -> str:
-        """Say why the process has ended."""
         assert self._process is not None
         self._process.join(10.0)
         code = self._process.exitcode

@@ -68,7 +68,16 @@ def load(
     path = Path(path)
     context = Context(folder or path.parent, files=dict(files or {}), used={} if used is None else used)
     content, document = _read(path) if content is None else _document(path, content)
-    _refuse_parts(document, path)
+    if document.keys() <= set(MODEL_FILE):
+        problem_text, more = "the file holds no tables", ""
+        if document:
+            problem_text, more = (
+                "no task is given",
+                f"; a study in another file names a model by file = '{path.name}' in [model]",
+            )
+        tasks = ", ".join(f"[{name}]" for name in TASKS)
+        sentence = f"{problem_text}; a study needs a [model] and one task, one of {tasks}{more}"
+        raise StudyError(f"{path.name}: {sentence}", [((), sentence)])
     shared = _with_model_file(document, context, path, model)
     names = {name for table in ("parameters", "constants") for name in _table(document, table)}
     context.series = series_in(_table(document, "parameters"))
@@ -145,19 +154,6 @@ def _document(path: Path, content: bytes) -> tuple[bytes, dict[str, Any]]:
         raise InputError(no_text(path, error)) from None
     except (RecursionError, ValueError) as error:
         raise InputError(f"{path}: no valid TOML: {error}") from None
-
-
-def _refuse_parts(document: Mapping[str, Any], path: Path) -> None:
-    if document.keys() <= set(MODEL_FILE):
-        problem_text, more = "the file holds no tables", ""
-        if document:
-            problem_text, more = (
-                "no task is given",
-                f"; a study in another file names a model by file = '{path.name}' in [model]",
-            )
-        tasks = ", ".join(f"[{name}]" for name in TASKS)
-        sentence = f"{problem_text}; a study needs a [model] and one task, one of {tasks}{more}"
-        raise StudyError(f"{path.name}: {sentence}", [((), sentence)])
 
 
 def _with_model_file(document: dict[str, Any], context: Context, path: Path, content: bytes | None) -> str:

@@ -43,7 +43,12 @@ def enclosures(
     outputs = polynomial.coefficients.shape[1]
     varying = np.any(polynomial.exponents > 0, axis=1)
     variation = np.sum(np.abs(polynomial.coefficients[varying]), axis=0)
-    rounding = _rounding(polynomial)
+    # Bound (outputs,) of all rounding errors: sizes of the products, times the length of the sums, times 10^-15, and
+    # the smallest normal number, for products that are lost below it.
+    sizes = [np.abs(_from_chebyshev(int(degree))).max(axis=0) for degree in polynomial.degrees]
+    largest = np.prod([size[polynomial.exponents[:, k]] for k, size in enumerate(sizes)], axis=0)
+    relative = 1e-15 * (2 * polynomial.degrees.sum() + DEPTH) * (largest @ np.abs(polynomial.coefficients))
+    rounding = relative + np.finfo(float).tiny * np.any(polynomial.coefficients, axis=0)
     # The gap may be infinite. Below rounding, which is added to the bounds, no part of a box would ever be settled.
     wanted = np.maximum(np.multiply(gap, variation, out=np.zeros(outputs), where=variation > 0), rounding)
     # Coordinates s in [0, 1] of the polynomial's box, rounded outwards.
@@ -151,14 +156,3 @@ def _from_chebyshev(degree: int) -> np.ndarray:
             for i in range(degree + 1)
         ]
     )
-
-
-def _rounding(polynomial: ChebyshevPolynomial) -> np.ndarray:
-    """Bound (outputs,) of all rounding errors: sizes of the products, times the length of the sums, times 10^-15.
-
-    And the smallest normal number, for products that are lost below it.
-    """
-    sizes = [np.abs(_from_chebyshev(int(degree))).max(axis=0) for degree in polynomial.degrees]
-    largest = np.prod([size[polynomial.exponents[:, k]] for k, size in enumerate(sizes)], axis=0)
-    relative = 1e-15 * (2 * polynomial.degrees.sum() + DEPTH) * (largest @ np.abs(polynomial.coefficients))
-    return relative + np.finfo(float).tiny * np.any(polynomial.coefficients, axis=0)

@@ -120,7 +120,6 @@ def box_of(model: ForwardModel, intervals: Intervals) -> Box:
 
 
 def _failures(runs: Runs) -> list[Finding]:
-    """Return the finding of the runs that failed, if there are any."""
     if not runs.failures:
         return []
     number, first = len(runs.failures), runs.failures[0]

@@ -119,7 +119,6 @@ def design(
 
 
 def _sets(sensors: str | Iterable[str | Sequence[str]], names: tuple[str, ...]) -> list[tuple[str, ...]]:
-    """Sets of channels."""
     if isinstance(sensors, str):
         require_known("set of sensors", sensors, SETS, "design")
         if sensors == "all":

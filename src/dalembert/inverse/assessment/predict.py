@@ -127,7 +127,6 @@ def band_end(half_widths: np.ndarray, response: np.ndarray, *, wraps: bool = Fal
 
 
 def _ended(model: ForwardModel, names: Sequence[str], ends: Sequence[int | None]) -> Iterator[Finding]:
-    """Findings on bands that end."""
     along = model.coordinate
     for name, end in zip(names, ends, strict=True):
         if end is None:

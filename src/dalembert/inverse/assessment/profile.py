@@ -199,7 +199,6 @@ def _names(fit: Fit, names: Collection[str] | None) -> Iterable[str]:
 def _problem(
     model: ForwardModel | Sequence[Experiment], data: Measurements | None, fit: Fit, on_event: OnEvent | None
 ) -> MisfitProblem:
-    """The problem that was solved."""
     if isinstance(model, ForwardModel):
         if data is None:
             raise InputError("profile: data is missing; give the measurements that the model was fitted to")

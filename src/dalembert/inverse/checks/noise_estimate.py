@@ -84,7 +84,6 @@ def _left_correlated(noise: NoiseFit) -> Iterator[Finding]:
 
 
 def _processes(noise: NoiseFit) -> Iterator[NoiseProcess]:
-    """Yield the processes of correlated noise."""
     response, known = noise.at.response.ravel(), noise.noise.estimates
     for channel in noise.likelihood.channels:
         series, model = channel.series, channel.model

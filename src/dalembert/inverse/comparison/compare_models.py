@@ -167,7 +167,6 @@ def _check_same_data(fits: Mapping[str, Fit]) -> None:
 
 
 def _compared_draws(known: Mapping[str, Predictive], leave_out: str) -> ModelComparison:
-    """Compare posterior draws."""
     (first, reference), *rest = known.items()
     for name, densities in rest:
         if not np.array_equal(densities.observed, reference.observed, equal_nan=True):

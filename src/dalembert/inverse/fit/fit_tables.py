@@ -95,7 +95,6 @@ def _values(items: Sequence[Parameter], values: np.ndarray, deviations: np.ndarr
 
 
 def _bounds(items: Sequence[Parameter]) -> dict[str, list]:
-    """Return the columns of units and bounds."""
     return {
         "unit": [item.unit for item in items],
         "lower bound": [float(item.lower) for item in items],

@@ -134,7 +134,18 @@ def filtered_motion(
         )
     if not all(np.all(np.isfinite(record)) for record in (along, path, effort)):
         raise InputError("filtered_motion: a time, position or torque is not finite. Remove this sample, and resample")
-    rate = _rate(along)
+    # Samples per second.
+    if len(along) < 10:
+        raise InputError(f"filtered_motion: {len(along)} samples; expected at least 10")
+    steps = np.diff(along)
+    usual = (along[-1] - along[0]) / len(steps)
+    worst = int(np.argmax(np.abs(steps - usual)))
+    if not usual > 0 or abs(steps[worst] - usual) > EVEN * usual:
+        raise InputError(
+            f"filtered_motion: the times are not even: mostly {usual:.6g} s, and {steps[worst]:.6g} s after "
+            f"{along[worst]:.6g} s. Resample the record"
+        )
+    rate = float(1.0 / usual)
     slow, quiet = (lowpass(record, rate, cutoff, order=order) for record in (path, effort))
     curve = make_interp_spline(along - along[0], slow, k=DEGREE)
     kept, step = kept_samples(len(along), rate, cutoff, decimation)
@@ -155,18 +166,3 @@ def kept_samples(count: int, rate: float, cutoff: float, decimation: int | None 
             "longer record or a higher cutoff"
         )
     return kept, step
-
-
-def _rate(times: np.ndarray) -> float:
-    """Samples per second."""
-    if len(times) < 10:
-        raise InputError(f"filtered_motion: {len(times)} samples; expected at least 10")
-    steps = np.diff(times)
-    usual = (times[-1] - times[0]) / len(steps)
-    worst = int(np.argmax(np.abs(steps - usual)))
-    if not usual > 0 or abs(steps[worst] - usual) > EVEN * usual:
-        raise InputError(
-            f"filtered_motion: the times are not even: mostly {usual:.6g} s, and {steps[worst]:.6g} s after "
-            f"{times[worst]:.6g} s. Resample the record"
-        )
-    return float(1.0 / usual)

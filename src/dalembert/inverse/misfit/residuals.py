@@ -8,7 +8,6 @@ from typing import Self
 import numpy as np
 
 from dalembert.inverse.least_squares.estimate import left_vectors
-from dalembert.inverse.misfit.local_noise import local_deviation
 from dalembert.inverse.noise.correlation.balanced import balanced, noise_of
 from dalembert.inverse.noise.correlation.correlated_residuals import NoiseProcess
 from dalembert.inverse.noise.correlation.correlation import (
@@ -119,3 +118,15 @@ class Residuals:
         """Return the residuals less ``amount`` of a column (values,) that is orthogonal to the basis."""
         basis = np.column_stack([self.basis, column / np.linalg.norm(column)])
         return replace(self, values=self.values - amount * column, basis=basis)
+
+
+def local_deviation(along: np.ndarray, values: np.ndarray) -> float:
+    """Return the standard deviation of the noise of values (values,) along a coordinate, which need not be even. Each
+    value is compared with the straight line between its neighbours, in units of that difference's own deviation. What
+    varies smoothly does not count. Correlated noise counts less than it is. Source: T. Gasser, L. Sroka,
+    C. Jennen-Steinmetz, Residual variance and residual pattern in nonlinear regression, Biometrika 73 (1986).
+    """
+    after = (along[1:-1] - along[:-2]) / (along[2:] - along[:-2])
+    before = 1 - after
+    apart = before * values[:-2] + after * values[2:] - values[1:-1]
+    return float(np.sqrt(np.mean(apart**2 / (before**2 + after**2 + 1))))

@@ -137,7 +137,6 @@ def _distinct(target: Target, ends: Sequence[np.ndarray]) -> list[np.ndarray]:
 
 
 def _height(mode: Centred) -> float:
-    """Log density at a mode."""
     return float(mode.target.evaluate(np.zeros((1, len(mode.vector))))[0])
 
 

@@ -37,17 +37,13 @@ def _grown(boxes: np.ndarray, seed: np.ndarray, order: list[list[int]]) -> np.nd
                 slab = box.copy()
                 slab[1 - side, k] = box[side, k]
                 slab[side, k] = box[side, k] + (2 * side - 1) * step[k]
-                if _covered(boxes, slab):
+                # The union covers the slab if the parts of the slab in the boxes add up to its volume.
+                overlap = np.minimum(boxes[:, 1], slab[1]) - np.maximum(boxes[:, 0], slab[0])
+                inner = np.prod(np.maximum(overlap, 0), axis=1).sum()
+                if inner >= (1 - 1e-6) * np.prod(slab[1] - slab[0]):
                     box[side, k] = slab[side, k]
                 else:
                     open_.remove(face)
             if not open_:
                 break
     return box
-
-
-def _covered(boxes: np.ndarray, box: np.ndarray) -> bool:
-    """Whether the union covers a box (2, d): its parts in them add up to its volume."""
-    overlap = np.minimum(boxes[:, 1], box[1]) - np.maximum(boxes[:, 0], box[0])
-    inner = np.prod(np.maximum(overlap, 0), axis=1).sum()
-    return bool(inner >= (1 - 1e-6) * np.prod(box[1] - box[0]))

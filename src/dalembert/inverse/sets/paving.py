@@ -84,7 +84,14 @@ def pave(
             boundary.append(boxes)
             finished = False
             break
-        boxes = _halved(boxes, np.argmax(sides[~small], axis=1))
+        # Both halves of the boxes (n, 2, d) along these directions (n,).
+        along = np.argmax(sides[~small], axis=1)
+        rows = np.arange(len(boxes))
+        middle = boxes[rows, :, along].mean(axis=1)
+        halves = np.repeat(boxes[None], 2, axis=0)
+        halves[0, rows, 1, along] = middle
+        halves[1, rows, 0, along] = middle
+        boxes = np.moveaxis(halves, 0, 1).reshape(-1, *boxes.shape[1:])
         tell(sum(map(len, inside)), sum(map(len, boundary)), len(boxes))
     return Paving(np.concatenate(inside), np.concatenate(boundary), finished)
 
@@ -93,13 +100,3 @@ def enclosures(polynomial: ChebyshevPolynomial, boxes: np.ndarray) -> tuple[np.n
     """Bounds (boxes, outputs) twice, from Bernstein coefficients as they are: halving the boxes makes them sharp."""
     enclosure = bounds(polynomial, boxes[:, 0], boxes[:, 1], "bernstein", gap=AS_THEY_ARE)
     return enclosure.lower, enclosure.upper
-
-
-def _halved(boxes: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """Both halves of boxes (n, 2, d) along directions (n,)."""
-    rows = np.arange(len(boxes))
-    middle = boxes[rows, :, along].mean(axis=1)
-    halves = np.repeat(boxes[None], 2, axis=0)
-    halves[0, rows, 1, along] = middle
-    halves[1, rows, 0, along] = middle
-    return np.moveaxis(halves, 0, 1).reshape(-1, *boxes.shape[1:])

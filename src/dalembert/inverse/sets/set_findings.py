@@ -1,6 +1,7 @@
 """How a set inversion ended, what it cannot exclude, and what contradicts it, as findings."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -80,7 +81,10 @@ def conclusions(
     """Yield the findings of an inversion, with its last ``surrogate``. ``left_out`` (n, d): consistent runs that lie in
     no box of the paving. ``names`` (d,).
     """
-    yield _unseen(inversion.first or surrogate, paving, names)
+    narrow = unseen(inversion.first or surrogate, names)
+    another = "a" if paving.hull is None else "another"
+    message = f"The set may have {another} component where the response has a narrow feature. {narrow.message}"
+    yield replace(narrow, message=message, advice="Search again within narrower bounds.")
     share = float(np.max(surrogate.error / inversion.error))
     if share > 1:
         yield _coarse(surrogate, inversion, share, names)
@@ -88,13 +92,6 @@ def conclusions(
         message = f"{len(left_out)} consistent runs lie outside of the set: the surrogate misses a component."
         advice = "Give a scheme with a smaller tolerance, or bounds close around the component."
         yield Finding("missed-component", "error", {"runs": len(left_out)}, message, advice)
-
-
-def _unseen(first: Surrogate, paving: Paving, names: Sequence[str]) -> Finding:
-    seen = unseen(first, names)
-    another = "a" if paving.hull is None else "another"
-    message = f"The set may have {another} component where the response has a narrow feature. {seen.message}"
-    return Finding(seen.code, seen.severity, seen.values, message, "Search again within narrower bounds.")
 
 
 def _coarse(surrogate: Surrogate, inversion: Inversion, share: float, names: Sequence[str]) -> Finding:

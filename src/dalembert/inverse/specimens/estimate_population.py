@@ -238,7 +238,6 @@ def _of_experiments(fit: Fit, chosen: tuple[str, ...] | None) -> Estimates:
 
 
 def _covariance(fit: Fit, places: list[int], specimen: str) -> np.ndarray:
-    """Covariance of some of the parameters of a fit."""
     deviations = fit.deviations[places]
     unknown = [fit.parameters.names[place] for place in places if not 0 < fit.deviations[place] < np.inf]
     if unknown:

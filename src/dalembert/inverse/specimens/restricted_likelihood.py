@@ -65,7 +65,6 @@ class Likelihood:
         return float(-0.5 * (logarithms + x @ projection @ x)), slope
 
     def _total(self, spread: np.ndarray) -> np.ndarray:
-        """V."""
         return np.kron(np.eye(len(self.values)), spread) + self.covariance
 
     def _weighted(self, inverse: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

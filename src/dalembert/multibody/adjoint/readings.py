@@ -74,7 +74,19 @@ def _pull_kind(
             _number_part(gradient, number)[column] += slope
         numbers[:, column] = np.real(numbers[:, column])
     if kind.observes_inputs:
-        _pull_signals(block, model, local, times, weights, readers(integers, gradient.active_signals), signal_bars)
+        # Adjoints of the signals that channels read, sample by sample.
+        signals = np.unique(readers(integers, gradient.active_signals)[:, 1])
+        out = np.zeros(weights.shape[1:], complex)
+        call = model.call().set(last=local[0].shape[1] - 1, r=out)
+        for sample, (t, within) in enumerate(zip(times, beside(times, -1), strict=True)):
+            x, v, a = (part[sample] for part in local)
+            model.evaluate(call.set(x=x, v=v, a=a), float(t), float(within))
+            for s in signals:
+                for rate in range(3):
+                    call.signals[s, rate] += 1j * STEP
+                    block.kernel(call.address, block.address)
+                    call.signals[s, rate] = call.signals[s, rate].real
+                    signal_bars[sample, s, rate] += np.sum(weights[sample] * np.imag(out)) / STEP
 
 
 def _active(gradient: NumberGradient, number: int) -> np.ndarray:
@@ -91,21 +103,3 @@ def _number_part(gradient: NumberGradient, number: int) -> np.ndarray:
         return gradient.point(number)
     assert row.kind is not None
     return gradient.kind(row.kind)[row.source]
-
-
-def _pull_signals(
-    block: OutputBlock, model: BlockModel, local: list[np.ndarray], times: np.ndarray, weights: np.ndarray,
-    pairs: np.ndarray, signal_bars: np.ndarray,
-) -> None:  # fmt: skip
-    """Adjoints of the signals that channels read, sample by sample."""
-    out = np.zeros(weights.shape[1:], complex)
-    call = model.call().set(last=local[0].shape[1] - 1, r=out)
-    for sample, (t, within) in enumerate(zip(times, beside(times, -1), strict=True)):
-        x, v, a = (part[sample] for part in local)
-        model.evaluate(call.set(x=x, v=v, a=a), float(t), float(within))
-        for s in np.unique(pairs[:, 1]):
-            for rate in range(3):
-                call.signals[s, rate] += 1j * STEP
-                block.kernel(call.address, block.address)
-                call.signals[s, rate] = call.signals[s, rate].real
-                signal_bars[sample, s, rate] += np.sum(weights[sample] * np.imag(out)) / STEP

@@ -62,7 +62,20 @@ def sketch(system: BaseSystem, points: int = 8, *, marks: Sequence[str] = (), as
             size = np.array([size_of(getattr(load, axis)) for axis in system.AXES])
             follows = getattr(load, "follower", False) and isinstance(load.at, Point)
             forces[load.name] = _axes(system, lowered, x, drawing, load.at) @ size if follows else size
-    return Sketch(system, drawing, _ends(system, lowered, x), located, forces)
+    # Positions of the points that joints and loads act on; of a joint that they act on, the middle of its points.
+    parts = {
+        part.name: [side for name in SIDES if (side := getattr(part, name, None)) is not None]
+        for part in (*system.joints, *system.loads)
+    }
+    held = list(dict.fromkeys(str(side) for sides in parts.values() for side in sides if isinstance(side, Point)))
+    known = dict(zip(held, _positions(system, lowered, x, held), strict=True))
+    found: dict[str, np.ndarray] = {}
+    for name, sides in parts.items():
+        own = [_end(side, known, found) for side in sides]
+        own = [position for position in own if position is not None]
+        if own:
+            found[name] = np.array(own)
+    return Sketch(system, drawing, found, located, forces)
 
 
 def is_grounded(component: Any) -> bool:
@@ -76,23 +89,6 @@ def size_of(course: Any) -> float:
     for name in ("value", "amplitude"):
         course = getattr(course, name, course)
     return float(np.real(course)) if np.isscalar(course) else 1.0
-
-
-def _ends(system: BaseSystem, lowered: Lowered, x: np.ndarray) -> dict[str, np.ndarray]:
-    """Positions of the points that joints and loads act on; of a joint that they act on, the middle of its points."""
-    parts = {
-        part.name: [side for name in SIDES if (side := getattr(part, name, None)) is not None]
-        for part in (*system.joints, *system.loads)
-    }
-    held = list(dict.fromkeys(str(side) for sides in parts.values() for side in sides if isinstance(side, Point)))
-    known = dict(zip(held, _positions(system, lowered, x, held), strict=True))
-    found: dict[str, np.ndarray] = {}
-    for name, sides in parts.items():
-        own = [_end(side, known, found) for side in sides]
-        own = [position for position in own if position is not None]
-        if own:
-            found[name] = np.array(own)
-    return found
 
 
 def _end(side: Any, points: Mapping[str, np.ndarray], joints: Mapping[str, np.ndarray]) -> np.ndarray | None:

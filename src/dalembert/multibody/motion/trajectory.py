@@ -31,8 +31,7 @@ from dalembert.multibody.motion.skipped_samples import skipped_samples
 from dalembert.multibody.motion.slip_rates import rubbing, slip_findings
 from dalembert.multibody.motion.work import works_of_steps
 from dalembert.multibody.start.lost_freedom import no_freedom
-from dalembert.multibody.start.redundant_constraints import redundant_constraints
-from dalembert.multibody.start.start_findings import start_findings
+from dalembert.multibody.start.start_findings import redundant_constraints, start_findings
 from dalembert.results import Summarised
 from dalembert.tables import Table, cells, counted, percent, shown
 

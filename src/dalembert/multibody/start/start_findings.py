@@ -15,6 +15,7 @@ from dalembert.multibody.components.spatial.spatial_motor import Motor
 from dalembert.multibody.components.spatial.spatial_torsion_spring import TorsionSpring
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.system import BaseSystem
+from dalembert.multibody.start.assemble import inner_constraints, redundancy
 
 PARALLEL = np.cos(np.deg2rad(1.0))  # of axes that are meant to be the same
 _BEYOND = 1e-9  # of the range, or rad and m: rounding of a start at the limit
@@ -104,3 +105,22 @@ def _axis(joint: Joint, name: str, lowered: Lowered, x: np.ndarray) -> np.ndarra
         kind, row = TIES[ANGLE], lowered.parts[TIES[ANGLE]].index(tie)
     numbers, integers = np.real(lowered.data[kind][row]), structure.meta[kind][row]
     return joint.axis_directions(numbers, integers, np.real(x[structure.index[kind][row]]))
+
+
+def redundant_constraints(lowered: Lowered) -> tuple[Finding, ...]:
+    """Return a finding on joints whose constraints follow from those of others at the start; none if all are needed."""
+    count, rank, joints = redundancy(lowered)
+    if not joints:
+        return ()
+    inside = inner_constraints(lowered)
+    names = ", ".join(map(repr, joints))
+    return (
+        Finding(
+            "redundant-constraints",
+            "note",
+            {"constraints": count - inside, "independent": rank - inside, "joints": names},
+            f"The joints have {count - inside} constraints, {rank - inside} of them independent at the start. Those of "
+            f"{names} follow from the others. Of all possible joint forces, the result has the smallest ones.",
+            "If you need the joint forces, replace a joint by one that holds less, or a bushing.",
+        ),
+    )

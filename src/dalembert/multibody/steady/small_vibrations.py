@@ -133,7 +133,10 @@ def modes(state: BaseSystem | Equilibrium, count: int | None = None, *, frame: s
         squares, vectors = eigh((k + k.T) / 2, (m + m.T) / 2)
         roots = np.emath.sqrt(-squares)
     else:
-        roots, vectors = _damped(k, c, m)
+        # M x'' + C x' + K x = 0.
+        state_matrix = np.block([[np.zeros(m.shape), np.eye(len(m))], [-np.linalg.solve(m, np.hstack([k, c]))]])
+        roots, vectors = cast(tuple[np.ndarray, np.ndarray], eig(state_matrix))
+        vectors = vectors[: len(m)]
     largest = np.abs(roots).max(initial=0.0)
     growth = float(np.real(roots).max(initial=0.0))
     kept = np.flatnonzero(np.imag(roots) > _FREE * largest)
@@ -172,11 +175,3 @@ def _modes(
 ) -> Modes:
     frequencies, ratios = np.imag(roots) / (2 * np.pi), -np.real(roots) / np.abs(roots)
     return Modes(frequencies, ratios, shapes, roots, growth, speed, frame, frame_speed, whirl)
-
-
-def _damped(k: np.ndarray, c: np.ndarray, m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Roots and shapes of M x'' + C x' + K x = 0."""
-    size = len(k)
-    state_matrix = np.block([[np.zeros((size, size)), np.eye(size)], [-np.linalg.solve(m, np.hstack([k, c]))]])
-    roots, vectors = cast(tuple[np.ndarray, np.ndarray], eig(state_matrix))
-    return roots, vectors[:size]

@@ -280,7 +280,6 @@ def _joints(own: FlatTree, q: np.ndarray, *rates: np.ndarray) -> list[np.ndarray
 
 
 def _gravity(gravity: Sequence[Number]) -> np.ndarray:
-    """Gravity, checked."""
     own = np.asarray(gravity)
     if own.shape != (3,) or own.dtype.kind not in "fciu":
         raise InputError(f"gravity is {shown(gravity)}; expected three numbers in m/s^2, such as (0, 0, -9.81)")

@@ -68,7 +68,6 @@ def flat(tree: Tree) -> FlatTree:
 
 
 def _flattened(tree: Tree) -> FlatTree:
-    """The arrays of a tree."""
     hung = {tree.root: (0, np.zeros(3), np.eye(3))}
     parents, turns, rows = [], [], []
     pseudo = [np.zeros((4, 4))]
@@ -79,7 +78,14 @@ def _flattened(tree: Tree) -> FlatTree:
         if link.joint.moves:
             parents.append(slot)
             turns.append(int(link.joint.kind == REVOLUTE))
-            rows.append(_row(link.joint, place, axes))
+            # Rodrigues' formula: R = A (u u^T + cos(q) (1 - u u^T) + sin(q) [u]x).
+            u = direction(link.joint.axis, f"joint {link.joint.name!r}: axis")
+            along, nothing = np.outer(u, u), np.zeros((3, 3))
+            if link.joint.kind == REVOLUTE:
+                parts, slide = (np.eye(3) - along, skew(u), along), np.zeros(3)
+            else:
+                parts, slide = (nothing, nothing, np.eye(3)), axes @ u
+            rows.append(np.concatenate([*((axes @ part).T.ravel() for part in parts), place, slide, u]))
             pseudo.append(np.zeros((4, 4)))
             slot, place, axes = len(rows), np.zeros(3), np.eye(3)
         hung[link.name] = slot, place, axes
@@ -95,17 +101,6 @@ def _flattened(tree: Tree) -> FlatTree:
     return FlatTree(
         frames, joints, *_following(tree), homes, places.reshape(-1, 3), orientations.reshape(-1, 3, 3)
     )  # fmt: skip
-
-
-def _row(joint: TreeJoint, place: np.ndarray, axes: np.ndarray) -> np.ndarray:
-    """Numbers of a frame without its inertia: R = A (u u^T + cos(q) (1 - u u^T) + sin(q) [u]x), Rodrigues' formula."""
-    u = direction(joint.axis, f"joint {joint.name!r}: axis")
-    along, nothing = np.outer(u, u), np.zeros((3, 3))
-    if joint.kind == REVOLUTE:
-        parts, slide = (np.eye(3) - along, skew(u), along), np.zeros(3)
-    else:
-        parts, slide = (nothing, nothing, np.eye(3)), axes @ u
-    return np.concatenate([*((axes @ part).T.ravel() for part in parts), place, slide, u])
 
 
 def _following(tree: Tree) -> tuple[np.ndarray, np.ndarray]:

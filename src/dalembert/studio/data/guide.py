@@ -197,7 +197,6 @@ class DataGuide:
         return bool((self._table() or {}).get("deviations"))
 
     def _table(self) -> dict[str, Any] | None:
-        """The table of data in the text; None if there is none."""
         here: Any = _document(self.draft.text)
         try:
             for step in self.place:

@@ -111,7 +111,13 @@ def model_picture(
     except DalembertError as error:
         return Picture(places=places, message="The model cannot be built.", mistake=str(error))
     if not study.has_system:
-        return _structure(study, system, places)
+        from dalembert.report.scene.structure import structure_scene
+
+        scene = structure_scene(system, shown_channels(study))
+        if scene is None:
+            message = "The structure has no nodes with positions to draw."
+            return Picture(places=places, absent=tuple(absent_parts(places, ())), message=message)
+        return _drawn(scene, "Drawing of the structure", places, ())
     positions = kept.newest("measured positions", (path, text), lambda: measured_positions(study, system.AXES))
     return _mechanism(study, system, places, positions, box)
 
@@ -142,16 +148,6 @@ def _mechanism(
     corners = _box(Projection.of(scene.dimensions)(scene.positions), box)
     seen = [name for _, channel_names in channels.values() for name in channel_names]
     return _drawn(scene, "Drawing of the mechanism", places, seen, box=corners, message=message, mistake=mistake)
-
-
-def _structure(study: "Study", system: Any, places: dict[str, Place]) -> Picture:
-    from dalembert.report.scene.structure import structure_scene
-
-    scene = structure_scene(system, shown_channels(study))
-    if scene is None:
-        message = "The structure has no nodes with positions to draw."
-        return Picture(places=places, absent=tuple(absent_parts(places, ())), message=message)
-    return _drawn(scene, "Drawing of the structure", places, ())
 
 
 def _drawn(scene: "Scene", label: str, places: dict[str, Place], channels: Iterable[str], **state: Any) -> Picture:

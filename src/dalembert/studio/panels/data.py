@@ -179,7 +179,6 @@ class DataPanel:
         self._read()
 
     def _read(self) -> None:
-        """Show that the file is read, and read it."""
         self._show_written()
         self._redraw()
 

@@ -84,7 +84,6 @@ class ModelPanel:
         self._mark()
 
     def _list(self) -> None:
-        """List the parts that are not drawn, as buttons that select their tables."""
         if list(self.links) == list(self.picture.absent):
             return
         self.others.clear()

@@ -54,7 +54,6 @@ def comparison_file(workspace: Workspace, names: list[str], *, csv: bool = False
 
 
 def _folders(workspace: Workspace, names: list[str]) -> list[RunFolder]:
-    """The runs of names, each once."""
     known = {folder.path.name: folder for folder in workspace.runs()}
     chosen = list(dict.fromkeys(names))
     if not chosen:

@@ -33,7 +33,6 @@ def continue_page(workspace: Workspace, name: str, code: str = "", number: int =
 
 
 def _change(folder: RunFolder, code: str, number: int) -> Change | None:
-    """The change that was chosen on the page of the run."""
     if not code:
         return None
     found = [one for one in changes_of(folder.state(), study_text(folder)) if one.code == code]

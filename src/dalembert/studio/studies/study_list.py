@@ -67,19 +67,15 @@ def study_folders(workspace: Workspace) -> list[StudyFolder]:
     """Return all folders with studies, by name."""
     runs, entries = last_runs(workspace.runs_folder), {}
     for name in workspace.studies():
-        entries.setdefault(name.partition("/")[0], []).append(_entry(workspace, name, runs))
+        path = workspace.root / "studies" / f"{name}.toml"
+        document = document_of(path) or {}
+        about = document.get("study")
+        about = about if isinstance(about, dict) else {}
+        task = next((key for key in document if key in task_names()), "")
+        title, description = (" ".join(str(about.get(key, "")).split()) for key in ("title", "description"))
+        last = runs.get((path.parent.resolve(), name_in(path)))
+        entries.setdefault(name.partition("/")[0], []).append(Entry(name, title, description, task, last))
     return [_folder(workspace.root / "studies" / name, entries_here) for name, entries_here in entries.items()]
-
-
-def _entry(workspace: Workspace, name: str, runs: dict[tuple[Path, str], LastRun]) -> Entry:
-    path = workspace.root / "studies" / f"{name}.toml"
-    document = document_of(path) or {}
-    about = document.get("study")
-    about = about if isinstance(about, dict) else {}
-    task = next((key for key in document if key in task_names()), "")
-    title, description = (" ".join(str(about.get(key, "")).split()) for key in ("title", "description"))
-    last = runs.get((path.parent.resolve(), name_in(path)))
-    return Entry(name, title, description, task, last)
 
 
 def _folder(path: Path, entries: list[Entry]) -> StudyFolder:

@@ -56,7 +56,6 @@ def study_page(workspace: Workspace, jobs: Jobs, name: str) -> None:
 
 
 def _head(draft: Draft, services: PageServices, editor: TextEditor, checking: Checking) -> None:
-    """Build the buttons, what the study does, and its mistakes."""
     text_head(draft, editor, partial(_run_button, draft, services, checking), complaints()(partial(_copy, draft)))
     way = ui.link("", model_address(draft.name)).classes("break-all")
 

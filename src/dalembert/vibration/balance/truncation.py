@@ -11,7 +11,7 @@ from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Solution
 from dalembert.vibration.fourier import Fourier, in_orders
-from dalembert.vibration.interface.lowering import ELASTIC, Lowered
+from dalembert.vibration.interface.lowering import ELASTIC
 from dalembert.vibration.laws.contacts import PREDICTIONS
 
 _, VELOCITY = PREDICTIONS
@@ -242,7 +242,12 @@ def _change(problem: Equations, solution: Solution, afresh: bool) -> tuple[float
         return 0.0, 1.0
     # Where contacts carry mass, the displacement kind converges more slowly in H than the velocity kind: 1.6 % against
     # 0.2 % of error at 39 harmonics where a mass sticks for half of the period.
-    finer = Equations(_robust(problem, solution.omega), method)
+    # The elements with rigid contacts of the velocity kind where these carry mass: it converges faster there.
+    blocks = tuple(
+        replace(block, kind=VELOCITY) if heavy and block.memory else block
+        for block, heavy in zip(problem.lowered.blocks, _heavy(problem, solution.omega), strict=True)
+    )
+    finer = Equations(replace(problem.lowered, blocks=blocks), method)
     better = _padded(finer, problem.method, solution)
     if not better.converged and afresh:
         better = finer.first(solution.omega)
@@ -269,12 +274,3 @@ def _heavy(problem: Equations, omega: float) -> tuple[bool, ...]:
         block.kind != ELASTIC and bool(np.any(inertia[block_rows] > np.diag(stiffness)[block_rows]))
         for block, block_rows in zip(lowered.blocks, rows, strict=True)
     )
-
-
-def _robust(problem: Equations, omega: float) -> Lowered:
-    """The elements with rigid contacts of the velocity kind where these carry mass: it converges faster there."""
-    blocks = tuple(
-        replace(block, kind=VELOCITY) if heavy and block.memory else block
-        for block, heavy in zip(problem.lowered.blocks, _heavy(problem, omega), strict=True)
-    )
-    return replace(problem.lowered, blocks=blocks)

@@ -93,7 +93,6 @@ def _peaks(look: Look) -> Table:
 
 
 def _events(look: Look) -> Iterator[Table]:
-    """Yield the marked points."""
     events = [(event, point) for event, points in marked(look.curve).items() for point in points]
     if not events:
         return

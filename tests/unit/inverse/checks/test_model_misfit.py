@@ -5,7 +5,7 @@ from conclusions import codes
 from dalembert.data import Measurements
 from dalembert.forward import PythonModel
 from dalembert.inverse import Experiment, identify
-from dalembert.inverse.misfit.local_noise import local_deviation
+from dalembert.inverse.misfit.residuals import local_deviation
 from free_oscillations import NOISE, TIMES, TRUTH, oscillation, oscillator, recorded, rubbing
 
 RUBBING = rubbing(TIMES, 30.0, 0.1, 0.3, 0.3)

@@ -100,7 +100,6 @@ class OdeSolver(Integrator):
         return [self._run(RateField(problem, terms, sample, batch.dstates, implicit), sample.edges) for sample in batch]
 
     def _run(self, own: RateField, edges: np.ndarray) -> Run:
-        """The motion of one sample."""
         ends: list[float] = []
         due, reason = 0, None
         try:

@@ -61,11 +61,14 @@ class Jobs:
 
     def _begin(self, folder: Path, arguments: list[str]) -> None:
         self.tidy()
-        # They are the process's, and go with it.
-        log, output = (tempfile.TemporaryFile("w+", encoding="utf-8") for _ in range(2))  # noqa: SIM115
+        log, output = (_temporary() for _ in range(2))
         command = [sys.executable, "-m", "dalembert.cli", *arguments]
         process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=output, stderr=log, start_new_session=True)
         self._started[folder] = Job(process, log, output)
+
+
+def _temporary() -> IO[str]:
+    return tempfile.TemporaryFile("w+", encoding="utf-8")  # it is the process's, and goes with it
 
 
 @dataclass

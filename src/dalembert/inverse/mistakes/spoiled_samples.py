@@ -18,9 +18,19 @@ def dropouts(record: FittedRecord) -> Iterator[Mistake]:
     if zeros:
         rows = np.concatenate([signal.rows[zero] for signal, zero in zeros.items()])
         counts = [int(np.count_nonzero(zero)) for zero in zeros.values()]
-        says = "are exactly 0, and seem to be lost"
-        finding = partial(_finding, "zero-dropouts", says, "lost", list(zeros), counts)
+        finding = partial(_dropout_finding, list(zeros), counts)
         yield Mistake(partial(without, rows), finding, NONE, blamed=rows, visible=True)
+
+
+def _dropout_finding(series: Sequence[Series], counts: Sequence[int], verdict: Verdict) -> Finding:
+    most = int(np.argmax(counts))
+    return Finding(
+        "zero-dropouts",
+        "warning",
+        {"channel": series[most].name, "samples": counts[most], "explained": verdict.explained},
+        f"{counts[most]} samples of {series[most].name!r} are exactly 0, and seem to be lost. {verdict.sentence}",
+        "Leave the lost samples out: empty cells with missing = 'leave-out' in the study file, NaN in Python.",
+    )
 
 
 def clipped(record: FittedRecord) -> Iterator[Mistake]:
@@ -57,7 +67,7 @@ def repeated_samples(record: FittedRecord) -> Iterator[Mistake]:
         rows = np.concatenate([signal.rows for signal in firsts])
         sources = np.concatenate([signal.rows[first] for signal, first in firsts.items()])
         counts = list(map(_count, firsts.values()))
-        finding = partial(_finding, "repeated-samples", "repeat the sample before", "repeated", list(firsts), counts)
+        finding = partial(_repeated_finding, list(firsts), counts)
         yield Mistake(partial(_held_values, rows, sources), finding, NONE, visible=True)
 
 
@@ -76,14 +86,12 @@ def _held_values(rows: np.ndarray, sources: np.ndarray, response: np.ndarray, _:
     return shown
 
 
-def _finding(
-    code: str, says: str, which: str, series: Sequence[Series], counts: Sequence[int], verdict: Verdict
-) -> Finding:
+def _repeated_finding(series: Sequence[Series], counts: Sequence[int], verdict: Verdict) -> Finding:
     most = int(np.argmax(counts))
     return Finding(
-        code,
+        "repeated-samples",
         "warning",
         {"channel": series[most].name, "samples": counts[most], "explained": verdict.explained},
-        f"{counts[most]} samples of {series[most].name!r} {says}. {verdict.sentence}",
-        f"Leave the {which} samples out: empty cells with missing = 'leave-out' in the study file, NaN in Python.",
+        f"{counts[most]} samples of {series[most].name!r} repeat the sample before. {verdict.sentence}",
+        "Leave the repeated samples out: empty cells with missing = 'leave-out' in the study file, NaN in Python.",
     )

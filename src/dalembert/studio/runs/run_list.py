@@ -55,9 +55,10 @@ class RunList:
                 names = [(entry.name, entry.inode()) for entry in entries if entry.is_dir()]
         except FileNotFoundError:
             return []
-        watched = {name: (f"{self.root}/{name}/{file}" for file in _WATCHED) for name, _ in names}
-        stamps = ((name, (number, *map(_changed, watched[name]))) for name, number in names)
-        return [(name, stamp) for name, stamp in stamps if stamp[1]]
+        watched = (
+            (name, number, [_changed(f"{self.root}/{name}/{file}") for file in _WATCHED]) for name, number in names
+        )
+        return [(name, (number, *changed)) for name, number, changed in watched if changed[0]]
 
 
 def row(folder: RunFolder) -> Row:

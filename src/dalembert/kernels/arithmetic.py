@@ -1,4 +1,4 @@
-"""Kernels in real and in complex numbers, made from one function."""
+"""Arithmetics of kernels: views of real, complex and dual numbers, and kernels in several made from one function."""
 
 from collections.abc import Callable
 from types import FunctionType
@@ -6,9 +6,17 @@ from typing import Annotated, Any, cast, get_args, get_origin, get_type_hints
 
 import numpy as np
 
+from dalembert.kernels.duals import Dual, duals, duals2
 from dalembert.kernels.kernel import Kernel
+from dalembert.kernels.views import complexes, complexes2, reals, reals2
 from dalembert.kernels.words import ArrayOf
 
+VIEWS: dict[type, tuple[Any, Any]] = {
+    float: (reals, reals2),
+    complex: (complexes, complexes2),
+    Dual: (duals, duals2),
+}
+"""Intrinsics: the vector and the matrix of numbers at an address."""
 _OPEN = ""
 #: Arrays of the numbers that a kernel is made for.
 Numbers = Annotated[np.ndarray, ArrayOf(_OPEN, 1)]

@@ -13,6 +13,7 @@ from numba import njit
 
 from dalembert.kernels.compiler import Inner, caller, entry_point, object_code
 from dalembert.kernels.digest import digest, needs
+from dalembert.kernels.duals import Dual
 from dalembert.kernels.objects import OBJECTS
 from dalembert.kernels.pipeline import PIPELINE
 from dalembert.kernels.words import address, form, leaves, packer, unpack
@@ -52,6 +53,8 @@ Origin = tuple[str, str, tuple[str, ...]]
 """Module of a kernel, name there, and role and arithmetic if it is a kind's."""
 Owner = tuple[Any, str, type]
 """A kind of component, a role and an arithmetic."""
+
+_NUMBERS = {kind.__name__: kind for kind in (float, complex, Dual)}
 
 
 class Compiled:
@@ -248,4 +251,4 @@ def find(origin: Origin) -> Compiled:
     """The kernel of an origin."""
     module, name, role = origin
     found = getattr(import_module(module), name)
-    return found.kernel(role[0], {"float": float, "complex": complex}[role[1]]) if role else found
+    return found.kernel(role[0], _NUMBERS[role[1]]) if role else found

@@ -55,9 +55,14 @@ def memory(dtype: Any, address: int, *shape: int) -> np.ndarray:
     return np.frombuffer((ctypes.c_char * size).from_address(int(address)), dtype).reshape(shape)
 
 
-def _view(dtype: Any, axes: int) -> Any:
+def _item(dtype: Any) -> Any:
+    """Numba's type of numbers of a NumPy type, or of a class that stands for numbers of the kernels alone."""
+    return getattr(dtype, "numba", None) or from_dtype(np.dtype(dtype))
+
+
+def view(dtype: Any, axes: int) -> Any:
     """An intrinsic: the vector, the matrix by rows or the stack of matrices at an address."""
-    kind: Any = types.Array(from_dtype(np.dtype(dtype)), axes, "C")
+    kind: Any = types.Array(_item(dtype), axes, "C")
 
     def plain(address: int, *shape: int) -> np.ndarray:
         array = memory(dtype, address, *shape)
@@ -75,14 +80,14 @@ def _view(dtype: Any, axes: int) -> Any:
     return intrinsic(plain)(definitions[axes])
 
 
-integers, integers2 = _view("i8", 1), _view("i8", 2)
-reals, reals2, reals3 = _view("f8", 1), _view("f8", 2), _view("f8", 3)
-complexes, complexes2 = _view("c16", 1), _view("c16", 2)
+integers, integers2 = view("i8", 1), view("i8", 2)
+reals, reals2, reals3 = view("f8", 1), view("f8", 2), view("f8", 3)
+complexes, complexes2 = view("c16", 1), view("c16", 2)
 
 
 def records(dtype: np.dtype) -> Any:
     """An intrinsic: the vector of records of this type at an address."""
-    return _view(dtype, 1)
+    return view(dtype, 1)
 
 
 def record(dtype: np.dtype) -> Any:
@@ -90,7 +95,7 @@ def record(dtype: np.dtype) -> Any:
     kind: Any = from_dtype(dtype)
 
     @intrinsic(lambda address: memory(dtype, address, 1).view(np.recarray)[0])
-    def view(typingctx, address):
+    def at(typingctx, address):
         """The record at an address."""
 
         def generate(context, builder, signature, arguments):
@@ -98,7 +103,7 @@ def record(dtype: np.dtype) -> Any:
 
         return kind(types.int64), generate
 
-    return view
+    return at
 
 
 @intrinsic(lambda array: array.ctypes.data)
@@ -164,7 +169,7 @@ def _on_stack(context: Any, builder: Any, kind: types.Array, shape: tuple[int, .
 
 def local(dtype: type, *shape: int) -> Any:
     """An intrinsic: a small array on the stack; its entries are not set."""
-    kind: Any = types.Array(from_dtype(np.dtype(dtype)), len(shape), "C")
+    kind: Any = types.Array(_item(dtype), len(shape), "C")
 
     @intrinsic(lambda: np.zeros(shape, dtype))
     def array(typingctx):

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from dalembert.kernels.duals import ENTRIES, Dual
 from dalembert.kernels.kernel import BlockKernel
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.nodes import CHANGE, RESTORE, SPREAD
@@ -42,9 +43,10 @@ class Signals:
 
 @dataclass(frozen=True, eq=False)
 class BlockModel:
-    """A whole model in real numbers, or in complex ones as a direction of differentiation. ``size``: unknowns;
-    ``coordinates``: unknowns that are no multipliers; ``reduction``: rows of the reduced system; ``roles``: kernels
-    that it needs at once: in real numbers the residuals, in complex ones the tangents, too, or alone.
+    """A whole model in real numbers, in complex ones as a direction of differentiation, or in dual ones with up to
+    eight directions. ``size``: unknowns; ``coordinates``: unknowns that are no multipliers; ``reduction``: rows of the
+    reduced system; ``roles``: kernels that it needs at once: in real numbers the residuals, in complex ones the
+    tangents, too, or alone.
     """
 
     blocks: Blocks
@@ -63,8 +65,9 @@ class BlockModel:
     def __post_init__(self) -> None:
         head, own = np.zeros(1, MODEL), self.reduction
         for kind, numbers in self.blocks.numbers.items():
-            # Quadratic kinds take their tangents in real numbers, from complex models too.
-            self._real_numbers[kind] = np.ascontiguousarray(np.real(numbers))
+            # Quadratic kinds take their tangents in real numbers, from other models too.
+            plain = numbers[..., 0] if self.dtype is Dual else np.real(numbers)
+            self._real_numbers[kind] = np.ascontiguousarray(plain)
         full = self._table(self.blocks.index, self.blocks.index)
         reduced = self._table(own.index, own.index) if own.nodes else full
         nodes = self._table(own.nodes, own.nodes)
@@ -161,7 +164,7 @@ class Call:
     def __init__(
         self, size: int, coordinates: int, signals: int, dtype: type, callbacks: np.ndarray | None = None
     ) -> None:
-        self.signals = np.zeros((signals, 3), dtype)
+        self.signals = np.zeros((signals, 3, ENTRIES)) if dtype is Dual else np.zeros((signals, 3), dtype)
         self._callbacks = np.zeros(1, np.int64) if callbacks is None else callbacks
         self._words = np.zeros(1, CALL)
         own = self._words[0]

@@ -127,8 +127,13 @@ class Declaration:
     def integer_record(self) -> np.dtype:
         return np.dtype([(name, "i8") for name in self.integers or ("unused",)])
 
+    @property
+    def number_names(self) -> tuple[str, ...]:
+        """Columns of numbers in memory, at least one."""
+        return self.numbers or ("unused",)
+
     def number_record(self, dtype: type) -> np.dtype:
-        return np.dtype([(name, "c16" if dtype is complex else "f8") for name in self.numbers or ("unused",)])
+        return np.dtype([(name, "c16" if dtype is complex else "f8") for name in self.number_names])
 
     @cached_property
     def length_columns(self) -> list[int]:

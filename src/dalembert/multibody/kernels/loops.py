@@ -7,17 +7,20 @@ constraints: forces N^T r.
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from dalembert.kernels.arithmetic import VIEWS
 from dalembert.kernels.digest import digest
+from dalembert.kernels.duals import Dual, dual_records
 from dalembert.kernels.kernel import BlockKernel, inlined
-from dalembert.kernels.views import complexes, complexes2, integers, integers2, local, reals, reals2, records
+from dalembert.kernels.views import complexes, complexes2, integers, integers2, local, reals, records
 from dalembert.multibody.kernels.charts import projecting, spreading
 from dalembert.multibody.kernels.declaration import Declaration
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.records import TANGENT, Inputs, block_at, call_at
 
 
-def arithmetic(dtype: type) -> tuple[Any, Any]:
-    return (complexes, complexes2) if dtype is complex else (reals, reals2)
+def number_rows(kind: Declaration, dtype: type) -> Any:
+    """An intrinsic: the numbers of the components of a block, by the names of their columns."""
+    return dual_records(kind.number_names) if dtype is Dual else records(kind.number_record(dtype))
 
 
 def made(loop: Callable[[Any, Any], None], kind: Declaration, role: str, dtype: type) -> BlockKernel:
@@ -26,14 +29,14 @@ def made(loop: Callable[[Any, Any], None], kind: Declaration, role: str, dtype: 
     # source.
     known = (kind.module or "").startswith("dalembert.")
     name = kind.name if known else f"{kind.name}_{digest(loop)}"  # type: ignore[arg-type]
-    return BlockKernel(loop, f"dal_kind_{name}_{role}_{dtype.__name__}", (kind, role, dtype))
+    return BlockKernel(loop, f"dal_kind_{name}_{role}_{dtype.__name__.lower()}", (kind, role, dtype))
 
 
 def _each(kind: Declaration, role: str, dtype: type, step: Callable[..., None]) -> BlockKernel:
     """Call ``step(x, v, a, p, m, inputs, call, block, e)`` for component ``e`` of a block, with its local vectors."""
-    view, view2 = arithmetic(dtype)
+    view, view2 = VIEWS[dtype]
     own_step, width = step, kind.width
-    numbers, whole = records(kind.number_record(dtype)), records(kind.integer_record)
+    numbers, whole = number_rows(kind, dtype), records(kind.integer_record)
     local_x, local_v, local_a = (local(dtype, width) for _ in range(3))
 
     def loop(call_address, block_address):
@@ -156,14 +159,14 @@ def _either(kind: Declaration, full: _System) -> _System:
 
 def residual(kind: Declaration, dtype: type) -> BlockKernel:
     """Add the residuals, in the reduced system N^T r; in complex numbers, by the call's mode, the tangent instead."""
-    plain = dtype is float or kind.quadratic
+    plain = dtype is not complex or kind.quadratic
     return _plain(kind, dtype, system_of(kind)) if plain else _complex(kind, system_of(kind))
 
 
 def _plain(kind: Declaration, dtype: type, system: _System) -> BlockKernel:
     """Residuals alone."""
     function, width, row_count, project = kind.residual_function, kind.width, system.count, system.project
-    local_r, local_s, (view, _) = local(dtype, width), local(dtype, width), arithmetic(dtype)
+    local_r, local_s, (view, _) = local(dtype, width), local(dtype, width), VIEWS[dtype]
 
     @inlined
     def step(x, v, a, p, m, inputs, call, block, e):
@@ -255,7 +258,7 @@ def _complex(kind: Declaration, system: _System) -> BlockKernel:
 def rates(kind: Declaration, dtype: type) -> BlockKernel:
     """Fill the first and second time derivatives of the constraints."""
     function, width, coordinates, multipliers = kind.rates_function, kind.width, kind.coordinates, kind.multipliers
-    view, _ = arithmetic(dtype)
+    view, _ = VIEWS[dtype]
     local_rate, local_second = (local(dtype, max(multipliers, 1)) for _ in range(2))
 
     @inlined
@@ -273,7 +276,7 @@ def rates(kind: Declaration, dtype: type) -> BlockKernel:
 
 def energy(kind: Declaration, dtype: type) -> BlockKernel:
     """Add kinetic energy, potential energy and power."""
-    function, (view, _) = kind.energy_function, arithmetic(dtype)
+    function, (view, _) = kind.energy_function, VIEWS[dtype]
 
     @inlined
     def step(x, v, a, p, m, inputs, call, block, e):
@@ -289,7 +292,7 @@ def energy(kind: Declaration, dtype: type) -> BlockKernel:
 def outputs(kind: Declaration, dtype: type) -> BlockKernel:
     """Fill the outputs of the components, (count, outputs), at the call's ``r``."""
     function: Any = kind.observe
-    wide, (_, view2) = len(kind.outputs), arithmetic(dtype)
+    wide, (_, view2) = len(kind.outputs), VIEWS[dtype]
 
     @inlined
     def step(x, v, a, p, m, inputs, call, block, e):
@@ -301,7 +304,7 @@ def outputs(kind: Declaration, dtype: type) -> BlockKernel:
 def turn(kind: Declaration, dtype: type) -> BlockKernel:
     """Fill angles and rates of the components, (count, 2 angles), at the call's ``r``."""
     function: Any = kind.turn
-    wide, (_, view2) = 2 * len(kind.angles), arithmetic(dtype)
+    wide, (_, view2) = 2 * len(kind.angles), VIEWS[dtype]
 
     @inlined
     def step(x, v, a, p, m, inputs, call, block, e):

@@ -7,10 +7,12 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+from dalembert.kernels.arithmetic import VIEWS
+from dalembert.kernels.duals import Dual
 from dalembert.kernels.kernel import BlockKernel, inlined
-from dalembert.kernels.views import call, complexes, integers, integers2, local, reals, records
+from dalembert.kernels.views import call, integers, integers2, local, reals, records
 from dalembert.multibody.kernels.declaration import Declaration
-from dalembert.multibody.kernels.loops import arithmetic, made
+from dalembert.multibody.kernels.loops import made, number_rows
 from dalembert.multibody.kernels.records import BLOCK_SIZE, block_at, call_at, model_at
 
 
@@ -19,11 +21,11 @@ def _kernel(role: str, kind: Declaration, dtype: type) -> BlockKernel:
     (``spread``), or what the finite increments -by_x delta change, divided by -by_x (``change``). Those that move the
     coordinates onto the internal constraints (``restore``) are divided by -by_x, too.
     """
-    view, _ = arithmetic(dtype)
+    view, _ = VIEWS[dtype]
     given: Any = getattr(kind.chart, role)
     is_finite, used = role != "spread", 0 if role == "restore" else kind.increments
     width, coordinates, increments = kind.width, kind.coordinates, kind.increments
-    numbers, whole = records(kind.number_record(dtype)), records(kind.integer_record)
+    numbers, whole = number_rows(kind, dtype), records(kind.integer_record)
     local_x, local_dx, local_d = local(dtype, coordinates), local(dtype, coordinates), local(dtype, increments)
 
     @inlined
@@ -87,7 +89,7 @@ def _deal(own, table):
 
 
 def _restore(dtype: type) -> BlockKernel:
-    view = complexes if dtype is complex else reals
+    view, _ = VIEWS[dtype]
 
     @inlined
     def clear(own, table):
@@ -95,10 +97,10 @@ def _restore(dtype: type) -> BlockKernel:
         for i in range(len(change)):
             change[i] = 0.0
 
-    return _of_all(inlined(lambda node: node.restore), clear, f"dal_nodes_restore_{dtype.__name__}")
+    return _of_all(inlined(lambda node: node.restore), clear, f"dal_nodes_restore_{dtype.__name__.lower()}")
 
 
 SPREAD = _of_all(inlined(lambda node: node.spread), _deal, "dal_nodes_spread")
 CHANGE = _of_all(inlined(lambda node: node.change), _deal, "dal_nodes_change")
-RESTORE_REAL, RESTORE_COMPLEX = _restore(float), _restore(complex)
-RESTORE = {float: RESTORE_REAL, complex: RESTORE_COMPLEX}
+RESTORE_REAL, RESTORE_COMPLEX, RESTORE_DUAL = map(_restore, (float, complex, Dual))
+RESTORE = {float: RESTORE_REAL, complex: RESTORE_COMPLEX, Dual: RESTORE_DUAL}

@@ -4,8 +4,10 @@ Each signal has a row of `index`: kind, first entry and number of entries in `da
 Signal 0 is the time itself. The first entry of `data` is the time of the signals at which the motion begins.
 """
 
+from dalembert.kernels.arithmetic import VIEWS
+from dalembert.kernels.duals import Dual
 from dalembert.kernels.kernel import BlockKernel, inner
-from dalembert.kernels.views import call_with, complexes, complexes2, integers, integers2, reals, reals2, stack
+from dalembert.kernels.views import call_with, integers, integers2, reals, stack
 from dalembert.multibody.kernels.elementary import sin_cos
 from dalembert.multibody.kernels.records import call_at, model_at
 
@@ -111,7 +113,7 @@ def evaluate_one(kind, first, count, knot, data, knots, callbacks, t, within, ou
 
 
 def _kernel(dtype: type) -> BlockKernel:
-    view, view2 = (complexes, complexes2) if dtype is complex else (reals, reals2)
+    view, view2 = VIEWS[dtype]
 
     def evaluate(work, model):
         """Fill the signals of a call at its time. ``within`` is a time strictly inside the present smooth stretch of
@@ -126,12 +128,11 @@ def _kernel(dtype: type) -> BlockKernel:
         for n in range(table.signal_count):
             evaluate_one(index[n, 0], index[n, 1], index[n, 2], index[n, 3], data, knots, callbacks, t, within, out[n])
 
-    return BlockKernel(evaluate, f"dal_signals_{dtype.__name__}")
+    return BlockKernel(evaluate, f"dal_signals_{dtype.__name__.lower()}")
 
 
 def _time_kernel(dtype: type) -> BlockKernel:
-    view2 = complexes2 if dtype is complex else reals2
-    view = complexes if dtype is complex else reals
+    view, view2 = VIEWS[dtype]
 
     def evaluate(work, model):
         """Fill the time. It compiles in a small part of the time of all signals, and is all that many models need."""
@@ -139,10 +140,13 @@ def _time_kernel(dtype: type) -> BlockKernel:
         out, data = view2(own.signals, 1, 3), view(table.signal_data, 1)
         out[0, 0], out[0, 1], out[0, 2] = own.t + data[0].real, 1.0, 0.0
 
-    return BlockKernel(evaluate, f"dal_time_{dtype.__name__}")
+    return BlockKernel(evaluate, f"dal_time_{dtype.__name__.lower()}")
 
 
-EVALUATE_REAL, EVALUATE_COMPLEX = _kernel(float), _kernel(complex)
-TIME_REAL, TIME_COMPLEX = _time_kernel(float), _time_kernel(complex)
-EVALUATORS = {float: TIME_REAL, complex: TIME_COMPLEX}, {float: EVALUATE_REAL, complex: EVALUATE_COMPLEX}
+EVALUATE_REAL, EVALUATE_COMPLEX, EVALUATE_DUAL = map(_kernel, (float, complex, Dual))
+TIME_REAL, TIME_COMPLEX, TIME_DUAL = map(_time_kernel, (float, complex, Dual))
+EVALUATORS = (
+    {float: TIME_REAL, complex: TIME_COMPLEX, Dual: TIME_DUAL},
+    {float: EVALUATE_REAL, complex: EVALUATE_COMPLEX, Dual: EVALUATE_DUAL},
+)
 """Kernels that fill the signals of a model, of the time alone and of more than one signal, by their arithmetic."""

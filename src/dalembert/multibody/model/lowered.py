@@ -59,22 +59,26 @@ class Lowered:
         """Whether a force of the model may depend on velocities."""
         return any(kind.dissipative(data) for kind, data in self.data.items())
 
-    def kernels(self, derivatives: bool) -> list[Compiled]:
-        """Kernels of the components that every simulation needs, and those for derivatives along directions."""
+    def kernels(self, derivatives: type | None = None) -> list[Compiled]:
+        """Kernels of the components that every simulation needs, and those for ``derivatives`` in that arithmetic."""
         roles = [("residual", float), ("tangent", complex), ("rates", float)]
-        roles += [("residual", complex), ("rates", complex)] * derivatives
+        roles += [(role, derivatives) for role in ("residual", "rates") if derivatives]
         own = [kind.kernel(*role) for role in roles for kind in self.data if role[0] in kind.roles]
-        return [*own, *EVALUATORS[len(self.structure.signals) > 1].values()]
+        evaluators = EVALUATORS[len(self.structure.signals) > 1]
+        return [*own, *(evaluators[dtype] for dtype in {float: 1, complex: 1, derivatives or float: 1})]
 
     def model(self, dtype: type, *roles: str) -> BlockModel:
         """The arrays in real or in complex numbers, with the kernels of these roles."""
         numbers = {kind: np.ascontiguousarray(_cast(data, dtype)) for kind, data in self.data.items()}
+        return self.model_of(dtype, numbers, np.ascontiguousarray(_cast(self.signal_data, dtype)), *roles)
+
+    def model_of(self, dtype: type, numbers: dict[Kind, np.ndarray], signals: np.ndarray, *roles: str) -> BlockModel:
+        """The model with these numbers of components and of signals, in the arithmetic ``dtype``."""
         address = "complex" if dtype is complex else "real"
         callbacks = np.array([getattr(entry, address) for entry in self.callbacks], dtype=np.int64)
-        data = np.ascontiguousarray(_cast(self.signal_data, dtype))
         return BlockModel(
             Blocks(self.structure.index, self.structure.meta, numbers),
-            Signals(self.structure.signals, self.knots, data),
+            Signals(self.structure.signals, self.knots, signals),
             callbacks,
             self.structure.size,
             self.structure.n,

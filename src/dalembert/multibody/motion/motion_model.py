@@ -21,6 +21,7 @@ from dalembert.multibody.integrators.shared.run import Run, make_problem
 from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.callbacks import in_complex_numbers
 from dalembert.multibody.kernels.elementary import STEP
+from dalembert.multibody.model.directions import are_many, dual_kernels
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.lowering import lower
 from dalembert.multibody.model.observe import Observer, observer
@@ -201,8 +202,10 @@ class BuiltModel(MotionModel):
     def derivative_solver(self) -> Integrator:
         """The solver, with what sensitivities need compiled, or loaded, once."""
         solver = self.solver.suiting(self.shared, float(self.times[-1]))
-        kernels = self.shared.kernels(True), solver.kernels(self.shared.structure, True)
-        prepare([*kernels[0], *kernels[1], *self.observer.kernels(self.shared, True)])
+        together = solver.takes_duals and are_many(self.shared, len(self.parameters))
+        own = solver.kernels(self.shared.structure, True)
+        own += dual_kernels(self.shared) if together else self.shared.kernels(complex)
+        prepare([*own, *self.observer.kernels(self.shared, True)])
         return self.solver
 
     def check_derivatives(self, vector: np.ndarray) -> None:

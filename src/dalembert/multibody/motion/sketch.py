@@ -51,7 +51,7 @@ def sketch(system: BaseSystem, points: int = 8, *, marks: Sequence[str] = (), as
     points of a beam element; ``marks``: points of bodies to locate, ``"body.point"``.
     """
     placed = lower(system)
-    prepare(placed.kernels(False))
+    prepare(placed.kernels())
     lowered = assembled(system, placed=placed) if assemble else placed
     x = np.real(lowered.x)[None]
     located = dict(zip(marks, _positions(system, lowered, x, list(marks)), strict=True))

@@ -82,7 +82,7 @@ def equilibrium(system: BaseSystem) -> Equilibrium:
 def placed_at_start(system: BaseSystem) -> Lowered:
     """Return the assembled mechanism, compiled and checked."""
     placed = lower(system)
-    prepare(placed.kernels(False))
+    prepare(placed.kernels())
     lowered = assembled(system, placed=placed)
     refuse_redundancy(lowered)
     return lowered

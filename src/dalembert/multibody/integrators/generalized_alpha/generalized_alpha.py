@@ -17,6 +17,12 @@ from dalembert.multibody.integrators.generalized_alpha.derivatives import (
     differentiation,
 )
 from dalembert.multibody.integrators.generalized_alpha.newton import Newton, converge, keep_slope, newton
+from dalembert.multibody.integrators.generalized_alpha.together import (
+    Together,
+    accelerate_together,
+    differentiate_together,
+    together,
+)
 from dalembert.multibody.integrators.shared.batch import Batch, restarts
 from dalembert.multibody.integrators.shared.consistent import Consistency, accelerate, accelerate_along, consistency
 from dalembert.multibody.integrators.shared.convergence import HALVINGS
@@ -46,6 +52,7 @@ from dalembert.multibody.kernels.states import (
     row,
     rows,
 )
+from dalembert.multibody.model.directions import are_many, dual_models
 from dalembert.multibody.model.structure import Structure
 from dalembert.multibody.model.turns import STEP_END, count_turns
 
@@ -102,6 +109,11 @@ class GeneralizedAlpha(Integrator):
         return 2 if self.initial_acceleration == "consistent" else 1
 
     @property
+    def takes_duals(self) -> bool:  # type: ignore[override] - it depends on the settings
+        """Whether derivatives along many directions may be dual numbers: not where velocities are projected."""
+        return self.spectral_radius < 1.0
+
+    @property
     def fixed_step(self) -> float | None:
         """The step in s, None if adaptive."""
         return None if self.adaptive else self.step
@@ -125,12 +137,16 @@ class GeneralizedAlpha(Integrator):
         ends = np.zeros((len(samples), 3))
         real = [entry.real.need("rates").reduced() for entry in samples]
         complex_models = [entry.tangents.reduced(nodes=len(perturbed) > 0) for entry in samples]
-        directions = addresses(entry.complex_model.need("rates").reduced() for entry in perturbed)
-        call, complex_call = real[0].call(), complex_models[0].call()
-        works = call.address, complex_call.address
+        many = self.takes_duals and are_many(samples[0], len(perturbed))
+        groups = [entry.need("rates").reduced() for entry in dual_models(samples[0], perturbed if many else ())]
+        one_by_one = [] if many else [entry.complex_model.need("rates").reduced() for entry in perturbed]
+        directions = addresses(one_by_one)
+        calls = [models[0].call() for models in (real, complex_models, groups) if models]
+        work, complex_work, *dual_work = (call.address for call in calls)
+        along = together(problem, groups, *dual_work or [0], complex_work)
         integrate(
             problem, opens, settings, addresses(real), addresses(complex_models), directions, turns, batch.states,
-            batch.dstates, out, dout, log, ends, _workspace(problem, *works, len(perturbed)),
+            batch.dstates, out, dout, log, ends, _workspace(problem, work, complex_work, len(perturbed), along),
         )  # fmt: skip
         runs, shortened = [], f"the step of {self.step:g} s was cut down {'' if self.adaptive else 'to 1/256 '}for it"
         for number, (lowered, (status, time, moved)) in enumerate(zip(samples, ends, strict=True)):
@@ -165,14 +181,19 @@ class AlphaWorkspace(NamedTuple):
     consistency: Consistency
     differentiation: Differentiation
     differentiate: Address
+    together: Together
 
 
-def _workspace(problem: IntegrationProblem, work: int, complex_work: int, directions: int) -> AlphaWorkspace:
+def _workspace(
+    problem: IntegrationProblem, work: int, complex_work: int, directions: int, along: Together
+) -> AlphaWorkspace:
     width = len(problem.scale)
-    along = differentiate.address if directions else 0
+    many = len(along.groups) > 0
+    one_by_one = differentiate.address if directions and not many else 0
+    directions_alone = 0 if many else directions
     return AlphaWorkspace(
         resting(width), resting(width), resting(directions, width), newton(problem, work, complex_work),
-        consistency(problem, work, complex_work, directions), differentiation(problem, complex_work), along,
+        consistency(problem, work, complex_work, directions_alone), differentiation(problem, complex_work), one_by_one, along,
     )  # fmt: skip
 
 
@@ -224,6 +245,11 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
         if fresh and (stretch > 0 or settings.consistent):
             if not accelerate(problem, models, begin, within, new, dstates, scratch.consistency):
                 return SINGULAR, begin, 0
+            if len(scratch.together.groups) > 0:
+                _accelerate_together_at(
+                    scratch.together.accelerate, problem, begin, within, new, dstates, scratch.consistency,
+                    scratch.together,
+                )  # fmt: skip
         if stretch == 0:
             count_turns(models.turns, begin, new, STEP_END)
             while due < len(problem.times) and problem.times[due] <= begin:
@@ -282,6 +308,11 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
                 scratch.differentiation,
             ):  # fmt: skip
                 return SINGULAR, target, 0
+            if len(scratch.together.groups) > 0 and not _differentiate_together_at(
+                scratch.together.differentiate, problem, models.complex, c, target, side, new, dolds, dstates,
+                scratch.together,
+            ):  # fmt: skip
+                return SINGULAR, target, 0
             # At spectral radius 1 errors of the multipliers alternate without decay: accelerations and multipliers are
             # solved for again, and velocities move onto the constraints.
             if problem.projected and width - 1 > n:
@@ -311,6 +342,7 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
 
 
 _differentiate_at = differentiate.at
+_differentiate_together_at, _accelerate_together_at = differentiate_together.at, accelerate_together.at
 
 
 @inlined

@@ -1,0 +1,63 @@
+"""Solutions of one factorised system for eight right-hand sides at once, side by side as lanes."""
+
+from dalembert.kernels.kernel import inlined, kernel
+from dalembert.kernels.lanes import lanes
+from dalembert.kernels.views import address_of
+from dalembert.kernels.words import Reals2
+from dalembert.multibody.kernels.linear import DENSE, Factors, Layout
+
+
+@kernel
+def solve_lanes(layout: Layout, factors: Factors, given: Reals2, buffer: Reals2, answer: Reals2) -> None:
+    """Solve for the first N rows of ``given`` (N + 1, 8) into those of ``answer``; ``buffer`` (N + 3 reach, 8)."""
+    right, left = lanes(address_of(given), len(given)), lanes(address_of(answer), len(answer))
+    if layout.kind == DENSE:
+        _multiply(factors.matrix, layout.size, layout.lead, right, left)
+    else:
+        _substitute(layout, factors, right, lanes(address_of(buffer), len(buffer)), left)
+
+
+@inlined
+def _multiply(matrix, size, lead, given, answer):
+    """Product of a square matrix by columns with lanes; four rows at a time stay in registers."""
+    whole = size // 4 * 4
+    for i in range(0, whole, 4):
+        a = b = c = d = 0.0 * given[0]
+        for j in range(size):
+            at, own = j * lead + i, given[j]
+            a += matrix[at] * own
+            b += matrix[at + 1] * own
+            c += matrix[at + 2] * own
+            d += matrix[at + 3] * own
+        answer[i], answer[i + 1], answer[i + 2], answer[i + 3] = a, b, c, d
+    for i in range(whole, size):
+        a = 0.0 * given[0]
+        for j in range(size):
+            a += matrix[j * lead + i] * given[j]
+        answer[i] = a
+
+
+@inlined
+def _substitute(layout, factors, given, x, answer):
+    """Forward and backward substitution with the factors of a band, as `linear.solve_band` does for one side."""
+    size, reach, lead, order = layout.size, layout.reach, layout.lead, layout.order
+    a, pivots, tops, above = factors.matrix, factors.pivots, factors.tops, 2 * layout.reach
+    for i in range(size):
+        x[order[i]] = given[i]
+    for k in range(size):
+        diagonal, p = k * lead + above, pivots[k]
+        if p > 0:
+            exchanged = x[k]
+            x[k] = x[k + p]
+            x[k + p] = exchanged
+        own = x[k]
+        for i in range(1, min(reach, size - 1 - k) + 1):
+            x[k + i] -= a[diagonal + i] * own
+    for k in range(size - 1, -1, -1):
+        diagonal = k * lead + above
+        own = x[k] * a[diagonal]
+        x[k] = own
+        for i in range(tops[k], k):
+            x[i] -= a[diagonal + i - k] * own
+    for i in range(size):
+        answer[i] = x[order[i]]

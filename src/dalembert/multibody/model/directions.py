@@ -1,0 +1,44 @@
+"""Models in dual numbers: one sample with up to eight directions of differentiation at once."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from dalembert.kernels.duals import DIRECTIONS, Dual, as_duals
+from dalembert.kernels.kernel import Compiled
+from dalembert.multibody.kernels.block_table import BlockModel
+from dalembert.multibody.kernels.debugging import PLAIN
+from dalembert.multibody.kernels.elementary import STEP
+from dalembert.multibody.kernels.linear_lanes import solve_lanes
+from dalembert.multibody.kernels.nodes import RESTORE
+from dalembert.multibody.model.lowered import Lowered
+
+FEWEST = 4
+"""Directions from which eight at once cost less than complex steps one by one."""
+
+
+def are_many(sample: Lowered, directions: int) -> bool:
+    """Return whether directions are worth dual numbers, and whether the components of the sample can take them."""
+    # Functions of users take complex numbers; kinds of users are compiled for them alone, too.
+    built_in = all((kind.module or "").startswith("dalembert.") for kind in sample.data)
+    return directions >= FEWEST and built_in and not sample.callbacks and not PLAIN.get()
+
+
+def dual_kernels(sample: Lowered) -> list[Compiled]:
+    """Return the kernels of components for derivatives in dual numbers, and what differentiates steps by them."""
+    nodes = [kind.kernel("restore", Dual) for kind in sample.structure.reduction.nodes]
+    return [*sample.kernels(Dual), *nodes, *[RESTORE[Dual]] * bool(nodes), solve_lanes]
+
+
+def dual_models(sample: Lowered, perturbed: Sequence[Lowered]) -> list[BlockModel]:
+    """Return models of a sample along its directions, eight in each, in their order."""
+    firsts = range(0, len(perturbed), DIRECTIONS)
+    return [_dual_model(sample, perturbed[first : first + DIRECTIONS]) for first in firsts]
+
+
+def _dual_model(sample: Lowered, group: Sequence[Lowered]) -> BlockModel:
+    def duals(value: np.ndarray, moved: list[np.ndarray]) -> np.ndarray:
+        return as_duals(np.real(value), [np.imag(entry) / STEP for entry in moved])
+
+    numbers = {kind: duals(data, [entry.data[kind] for entry in group]) for kind, data in sample.data.items()}
+    return sample.model_of(Dual, numbers, duals(sample.signal_data, [entry.signal_data for entry in group]))

@@ -1,0 +1,85 @@
+"""Dual numbers in kernels: against complex steps along each of eight directions."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+import mechanisms
+from dalembert.kernels.duals import DIRECTIONS, Dual, as_duals
+from dalembert.multibody.kernels.block_table import BlockModel
+from dalembert.multibody.kernels.elementary import STEP
+from dalembert.multibody.kernels.kind import Kind
+from dalembert.multibody.model.directions import dual_models
+from dalembert.multibody.model.lowered import Lowered
+from dalembert.multibody.model.lowering import lower
+from spatial_scenes import SCENES
+
+TIME = 0.3
+
+
+@cache
+def planar() -> Lowered:
+    return lower(mechanisms.mechanism(*mechanisms.PIECES))
+
+
+@cache
+def spatial(scene: str) -> Lowered:
+    build, fields = SCENES[scene]
+    return lower(build(**fields))
+
+
+HOMES = dict.fromkeys(planar().data, planar)
+HOMES |= {kind: lambda scene=scene: spatial(scene) for scene in SCENES for kind in spatial(scene).data}
+ROLES = [
+    (kind, role)
+    for kind in HOMES
+    for role in ("residual", "rates", "energy", "outputs")
+    if kind.has(role) and not HOMES[kind]().callbacks
+]
+
+
+def perturbed(lowered: Lowered, seed: int) -> Lowered:
+    """Numbers with a random imaginary step."""
+    chance = np.random.default_rng(seed)
+
+    def moved(array: np.ndarray) -> np.ndarray:
+        return array + 1j * STEP * chance.normal(size=array.shape)
+
+    data = {kind: moved(array) for kind, array in lowered.data.items()}
+    signals = moved(lowered.signal_data)
+    signals[0] = signals[0].real  # the time at which the motion starts
+    return replace(lowered, data=data, signal_data=signals)
+
+
+def answers(model: BlockModel, kind: Kind, role: str, state: np.ndarray) -> np.ndarray:
+    """What the kernel of a role writes, for a state (3, N + 1)."""
+    model.need(role)
+    row = list(model.blocks.index).index(kind)
+    length = max(model.size + 1, len(model.blocks.index[kind]) * max(len(kind.outputs), 1))
+    out = np.zeros((4, length, *state.shape[2:]), state.dtype)
+    fields = dict(zip(("r", "rate", "second", "totals"), out, strict=True))
+    call = model.call().set(**dict(zip("xva", map(np.ascontiguousarray, state), strict=True)), **fields)
+    model.evaluate(call, TIME, TIME)
+    kind.kernel(role, model.dtype)(call.address, model.block(row))
+    return out
+
+
+@pytest.mark.parametrize(("kind", "role"), ROLES, ids=lambda entry: getattr(entry, "name", entry))
+def test_eight_slopes_are_those_of_complex_steps(kind: Kind, role: str) -> None:
+    lowered = HOMES[kind]()
+    chance = np.random.default_rng(1)
+    moved = [perturbed(lowered, seed) for seed in range(DIRECTIONS)]
+    value = chance.normal(size=(3, lowered.structure.size + 1))
+    slopes = chance.normal(size=(DIRECTIONS, *value.shape))
+    value[:, -1], slopes[..., -1] = 0.0, 0.0
+    (model,) = dual_models(lowered, moved)
+    assert model.dtype is Dual
+    result = answers(model, kind, role, as_duals(value, slopes))
+    real = answers(lowered.real, kind, role, value)
+    size = np.abs(real).max()
+    np.testing.assert_allclose(result[..., 0], real, rtol=1e-13, atol=1e-13 * size)
+    for direction, (other, slope) in enumerate(zip(moved, slopes, strict=True), start=1):
+        exact = answers(other.complex_model, kind, role, value + 1j * STEP * slope).imag / STEP
+        np.testing.assert_allclose(result[..., direction], exact, rtol=1e-11, atol=1e-12 * np.abs(exact).max())

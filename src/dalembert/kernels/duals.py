@@ -24,15 +24,15 @@ from numba.extending import (
 )
 
 from dalembert.kernels.lanes import LANES, REAL, VECTOR, WIDTH, spread
-from dalembert.kernels.views import WORD, array_at, intrinsic, view
+from dalembert.kernels.views import WORD, intrinsic, vector_of, view
 
 DIRECTIONS = WIDTH
 ENTRIES = 1 + WIDTH  # doubles of a dual number in memory
 _PLAIN = types.Float | types.Integer
 
 
-class DualType(types.Number):
-    """Numba's type of a value with eight derivatives."""
+class DualType(types.Type):
+    """Numba's type of a value with eight derivatives. It is no ``Number``, which Numba unifies by NumPy's rules."""
 
     def __init__(self) -> None:
         super().__init__("Dual")
@@ -251,18 +251,7 @@ def slopes_of(typingctx, x):
 
 duals, duals2 = view(Dual, 1), view(Dual, 2)
 
-
-@intrinsic(_without_python)
-def dual_vector(typingctx, rows):
-    """Return a contiguous array (n, 9) of real numbers as a vector of dual ones."""
-    kind: Any = types.Array(DUAL, 1, "C")
-
-    def generate(context, builder, signature, arguments):
-        array = cgutils.create_struct_proxy(signature.args[0])(context, builder, value=arguments[0])
-        length = cgutils.unpack_tuple(builder, array.shape, 2)[0]
-        return array_at(context, builder, kind, builder.ptrtoint(array.data, WORD), [length])
-
-    return kind(rows), generate
+dual_vector = vector_of(Dual)
 
 
 class DualRowType(types.Type):
@@ -317,7 +306,7 @@ def _row(typingctx, rows, e):
 
 @overload(operator.getitem)
 def _row_of(rows, e):
-    return (lambda rows, e: _row(rows, e)) if isinstance(rows, DualRowsType) else None
+    return (lambda rows, e: _row(rows, e)) if isinstance(rows, DualRowsType) else None  # noqa: PLW0108 - Numba's form
 
 
 def dual_records(names: tuple[str, ...]) -> Any:

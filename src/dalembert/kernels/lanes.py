@@ -13,7 +13,7 @@ from numba.core.typeconv.castgraph import Conversion
 from numba.core.typing.templates import AbstractTemplate, infer_global
 from numba.extending import lower_builtin, lower_cast, models, register_model
 
-from dalembert.kernels.views import view
+from dalembert.kernels.views import vector_of
 
 WIDTH = 8
 REAL, VECTOR = ir.DoubleType(), ir.VectorType(ir.DoubleType(), WIDTH)
@@ -27,7 +27,7 @@ ARITHMETIC = {
 """Operators by the instruction that carries them out."""
 
 
-class LanesType(types.Number):
+class LanesType(types.Type):
     """Numba's type of eight real numbers; a plain number stands for eight equal ones."""
 
     def __init__(self) -> None:
@@ -98,4 +98,4 @@ for _instruction, _symbols in ARITHMETIC.items():
     _elementwise(_instruction, _symbols)
 
 
-lanes = view(Lanes, 1)
+lane_vector = vector_of(Lanes)

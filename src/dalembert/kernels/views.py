@@ -159,6 +159,24 @@ def call_with(typingctx, address, *arrays):
     return signature, generate
 
 
+def vector_of(item: type) -> Any:
+    """An intrinsic: a contiguous array (n, -) of real numbers as a vector of lanes or of dual numbers, one a row."""
+    kind: Any = types.Array(_item(item), 1, "C")
+
+    @intrinsic(lambda rows: rows)
+    def vector(typingctx, rows):
+        """The rows as a vector."""
+
+        def generate(context, builder, signature, arguments):
+            array = cgutils.create_struct_proxy(signature.args[0])(context, builder, value=arguments[0])
+            length = cgutils.unpack_tuple(builder, array.shape, 2)[0]
+            return array_at(context, builder, kind, builder.ptrtoint(array.data, WORD), [length])
+
+        return kind(rows), generate
+
+    return vector
+
+
 def _on_stack(context: Any, builder: Any, kind: types.Array, shape: tuple[int, ...]) -> Any:
     """Generate an array on the stack of the function, the same one at each call from one place."""
     with builder.goto_entry_block():

@@ -16,7 +16,6 @@ from dalembert.multibody.integrators.generalized_alpha.adjoint_sweep import (
 )
 from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.kind import Kind
-from dalembert.multibody.kernels.records import TANGENT
 from dalembert.multibody.kernels.states import MotionState
 from dalembert.multibody.model.couplings import Couplings
 from dalembert.multibody.model.lowered import Lowered
@@ -68,7 +67,7 @@ def _depends(lowered: Lowered, kind: Kind) -> bool:
     x, v, a = np.random.default_rng(0).uniform(0.5, 1.5, (3, structure.size + 1))
     x[-1] = v[-1] = a[-1] = 0.0
     values = np.zeros(len(rows))
-    call = model.call().set(x=x, v=v, a=a, matrix=values, entries=len(values), mode=TANGENT, motion=1.0, constraint=1.0)
+    call = model.call().set(x=x, v=v, a=a, matrix=values, entries=len(values), motion=1.0, constraint=1.0)
     call.set(by_x=0.0, by_v=1.0, by_a=0.0)
     model.evaluate(call, 0.0, 0.0)
     model.each("tangent", call, slots, only=kind)

@@ -6,7 +6,7 @@ signals hold the time.
 
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.kernels.views import address_of, call
-from dalembert.multibody.kernels.records import BLOCK_SIZE, RESIDUAL, TANGENT, block_at, call_at, model_at
+from dalembert.multibody.kernels.records import BLOCK_SIZE, block_at, call_at, model_at
 
 
 @inlined
@@ -32,7 +32,7 @@ def _add_residuals(blocks, count, increments, work, scale, r):
     own, last = call_at(work), len(r) - 1
     # Absent unknowns have the number of the last entry: kernels read zero there and add what nobody reads, so that they
     # need no branch.
-    own.r, own.mode, own.increments, own.last_row = address_of(r), RESIDUAL, increments, last
+    own.r, own.increments, own.last_row = address_of(r), increments, last
     for i in range(last):
         r[i] = 0.0
     for k in range(count):
@@ -63,7 +63,7 @@ def _add_tangents(blocks, count, increments, last_row, slots, by, rows, work, ma
     for i in range(len(matrix)):
         matrix[i] = 0.0
     own = call_at(work)
-    own.matrix, own.entries, own.mode = address_of(matrix), len(matrix), TANGENT
+    own.matrix, own.entries = address_of(matrix), len(matrix)
     own.increments, own.last_row = increments, last_row
     # Of one step by_x, by_v and by_a are dq/da, dv/da and 1; of a static solution 1, 0 and 0. So one kernel gives every
     # matrix that an integrator needs.
@@ -76,21 +76,21 @@ def _add_tangents(blocks, count, increments, last_row, slots, by, rows, work, ma
 
 
 @inner
-def tangent(complex_model, slots, n, x, v, a, by, rows, work, matrix):
+def tangent(tangent_model, slots, n, x, v, a, by, rows, work, matrix):
     """Fill the flat ``matrix`` with the residual's derivative along ``by[0] dq + by[1] dv + by[2] da``, and dlambda.
     Rows of the equations of motion are multiplied by ``rows[0]``, those of the constraints by ``rows[1]``.
-    ``complex_model`` is the model in complex numbers, ``slots`` where each block finds the positions of its entries.
+    ``tangent_model`` is the model with tangents, ``slots`` where each block finds the positions of its entries.
     """
     _place(work, x, v, a)
-    table = model_at(complex_model)
+    table = model_at(tangent_model)
     _add_tangents(table.blocks, table.block_count, n, len(x) - 1, slots, by, rows, work, matrix)
 
 
 @inner
-def reduced_tangent(complex_model, slots, increments, last_row, x, v, a, by, rows, work, matrix):
+def reduced_tangent(tangent_model, slots, increments, last_row, x, v, a, by, rows, work, matrix):
     """The tangent of the reduced system, along increments of dq, dv and da, and of multipliers."""
     _place(work, x, v, a)
-    table = model_at(complex_model)
+    table = model_at(tangent_model)
     _add_tangents(table.reduced, table.reduced_count, increments, last_row, slots, by, rows, work, matrix)
 
 
@@ -109,7 +109,7 @@ def constraint_rates(model, n, x, v, a, work, rate, second):
 def constraint_forces(model, x, v, a, work, f):
     """Add the residuals of joints alone to ``f`` (N + 1,): constraint forces, and constraints."""
     own, table = _place(work, x, v, a), model_at(model)
-    own.r, own.mode = address_of(f), RESIDUAL
+    own.r = address_of(f)
     for k in range(table.block_count):
         block = table.blocks + k * BLOCK_SIZE
         # Multipliers enter the residuals of joints alone, so that their sum is J^T lambda.

@@ -45,8 +45,7 @@ class Signals:
 class BlockModel:
     """A whole model in real numbers, in complex ones as a direction of differentiation, or in dual ones with up to
     eight directions. ``size``: unknowns; ``coordinates``: unknowns that are no multipliers; ``reduction``: rows of the
-    reduced system; ``roles``: kernels that it needs at once: in real numbers the residuals, in complex ones the
-    tangents, too, or alone.
+    reduced system; ``roles``: kernels that it needs at once.
     """
 
     blocks: Blocks
@@ -111,19 +110,19 @@ class BlockModel:
                     block[role] = kernel.address
         return self
 
-    def reduced(self, nodes: bool = True) -> "BlockModel":
-        """Load the kernels of the reduced system, those of its ``nodes`` unless only tangents are wanted."""
+    def reduced(self, spreads: bool = False) -> "BlockModel":
+        """Load the kernels of the reduced system and of its nodes, with those that spread derivatives if wanted."""
         if self.reduction.nodes:
             head = self._words[0]
             for block, kind in zip(self._words[2], self.reduction.index, strict=False):
                 for role in self.roles:
                     block[role] = self._load(kind, role, self.dtype)
-            if nodes:
-                role, whole = ("change", CHANGE) if self.dtype is float else ("spread", SPREAD)
-                head[role], head["restore"] = whole.address, RESTORE[self.dtype].address
+            whole = {"change": CHANGE} if self.dtype is float else {}
+            whole |= {"spread": SPREAD} if spreads else {}
+            for role, kernel in {**whole, "restore": RESTORE[self.dtype]}.items():
+                head[role] = kernel.address
                 for node, kind in zip(self._words[3], self.reduction.nodes, strict=False):
-                    node[role] = self._load(kind, role, float)
-                    node["restore"] = self._load(kind, "restore", self.dtype)
+                    node[role] = self._load(kind, role, self.dtype if role == "restore" else float)
         return self
 
     def _load(self, kind: Kind, role: str, dtype: type) -> int:
@@ -164,7 +163,9 @@ class Call:
     def __init__(
         self, size: int, coordinates: int, signals: int, dtype: type, callbacks: np.ndarray | None = None
     ) -> None:
-        self.signals = np.zeros((signals, 3, ENTRIES)) if dtype is Dual else np.zeros((signals, 3), dtype)
+        # One call serves a model in real numbers and its directions in complex ones, so that it has room for both.
+        room = np.zeros((signals, 3, ENTRIES) if dtype is Dual else (signals, 3, 2))
+        self.signals = room if dtype is Dual else room.ravel().view(dtype)[: 3 * signals].reshape(signals, 3)
         self._callbacks = np.zeros(1, np.int64) if callbacks is None else callbacks
         self._words = np.zeros(1, CALL)
         own = self._words[0]

@@ -28,7 +28,7 @@ def real(x):
 
 @overload(real, inline="always")
 def _real(x):
-    if not isinstance(x, types.Number):
+    if not isinstance(x, types.Number | DualType):
         return None
     return (lambda x: x.real) if isinstance(x, types.Complex | DualType) else (lambda x: x)
 

@@ -2,14 +2,15 @@
 
 from dataclasses import dataclass, field
 
+from dalembert.kernels.duals import Dual
 from dalembert.kernels.kernel import Compiled
-from dalembert.multibody.kernels import loops, nodes, pullbacks, real_tangents
+from dalembert.multibody.kernels import loops, nodes, pullbacks, real_tangents, tangents
 from dalembert.multibody.kernels.debugging import PLAIN, PlainKernel
 from dalembert.multibody.kernels.declaration import Declaration
 from dalembert.multibody.kernels.loops import BlockKernel
 
-_MAKERS = {**loops.MAKERS, **nodes.MAKERS, "tangent": real_tangents.tangent, "pullback": pullbacks.pullback}
-_COMPLEX = {"tangent", "pullback"}  #: roles of complex models alone
+_MAKERS = {**loops.MAKERS, **nodes.MAKERS, "tangent": tangents.tangent, "pullback": pullbacks.pullback}
+_ONE_ARITHMETIC = {"tangent", "pullback"}  #: roles of which a kind has one kernel
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,10 +21,11 @@ class Kind(Declaration):
 
     def kernel(self, role: str, dtype: type) -> Compiled:
         """The kernel of a role, such as residual, in real or in complex numbers."""
-        if role == "tangent" and not self.quadratic:
-            role = "residual"
+        if role == "tangent" and self.quadratic:
+            dtype = float  # from complex models too
         if (role, dtype) not in self._kernels:
-            self._kernels[role, dtype] = _MAKERS[role](self, dtype)
+            make = real_tangents.tangent if role == "tangent" and self.quadratic else _MAKERS[role]
+            self._kernels[role, dtype] = make(self, dtype)
         kernel, errors = self._kernels[role, dtype], PLAIN.get().get(self)
         return kernel if errors is None else PlainKernel(kernel, errors)
 
@@ -32,9 +34,10 @@ class Kind(Declaration):
         roles = [
             (role, dtype)
             for role in _MAKERS
-            if role in self.roles and role not in _COMPLEX
+            if role in self.roles and role not in _ONE_ARITHMETIC
             for dtype in (float, complex)
         ]
         pulled = self.is_flat and "pullback" in self.roles
-        more = [("tangent", complex)] * self.quadratic + [("pullback", complex)] * pulled
+        more = [("tangent", float)] * ("tangent" in self.roles) + [("pullback", complex)] * pulled
+        more += [(role, Dual) for role in ("residual", "rates") if role in self.roles]
         return [self.kernel(*role) for role in (*roles, *more)]

@@ -1,8 +1,7 @@
 """Solutions of one factorised system for eight right-hand sides at once, side by side as lanes."""
 
 from dalembert.kernels.kernel import inlined, kernel
-from dalembert.kernels.lanes import lanes
-from dalembert.kernels.views import address_of
+from dalembert.kernels.lanes import lane_vector
 from dalembert.kernels.words import Reals2
 from dalembert.multibody.kernels.linear import DENSE, Factors, Layout
 
@@ -10,11 +9,11 @@ from dalembert.multibody.kernels.linear import DENSE, Factors, Layout
 @kernel
 def solve_lanes(layout: Layout, factors: Factors, given: Reals2, buffer: Reals2, answer: Reals2) -> None:
     """Solve for the first N rows of ``given`` (N + 1, 8) into those of ``answer``; ``buffer`` (N + 3 reach, 8)."""
-    right, left = lanes(address_of(given), len(given)), lanes(address_of(answer), len(answer))
+    right, left = lane_vector(given), lane_vector(answer)
     if layout.kind == DENSE:
         _multiply(factors.matrix, layout.size, layout.lead, right, left)
     else:
-        _substitute(layout, factors, right, lanes(address_of(buffer), len(buffer)), left)
+        _substitute(layout, factors, right, lane_vector(buffer), left)
 
 
 @inlined

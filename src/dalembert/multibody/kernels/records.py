@@ -24,12 +24,12 @@ def _record(integers: str, reals: str = "") -> np.dtype:
 #: multipliers, ``last_row`` in all: as many as the unknowns in the full system, fewer in the reduced one. ``r rate
 #: second totals matrix``: what kernels add to; ``entries`` of the matrix. ``delta``: increments, and the ``change``
 #: that they make of the coordinates. ``signals`` (signals, 3) at the time ``t``, ``within`` its smooth stretch.
-#: ``mode``: residual or tangent, of a complex kernel that has both. ``slots``: where the entries of the block's local
+#: ``slots``: where the entries of the block's local
 #: matrices stand in ``matrix``. The tangent is the derivative along ``by_x dq + by_v dv + by_a da``; its rows are
 #: multiplied by ``motion`` and ``constraint``.
 CALL = _record(
     "coordinates last increments last_row x v a r rate second totals matrix entries delta change "
-    "signals signal_count callbacks callback_count mode slots",
+    "signals signal_count callbacks callback_count slots",
     "t within by_x by_v by_a motion constraint",
 )
 #: Components of one kind: how many, their unknowns (count, width), the rows of their residual (count, row_count), which
@@ -46,8 +46,6 @@ MODEL = _record(
     "blocks block_count reduced reduced_count nodes node_count rows spread change restore "
     "signal_count signal_index knots knot_count signal_data number_count callbacks callback_count evaluate"
 )
-
-RESIDUAL, TANGENT = 0, 1
 
 call_at, block_at, model_at = record(CALL), record(BLOCK), record(MODEL)
 BLOCK_SIZE = BLOCK.itemsize

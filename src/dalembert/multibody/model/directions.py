@@ -7,7 +7,6 @@ import numpy as np
 from dalembert.kernels.duals import DIRECTIONS, Dual, as_duals
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.kernels.block_table import BlockModel
-from dalembert.multibody.kernels.debugging import PLAIN
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear_lanes import solve_lanes
 from dalembert.multibody.kernels.nodes import RESTORE
@@ -19,9 +18,7 @@ FEWEST = 4
 
 def are_many(sample: Lowered, directions: int) -> bool:
     """Return whether directions are worth dual numbers, and whether the components of the sample can take them."""
-    # Functions of users take complex numbers; kinds of users are compiled for them alone, too.
-    built_in = all((kind.module or "").startswith("dalembert.") for kind in sample.data)
-    return directions >= FEWEST and built_in and not sample.callbacks and not PLAIN.get()
+    return directions >= FEWEST and sample.in_duals
 
 
 def dual_kernels(sample: Lowered) -> list[Compiled]:

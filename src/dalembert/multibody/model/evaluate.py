@@ -9,7 +9,6 @@ from dalembert.multibody.kernels import assembly
 from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.histories import energy_history
 from dalembert.multibody.kernels.kind import Kind
-from dalembert.multibody.kernels.records import RESIDUAL, TANGENT
 from dalembert.multibody.model.lowered import Lowered
 
 
@@ -25,7 +24,7 @@ def residual(
     """Equations of motion, then constraints, (N,); what one kind adds to them, if given."""
     x, v, a = map(np.ascontiguousarray, (x, v, a))
     r = np.zeros_like(x)
-    call = model.call().set(x=x, v=v, a=a, r=r, mode=RESIDUAL)
+    call = model.call().set(x=x, v=v, a=a, r=r)
     model.evaluate(call, t, t)
     model.each("residual", call, only=only)
     return r[:-1]
@@ -49,12 +48,11 @@ def tangent(
     slots, i, j = structure.full.separate
     x, v = map(np.ascontiguousarray, (x, v))
     values, a = np.zeros(len(i)), np.zeros_like(x) if a is None else np.ascontiguousarray(a)
-    call = model.call().set(
-        x=x, v=v, a=a, matrix=values, entries=len(values), mode=TANGENT, motion=rows[0], constraint=rows[1]
-    )
+    call = model.call().set(x=x, v=v, a=a, matrix=values, entries=len(values), motion=rows[0], constraint=rows[1])
     call.set(by_x=by[0], by_v=by[1], by_a=by[2])
     model.evaluate(call, t, t if within is None else within)
-    call.signals.imag = 0.0  # a function of the user's may answer with a direction of its own
+    if model.dtype is complex:
+        call.signals.imag = 0.0  # a function of the user's may answer with a direction of its own
     model.each("tangent", call, slots)
     inside = (i < structure.size) & (j < structure.size)
     return csr_matrix((values[inside], (i[inside], j[inside])), shape=(structure.size, structure.size))

@@ -11,6 +11,7 @@ from dalembert.multibody.components.base_body import BaseBody
 from dalembert.multibody.components.laws.friction_law import FORCE, NUMBERS
 from dalembert.multibody.kernels.block_table import BlockModel, Blocks, Signals
 from dalembert.multibody.kernels.callbacks import Callback, Failures
+from dalembert.multibody.kernels.debugging import PLAIN
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.signal_values import EVALUATORS
 from dalembert.multibody.model.structure import Structure
@@ -61,11 +62,11 @@ class Lowered:
 
     def kernels(self, derivatives: type | None = None) -> list[Compiled]:
         """Kernels of the components that every simulation needs, and those for ``derivatives`` in that arithmetic."""
-        roles = [("residual", float), ("tangent", complex), ("rates", float)]
+        roles = [("residual", float), ("tangent", float if self.in_duals else complex), ("rates", float)]
         roles += [(role, derivatives) for role in ("residual", "rates") if derivatives]
         own = [kind.kernel(*role) for role in roles for kind in self.data if role[0] in kind.roles]
         evaluators = EVALUATORS[len(self.structure.signals) > 1]
-        return [*own, *(evaluators[dtype] for dtype in {float: 1, complex: 1, derivatives or float: 1})]
+        return [*own, *(evaluators[dtype] for dtype in {dtype: None for _, dtype in roles})]
 
     def model(self, dtype: type, *roles: str) -> BlockModel:
         """The arrays in real or in complex numbers, with the kernels of these roles."""
@@ -88,14 +89,20 @@ class Lowered:
         )
 
     @cached_property
+    def in_duals(self) -> bool:
+        """Whether its components take dual numbers: functions of users, and kinds of users, take complex ones."""
+        built_in = all((kind.module or "").startswith("dalembert.") for kind in self.data)
+        return built_in and not self.callbacks and not PLAIN.get()
+
+    @cached_property
     def real(self) -> BlockModel:
-        """The model in real numbers."""
-        return self.model(float)
+        """The model in real numbers, with tangents if it has them in dual numbers."""
+        return self.model(float, "residual", *["tangent"] * self.in_duals)
 
     @cached_property
     def complex_model(self) -> BlockModel:
         """The model in complex numbers."""
-        return self.model(complex, "residual", "tangent")
+        return self.model(complex, "residual")
 
     @cached_property
     def unperturbed(self) -> BlockModel:
@@ -104,8 +111,8 @@ class Lowered:
 
     @cached_property
     def tangents(self) -> BlockModel:
-        """The model in complex numbers without imaginary parts, for tangents alone."""
-        return self._unperturbed.model(complex, "tangent")
+        """The model with tangents: that in real numbers, or one in complex numbers without imaginary parts."""
+        return self.real if self.in_duals else self._unperturbed.model(complex, "tangent")
 
     def moved(self, **changes: Any) -> "Lowered":
         """The system in another state: ``frames``, ``rates``, ``x`` or ``v``, or in an equal structure."""

@@ -279,7 +279,10 @@ class BuiltModel(MotionModel):
             name: complex(value, STEP * slopes[name]) if slopes.get(name) else value
             for name, value in self.parameters.mapping(vector).items()
         }
-        system = built(self.builder, moved, BaseSystem)
+        return self._moved(built(self.builder, moved, BaseSystem), begin)
+
+    def _moved(self, system: BaseSystem, begin: float) -> Lowered:
+        """The closed arrays of a perturbed system; as placed where no initial state moves with the perturbation."""
         placed = lower(system, begin)
         moves = moves_start(system, placed)
         return self._fit(assembled(system, perturbed=True, placed=placed, begin=begin) if moves else placed)
@@ -289,7 +292,7 @@ class BuiltModel(MotionModel):
         name, value = self.parameters.names[column], complex(vector[column], STEP * self.parameters.scale[column])
         try:
             system = built(self.builder, self.parameters.mapping(vector) | {name: value}, BaseSystem)
-            return self._fit(assembled(system, perturbed=True, begin=begin) if closed else lower(system, begin))
+            return self._moved(system, begin) if closed else self._fit(lower(system, begin))
         except (TypeError, ModelError, np.exceptions.ComplexWarning) as error:
             cause = error.__cause__ if isinstance(error, ModelError) else error
             if not isinstance(cause, TypeError | np.exceptions.ComplexWarning):

@@ -101,18 +101,18 @@ def test_it_takes_no_more_iterations_and_matrices_than_the_full_system(joint: bo
 def test_the_reduced_tangent_is_the_slope_of_the_projected_residual() -> None:
     """Along finite increments, so with the change of the projection; by differences of both kernels."""
     lowered = lower(swing(joint=True))
-    model, own = lowered.complex_model.reduced(), lowered.structure.reduction
+    model, own = lowered.tangents.reduced(), lowered.structure.reduction
     chance = np.random.default_rng(3)
     x, v, a = chance.normal(size=(3, len(lowered.x)))
     x[-1] = v[-1] = a[-1] = 0.0
     x[:2] *= LENGTH / np.hypot(*x[:2])
     slots, rows, columns = lowered.structure.reduced.separate
     by, matrix = (0.7, 1.3, 0.4), np.zeros(len(rows))
-    call = model.call().set(x=x, v=v, a=a, matrix=matrix, entries=len(matrix), mode=1, motion=1.0, constraint=2.0)
+    call = model.call().set(x=x, v=v, a=a, matrix=matrix, entries=len(matrix), motion=1.0, constraint=2.0)
     call.set(by_x=by[0], by_v=by[1], by_a=by[2], increments=own.increments, last_row=own.size)
     for k, kind in enumerate(own.index):
         call.set(slots=slots[k])
-        kind.kernel("residual", complex)(call.address, model._words[2][k : k + 1].ctypes.data)
+        kind.kernel("tangent", float)(call.address, model._words[2][k : k + 1].ctypes.data)
     dense = np.zeros((own.size + 1, own.size + 1))
     np.add.at(dense, (rows, columns), matrix)
 

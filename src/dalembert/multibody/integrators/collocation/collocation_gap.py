@@ -17,17 +17,17 @@ from dalembert.multibody.kernels.states import row, subtract
 
 
 @inner
-def _drive(problem, model, complex_model, t, within, state, linear, constraints, c):
+def _drive(problem, model, tangent_model, t, within, state, linear, constraints, c):
     """Accelerations and multipliers by the equations of motion; whether the matrix is regular. As `accelerate` does,
     for a state that `settle` has left, whose constraint Jacobian it takes: one tangent is enough where no force depends
     on the multipliers.
     """
     n, given, answer, rate = problem.n, c.vectors[0], c.vectors[1], c.vectors[2]
-    set_signals(complex_model, t, within, c.complex_work)
+    set_signals(tangent_model, t, within, c.complex_work)
     for iteration in range(2 if linear else 6):
         # M a + J^T l = Q and J a = -(second rates without a) are linear in a and l, unless friction depends on l.
         if iteration == 0 or not linear:
-            add_masses(problem, complex_model, state, c.complex_work, constraints, c.exact.matrix)
+            add_masses(problem, tangent_model, state, c.complex_work, constraints, c.exact.matrix)
             if not factorise(problem.exact_layout, c.exact):
                 return False
         residual(model, n, state.x, state.v, state.a, c.work, 1.0, given)
@@ -95,7 +95,7 @@ def measure(
         walk.gaps[s, i] = state.a[i]
         for d in range(len(dstates.x)):
             walk.slopes[s, d, i] = dstates.a[d, i]
-    if not _drive(problem, models.real, models.complex, t, within, state, walk.linear, own.matrix, c):
+    if not _drive(problem, models.real, models.tangents, t, within, state, walk.linear, own.matrix, c):
         return False
     _drive_along(problem, models.directions, t, within, state, dstates, c)
     for i in range(n):

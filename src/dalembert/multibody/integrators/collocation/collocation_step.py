@@ -200,9 +200,9 @@ def begin(
             return SINGULAR
         count_turns(models.turns, t, walk.old, STEP_END)
     old, own, work = walk.old, walk.partition, walk.consistency.complex_work
-    set_signals(models.complex, t, within, work)
+    set_signals(models.tangents, t, within, work)
     # Independent coordinates are chosen by the Jacobian at the start of the step.
-    linearise(problem, models.complex, old, work, own)
+    linearise(problem, models.tangents, old, work, own)
     if not _choose(problem, own, walk.chosen):
         return SINGULAR
     _predict(rule.ahead, own.columns[own.rank[0] : problem.n], old.a, walk.chosen, walk.shape[0], walk.c)

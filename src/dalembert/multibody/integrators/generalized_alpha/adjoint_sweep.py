@@ -14,7 +14,7 @@ from dalembert.kernels.words import Address, Integers, Integers2, Reals, Reals2
 from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.linear import Factors, Layout, factorise, storage
-from dalembert.multibody.kernels.records import BLOCK_SIZE, TANGENT, block_at, call_at, model_at
+from dalembert.multibody.kernels.records import BLOCK_SIZE, block_at, call_at, model_at
 from dalembert.multibody.kernels.states import MotionState, clear, coefficients
 from dalembert.multibody.kernels.transposed import solve_transposed, transposed
 
@@ -112,7 +112,7 @@ def _fill(model, n, x, v, a, by, scratch, part):
     for k in range(len(values)):
         values[k] = 0.0
     own.x, own.v, own.a = address_of(x), address_of(v), address_of(a)
-    own.matrix, own.entries, own.mode = address_of(values), len(values), TANGENT
+    own.matrix, own.entries = address_of(values), len(values)
     own.increments, own.last_row = n, len(x) - 1
     own.by_x, own.by_v, own.by_a = by
     own.motion, own.constraint = 1.0, 1.0

@@ -59,7 +59,7 @@ def differentiation(problem: IntegrationProblem, complex_work: int) -> Different
 
 @kernel
 def differentiate(
-    problem: IntegrationProblem, complex_model: Address, directions: Integers, c: Coefficients, t: float, within: float,
+    problem: IntegrationProblem, tangent_model: Address, directions: Integers, c: Coefficients, t: float, within: float,
     new: MotionState, dolds: MotionStates, dnews: MotionStates, scratch: Differentiation,
 ) -> bool:  # fmt: skip
     """Compute the derivatives of the converged step along all directions; return whether the tangent is regular. The
@@ -70,9 +70,9 @@ def differentiate(
     """
     n, own, complex_state, factors = problem.n, problem.reduced, scratch.complex_state, scratch.factors
     r, right, delta, change = scratch.r, scratch.right, scratch.delta, scratch.change
-    set_signals(complex_model, t, within, scratch.complex_work)
+    set_signals(tangent_model, t, within, scratch.complex_work)
     reduced_tangent(
-        complex_model, own.exact_slots, own.increments, own.exact_layout.size, new.x, new.v, new.a, (c.dq, c.dv, 1.0),
+        tangent_model, own.exact_slots, own.increments, own.exact_layout.size, new.x, new.v, new.a, (c.dq, c.dv, 1.0),
         (1.0, 1.0 / c.dq), scratch.complex_work, factors.matrix,
     )  # fmt: skip
     if not factorise(own.exact_layout, factors):
@@ -97,7 +97,7 @@ def differentiate(
             right[i] = r[i].imag / STEP
         # The tangent is exact and of the converged state, so that one solution is the result, not an iteration.
         solve(own.exact_layout, factors, right, delta)
-        spread(complex_model, new.x, delta, scratch.complex_work, change)
+        spread(tangent_model, new.x, delta, scratch.complex_work, change)
         subtract(n, change, dnew)
         advance(n, c, dold, dnew)
     return True

@@ -21,6 +21,8 @@ from dalembert.multibody.integrators.generalized_alpha.together import (
     Together,
     accelerate_together,
     differentiate_together,
+    gather,
+    scatter,
     together,
 )
 from dalembert.multibody.integrators.shared.batch import Batch, restarts
@@ -136,16 +138,16 @@ class GeneralizedAlpha(Integrator):
         settings = AlphaSettings(*steps, self.tolerance, self.newton_tolerance, self.most_steps)
         ends = np.zeros((len(samples), 3))
         real = [entry.real.need("rates").reduced() for entry in samples]
-        complex_models = [entry.tangents.reduced(nodes=len(perturbed) > 0) for entry in samples]
+        tangent_models = [entry.tangents.reduced(spreads=len(perturbed) > 0) for entry in samples]
         many = self.takes_duals and are_many(samples[0], len(perturbed))
         groups = [entry.need("rates").reduced() for entry in dual_models(samples[0], perturbed if many else ())]
         one_by_one = [] if many else [entry.complex_model.need("rates").reduced() for entry in perturbed]
         directions = addresses(one_by_one)
-        calls = [models[0].call() for models in (real, complex_models, groups) if models]
+        calls = [models[0].call() for models in (real, tangent_models, groups) if models]
         work, complex_work, *dual_work = (call.address for call in calls)
         along = together(problem, groups, *dual_work or [0], complex_work)
         integrate(
-            problem, opens, settings, addresses(real), addresses(complex_models), directions, turns, batch.states,
+            problem, opens, settings, addresses(real), addresses(tangent_models), directions, turns, batch.states,
             batch.dstates, out, dout, log, ends, _workspace(problem, work, complex_work, len(perturbed), along),
         )  # fmt: skip
         runs, shortened = [], f"the step of {self.step:g} s was cut down {'' if self.adaptive else 'to 1/256 '}for it"
@@ -193,19 +195,20 @@ def _workspace(
     directions_alone = 0 if many else directions
     return AlphaWorkspace(
         resting(width), resting(width), resting(directions, width), newton(problem, work, complex_work),
-        consistency(problem, work, complex_work, directions_alone), differentiation(problem, complex_work), one_by_one, along,
+        consistency(problem, work, complex_work, directions_alone), differentiation(problem, complex_work),
+        one_by_one, along,
     )  # fmt: skip
 
 
 @kernel
 def integrate(
-    problem: IntegrationProblem, opens: Integers2, settings: AlphaSettings, models: Integers, complex_models: Integers,
+    problem: IntegrationProblem, opens: Integers2, settings: AlphaSettings, models: Integers, tangent_models: Integers,
     directions: Integers, turns: Integers, states: MotionStates, dstates: MotionStates, out: Histories,
     dout: Histories, log: Log, ends: Reals2, scratch: AlphaWorkspace,
 ) -> None:  # fmt: skip
     """Run a stack of samples from ``problem.edges[sample, 0]`` to the last edge; fill the states at the output times.
     ``opens`` (samples, -): whether each stretch starts anew; else the motion goes on, and held tables have their mean
-    where it begins; ``models``, ``complex_models`` (samples,): models in real and in complex numbers; ``directions``:
+    where it begins; ``models``, ``tangent_models`` (samples,): in real numbers, and with tangents; ``directions``:
     complex models, one a direction of differentiation; empty if there is more than one sample; ``turns`` (samples,):
     what counts the turns of angles, 0 for none; ``states`` (samples, N + 1), ``dstates`` (directions, N + 1): at the
     start, and its derivatives; overwritten; ``out``, ``dout``: arrays (samples, times, N + 1) and
@@ -217,7 +220,7 @@ def integrate(
         edges = problem.edges[sample, : problem.stretches[sample] + 1]
         ends[sample, 0], ends[sample, 1], ends[sample, 2] = _integrate(
             problem, edges, opens[sample], settings,
-            SampleModels(models[sample], complex_models[sample], directions, turns[sample]), row(states, sample),
+            SampleModels(models[sample], tangent_models[sample], directions, turns[sample]), row(states, sample),
             dstates,
             rows(out, sample), dout, log, scratch,
         )  # fmt: skip
@@ -230,7 +233,10 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
     old, new, dolds, own = scratch.old, scratch.new, scratch.dolds, scratch.newton
     copy(state, new)
     own.memory[0], own.memory[1] = 0.0, 0.0
-    differentiated = len(models.directions) > 0
+    differentiated, along = len(models.directions) > 0, scratch.together
+    many = len(along.groups) > 0
+    if many:
+        scatter(dstates, along.new)
     due = 0
     length = settings.step
     for stretch in range(len(edges) - 1):
@@ -245,12 +251,11 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
         if fresh and (stretch > 0 or settings.consistent):
             if not accelerate(problem, models, begin, within, new, dstates, scratch.consistency):
                 return SINGULAR, begin, 0
-            if len(scratch.together.groups) > 0:
-                _accelerate_together_at(
-                    scratch.together.accelerate, problem, begin, within, new, dstates, scratch.consistency,
-                    scratch.together,
-                )  # fmt: skip
+            if many:
+                _accelerate_together_at(along.accelerate, problem, begin, within, new, scratch.consistency, along)
         if stretch == 0:
+            if many:
+                gather(along.new, dstates)
             count_turns(models.turns, begin, new, STEP_END)
             while due < len(problem.times) and problem.times[due] <= begin:
                 _record(n, 1.0, 1.0, new, new, dstates, dstates, out, dout, due)
@@ -278,7 +283,7 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
             side = within if ends or target < end else end
             set_signals(models.real, target, side, own.work)
             status, detail = converge(
-                problem, models.real, models.complex, c, target, side, settings.newton_tolerance, old, new, own, log
+                problem, models.real, models.tangents, c, target, side, settings.newton_tolerance, old, new, own, log
             )
             error = 0.0
             # The quadrature of Newmark, q_{n+1} = ... + h^2 ((1/2 - beta) w_n + beta w_{n+1}), differs from the Taylor
@@ -304,20 +309,22 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
             note_step(log, detail, target)
             keep_slope(n, c, old, new, own.slope)
             if differentiated and not _differentiate_at(
-                scratch.differentiate, problem, models.complex, models.directions, c, target, side, new, dolds, dstates,
-                scratch.differentiation,
+                scratch.differentiate, problem, models.tangents, models.directions, c, target, side, new, dolds,
+                dstates, scratch.differentiation,
             ):  # fmt: skip
                 return SINGULAR, target, 0
-            if len(scratch.together.groups) > 0 and not _differentiate_together_at(
-                scratch.together.differentiate, problem, models.complex, c, target, side, new, dolds, dstates,
-                scratch.together,
-            ):  # fmt: skip
+            if many and not _differentiate_together_at(
+                along.differentiate, problem, models.tangents, c, target, side, new, along
+            ):
                 return SINGULAR, target, 0
             # At spectral radius 1 errors of the multipliers alternate without decay: accelerations and multipliers are
             # solved for again, and velocities move onto the constraints.
             if problem.projected and width - 1 > n:
                 if not accelerate(problem, models, target, side, new, dstates, scratch.consistency):
                     return SINGULAR, target, 0
+            if many and due < len(problem.times) and problem.times[due] <= target + 1e-9 * length:
+                gather(along.old, dolds)
+                gather(along.new, dstates)
             while due < len(problem.times) and problem.times[due] <= target + 1e-9 * length:
                 share = min(1.0, (problem.times[due] - t) / length)
                 _record(n, length, share, old, new, dolds, dstates, out, dout, due)
@@ -337,6 +344,8 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
                 # After a halving the step doubles again as soon as it ends on the coarser grid.
                 if level > 0 and unit % (2 * stride) == 0:
                     level -= 1
+    if many:
+        gather(along.new, dstates)
     copy(new, state)
     return DONE, edges[-1], 0
 

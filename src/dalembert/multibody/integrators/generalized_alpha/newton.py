@@ -53,13 +53,13 @@ def newton(problem: IntegrationProblem, work: int, complex_work: int) -> Newton:
 
 
 @inner
-def _renew(problem, complex_model, c, t, within, new, newton):
-    set_signals(complex_model, t, within, newton.complex_work)
+def _renew(problem, tangent_model, c, t, within, new, newton):
+    set_signals(tangent_model, t, within, newton.complex_work)
     # The derivative of the residual along da, with dv = c.dv da and dq = c.dq da of the formulas of the step: M + dv C
     # + dq K. The constraint rows are divided by dq, so that their columns J^T and rows J have one scale.
     own = problem.reduced
     reduced_tangent(
-        complex_model, own.slots, own.increments, own.layout.size, new.x, new.v, new.a, (c.dq, c.dv, 1.0),
+        tangent_model, own.slots, own.increments, own.layout.size, new.x, new.v, new.a, (c.dq, c.dv, 1.0),
         (1.0, 1.0 / c.dq), newton.complex_work, newton.factors.matrix,
     )  # fmt: skip
     newton.memory[0] = c.step if factorise(own.layout, newton.factors) else 0.0
@@ -108,7 +108,7 @@ def _correct(n, c, scale, change, old, new):
 
 
 @inlined
-def converge(problem, model, complex_model, c, t, within, tolerance, old, new, newton, log):
+def converge(problem, model, tangent_model, c, t, within, tolerance, old, new, newton, log):
     """Newton iteration on new accelerations and multipliers: status, and iterations or the unknown that moved most."""
     n, own, memory = problem.n, problem.reduced, newton.memory
     _predict(n, c, model, old, newton, new)
@@ -117,7 +117,7 @@ def converge(problem, model, complex_model, c, t, within, tolerance, old, new, n
     fresh = not (0.8 * memory[0] < c.step < 1.25 * memory[0]) or memory[1] > _AGED
     if fresh:
         log.counts[2] += 1
-        if not _renew(problem, complex_model, c, t, within, new, newton):
+        if not _renew(problem, tangent_model, c, t, within, new, newton):
             return SINGULAR, 0
         memory[1] = _AGED
     before, norm, left, worst, force = 0.0, 1.0, 1.0, 0, 0.0
@@ -150,7 +150,7 @@ def converge(problem, model, complex_model, c, t, within, tolerance, old, new, n
             if fresh and rate > 2.0:
                 break
             log.counts[2] += 1
-            if not _renew(problem, complex_model, c, t, within, new, newton):
+            if not _renew(problem, tangent_model, c, t, within, new, newton):
                 return SINGULAR, worst
             fresh = True
         before = norm

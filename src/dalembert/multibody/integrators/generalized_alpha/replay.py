@@ -49,7 +49,7 @@ def replay(
         status, _ = converge(
             problem,
             models.real,
-            models.complex,
+            models.tangents,
             c,
             steps.ends[k],
             steps.sides[k],

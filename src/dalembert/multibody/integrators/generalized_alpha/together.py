@@ -9,9 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.kernels.duals import DIRECTIONS, ENTRIES, dual_vector
+from dalembert.kernels.duals import DIRECTIONS, ENTRIES, dual_vector, slopes_of, with_slopes
 from dalembert.kernels.kernel import inner, kernel
-from dalembert.kernels.words import Address, Integers, Reals, Reals2, Reals3
+from dalembert.kernels.lanes import lane_vector
+from dalembert.kernels.words import Address, Integers, Reals, Reals2, Reals3, Reals4
 from dalembert.multibody.integrators.shared.consistent import Consistency
 from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.kernels.assembly import (
@@ -30,10 +31,8 @@ from dalembert.multibody.kernels.linear_lanes import solve_lanes
 from dalembert.multibody.kernels.states import (
     Coefficients,
     MotionState,
-    MotionStates,
     advance,
     copy,
-    row,
     shift,
     subtract,
 )
@@ -41,17 +40,20 @@ from dalembert.multibody.kernels.states import (
 
 class Together(NamedTuple):
     """Work of derivatives along eight directions. ``groups``: models in dual numbers, each for up to eight of the
-    directions, none where directions are taken one by one; addresses of the kernels; calls in dual and in complex
-    numbers; a matrix, a state (3, N + 1, 9) and vectors (N + 1, 9) in dual numbers, right-hand sides and solutions
-    (N + 1, 8), one correction (N + 1,).
+    directions, none where directions are taken one by one; addresses of the kernels; calls in dual numbers and for
+    tangents; a matrix; ``old``, ``new`` (4, groups, N + 1, 8): derivatives of x, v, a and w at both ends of a step;
+    a state (3, N + 1, 9) and vectors (N + 1, 9) in dual numbers; right-hand sides and solutions (N + 1, 8); one
+    correction (N + 1,) of the reduced system and of all unknowns.
     """
 
     groups: Integers
     differentiate: Address
     accelerate: Address
     dual_work: Address
-    complex_work: Address
+    tangent_work: Address
     factors: Factors
+    old: Reals4
+    new: Reals4
     state: Reals3
     r: Reals2
     second: Reals2
@@ -62,112 +64,126 @@ class Together(NamedTuple):
     change: Reals
 
 
-def together(problem: IntegrationProblem, groups: Sequence[BlockModel], dual_work: int, complex_work: int) -> Together:
+def together(problem: IntegrationProblem, groups: Sequence[BlockModel], dual_work: int, tangent_work: int) -> Together:
     """Workspace for derivatives along eight directions at once, by models in dual numbers, which the caller keeps."""
     layout, width = problem.reduced.exact_layout, len(problem.scale)
     lengths = (entry.size + 3 * entry.reach for entry in (layout, problem.exact_layout))
-    delta = np.zeros(width)
     kernels = [differentiate_together.address, accelerate_together.address] if groups else [0, 0]
     return Together(
-        addresses(groups), *kernels, dual_work, complex_work, storage(layout), np.zeros((3, width, ENTRIES)), np.zeros((width, ENTRIES)),
-        np.zeros((width, ENTRIES)), np.zeros((width, DIRECTIONS)), np.zeros((width, DIRECTIONS)),
-        np.zeros((max(lengths), DIRECTIONS)), delta,
-        delta if problem.reduced.increments == problem.n else np.zeros(width),
+        addresses(groups), *kernels, dual_work, tangent_work, storage(layout),
+        *(np.zeros((4, len(groups), width, DIRECTIONS)) for _ in range(2)), np.zeros((3, width, ENTRIES)),
+        *(np.zeros((width, ENTRIES)) for _ in range(2)), *(np.zeros((width, DIRECTIONS)) for _ in range(2)),
+        np.zeros((max(lengths), DIRECTIONS)), np.zeros(width), np.zeros(width),
     )  # fmt: skip
+
+
+@inner
+def scatter(dstates, groups):
+    """Fill ``groups`` (4, groups, N + 1, 8) with derivatives (directions, N + 1): lanes are directions."""
+    for d in range(len(dstates.x)):
+        g, lane = d // DIRECTIONS, d % DIRECTIONS
+        for i in range(dstates.x.shape[1]):
+            groups[0, g, i, lane], groups[1, g, i, lane] = dstates.x[d, i], dstates.v[d, i]
+            groups[2, g, i, lane], groups[3, g, i, lane] = dstates.a[d, i], dstates.w[d, i]
+
+
+@inner
+def gather(groups, dstates):
+    """Fill derivatives (directions, N + 1) from those in lanes."""
+    for d in range(len(dstates.x)):
+        g, lane = d // DIRECTIONS, d % DIRECTIONS
+        for i in range(dstates.x.shape[1]):
+            dstates.x[d, i], dstates.v[d, i] = groups[0, g, i, lane], groups[1, g, i, lane]
+            dstates.a[d, i], dstates.w[d, i] = groups[2, g, i, lane], groups[3, g, i, lane]
 
 
 @kernel
 def differentiate_together(
-    problem: IntegrationProblem, complex_model: Address, c: Coefficients, t: float, within: float,
-    new: MotionState, dolds: MotionStates, dnews: MotionStates, scratch: Together,
+    problem: IntegrationProblem, tangent_model: Address, c: Coefficients, t: float, within: float, new: MotionState,
+    scratch: Together,
 ) -> bool:  # fmt: skip
-    """Compute the derivatives of the converged step, as :func:`derivatives.differentiate` does."""
-    groups = scratch.groups
-    n, own, factors, state = problem.n, problem.reduced, scratch.factors, scratch.state
-    delta, change, answer = scratch.delta, scratch.change, scratch.answer
-    set_signals(complex_model, t, within, scratch.complex_work)
+    """Compute the derivatives of the converged step, as :func:`derivatives.differentiate` does: ``scratch.new``."""
+    n, own, groups, factors = problem.n, problem.reduced, scratch.groups, scratch.factors
+    size, answer = own.exact_layout.size, lane_vector(scratch.answer)
+    set_signals(tangent_model, t, within, scratch.tangent_work)
     reduced_tangent(
-        complex_model, own.exact_slots, own.increments, own.exact_layout.size, new.x, new.v, new.a, (c.dq, c.dv, 1.0),
-        (1.0, 1.0 / c.dq), scratch.complex_work, factors.matrix,
+        tangent_model, own.exact_slots, own.increments, size, new.x, new.v, new.a, (c.dq, c.dv, 1.0), (1.0, 1.0 / c.dq),
+        scratch.tangent_work, factors.matrix,
     )  # fmt: skip
     if not factorise(own.exact_layout, factors):
         return False
+    x, v, a = dual_vector(scratch.state[0]), dual_vector(scratch.state[1]), dual_vector(scratch.state[2])
+    r, moved = dual_vector(scratch.r[: size + 1]), dual_vector(scratch.second)
     for g in range(len(groups)):
-        first = g * DIRECTIONS
-        last = min(first + DIRECTIONS, len(dnews.x))
-        for d in range(first, last):
-            copy(row(dnews, d), row(dolds, d))
-            advance(n, c, row(dolds, d), row(dnews, d))
-        _scatter(n, new, dnews, first, last, state)
+        before, after = scratch.old[:, g], scratch.new[:, g]
+        dold = MotionState(
+            lane_vector(before[0]), lane_vector(before[1]), lane_vector(before[2]), lane_vector(before[3])
+        )
+        dnew = MotionState(lane_vector(after[0]), lane_vector(after[1]), lane_vector(after[2]), lane_vector(after[3]))
+        # A prediction with the accelerations of the start, as along one direction.
+        copy(dnew, dold)
+        advance(n, c, dold, dnew)
+        _join(n, new, dnew, x, v, a)
         if has_nodes(groups[g]):
-            _restore(n, c, groups[g], dnews, first, last, scratch)
-            _scatter(n, new, dnews, first, last, state)
-        x, v, a = dual_vector(state[0]), dual_vector(state[1]), dual_vector(state[2])
+            restore(groups[g], c.dq, x, scratch.dual_work, moved)
+            for i in range(n):
+                answer[i] = slopes_of(moved[i])
+            shift(n, c, answer, dnew)
+            _join(n, new, dnew, x, v, a)
         set_signals(groups[g], t, within, scratch.dual_work)
-        r = dual_vector(scratch.r[: own.exact_layout.size + 1])
         reduced_residual(groups[g], own.increments, x, v, a, scratch.dual_work, 1.0 / c.dq, r)
-        _solve(own.exact_layout, factors, scratch.r, scratch)
-        for d in range(first, last):
-            dold, dnew = row(dolds, d), row(dnews, d)
-            for i in range(own.exact_layout.size):
-                delta[i] = answer[i, d - first]
-            spread(complex_model, new.x, delta, scratch.complex_work, change)
-            subtract(n, change, dnew)
-            advance(n, c, dold, dnew)
+        _solve(own.exact_layout, factors, r, scratch)
+        if has_nodes(tangent_model):
+            _spread(tangent_model, size, new.x, scratch)
+        subtract(n, answer, dnew)
+        advance(n, c, dold, dnew)
     return True
 
 
 @kernel
 def accelerate_together(
-    problem: IntegrationProblem, t: float, within: float, state: MotionState, dstates: MotionStates, c: Consistency,
-    scratch: Together,
-) -> None:  # fmt: skip
-    """Compute the derivatives of consistent accelerations and multipliers, by the matrix in ``c``."""
-    n, size, groups = problem.n, problem.exact_layout.size, scratch.groups
+    problem: IntegrationProblem, t: float, within: float, state: MotionState, c: Consistency, scratch: Together
+) -> None:
+    """Compute the derivatives of consistent accelerations and multipliers, by the matrix in ``c``: ``scratch.new``."""
+    n, groups, answer = problem.n, scratch.groups, lane_vector(scratch.answer)
+    x, v, a = dual_vector(scratch.state[0]), dual_vector(scratch.state[1]), dual_vector(scratch.state[2])
+    r, second = dual_vector(scratch.r), dual_vector(scratch.second)
     for g in range(len(groups)):
-        first = g * DIRECTIONS
-        last = min(first + DIRECTIONS, len(dstates.x))
-        _scatter(n, state, dstates, first, last, scratch.state)
-        x, v, a = dual_vector(scratch.state[0]), dual_vector(scratch.state[1]), dual_vector(scratch.state[2])
-        r, second = dual_vector(scratch.r), dual_vector(scratch.second)
+        after = scratch.new[:, g]
+        dnew = MotionState(lane_vector(after[0]), lane_vector(after[1]), lane_vector(after[2]), lane_vector(after[3]))
+        _join(n, state, dnew, x, v, a)
         set_signals(groups[g], t, within, scratch.dual_work)
         residual(groups[g], n, x, v, a, scratch.dual_work, 1.0, r)
         constraint_rates(groups[g], n, x, v, a, scratch.dual_work, second, r)
-        _solve(problem.exact_layout, c.exact, scratch.r, scratch)
-        for d in range(first, last):
-            for i in range(size):
-                scratch.delta[i] = scratch.answer[i, d - first]
-            subtract(n, scratch.delta, row(dstates, d))
+        _solve(problem.exact_layout, c.exact, r, scratch)
+        subtract(n, answer, dnew)
 
 
 @inner
-def _scatter(n, state, dstates, first, last, target):
-    """State with the derivatives along some directions, in dual numbers; directions that are missing are zero."""
+def _join(n, state, slopes, x, v, a):
+    """Fill vectors of dual numbers with a state and its derivatives."""
     for i in range(len(state.x)):
-        target[0, i, 0], target[1, i, 0], target[2, i, 0] = state.x[i], state.v[i], state.a[i]
-    for d in range(first, last):
-        k = 1 + d - first
-        for i in range(len(state.x)):
-            target[0, i, k] = dstates.x[d, i]
-        for i in range(n):
-            target[1, i, k], target[2, i, k] = dstates.v[d, i], dstates.a[d, i]
+        x[i] = with_slopes(state.x[i], slopes.x[i])
+    for i in range(n):
+        v[i], a[i] = with_slopes(state.v[i], slopes.v[i]), with_slopes(state.a[i], slopes.a[i])
 
 
 @inner
 def _solve(layout, factors, r, scratch):
     """Solve for the slopes of residuals in dual numbers ``r``, into the answer."""
+    right = lane_vector(scratch.right)
     for i in range(layout.size):
-        for k in range(DIRECTIONS):
-            scratch.right[i, k] = r[i, 1 + k]
+        right[i] = slopes_of(r[i])
     solve_lanes(layout, factors, scratch.right, scratch.buffer, scratch.answer)
 
 
 @inner
-def _restore(n, c, model, dnews, first, last, scratch):
-    """Move the derivatives of the coordinates into the tangent spaces of the internal constraints."""
-    moved = scratch.second
-    restore(model, c.dq, dual_vector(scratch.state[0]), scratch.dual_work, dual_vector(moved))
-    for d in range(first, last):
-        for i in range(n):
-            scratch.change[i] = moved[i, 1 + d - first]
-        shift(n, c, scratch.change, row(dnews, d))
+def _spread(model, size, x, scratch):
+    """Replace solutions of the reduced system by the corrections of all unknowns, N(x) delta."""
+    delta, change, answer = scratch.delta, scratch.change, scratch.answer
+    for lane in range(DIRECTIONS):
+        for i in range(size):
+            delta[i] = answer[i, lane]
+        spread(model, x, delta[: size + 1], scratch.tangent_work, change)
+        for i in range(len(x)):
+            answer[i, lane] = change[i]

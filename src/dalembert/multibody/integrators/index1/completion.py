@@ -61,7 +61,7 @@ def kernels(way: int, derivatives: bool) -> list[Compiled]:
 
 @kernel
 def partition(
-    problem: IntegrationProblem, terms: Terms, complex_model: Address, t: float, within: float, state: MotionState,
+    problem: IntegrationProblem, terms: Terms, tangent_model: Address, t: float, within: float, state: MotionState,
     work: Address,
     own: Partition,
 ) -> bool:  # fmt: skip
@@ -69,8 +69,8 @@ def partition(
     Whether there are now other dependent ones; never without constraints. ``work``: address of a call in complex
     numbers.
     """
-    set_signals(complex_model, t, within, work)
-    linearise(problem, complex_model, state, work, own)
+    set_signals(tangent_model, t, within, work)
+    linearise(problem, tangent_model, state, work, own)
     if own.rank[0] > 0 and invert(problem, own) and dependence(problem, own) <= terms.limit:
         return False
     choose(problem, own, DEPENDENT)

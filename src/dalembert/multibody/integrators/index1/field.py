@@ -84,9 +84,9 @@ class RateField:
         """Choose independent coordinates if they are parted and that is needed; whether it was done."""
         if self.terms.way != PARTITIONED:
             return False
-        complex_model, tools = self.lowered.tangents.address, self._tools
+        tangent_model, tools = self.lowered.tangents.address, self._tools
         return partition(
-            self.problem, self.terms, complex_model, float(t), self.within, self.state, tools.complex_work,
+            self.problem, self.terms, tangent_model, float(t), self.within, self.state, tools.complex_work,
             tools.partition,
         )  # fmt: skip
 

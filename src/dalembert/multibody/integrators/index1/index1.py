@@ -69,13 +69,13 @@ class Tools(NamedTuple):
 
 
 @inner
-def factorise_motion(problem, terms, complex_model, state, tools):
+def factorise_motion(problem, terms, tangent_model, state, tools):
     """Factorise the matrix of motion beside that of the constraints; whether it is regular.
 
     It is taken in the time that the signals in ``tools.complex_work`` hold.
     """
     matrix = tools.exact.matrix
-    fill_motion(problem, complex_model, state, tools.complex_work, tools.surplus.partition.matrix, matrix)
+    fill_motion(problem, tangent_model, state, tools.complex_work, tools.surplus.partition.matrix, matrix)
     if terms.redundant:
         return _invert_at(tools.surplus.invert, problem, tools.surplus, matrix)
     return factorise(problem.exact_layout, tools.exact)
@@ -111,11 +111,11 @@ def demand(
     """
     n, last, nonlinear = problem.n, len(state.x) - 1, terms.nonlinear
     set_signals(models.real, t, within, tools.work)
-    set_signals(models.complex, t, within, tools.complex_work)
+    set_signals(models.tangents, t, within, tools.complex_work)
     moved = 1.0
     for iteration in range(_MOST_ITERATIONS if nonlinear else 2):  # linear: once more for rounding
         # Friction that depends on the multipliers changes the matrix at each iteration.
-        if (iteration == 0 or nonlinear) and not factorise_motion(problem, terms, models.complex, state, tools):
+        if (iteration == 0 or nonlinear) and not factorise_motion(problem, terms, models.tangents, state, tools):
             return False
         if iteration == 0 and terms.redundant:
             # Multipliers of least norm: the part of the first guess that redundant constraints do not see is removed.

@@ -98,11 +98,11 @@ def project(
     n, last, base, change = problem.n, len(state.x) - 1, tools.base, tools.change
     set_signals(models.real, t, within, tools.work)
     for level in (POSITION, VELOCITY):
-        set_signals(models.complex, t, within, tools.complex_work)
+        set_signals(models.tangents, t, within, tools.complex_work)
         for i in range(last + 1):  # at rest and unloaded: the forces of friction are none
             base.x[i] = state.x[i] if i < n else 0.0
             change.x[i], change.a[i] = 0.0, 0.0
-        if not factorise_motion(problem, terms, models.complex, base, tools):
+        if not factorise_motion(problem, terms, models.tangents, base, tools):
             return False
         before = 1e300
         for _ in range(_MOST_ITERATIONS):

@@ -183,7 +183,7 @@ def _choose(problem, terms, models, t, within, state, tools):
     """Choose independent coordinates if they are parted and that is needed."""
     if terms.way == PARTITIONED:
         _partition_at(
-            tools.choose, problem, terms, models.complex, t, within, state, tools.complex_work, tools.partition
+            tools.choose, problem, terms, models.tangents, t, within, state, tools.complex_work, tools.partition
         )
 
 

@@ -171,8 +171,8 @@ def integrate(
         if not accelerate(problem, models, t, within, new, dnews, consistent):
             return SINGULAR, t, 0
         if stretch == 0:
-            set_signals(models.complex, t, within, complex_work)  # those of a direction would count as masses
-            weigh_masses(matrices, models.complex, n, new, complex_work)
+            set_signals(models.tangents, t, within, complex_work)  # those of a direction would count as masses
+            weigh_masses(matrices, models.tangents, n, new, complex_work)
         steps = max(1, int(np.ceil((end - t) / settings.step - 1e-6)))
         # Steps of one length: a symmetric method keeps its invariants only then.
         begin, nominal, number, level = t, (end - t) / steps, 0, 0
@@ -193,7 +193,7 @@ def integrate(
             if number == steps:
                 break
             if stale:
-                if not renew(problem, matrices, models.complex, settings.damped, t, within, new, complex_work):
+                if not renew(problem, matrices, models.tangents, settings.damped, t, within, new, complex_work):
                     return SINGULAR, t, 0
                 stale, fresh, made = False, True, 0.0
             # A step that fails is halved towards the end of its nominal one, and doubled again afterwards.

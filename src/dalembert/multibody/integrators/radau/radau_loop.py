@@ -55,7 +55,7 @@ def _settle_ends(problem, matrices, apart, far, models, damped, within, scratch,
         t, state, own = last.times[j], row(last.states, j), matrices
         if far or j < newest:
             own = apart
-            if not renew(problem, own, models.complex, damped, t, within, state, scratch.complex_work):
+            if not renew(problem, own, models.tangents, damped, t, within, state, scratch.complex_work):
                 return False
         set_signals(models.real, t, within, scratch.work)
         if not settle(problem, own, models.real, state, scratch.moved, scratch.work, VELOCITY):
@@ -96,8 +96,8 @@ def integrate(
         if not accelerate(problem, models, t, within, new, dstates, consistency):
             return SINGULAR, t, 0, 0.0
         if stretch == 0:
-            set_signals(models.complex, t, within, complex_work)  # those of a direction would count as masses
-            weigh_masses(matrices, models.complex, n, new, complex_work)
+            set_signals(models.tangents, t, within, complex_work)  # those of a direction would count as masses
+            weigh_masses(matrices, models.tangents, n, new, complex_work)
             length = _first_step(n, scale, end - t, settings.tolerance, order, new)
         steps = 1 if adaptive else max(1, int(np.ceil((end - t) / settings.step - 1e-6)))
         begin, nominal, number, level = t, (end - t) / steps, 0, 0

@@ -50,7 +50,7 @@ def attempt(
         # The matrices are those of the middle stage, which is nearest to all of them.
         m = len(method.c) // 2
         middle, place = t + method.c[m] * h, MotionState(s.x[m], s.v[m], s.a[m], s.a[m])
-        if not renew(problem, matrices, models.complex, settings.damped, middle, within, place, scratch.complex_work):
+        if not renew(problem, matrices, models.tangents, settings.damped, middle, within, place, scratch.complex_work):
             return SINGULAR, made, 0.0, speed, 0, 1.0, 0
     if stale or not (made <= _NEAR * h and h <= _NEAR * made):
         made = h

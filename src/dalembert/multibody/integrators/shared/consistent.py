@@ -42,23 +42,23 @@ def consistency(problem: IntegrationProblem, work: int, complex_work: int, direc
 
 
 @inner
-def fill_motion(problem, complex_model, state, work, constraints, matrix):
+def fill_motion(problem, tangent_model, state, work, constraints, matrix):
     """Fill ``matrix`` with that of motion beside the Jacobian of the constraints, which ``constraints`` then holds.
 
     It is taken at the time that the signals in ``work``, a call in complex numbers, hold.
     """
     slots, n, x, v, a = problem.exact_slots, problem.n, state.x, state.v, state.a
     # The constraint rows alone, by the coordinates: J, and with the multipliers of the motion rows J^T by symmetry.
-    tangent(complex_model, slots, n, x, v, a, (1.0, 0.0, 0.0), (0.0, 1.0), work, constraints)
-    add_masses(problem, complex_model, state, work, constraints, matrix)
+    tangent(tangent_model, slots, n, x, v, a, (1.0, 0.0, 0.0), (0.0, 1.0), work, constraints)
+    add_masses(problem, tangent_model, state, work, constraints, matrix)
 
 
 @inner
-def add_masses(problem, complex_model, state, work, constraints, matrix):
+def add_masses(problem, tangent_model, state, work, constraints, matrix):
     """Fill ``matrix`` with that of motion beside the Jacobian in ``constraints``."""
     slots, n, x, v, a = problem.exact_slots, problem.n, state.x, state.v, state.a
     # The motion rows alone, by the accelerations and multipliers: M and J^T.
-    tangent(complex_model, slots, n, x, v, a, (0.0, 0.0, 1.0), (1.0, 0.0), work, matrix)
+    tangent(tangent_model, slots, n, x, v, a, (0.0, 0.0, 1.0), (1.0, 0.0), work, matrix)
     for i in range(len(constraints)):
         matrix[i] += constraints[i]
 
@@ -80,11 +80,11 @@ def accelerate(
     n = problem.n
     delta, answer, rate, w = c.vectors[0], c.vectors[1], c.vectors[2], c.vectors[3]
     set_signals(models.real, t, within, c.work)
-    set_signals(models.complex, t, within, c.complex_work)
+    set_signals(models.tangents, t, within, c.complex_work)
     for iteration in range(6):  # linear but for friction that depends on the multipliers
         # The last correction is rounding: the derivatives below are taken with the matrix of the state that it leaves.
         if iteration < 5:
-            fill_motion(problem, models.complex, state, c.complex_work, c.constraints, c.exact.matrix)
+            fill_motion(problem, models.tangents, state, c.complex_work, c.constraints, c.exact.matrix)
             if not factorise(problem.exact_layout, c.exact):
                 return False
         if iteration == 0 and problem.projected:

@@ -100,10 +100,10 @@ def scratch(pattern: Pattern, pairs: int) -> Matrices:
 
 
 @kernel
-def weigh_masses(matrices: Matrices, complex_model: Address, n: int, state: MotionState, complex_work: Address) -> None:
+def weigh_masses(matrices: Matrices, tangent_model: Address, n: int, state: MotionState, complex_work: Address) -> None:
     """Evaluate the masses; the signals in ``complex_work`` hold the time."""
     tangent(
-        complex_model, matrices.pattern.slots, n, state.x, state.v, state.a, (0.0, 0.0, 1.0), (1.0, 0.0), complex_work,
+        tangent_model, matrices.pattern.slots, n, state.x, state.v, state.a, (0.0, 0.0, 1.0), (1.0, 0.0), complex_work,
         matrices.mass,
     )  # fmt: skip
     count = 0
@@ -116,19 +116,19 @@ def weigh_masses(matrices: Matrices, complex_model: Address, n: int, state: Moti
 
 @kernel
 def renew(
-    problem: IntegrationProblem, matrices: Matrices, complex_model: Address, damped: bool, t: float, within: float,
+    problem: IntegrationProblem, matrices: Matrices, tangent_model: Address, damped: bool, t: float, within: float,
     state: MotionState, complex_work: Address,
 ) -> bool:  # fmt: skip
     """Evaluate stiffness (and damping, if ``damped``), and factorise [M, J^T; J, 0]; whether it is regular."""
     n = problem.n
-    set_signals(complex_model, t, within, complex_work)
+    set_signals(tangent_model, t, within, complex_work)
     if matrices.pattern.varies:
-        weigh_masses(matrices, complex_model, n, state, complex_work)
+        weigh_masses(matrices, tangent_model, n, state, complex_work)
     x, v, a, slots = state.x, state.v, state.a, matrices.pattern.slots
     # K with J^T and J: the rows of constraints come with the coordinates, J^T with the multipliers.
-    tangent(complex_model, slots, n, x, v, a, (1.0, 0.0, 0.0), (1.0, 1.0), complex_work, matrices.stiffness)
+    tangent(tangent_model, slots, n, x, v, a, (1.0, 0.0, 0.0), (1.0, 1.0), complex_work, matrices.stiffness)
     if damped:
-        tangent(complex_model, slots, n, x, v, a, (0.0, 1.0, 0.0), (1.0, 0.0), complex_work, matrices.damping)
+        tangent(tangent_model, slots, n, x, v, a, (0.0, 1.0, 0.0), (1.0, 0.0), complex_work, matrices.damping)
     return _factorise(n, matrices, 0.0, 0.0, matrices.rigid)
 
 

@@ -65,7 +65,7 @@ def record(
         interpolate_ends(problem.n, oldest, scratch.weights, ends.states, state)
         # The interpolated state is near the constraints, so that kept matrices correct it unless they are from far
         # away.
-        if far and not renew(problem, matrices, models.complex, False, t, within, state, scratch.complex_work):
+        if far and not renew(problem, matrices, models.tangents, False, t, within, state, scratch.complex_work):
             return False
         set_signals(models.real, t, within, scratch.work)
         if not settle(problem, matrices, models.real, state, scratch.moved, scratch.work, POSITION):

@@ -53,10 +53,10 @@ def scratch(problem: IntegrationProblem, directions: int) -> Partition:
 
 
 @inner
-def linearise(problem, complex_model, state, complex_work, partition):
+def linearise(problem, tangent_model, state, complex_work, partition):
     """The constraint Jacobian of a state; the signals in ``complex_work`` hold the time."""
     tangent(
-        complex_model, problem.exact_slots, problem.n, state.x, state.v, state.a, (1.0, 0.0, 0.0), (0.0, 1.0),
+        tangent_model, problem.exact_slots, problem.n, state.x, state.v, state.a, (1.0, 0.0, 0.0), (0.0, 1.0),
         complex_work, partition.matrix,
     )  # fmt: skip
 
@@ -173,10 +173,10 @@ def _shift(problem, partition, level, state):
 
 
 @inner
-def _close(problem, model, complex_model, state, work, complex_work, partition):
+def _close(problem, model, tangent_model, state, work, complex_work, partition):
     """Newton's iteration on the dependent coordinates; whether it arrived."""
     for _ in range(_MOST_ITERATIONS):
-        linearise(problem, complex_model, state, complex_work, partition)
+        linearise(problem, tangent_model, state, complex_work, partition)
         if not invert(problem, partition):
             return False
         fill_gap(model, problem.n, POSITION, state.x, state.v, state.a, work, partition.second, partition.gap)
@@ -201,8 +201,8 @@ def settle(
     """
     n = problem.n
     set_signals(models.real, t, within, work)
-    set_signals(models.complex, t, within, complex_work)
-    if not _close(problem, models.real, models.complex, state, work, complex_work, partition):
+    set_signals(models.tangents, t, within, complex_work)
+    if not _close(problem, models.real, models.tangents, state, work, complex_work, partition):
         return False
     for level in range(POSITION, levels + 1):
         for _ in range(1 if level == POSITION else 2):  # linear from the velocities on; once more for rounding

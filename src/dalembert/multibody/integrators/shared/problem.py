@@ -43,13 +43,13 @@ class IntegrationProblem(NamedTuple):
 
 
 class SampleModels(NamedTuple):
-    """Addresses of a sample's models: in real and in complex numbers, and complex ones moved along each direction.
+    """Addresses of models of a sample: in real numbers, with tangents, and complex ones moved along each direction.
 
     ``turns``: address of the record that counts the turns of angles, 0 for none.
     """
 
     real: Address
-    complex: Address
+    tangents: Address
     directions: Integers
     turns: Address = 0
 

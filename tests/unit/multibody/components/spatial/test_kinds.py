@@ -7,11 +7,11 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from dalembert.multibody import in_python
-from dalembert.multibody.kernels import loops, real_tangents
+from dalembert.multibody.kernels import real_tangents, tangents
 from dalembert.multibody.kernels.constraints import forces_of, rates_of
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.kind import Kind
-from dalembert.multibody.kernels.records import TANGENT, Inputs
+from dalembert.multibody.kernels.records import Inputs
 from dalembert.multibody.model.evaluate import constraint_rates, energies, residual
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.lowering import lower
@@ -135,9 +135,9 @@ def test_tangents_in_real_numbers_are_those_by_complex_steps(kind: Kind, reduces
     x[-1] = v[-1] = a[-1] = 0.0
     number, answers = list(couplings.index).index(kind), np.zeros((2, len(rows)))
     block = model._words[2 if reduces else 1][number : number + 1].ctypes.data
-    kernels = real_tangents.tangent(kind, complex), loops._complex(kind, loops.system_of(kind))
+    kernels = real_tangents.tangent(kind, float), tangents.tangent(kind, complex)
     for kernel, matrix in zip(kernels, answers, strict=True):
-        call = model.call().set(x=x, v=v, a=a, matrix=matrix, entries=len(matrix), mode=TANGENT, slots=slots[number])
+        call = model.call().set(x=x, v=v, a=a, matrix=matrix, entries=len(matrix), slots=slots[number])
         call.set(by_x=0.7, by_v=1.3, by_a=0.4, motion=1.0, constraint=2.0, increments=sizes[0], last_row=sizes[1])
         kernel.function(call.address, block)
     np.testing.assert_allclose(answers[0], answers[1], rtol=0, atol=1e-14 * np.abs(answers[1]).max())

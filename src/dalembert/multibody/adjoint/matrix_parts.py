@@ -55,20 +55,8 @@ def matrices_of(lowered: Lowered, model: BlockModel, work: int, state: MotionSta
 
 
 def _of_velocities(lowered: Lowered) -> Iterable[Kind]:
-    """Kinds whose residuals may depend on velocities."""
-    for kind in lowered.data:
-        if kind.constraint is None and not kind.quadratic and (kind.tangent is None or _depends(lowered, kind)):
-            yield kind
-
-
-def _depends(lowered: Lowered, kind: Kind) -> bool:
-    structure, model = lowered.structure, lowered.tangents
-    slots, rows, columns = structure.full.separate
-    x, v, a = np.random.default_rng(0).uniform(0.5, 1.5, (3, structure.size + 1))
-    x[-1] = v[-1] = a[-1] = 0.0
-    values = np.zeros(len(rows))
-    call = model.call().set(x=x, v=v, a=a, matrix=values, entries=len(values), motion=1.0, constraint=1.0)
-    call.set(by_x=0.0, by_v=1.0, by_a=0.0)
-    model.evaluate(call, 0.0, 0.0)
-    model.each("tangent", call, slots, only=kind)
-    return bool(np.any(values[columns < structure.n] != 0.0))
+    """Kinds whose residuals may depend on velocities: all but those with columns of dissipation that are zero here."""
+    for kind, data in lowered.data.items():
+        if kind.constraint is None and not kind.quadratic:
+            if isinstance(kind.dissipates, bool) or kind.dissipative(data):
+                yield kind

@@ -34,8 +34,6 @@ class Declaration:
     ``x`` behind the coordinates. A test compares it with the automatic ones.
     ``energy(x, v, p, m, inputs)`` returns the kinetic and the potential energy, J, and the power, W, of the forces
     without a potential, negative where they dissipate. Without it, all forces count as power.
-    ``tangent(x, p, m, by_x, by_a, matrix)`` fills the local matrix by_x dr/dx + by_a dr/da, multipliers by 1. Its
-    formula holds where ``known(p, m)`` says so.
     ``quadratic``: whether the constraints are polynomials of degree two at most in the coordinates, or without
     constraints the residual is linear in the accelerations and depends on no other unknowns; and signals do not matter.
     The tangent is then computed in real numbers.
@@ -69,8 +67,6 @@ class Declaration:
     constraint: Callable[..., Any] | None = None
     forces: Callable[..., Any] | None = None
     energy: Callable[..., Any] | None = None
-    tangent: Callable[..., Any] | None = None
-    known: Callable[..., Any] | None = None
     quadratic: bool = False
     outputs: tuple[tuple[str, str], ...] = ()
     observe: Callable[..., Any] | None = None

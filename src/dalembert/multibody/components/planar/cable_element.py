@@ -6,19 +6,15 @@ element leaves it at zero, so that it does not lock; curvature (r' x r'')/|r'|^2
 Numbers: length h, axial stiffness EA, bending stiffness EI, mass, retardation time of the material damping, gravity.
 """
 
-import math
-
 import numpy as np
 
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.multibody.components.planar import hermite
-from dalembert.multibody.components.planar.line_bending import curvature, spread_stiffness
+from dalembert.multibody.components.planar.line_bending import curvature
 from dalembert.multibody.kernels.elementary import reciprocal, root
 from dalembert.multibody.kernels.kind import Kind
 
 WIDTH = 8
-SLOTS = (0, 2, 6)  # of r1, r1' and r2'; forces on r2 are those on r1, their sign turned
-INNER = (0, 1, 2, 3, 6, 7)  # of all their components
 
 
 def _points(xi: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, ...]:
@@ -37,12 +33,6 @@ BW, B1, B2, B5, C1, C2, C5 = _points(*np.polynomial.legendre.leggauss(3))
 def _line(s1, s2, s5, x):
     """s1 (r1 - r2) + s2 r1' + s5 r2', both components."""
     return s1 * (x[0] - x[4]) + s2 * x[2] + s5 * x[6], s1 * (x[1] - x[5]) + s2 * x[3] + s5 * x[7]
-
-
-@inlined
-def undamped(p, m):
-    """Whether an element is without material damping, so that `tangent` holds for it."""
-    return p.delay == 0.0
 
 
 @inlined
@@ -88,41 +78,6 @@ def residual(x, v, a, p, m, inputs, r):
 
 
 @inner
-def tangent(x, p, m, by_x, by_a, matrix):
-    """Fill the local ``matrix`` (8, 8) with by_x K + by_a M of an element without damping; real numbers.
-
-    Stretch: EA ((1 - 1/g) I + t t^T / g^3), t = r', g = |t|. Bending: see `spread_stiffness`.
-    """
-    for i in range(WIDTH):
-        for j in range(WIDTH):
-            matrix[i, j] = 0.0
-    h, axial, bending, mass = p.length.real, p.axial.real, p.bending.real, p.mass.real
-    across = 1.0 / h
-    for g in range(3):
-        s = A1[g] * across, A2[g], A5[g]
-        tx, ty = _line(s[0], s[1], s[2], x)
-        inverse = 1.0 / math.sqrt(tx * tx + ty * ty)
-        w = by_x * AW[g] * h * axial
-        cubed, rest = w * inverse * inverse * inverse, w * (1.0 - inverse)
-        block = rest + tx * tx * cubed, tx * ty * cubed, tx * ty * cubed, rest + ty * ty * cubed
-        for i in range(3):
-            for j in range(i, 3):
-                hermite.spread(matrix, SLOTS[i], SLOTS[j], s[i] * s[j], block)
-    for g in range(3):
-        s = B1[g] * across, B2[g], B5[g]
-        c = C1[g] * across * across, C2[g] * across, C5[g] * across
-        tx, ty = _line(s[0], s[1], s[2], x)
-        cx, cy = _line(c[0], c[1], c[2], x)
-        w = by_x * BW[g] * h * bending
-        moment = w * curvature(tx, ty, cx, cy)[0]
-        spread_stiffness(matrix, SLOTS, s, c, w, moment, tx, ty, cx, cy)
-    hermite.mirror(matrix, INNER)
-    hermite.oppose(matrix, 4, WIDTH)
-    hermite.mass_matrix(mass, h, 0, 2, 4, 6, by_a, matrix)
-    hermite.mass_matrix(mass, h, 1, 3, 5, 7, by_a, matrix)
-
-
-@inner
 def energy(x, v, p, m, inputs):
     """Kinetic energy, strain and gravity energy, power of the material damping."""
     h, axial, bending, mass, delay = p.length, p.axial, p.bending, p.mass, p.delay
@@ -159,8 +114,6 @@ CABLE = Kind(
     coordinates=WIDTH,
     numbers=("length", "axial", "bending", "mass", "delay", "gravity_x", "gravity_y"),
     residual=residual,
-    tangent=tangent,
-    known=undamped,
     energy=energy,
     lengths=("length",),
     gravity=("gravity_x", "gravity_y"),

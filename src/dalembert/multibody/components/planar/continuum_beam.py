@@ -11,13 +11,10 @@ and G, retardation time of the material damping, gravity.
 import numpy as np
 
 from dalembert.kernels.kernel import inlined, inner
-from dalembert.multibody.components.planar import hermite
 from dalembert.multibody.components.planar.section_inertia import (
     WIDTH,
     inertia_and_weight,
     kinetic_and_weight,
-    mass_matrix,
-    undamped,
 )
 from dalembert.multibody.kernels.elementary import reciprocal
 from dalembert.multibody.kernels.kind import Kind
@@ -25,8 +22,6 @@ from dalembert.multibody.kernels.kind import Kind
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 XI, W = (_POINTS + 1) / 2, _WEIGHTS / 2
 ACROSS = np.array([-0.5, 0.5]) / np.sqrt(3.0)
-AXIAL = (0, 2, 8)  # slots of r1, r1_x and r2_x; forces on r2 are those on r1, their sign turned
-INNER = (0, 1, 2, 3, 8, 9, 4, 5, 10, 11)  # slots of all but r2, in the order in which blocks are filled
 S1, S2, S5 = 6 * XI * (XI - 1), 1 - 4 * XI + 3 * XI**2, 3 * XI**2 - 2 * XI
 
 
@@ -86,79 +81,6 @@ def _strain_rates(v, xi, s1, s2, s5, y_over_h, fx, fy, nx, ny):
     return fx * gx + fy * gy, nx * mx + ny * my, fx * mx + fy * my + gx * nx + gy * ny
 
 
-@inlined
-def _outer(factor, ax, ay, bx, by):
-    """factor a b^T as (xx, xy, yx, yy)."""
-    return factor * ax * bx, factor * ax * by, factor * ay * bx, factor * ay * by
-
-
-@inlined
-def _sum(a, b, diagonal):
-    """a + b + diagonal I of 2 x 2 blocks."""
-    return a[0] + b[0] + diagonal, a[1] + b[1], a[2] + b[2], a[3] + b[3] + diagonal
-
-
-@inlined
-def _add(a, factor, b):
-    """a + factor b of 2 x 2 blocks."""
-    return a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2], a[3] + factor * b[3]
-
-
-@inner
-def tangent(x, p, m, by_x, by_a, matrix):
-    """Fill the local ``matrix`` (12, 12) with by_x K + by_a M of an element without damping; real numbers.
-
-    With F = [r_x r_y], the derivative of the force between two vectors with axial derivatives a_i, a_j and transverse
-    ones b_i, b_j of their shape functions is a_i a_j P + a_i b_j Q + b_i a_j Q^T + b_i b_j R, where
-    P = C11 r_x r_x^T + G r_y r_y^T + S_xx I, Q = C12 r_x r_y^T + G r_y r_x^T + S_xy I and
-    R = C11 r_y r_y^T + G r_x r_x^T + S_yy I.
-    """
-    for i in range(WIDTH):
-        for j in range(WIDTH):
-            matrix[i, j] = 0.0
-    h, height, c11, c12, shear = p.length.real, p.height.real, p.c11.real, p.c12.real, p.shear.real
-    across = 1.0 / h
-    dx, dy = (x[10] - x[4]) * across, (x[11] - x[5]) * across
-    nothing = 0.0, 0.0, 0.0, 0.0
-    for g in range(3):
-        xi = XI[g]
-        s1, s2, s5 = S1[g] * across, S2[g], S5[g]
-        cx = s1 * (x[0] - x[6]) + s2 * x[2] + s5 * x[8]
-        cy = s1 * (x[1] - x[7]) + s2 * x[3] + s5 * x[9]
-        nx, ny = (1 - xi) * x[4] + xi * x[10], (1 - xi) * x[5] + xi * x[11]
-        eyy = 0.5 * (nx * nx + ny * ny - 1.0)
-        p0, p1, p2, q0, q1, r0 = nothing, nothing, nothing, nothing, nothing, nothing
-        for b in range(2):
-            y = ACROSS[b] * height
-            fx, fy = cx + y * dx, cy + y * dy
-            exx, twice = 0.5 * (fx * fx + fy * fy - 1.0), fx * nx + fy * ny
-            xx = _sum(_outer(c11, fx, fy, fx, fy), _outer(shear, nx, ny, nx, ny), c11 * exx + c12 * eyy)
-            q = _sum(_outer(c12, fx, fy, nx, ny), _outer(shear, nx, ny, fx, fy), shear * twice)
-            r = _sum(_outer(c11, nx, ny, nx, ny), _outer(shear, fx, fy, fx, fy), c12 * exx + c11 * eyy)
-            p0, p1, p2 = _add(p0, 1.0, xx), _add(p1, y, xx), _add(p2, y * y, xx)
-            q0, q1, r0 = _add(q0, 1.0, q), _add(q1, y, q), _add(r0, 1.0, r)
-        w = by_x * 0.5 * W[g] * h * height * p.width.real
-        along = s1, s2, s5
-        for i in range(3):
-            row = AXIAL[i]
-            for j in range(i, 3):
-                hermite.spread(matrix, row, AXIAL[j], w * along[i] * along[j], p0)
-            for j in range(2):
-                turn, lift = (2 * j - 1) * across, xi if j == 1 else 1 - xi
-                mixed = _add((turn * p1[0], turn * p1[1], turn * p1[2], turn * p1[3]), lift, q0)
-                hermite.spread(matrix, row, 4 + 6 * j, w * along[i], mixed)
-        for i in range(2):
-            turn_i, lift_i = (2 * i - 1) * across, xi if i == 1 else 1 - xi
-            for j in range(i, 2):
-                turn_j, lift_j = (2 * j - 1) * across, xi if j == 1 else 1 - xi
-                block = _add(_add(nothing, turn_i * turn_j, p2), turn_i * lift_j, q1)
-                block = _add(block, lift_i * turn_j, (q1[0], q1[2], q1[1], q1[3]))
-                hermite.spread(matrix, 4 + 6 * i, 4 + 6 * j, w, _add(block, lift_i * lift_j, r0))
-    hermite.mirror(matrix, INNER)
-    hermite.oppose(matrix, 6, WIDTH)
-    mass_matrix(p, by_a, matrix)
-
-
 @inner
 def energy(x, v, p, m, inputs):
     """Kinetic energy, strain and gravity energy, power of the material damping."""
@@ -190,8 +112,6 @@ CONTINUUM = Kind(
         "length", "height", "width", "mass", "rotatory", "c11", "c12", "shear", "delay", "gravity_x", "gravity_y",
     ),
     residual=residual,
-    tangent=tangent,
-    known=undamped,
     energy=energy,
     lengths=("length",),
     gravity=("gravity_x", "gravity_y"),

@@ -5,12 +5,11 @@ __all__ = ["RevoluteJoint"]
 from dataclasses import dataclass
 
 from dalembert.errors import InputError
-from dalembert.kernels.kernel import inlined, inner
+from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.base_joint import Smoothing
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.laws import friction_law as friction
 from dalembert.multibody.components.planar.joint import Joint, joint_kind, observe_joint
-from dalembert.multibody.components.planar.markers import GROUND, RIGID
 from dalembert.multibody.components.planar.pairs import pair_kind, push_pair, relative_spin, separation, twist_pair
 from dalembert.multibody.components.rows import Lowering
 from dalembert.multibody.kernels.elementary import root
@@ -28,34 +27,13 @@ def _forces(x, p, m, r):
 
 
 @inlined
-def _joins_points(p, m):
-    """Whether neither point turns about a body's centre: the tangent is then constant."""
-    return m.a_kind != RIGID and m.b_kind != RIGID
-
-
-@inner
-def _tangent(x, p, m, by_x, by_a, matrix):
-    """Tangent of a joint between points: ones, and their signs."""
-    for i in range(10):
-        for j in range(10):
-            matrix[i, j] = 0.0
-    for side in range(2):
-        if (m.a_kind if side == 0 else m.b_kind) == GROUND:
-            continue
-        sign = 2.0 * side - 1.0
-        for k in range(2):
-            matrix[4 * side + k, 8 + k] = sign
-            matrix[8 + k, 4 * side + k] = sign * by_x
-
-
-@inlined
 def _observe(x, v, a, p, m, inputs, out):
     observe_joint(x, v, p, m, -x[8], -x[9], 0.0 * x[8], out)
 
 
 REVOLUTE = joint_kind(
     "revolute", 2,
-    constraint=_constraint, forces=_forces, tangent=_tangent, known=_joins_points, observe=_observe, holds_frame=False,
+    constraint=_constraint, forces=_forces, observe=_observe, holds_frame=False,
 )  # fmt: skip
 
 

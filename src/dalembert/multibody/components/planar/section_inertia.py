@@ -11,12 +11,6 @@ WIDTH = 12
 
 
 @inlined
-def undamped(p, m):
-    """Return True if the element has no material damping. The formula of its tangent is valid only then."""
-    return p.delay == 0.0
-
-
-@inlined
 def inertia_and_weight(p, a, r):
     """Add M a - weight to ``r``."""
     h, mass, rotatory = p.length, p.mass, p.rotatory
@@ -27,19 +21,6 @@ def inertia_and_weight(p, a, r):
     for i in range(4, 6):
         r[i] += rotatory * (a[i] / 3 + a[i + 6] / 6)
         r[i + 6] += rotatory * (a[i] / 6 + a[i + 6] / 3)
-
-
-@inlined
-def mass_matrix(p, by_a, matrix):
-    """Add ``by_a`` M to the local ``matrix``, in real numbers."""
-    h, mass, rotatory = p.length.real, p.mass.real, by_a * p.rotatory.real
-    hermite.mass_matrix(mass, h, 0, 2, 6, 8, by_a, matrix)
-    hermite.mass_matrix(mass, h, 1, 3, 7, 9, by_a, matrix)
-    for i in range(4, 6):
-        matrix[i, i] += rotatory / 3
-        matrix[i + 6, i + 6] += rotatory / 3
-        matrix[i, i + 6] += rotatory / 6
-        matrix[i + 6, i] += rotatory / 6
 
 
 @inlined

@@ -21,23 +21,16 @@ gravity.
 import math
 
 from dalembert.kernels.kernel import inlined, inner
-from dalembert.multibody.components.planar import hermite
-from dalembert.multibody.components.planar.line_bending import curvature, spread_stiffness
+from dalembert.multibody.components.planar.line_bending import curvature
 from dalembert.multibody.components.planar.section_inertia import (
     WIDTH,
     inertia_and_weight,
     kinetic_and_weight,
-    mass_matrix,
-    undamped,
 )
 from dalembert.multibody.kernels.elementary import reciprocal
 from dalembert.multibody.kernels.kind import Kind
 
-LINE, SLOPE, SECTION = (0, 2, 8), (2, 8), (4, 10)  # slots of r1, r1_x and r2_x; of the slopes; of the section vectors
-VECTORS = (0, 2, 6, 8)  # slots of the vectors of the line
-INNER = (0, 1, 2, 3, 8, 9, 4, 5, 10, 11)  # slots of all but r2, in the order in which blocks are filled
 AT, WEIGHT = math.sqrt(0.15), (5 / 18, 8 / 18, 5 / 18)  # Gauss' three points: the middle -+ AT lengths, and weights
-PLACE = (-AT, 0.0, AT)
 
 
 @inlined
@@ -189,106 +182,6 @@ def _add_bulge_inertia(p, a, across, r):
         r[i + 1] += mixed * bx
 
 
-@inlined
-def _add_bulge_mass(p, across, by_a, matrix):
-    """Add ``by_a`` times the mass matrix of `_add_bulge_inertia`."""
-    own, mixed = 0.3 * by_a * p.rotatory.real, 0.25 * by_a * p.rotatory.real
-    along = -2 * across, -1.0, 2 * across, -1.0
-    for i in range(4):
-        k = VECTORS[i]
-        for j in range(4):
-            _diagonal(matrix, k, VECTORS[j], own * along[i] * along[j])
-        for n in SECTION:
-            matrix[n, k + 1] -= mixed * along[i]
-            matrix[k + 1, n] -= mixed * along[i]
-            matrix[n + 1, k] += mixed * along[i]
-            matrix[k, n + 1] += mixed * along[i]
-
-
-@inlined
-def _dyad(matrix, i, j, factor, a, b):
-    """Add factor a b^T between the vectors at slots i and j."""
-    matrix[i, j] += factor * a[0] * b[0]
-    matrix[i, j + 1] += factor * a[0] * b[1]
-    matrix[i + 1, j] += factor * a[1] * b[0]
-    matrix[i + 1, j + 1] += factor * a[1] * b[1]
-
-
-@inlined
-def _diagonal(matrix, i, j, value):
-    matrix[i, j] += value
-    matrix[i + 1, j + 1] += value
-
-
-@inner
-def tangent(x, p, m, by_x, by_a, matrix):
-    """Fill the local ``matrix`` (12, 12) with by_x K + by_a M of an element without damping; real numbers.
-
-    K is the sum of C_kl e_k' e_l'^T and of s_k e_k'' over the strains e_k, with their stiffness C and forces s = C e.
-    """
-    for i in range(WIDTH):
-        for j in range(WIDTH):
-            matrix[i, j] = 0.0
-    h = p.length.real
-    across = 1.0 / h
-    line = _line(x, across)
-    bends = _bend(line, -AT), _bend(line, 0.0), _bend(line, AT)
-    s = _stresses(_strains(x, line, bends[0], bends[1], bends[2]), p, across)
-    a, b, bending = by_x * p.axial.real * h / 6, by_x * p.coupling.real * h / 6, by_x * p.bending.real * across
-    shear = by_x * p.shear.real * h / 6
-    middle = line[0], line[1]
-    t = (x[2], x[3]), (x[8], x[9])
-    n = (x[4], x[5]), (x[10], x[11])
-    # stretch in the middle
-    along = -1.5 * across, -0.25, -0.25
-    stretch = by_x * s[1].real
-    for i in range(3):
-        for j in range(i, 3):
-            _dyad(matrix, LINE[i], LINE[j], 4 * a * along[i] * along[j], middle, middle)
-            _diagonal(matrix, LINE[i], LINE[j], stretch * along[i] * along[j])
-        for j in range(2):
-            _dyad(matrix, LINE[i], SECTION[j], 2 * b * along[i], middle, n[j])
-    # at the nodes: stretch, thickness, shear
-    own, other = 2 * shear + bending, shear - bending
-    for i in range(2):
-        at, across_it = SLOPE[i], SECTION[i]
-        _dyad(matrix, at, at, a, t[i], t[i])
-        _dyad(matrix, at, at, own, n[i], n[i])
-        _dyad(matrix, at, across_it, b, t[i], n[i])
-        _dyad(matrix, at, across_it, own, n[i], t[i])
-        _dyad(matrix, across_it, across_it, 2 * a, n[i], n[i])
-        _dyad(matrix, across_it, across_it, own, t[i], t[i])
-        _diagonal(matrix, at, at, by_x * s[2 * i].real)
-        _diagonal(matrix, at, across_it, by_x * s[5 + i].real)
-        _diagonal(matrix, across_it, across_it, by_x * s[3 + i].real)
-        _dyad(matrix, at, SECTION[1 - i], other, n[i], t[1 - i])
-    _dyad(matrix, SLOPE[0], SLOPE[1], other, n[0], n[1])
-    _dyad(matrix, SECTION[0], SECTION[1], other, t[0], t[1])
-    _dyad(matrix, SECTION[0], SECTION[1], a, n[0], n[1])
-    # bending of the line alone, then what couples it with shear: ``mixed`` times the gradient of gamma_1 - gamma_2
-    for g in range(3):
-        z = PLACE[g]
-        f = (6 * z * z - 1.5) * across, 3 * z * z - 0.25 - z, 3 * z * z - 0.25 + z
-        c = 12 * z * across, 6 * z - 1.0, 6 * z + 1.0
-        fx, fy, cx, cy = _at(line, z)
-        w = bending * WEIGHT[g]
-        spread_stiffness(matrix, LINE, f, c, w, by_x * s[7 + g].real, fx, fy, cx, cy)
-        _, px, py, qx, qy = bends[g]
-        for i in range(3):
-            mixed = w * (f[i] * px + c[i] * qx), w * (f[i] * py + c[i] * qy)
-            for j in range(2):
-                sign = 1.0 - 2 * j
-                _dyad(matrix, LINE[i], SECTION[j], sign, mixed, t[j])
-                if i <= j + 1:
-                    _dyad(matrix, LINE[i], SLOPE[j], sign, mixed, n[j])
-                if i >= j + 1:
-                    _dyad(matrix, SLOPE[j], LINE[i], sign, n[j], mixed)
-    hermite.mirror(matrix, INNER)
-    hermite.oppose(matrix, 6, WIDTH)
-    mass_matrix(p, by_a, matrix)
-    _add_bulge_mass(p, across, by_a, matrix)
-
-
 @inner
 def energy(x, v, p, m, inputs):
     """Kinetic energy, strain and gravity energy, power of the material damping."""
@@ -315,8 +208,6 @@ STRUCTURAL = Kind(
         "length", "mass", "rotatory", "axial", "coupling", "shear", "bending", "delay", "gravity_x", "gravity_y",
     ),
     residual=residual,
-    tangent=tangent,
-    known=undamped,
     energy=energy,
     lengths=("length",),
     gravity=("gravity_x", "gravity_y"),

@@ -89,6 +89,7 @@ def _subtract(b: Any, u: tuple, v: tuple) -> tuple:
 
 
 def _multiply(b: Any, u: tuple, v: tuple) -> tuple:
+    # (u, u')(v, v') = (uv, uv' + vu'); products and sums are not contracted, as in real numbers.
     return b.fmul(u[0], v[0]), b.fadd(b.fmul(spread(b, u[0]), v[1]), b.fmul(spread(b, v[0]), u[1]))
 
 
@@ -103,6 +104,7 @@ def _scale(b: Any, u: tuple, s: Any) -> tuple:
 
 
 def _scaled_inverse(b: Any, s: Any, v: tuple) -> tuple:
+    # (s / v)' = -(s / v) / v v'
     quotient = b.fdiv(s, v[0])
     return quotient, b.fmul(spread(b, b.fneg(b.fdiv(quotient, v[0]))), v[1])
 
@@ -176,6 +178,7 @@ def _comparison(symbol: Any, sign: str) -> None:
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         values = [_parts(context, builder, value)[0] for value in arguments]
+        # Branches depend on values alone: a derivative is that of the branch that is taken.
         # As in Python, a comparison with nan is false, but for "!=".
         return (builder.fcmp_unordered if sign == "!=" else builder.fcmp_ordered)(sign, *values)
 

@@ -57,6 +57,6 @@ def matrices_of(lowered: Lowered, model: BlockModel, work: int, state: MotionSta
 def _of_velocities(lowered: Lowered) -> Iterable[Kind]:
     """Kinds whose residuals may depend on velocities: all but those with columns of dissipation that are zero here."""
     for kind, data in lowered.data.items():
-        if kind.constraint is None and not kind.quadratic:
-            if isinstance(kind.dissipates, bool) or kind.dissipative(data):
-                yield kind
+        declared = not isinstance(kind.dissipates, bool)
+        if kind.constraint is None and not kind.quadratic and (kind.dissipative(data) or not declared):
+            yield kind

@@ -87,6 +87,7 @@ def root(x):
 def tanh(x):
     """Hyperbolic tangent."""
     s = math.tanh(x.real)
+    # tanh' = 1 - tanh^2
     return chained(x, s, 1.0 - s * s)
 
 
@@ -106,6 +107,7 @@ def logarithm(x):
 @_elementary(lambda x, y: math.atan2(y, x))
 def angle_of(x, y):
     """Angle of the vector (x, y) in (-pi, pi]."""
+    # d atan2(y, x) = (x dy - y dx) / (x^2 + y^2)
     inverse = 1.0 / (x.real * x.real + y.real * y.real)
     return chained(y, math.atan2(y.real, x.real), x.real * inverse) + chained(x, 0.0, -y.real * inverse)
 

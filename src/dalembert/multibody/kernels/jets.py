@@ -235,6 +235,7 @@ def _binary(symbol: Any, rules: dict[str, Any]) -> None:
         return generate
 
     lower_builtin(symbol, JetType, JetType)(lower(rules["jets"]))
+    # A plain number beside a jet of dual numbers is cast to a dual one.
     for number in (types.Number, DualType):
         lower_builtin(symbol, JetType, number)(lower(rules["jet, number"]))
         lower_builtin(symbol, number, JetType)(lower(rules["number, jet"]))

@@ -19,6 +19,8 @@ def solve_lanes(layout: Layout, factors: Factors, given: Reals2, buffer: Reals2,
 @inlined
 def _multiply(matrix, size, lead, given, answer):
     """Product of a square matrix by columns with lanes; four rows at a time stay in registers."""
+    # Column by column each answer would be loaded and stored N times. Four rows of sums stay in registers instead, and
+    # each lane vector of the right-hand side is loaded once for them.
     whole = size // 4 * 4
     for i in range(0, whole, 4):
         a = b = c = d = 0.0 * given[0]
@@ -41,6 +43,7 @@ def _substitute(layout, factors, given, x, answer):
     """Forward and backward substitution with the factors of a band, as `linear.solve_band` does for one side."""
     size, reach, lead, order = layout.size, layout.reach, layout.lead, layout.order
     a, pivots, tops, above = factors.matrix, factors.pivots, factors.tops, 2 * layout.reach
+    # The right-hand sides in the order of the band: P L U x = b, with exchanges of rows within L.
     for i in range(size):
         x[order[i]] = given[i]
     for k in range(size):
@@ -50,12 +53,15 @@ def _substitute(layout, factors, given, x, answer):
             x[k] = x[k + p]
             x[k + p] = exchanged
         own = x[k]
+        # L y = b: the factor has ones on its diagonal, so that no division is needed.
         for i in range(1, min(reach, size - 1 - k) + 1):
             x[k + i] -= a[diagonal + i] * own
     for k in range(size - 1, -1, -1):
         diagonal = k * lead + above
+        # U x = y: the diagonal holds reciprocals, as the factorisation left them.
         own = x[k] * a[diagonal]
         x[k] = own
+        # Above its first row a column of U is zero.
         for i in range(tops[k], k):
             x[i] -= a[diagonal + i - k] * own
     for i in range(size):

@@ -79,6 +79,7 @@ def tangent(kind: Declaration, dtype: type) -> BlockKernel:
                 for j in range(first, last):
                     seed(narrow, j, 1 + j - first, call, place, d, dx, sx, sv, sa)
                 function(own_x, own_v, own_a, p[e], m[e], inputs, own_r)
+                # N^T r in the same arithmetic, so that the change of N with the state is in its slopes.
                 forces = project(narrow, own_x, own_r, own_s)
                 slopes = reals2(address_of(forces), narrow, entries)
                 for j in range(first, last):
@@ -87,6 +88,7 @@ def tangent(kind: Declaration, dtype: type) -> BlockKernel:
                         continue
                     for i in range(narrow):
                         row = rows[e, i]
+                        # Rows of motion and of constraints have factors, so that M, J or both come from one kernel.
                         if row < call.last_row:
                             factor = call.motion if row < call.increments else call.constraint
                             matrix[slots[e, i * narrow + j]] += slopes[i, 1 + j - first] / size_of_step * factor

@@ -1,16 +1,22 @@
 """Dual numbers in kernels: against complex steps along each of eight directions."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 
+import dalembert as da
+import dalembert.multibody as mb
 import mechanisms
+import planar_scenes
+import spatial_scenes
 from dalembert.kernels.duals import DIRECTIONS, Dual, as_duals
 from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.kind import Kind
+from dalembert.multibody.model import directions
 from dalembert.multibody.model.directions import dual_models
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.lowering import lower
@@ -32,10 +38,12 @@ def spatial(scene: str) -> Lowered:
 
 HOMES = dict.fromkeys(planar().data, planar)
 HOMES |= {kind: lambda scene=scene: spatial(scene) for scene in SCENES for kind in spatial(scene).data}
+#: Kinds whose kernels other tests need, too; the others are compiled for this test alone.
+COMMON = ("structural_beam", "ancf_cable", "rigid_body_in_space", "revolute", "revolute_in_space", "friction_in_space")
 ROLES = [
-    (kind, role)
+    pytest.param(kind, role, marks=() if kind.name in COMMON else pytest.mark.slow)
     for kind in HOMES
-    for role in ("residual", "rates", "energy", "outputs")
+    for role in ("residual", "rates")
     if kind.has(role) and not HOMES[kind]().callbacks
 ]
 
@@ -82,4 +90,42 @@ def test_eight_slopes_are_those_of_complex_steps(kind: Kind, role: str) -> None:
     np.testing.assert_allclose(result[..., 0], real, rtol=1e-13, atol=1e-13 * size)
     for direction, (other, slope) in enumerate(zip(moved, slopes, strict=True), start=1):
         exact = answers(other.complex_model, kind, role, value + 1j * STEP * slope).imag / STEP
-        np.testing.assert_allclose(result[..., direction], exact, rtol=1e-11, atol=1e-12 * np.abs(exact).max())
+        np.testing.assert_allclose(result[..., direction], exact, rtol=1e-10, atol=1e-12 * np.abs(exact).max())
+
+
+def in_space(scene: str) -> da.TimeResponse:
+    """A scene as a function of all of its numbers."""
+    build, fields = SCENES[scene]
+    parameters = {
+        name: da.Parameter(name, value - abs(value) / 2 - 0.1, value + abs(value) / 2 + 0.1, start=value)
+        for name, value in spatial_scenes.numbers_of(fields).items()
+    }
+    names = [f"{body.name}.{body.point_names[-1]}.{axis}" for body in build(**fields).bodies for axis in "xyz"]
+    solver = mb.GeneralizedAlpha(2e-3)
+    times = np.linspace(0.0, 0.1, 6)
+    return da.TimeResponse(
+        lambda **numbers: build(**spatial_scenes.fields_of(fields, numbers)), parameters, names, times, solver
+    )
+
+
+@pytest.mark.parametrize(
+    ("model", "groups"),
+    [
+        (lambda: planar_scenes.response(*planar_scenes.SCENES[mb.AncfBeam], mb.GeneralizedAlpha(2e-3)), 2),
+        (lambda: in_space("rigid body"), 3),
+        (lambda: in_space("revolute, rubbing"), 2),
+    ],
+    ids=["beam", "rigid body", "revolute joint with friction"],
+)
+def test_sensitivities_are_those_of_complex_steps_one_by_one(
+    model: Callable[[], da.TimeResponse], groups: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In more than one group of eight; nodes have internal constraints."""
+    own = model()
+    start = own.parameters.start
+    assert len(start) > DIRECTIONS * (groups - 1)
+    values, together = own.linearise(start)
+    monkeypatch.setattr(directions, "FEWEST", len(start) + 1)
+    plain, one_by_one = own.linearise(start)
+    np.testing.assert_array_equal(values, plain)
+    np.testing.assert_allclose(together, one_by_one, rtol=0, atol=1e-10 * np.abs(one_by_one).max())

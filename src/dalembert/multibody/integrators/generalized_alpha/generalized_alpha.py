@@ -236,6 +236,7 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
     differentiated, along = len(models.directions) > 0, scratch.together
     many = len(along.groups) > 0
     if many:
+        # In lanes all formulas of a step act on eight derivatives at once; rows are filled for outputs alone.
         scatter(dstates, along.new)
     due = 0
     length = settings.step

@@ -105,6 +105,7 @@ def differentiate_together(
     """Compute the derivatives of the converged step, as :func:`derivatives.differentiate` does: ``scratch.new``."""
     n, own, groups, factors = problem.n, problem.reduced, scratch.groups, scratch.factors
     size, answer = own.exact_layout.size, lane_vector(scratch.answer)
+    # One exact tangent of the converged step serves all directions: d(residual)/da along dq = c.dq da, dv = c.dv da.
     set_signals(tangent_model, t, within, scratch.tangent_work)
     reduced_tangent(
         tangent_model, own.exact_slots, own.increments, size, new.x, new.v, new.a, (c.dq, c.dv, 1.0), (1.0, 1.0 / c.dq),
@@ -125,16 +126,20 @@ def differentiate_together(
         advance(n, c, dold, dnew)
         _join(n, new, dnew, x, v, a)
         if has_nodes(groups[g]):
+            # The predicted coordinates of nodes have left the tangent space of their internal constraints.
             restore(groups[g], c.dq, x, scratch.dual_work, moved)
             for i in range(n):
                 answer[i] = slopes_of(moved[i])
             shift(n, c, answer, dnew)
             _join(n, new, dnew, x, v, a)
+        # Slopes of r: r_q dq + r_v dv + r_a da + r_p dp, along eight directions. Numbers and signals of the model in
+        # dual numbers hold dp.
         set_signals(groups[g], t, within, scratch.dual_work)
         reduced_residual(groups[g], own.increments, x, v, a, scratch.dual_work, 1.0 / c.dq, r)
         _solve(own.exact_layout, factors, r, scratch)
         if has_nodes(tangent_model):
             _spread(tangent_model, size, new.x, scratch)
+        # The equation is linear in da and dlambda: one solution is exact, as in the case of one direction.
         subtract(n, answer, dnew)
         advance(n, c, dold, dnew)
     return True
@@ -153,6 +158,7 @@ def accelerate_together(
         dnew = MotionState(lane_vector(after[0]), lane_vector(after[1]), lane_vector(after[2]), lane_vector(after[3]))
         _join(n, state, dnew, x, v, a)
         set_signals(groups[g], t, within, scratch.dual_work)
+        # Rows of motion from the residual, rows of constraints from their second rates, which overwrite them.
         residual(groups[g], n, x, v, a, scratch.dual_work, 1.0, r)
         constraint_rates(groups[g], n, x, v, a, scratch.dual_work, second, r)
         _solve(problem.exact_layout, c.exact, r, scratch)
@@ -181,6 +187,7 @@ def _solve(layout, factors, r, scratch):
 def _spread(model, size, x, scratch):
     """Replace solutions of the reduced system by the corrections of all unknowns, N(x) delta."""
     delta, change, answer = scratch.delta, scratch.change, scratch.answer
+    # N(x) is a small product for each node in real numbers: its price does not justify a kernel in lanes.
     for lane in range(DIRECTIONS):
         for i in range(size):
             delta[i] = answer[i, lane]

@@ -25,11 +25,11 @@ def _multiply(matrix, size, lead, given, answer):
     for i in range(0, whole, 4):
         a = b = c = d = 0.0 * given[0]
         for j in range(size):
-            at, own = j * lead + i, given[j]
-            a += matrix[at] * own
-            b += matrix[at + 1] * own
-            c += matrix[at + 2] * own
-            d += matrix[at + 3] * own
+            at, right = j * lead + i, given[j]
+            a += matrix[at] * right
+            b += matrix[at + 1] * right
+            c += matrix[at + 2] * right
+            d += matrix[at + 3] * right
         answer[i], answer[i + 1], answer[i + 2], answer[i + 3] = a, b, c, d
     for i in range(whole, size):
         a = 0.0 * given[0]
@@ -52,17 +52,17 @@ def _substitute(layout, factors, given, x, answer):
             exchanged = x[k]
             x[k] = x[k + p]
             x[k + p] = exchanged
-        own = x[k]
+        value = x[k]
         # L y = b: the factor has ones on its diagonal, so that no division is needed.
         for i in range(1, min(reach, size - 1 - k) + 1):
-            x[k + i] -= a[diagonal + i] * own
+            x[k + i] -= a[diagonal + i] * value
     for k in range(size - 1, -1, -1):
         diagonal = k * lead + above
         # U x = y: the diagonal holds reciprocals, as the factorisation left them.
-        own = x[k] * a[diagonal]
-        x[k] = own
+        value = x[k] * a[diagonal]
+        x[k] = value
         # Above its first row a column of U is zero.
         for i in range(tops[k], k):
-            x[i] -= a[diagonal + i - k] * own
+            x[i] -= a[diagonal + i - k] * value
     for i in range(size):
         answer[i] = x[order[i]]

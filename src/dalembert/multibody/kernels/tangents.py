@@ -19,7 +19,7 @@ def tangent(kind: Declaration, dtype: type) -> BlockKernel:
     """
     # Slopes are imaginary parts of a complex step, or the slopes of dual numbers: in memory both follow the value.
     dual = dtype is float
-    numeric, entries, at_once, size_of_step = (Dual, ENTRIES, DIRECTIONS, 1.0) if dual else (complex, 2, 1, STEP)
+    numeric, entries, at_once, step = (Dual, ENTRIES, DIRECTIONS, 1.0) if dual else (complex, 2, 1, STEP)
     view2 = VIEWS[dtype][1]
     function, width, coordinates, increments = kind.residual_function, kind.width, kind.coordinates, kind.increments
     system, spread = system_of(kind), spreading(kind.parts)
@@ -31,16 +31,11 @@ def tangent(kind: Declaration, dtype: type) -> BlockKernel:
 
     @inlined
     def seed(narrow, j, k, call, x, d, dx, sx, sv, sa):
-        one, by_x, by_v, by_a = (
-            size_of_step,
-            call.by_x * size_of_step,
-            call.by_v * size_of_step,
-            call.by_a * size_of_step,
-        )
+        by_x, by_v, by_a = call.by_x * step, call.by_v * step, call.by_a * step
         # One direction moves positions, velocities and accelerations together, by the weights of the matrix that is
         # asked for: the slopes of the residual along it are a finished column of by_x K + by_v C + by_a M.
         if narrow == width:
-            sx[j, k] = one
+            sx[j, k] = step
             if j < coordinates:
                 sx[j, k], sv[j, k], sa[j, k] = by_x, by_v, by_a
         elif j < increments:
@@ -51,7 +46,7 @@ def tangent(kind: Declaration, dtype: type) -> BlockKernel:
             for i in range(coordinates):
                 sx[i, k], sv[i, k], sa[i, k] = by_x * dx[i], by_v * dx[i], by_a * dx[i]
         else:
-            sx[coordinates + j - increments, k] = one
+            sx[coordinates + j - increments, k] = step
 
     def loop(call_address, block_address):
         call, block = call_at(call_address), block_at(block_address)
@@ -91,6 +86,6 @@ def tangent(kind: Declaration, dtype: type) -> BlockKernel:
                         # Rows of motion and of constraints have factors, so that M, J or both come from one kernel.
                         if row < call.last_row:
                             factor = call.motion if row < call.increments else call.constraint
-                            matrix[slots[e, i * narrow + j]] += slopes[i, 1 + j - first] / size_of_step * factor
+                            matrix[slots[e, i * narrow + j]] += slopes[i, 1 + j - first] / step * factor
 
     return made(loop, kind, "tangent", dtype)

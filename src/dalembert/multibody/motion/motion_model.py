@@ -203,9 +203,8 @@ class BuiltModel(MotionModel):
         """The solver, with what sensitivities need compiled, or loaded, once."""
         solver = self.solver.suiting(self.shared, float(self.times[-1]))
         together = solver.takes_duals and are_many(self.shared, len(self.parameters))
-        own = solver.kernels(self.shared.structure, True)
-        own += dual_kernels(self.shared) if together else self.shared.kernels(complex)
-        prepare([*own, *self.observer.kernels(self.shared, True)])
+        kernels = dual_kernels(self.shared) if together else self.shared.kernels(complex)
+        prepare([*solver.kernels(self.shared.structure, True), *kernels, *self.observer.kernels(self.shared, True)])
         return self.solver
 
     def check_derivatives(self, vector: np.ndarray) -> None:

@@ -77,6 +77,10 @@ def together(problem: IntegrationProblem, groups: Sequence[BlockModel], dual_wor
     )  # fmt: skip
 
 
+# Lanes of directions lie side by side for each unknown, so that a step never transposes: that cost a fifth of a step,
+# since a vector that was just written entry by entry is loaded late.
+
+
 @inner
 def scatter(dstates, groups):
     """Fill ``groups`` (4, groups, N + 1, 8) with derivatives (directions, N + 1): lanes are directions."""
@@ -103,15 +107,15 @@ def differentiate_together(
     scratch: Together,
 ) -> bool:  # fmt: skip
     """Compute the derivatives of the converged step, as :func:`derivatives.differentiate` does: ``scratch.new``."""
-    n, own, groups, factors = problem.n, problem.reduced, scratch.groups, scratch.factors
-    size, answer = own.exact_layout.size, lane_vector(scratch.answer)
+    n, reduced, groups, factors = problem.n, problem.reduced, scratch.groups, scratch.factors
+    size, answer = reduced.exact_layout.size, lane_vector(scratch.answer)
     # One exact tangent of the converged step serves all directions: d(residual)/da along dq = c.dq da, dv = c.dv da.
     set_signals(tangent_model, t, within, scratch.tangent_work)
     reduced_tangent(
-        tangent_model, own.exact_slots, own.increments, size, new.x, new.v, new.a, (c.dq, c.dv, 1.0), (1.0, 1.0 / c.dq),
-        scratch.tangent_work, factors.matrix,
+        tangent_model, reduced.exact_slots, reduced.increments, size, new.x, new.v, new.a, (c.dq, c.dv, 1.0),
+        (1.0, 1.0 / c.dq), scratch.tangent_work, factors.matrix,
     )  # fmt: skip
-    if not factorise(own.exact_layout, factors):
+    if not factorise(reduced.exact_layout, factors):
         return False
     x, v, a = dual_vector(scratch.state[0]), dual_vector(scratch.state[1]), dual_vector(scratch.state[2])
     r, moved = dual_vector(scratch.r[: size + 1]), dual_vector(scratch.second)
@@ -135,8 +139,8 @@ def differentiate_together(
         # Slopes of r: r_q dq + r_v dv + r_a da + r_p dp, along eight directions. Numbers and signals of the model in
         # dual numbers hold dp.
         set_signals(groups[g], t, within, scratch.dual_work)
-        reduced_residual(groups[g], own.increments, x, v, a, scratch.dual_work, 1.0 / c.dq, r)
-        _solve(own.exact_layout, factors, r, scratch)
+        reduced_residual(groups[g], reduced.increments, x, v, a, scratch.dual_work, 1.0 / c.dq, r)
+        _solve(reduced.exact_layout, factors, r, scratch)
         if has_nodes(tangent_model):
             _spread(tangent_model, size, new.x, scratch)
         # The equation is linear in da and dlambda: one solution is exact, as in the case of one direction.
@@ -168,6 +172,7 @@ def accelerate_together(
 @inner
 def _join(n, state, slopes, x, v, a):
     """Fill vectors of dual numbers with a state and its derivatives."""
+    # Multipliers have no rates: behind the coordinates velocities and accelerations stay zero.
     for i in range(len(state.x)):
         x[i] = with_slopes(state.x[i], slopes.x[i])
     for i in range(n):

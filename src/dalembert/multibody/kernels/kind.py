@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, field
 
-from dalembert.kernels.duals import Dual
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.kernels import loops, nodes, pullbacks, real_tangents, tangents
 from dalembert.multibody.kernels.debugging import PLAIN, PlainKernel
@@ -30,7 +29,7 @@ class Kind(Declaration):
         return kernel if errors is None else PlainKernel(kernel, errors)
 
     def all_kernels(self) -> list[Compiled]:
-        """The kernels of all roles that the kind has."""
+        """The kernels of all roles that the kind has; those in dual numbers are compiled when they are needed."""
         roles = [
             (role, dtype)
             for role in _MAKERS
@@ -39,5 +38,4 @@ class Kind(Declaration):
         ]
         pulled = self.is_flat and "pullback" in self.roles
         more = [("tangent", float)] * ("tangent" in self.roles) + [("pullback", complex)] * pulled
-        more += [(role, Dual) for role in ("residual", "rates") if role in self.roles]
         return [self.kernel(*role) for role in (*roles, *more)]

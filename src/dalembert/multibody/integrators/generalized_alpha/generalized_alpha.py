@@ -144,8 +144,8 @@ class GeneralizedAlpha(Integrator):
         one_by_one = [] if many else [entry.complex_model.need("rates").reduced() for entry in perturbed]
         directions = addresses(one_by_one)
         calls = [models[0].call() for models in (real, tangent_models, groups) if models]
-        work, complex_work, *dual_work = (call.address for call in calls)
-        along = together(problem, groups, *dual_work or [0], complex_work)
+        work, complex_work, dual_work = [*(call.address for call in calls), 0][:3]
+        along = together(problem, groups, dual_work, complex_work)
         integrate(
             problem, opens, settings, addresses(real), addresses(tangent_models), directions, turns, batch.states,
             batch.dstates, out, dout, log, ends, _workspace(problem, work, complex_work, len(perturbed), along),

@@ -68,12 +68,13 @@ def together(problem: IntegrationProblem, groups: Sequence[BlockModel], dual_wor
     """Workspace for derivatives along eight directions at once, by models in dual numbers, which the caller keeps."""
     layout, width = problem.reduced.exact_layout, len(problem.scale)
     lengths = (entry.size + 3 * entry.reach for entry in (layout, problem.exact_layout))
-    kernels = [differentiate_together.address, accelerate_together.address] if groups else [0, 0]
+    old, new = np.zeros((2, 4, len(groups), width, DIRECTIONS))
+    state, (r, second) = np.zeros((3, width, ENTRIES)), np.zeros((2, width, ENTRIES))
+    right, answer = np.zeros((2, width, DIRECTIONS))
     return Together(
-        addresses(groups), *kernels, dual_work, tangent_work, storage(layout),
-        *(np.zeros((4, len(groups), width, DIRECTIONS)) for _ in range(2)), np.zeros((3, width, ENTRIES)),
-        *(np.zeros((width, ENTRIES)) for _ in range(2)), *(np.zeros((width, DIRECTIONS)) for _ in range(2)),
-        np.zeros((max(lengths), DIRECTIONS)), np.zeros(width), np.zeros(width),
+        addresses(groups), differentiate_together.address if groups else 0,
+        accelerate_together.address if groups else 0, dual_work, tangent_work, storage(layout), old, new, state, r,
+        second, right, answer, np.zeros((max(lengths), DIRECTIONS)), np.zeros(width), np.zeros(width),
     )  # fmt: skip
 
 

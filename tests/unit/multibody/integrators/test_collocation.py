@@ -150,7 +150,7 @@ def test_gauss_and_newton_leave_no_more_than_fireflies():
     walk = prepare(problem, rule, *calls, 0, linear=True)
     scratch = descent(problem, walk)
     walk.old.x[:], walk.old.v[:] = lowered.x, lowered.v
-    models = SampleModels(real.address, complex_one.address, addresses([]))
+    models = SampleModels(real.address, lowered.tangents.address, addresses([]))
     moving = models._replace(directions=addresses([complex_one, complex_one]))
     out, dout = resting(0, len(lowered.x)), resting(0, 0, len(lowered.x))
     search = CollocationSearch(da.Firefly(), 0, problem, rule, moving, schedule, walk)

@@ -46,10 +46,10 @@ def calls_of(lowered: Lowered) -> tuple[Call, Call, np.ndarray]:
 
 def chosen(lowered: Lowered, problem, state: MotionState, directions: int = 0):
     """Independent coordinates at a state; the functions run in plain Python."""
-    call = lowered.complex_model.call()
+    call = lowered.tangents.call()
     partition = partitioning.scratch(problem, directions)
-    lowered.complex_model.evaluate(call, 0.0, 0.0)
-    partitioning.linearise(problem, lowered.complex_model.address, state, call.address, partition)
+    lowered.tangents.evaluate(call, 0.0, 0.0)
+    partitioning.linearise(problem, lowered.tangents.address, state, call.address, partition)
     partitioning.choose(problem, partition, partitioning.DEPENDENT)
     assert partitioning.invert(problem, partition)
     return partition
@@ -85,7 +85,7 @@ def test_dependent_entries_satisfy_the_constraints_at_all_levels(bars: int) -> N
     state.a[own] = 5.0
     given = [values[own].copy() for values in state[:3]]
     assert partitioning.settle(
-        problem, SampleModels(lowered.real.address, lowered.complex_model.address, addresses([])), 0.0, 0.0,
+        problem, SampleModels(lowered.real.address, lowered.tangents.address, addresses([])), 0.0, 0.0,
         ACCELERATION, state, resting(0, len(state.x)), call.address, complex_call.address, complex_state,
         partition,
     )  # fmt: skip
@@ -112,7 +112,7 @@ def test_derivatives_of_the_dependent_entries() -> None:
             values[:, own] = 1.0
         directions = addresses(own.complex_model.need("rates") for own in along)
         assert partitioning.settle(
-            problem, SampleModels(lowered.real.address, lowered.complex_model.address, directions), 0.0, 0.0,
+            problem, SampleModels(lowered.real.address, lowered.tangents.address, directions), 0.0, 0.0,
             ACCELERATION, state, dstates, call.address, complex_call.address, complex_state, partition,
         )  # fmt: skip
         return state, dstates

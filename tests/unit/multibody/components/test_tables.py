@@ -216,7 +216,7 @@ def test_it_is_read_at_a_later_time(kind: str) -> None:
 
     channels = ["bar.start.angle", "bar.start.rate"]
     whole = mb.TimeResponse(
-        build, {"angle": (-2, 2), "rate": (-20, 20)}, channels, [0.4, 0.7], mb.RadauIIA(tolerance=1e-9)
+        build, {"angle": (-2, 2), "rate": (-20, 20)}, channels, [0.4, 0.7], mb.RadauIIA(tolerance=1e-10)
     )
     values = whole.evaluate(np.array([-1.0, 0.3])).only()[0]
     rest = whole.later(0.4, [0.3]).evaluate(values[0]).only()[0]

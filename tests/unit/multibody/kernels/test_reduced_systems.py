@@ -112,7 +112,7 @@ def test_the_reduced_tangent_is_the_slope_of_the_projected_residual() -> None:
     call.set(by_x=by[0], by_v=by[1], by_a=by[2], increments=own.increments, last_row=own.size)
     for k, kind in enumerate(own.index):
         call.set(slots=slots[k])
-        kind.kernel("tangent", float)(call.address, model._words[2][k : k + 1].ctypes.data)
+        kind.kernel("tangent", model.dtype)(call.address, model._words[2][k : k + 1].ctypes.data)
     dense = np.zeros((own.size + 1, own.size + 1))
     np.add.at(dense, (rows, columns), matrix)
 

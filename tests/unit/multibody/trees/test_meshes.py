@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import numpy as np
-import plotly.graph_objects as go
 import pytest
 import trimesh
 
@@ -13,7 +12,7 @@ from dalembert.multibody.components.spatial.mesh_files import CORNERS, simplifie
 from dalembert.multibody.motion.sketch import sketch
 from dalembert.multibody.spatial import Orientation, Pose
 from dalembert.multibody.trees import read_urdf
-from dalembert.report.charts import mechanism
+from dalembert.report import Animation
 from dalembert.report.scene.mechanism import mechanism_scene
 
 ROBOT = """<robot name="pendulum"><link name="base"/>
@@ -47,7 +46,8 @@ def test_shapes_of_the_base_are_drawn_in_the_ground(robot):
     corners = np.abs(system.ground_surface.corners - [1.0, 0.0, 0.1])
     np.testing.assert_allclose(corners, np.tile([0.2, 0.1, 0.3], (8, 1)), atol=1e-12)
     drawing = simulate(system, 0.02, RungeKutta4(step=1e-2)).drawing()
-    assert [trace.name for trace in mechanism(drawing).data if isinstance(trace, go.Mesh3d)] == ["ground"]
+    shapes = Animation.of(drawing).scene.primitives
+    assert [shape.role for shape in shapes if shape.kind == "surface"] == ["ground"]
     assert [shape.part for shape in mechanism_scene(sketch(system)).primitives if shape.kind == "surface"] == ["ground"]
 
 
@@ -70,10 +70,9 @@ def test_it_is_drawn_in_the_animation(robot, tmp_path):
     (tmp_path / "robots").mkdir()
     ball.export(tmp_path / "robots" / "ball.stl")
     motion = simulate(robot("ball.stl").system(), 0.05, RungeKutta4(step=1e-2))
-    figure = mechanism(motion.drawing())
-    (mesh,) = (trace for trace in figure.data if isinstance(trace, go.Mesh3d))
-    assert 50 < len(mesh.x) <= CORNERS < len(ball.vertices)
-    assert np.ptp(mesh.z) == pytest.approx(0.4, rel=0.05)  # 0.002 along z
+    (mesh,) = (shape for shape in Animation.of(motion.drawing()).scene.primitives if shape.kind == "surface")
+    assert 50 < mesh.points.shape[1] <= CORNERS < len(ball.vertices)
+    assert np.ptp(mesh.positions[0, :, 2]) == pytest.approx(0.4, rel=0.05)  # 0.002 along z
 
 
 def test_a_mesh_that_is_not_drawn_is_named(robot, tmp_path, monkeypatch):
@@ -99,7 +98,7 @@ def test_a_damaged_mesh_is_not_drawn(robot, tmp_path, name, text):
     with pytest.warns(RuntimeWarning, match=f"{name} cannot be read, so it is not drawn"):
         drawing = simulate(robot(name).system(), 0.02, RungeKutta4(step=1e-2)).drawing()
     assert drawing.surfaces == {}
-    assert mechanism(drawing).frames
+    assert len(Animation.of(drawing).scene.times) > 1
 
 
 def test_simplified_meshes_keep_their_size():

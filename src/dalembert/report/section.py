@@ -14,7 +14,7 @@ from markupsafe import Markup
 from plotly.io import to_json
 
 from dalembert.forward import Coordinate
-from dalembert.report.inline import inline_json
+from dalembert.report.inline import SAFE
 from dalembert.report.player import PAGE_LOOKS
 from dalembert.report.player.animation import Animation
 from dalembert.tables import Table, labelled
@@ -55,7 +55,7 @@ class Plot:
         bare = self.figure.to_dict()  # a copy as a Figure would check all of it again
         for key in ("template", "title", "updatemenus", "sliders"):
             bare["layout"].pop(key, None)
-        return inline_json(to_json(bare, validate=False) or "")
+        return Markup((to_json(bare, validate=False) or "").translate(SAFE))
 
 
 @dataclass(frozen=True)

@@ -94,6 +94,11 @@ class Declaration:
                 f"{self.coordinates}. Add flat(size) for coordinates without internal constraints"
             )
 
+    @cached_property
+    def is_built_in(self) -> bool:
+        """Whether it is a kind of the package."""
+        return (self.module or "").startswith("dalembert.")
+
     @property
     def parts(self) -> tuple[Chart, ...]:
         """Charts of all coordinates."""

@@ -91,8 +91,7 @@ class Lowered:
     @cached_property
     def in_duals(self) -> bool:
         """Whether its components take dual numbers: functions of users, and kinds of users, take complex ones."""
-        built_in = all((kind.module or "").startswith("dalembert.") for kind in self.data)
-        return built_in and not self.callbacks and not PLAIN.get()
+        return all(kind.is_built_in for kind in self.data) and not self.callbacks and not PLAIN.get()
 
     @cached_property
     def real(self) -> BlockModel:

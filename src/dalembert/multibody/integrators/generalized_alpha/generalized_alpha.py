@@ -22,6 +22,7 @@ from dalembert.multibody.integrators.generalized_alpha.together import (
     accelerate_together,
     differentiate_together,
     gather,
+    nothing_together,
     scatter,
     together,
 )
@@ -139,16 +140,17 @@ class GeneralizedAlpha(Integrator):
         ends = np.zeros((len(samples), 3))
         real = [entry.real.need("rates").reduced() for entry in samples]
         tangent_models = [entry.tangents.reduced(spreads=len(perturbed) > 0) for entry in samples]
-        many = self.takes_duals and are_many(samples[0], len(perturbed))
-        groups = [entry.need("rates").reduced() for entry in dual_models(samples[0], perturbed if many else ())]
+        many = bool(perturbed) and self.takes_duals and are_many(samples[0], len(perturbed))
+        groups = [entry.need("rates").reduced() for entry in dual_models(samples[0], perturbed)] if many else []
         one_by_one = [] if many else [entry.complex_model.need("rates").reduced() for entry in perturbed]
         directions = addresses(one_by_one)
-        calls = [models[0].call() for models in (real, tangent_models, groups) if models]
-        work, complex_work, dual_work = [*(call.address for call in calls), 0][:3]
-        along = together(problem, groups, dual_work, complex_work)
+        call, tangent_call = real[0].call(), tangent_models[0].call()
+        dual_call = groups[0].call() if many else tangent_call
+        works = call.address, tangent_call.address
+        along = together(problem, groups, dual_call.address, tangent_call.address) if many else nothing_together()
         integrate(
             problem, opens, settings, addresses(real), addresses(tangent_models), directions, turns, batch.states,
-            batch.dstates, out, dout, log, ends, _workspace(problem, work, complex_work, len(perturbed), along),
+            batch.dstates, out, dout, log, ends, _workspace(problem, *works, len(perturbed), along),
         )  # fmt: skip
         runs, shortened = [], f"the step of {self.step:g} s was cut down {'' if self.adaptive else 'to 1/256 '}for it"
         for number, (lowered, (status, time, moved)) in enumerate(zip(samples, ends, strict=True)):

@@ -5,6 +5,7 @@ evaluation of the residual and one solution.
 """
 
 from collections.abc import Sequence
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -26,7 +27,7 @@ from dalembert.multibody.kernels.assembly import (
     spread,
 )
 from dalembert.multibody.kernels.block_table import BlockModel, addresses
-from dalembert.multibody.kernels.linear import Factors, factorise, storage
+from dalembert.multibody.kernels.linear import Factors, dense_layout, factorise, storage
 from dalembert.multibody.kernels.linear_lanes import solve_lanes
 from dalembert.multibody.kernels.states import (
     Coefficients,
@@ -75,6 +76,18 @@ def together(problem: IntegrationProblem, groups: Sequence[BlockModel], dual_wor
         addresses(groups), differentiate_together.address if groups else 0,
         accelerate_together.address if groups else 0, dual_work, tangent_work, storage(layout), old, new, state, r,
         second, right, answer, np.zeros((max(lengths), DIRECTIONS)), np.zeros(width), np.zeros(width),
+    )  # fmt: skip
+
+
+@cache
+def nothing_together() -> Together:
+    """Workspace where directions are taken one by one, or where there are none."""
+    none, layout = np.zeros(0), dense_layout(0)
+    rows = np.zeros((0, DIRECTIONS))
+    return Together(
+        none.astype(np.int64), 0, 0, 0, 0, storage(layout), np.zeros((4, 0, 0, DIRECTIONS)),
+        np.zeros((4, 0, 0, DIRECTIONS)), np.zeros((3, 0, ENTRIES)), np.zeros((0, ENTRIES)), np.zeros((0, ENTRIES)),
+        rows, rows, rows, none, none,
     )  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""Arithmetics of kernels: views of real, complex and dual numbers, and kernels in several made from one function."""
+"""Arithmetics of kernels: views of real, complex and dual numbers and of lanes, and kernels for more than one."""
 
 from collections.abc import Callable
 from types import FunctionType
@@ -8,6 +8,7 @@ import numpy as np
 
 from dalembert.kernels.duals import Dual, duals, duals2
 from dalembert.kernels.kernel import Kernel
+from dalembert.kernels.lanes import Lanes, lanes, lanes2
 from dalembert.kernels.views import complexes, complexes2, reals, reals2
 from dalembert.kernels.words import ArrayOf
 
@@ -15,6 +16,7 @@ VIEWS: dict[type, tuple[Any, Any]] = {
     float: (reals, reals2),
     complex: (complexes, complexes2),
     Dual: (duals, duals2),
+    Lanes: (lanes, lanes2),
 }
 """Intrinsics: the vector and the matrix of numbers at an address."""
 _OPEN = ""

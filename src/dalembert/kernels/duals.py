@@ -17,14 +17,13 @@ from numba.extending import (
     lower_builtin,
     lower_cast,
     lower_getattr,
-    lower_getattr_generic,
     models,
     overload,
     register_model,
 )
 
-from dalembert.kernels.lanes import LANES, REAL, VECTOR, WIDTH, spread
-from dalembert.kernels.views import WORD, intrinsic, vector_of, view
+from dalembert.kernels.lanes import LANES, REAL, VECTOR, WIDTH, spread, without_python
+from dalembert.kernels.views import intrinsic, vector_of, view
 
 DIRECTIONS = WIDTH
 ENTRIES = 1 + WIDTH  # doubles of a dual number in memory
@@ -219,11 +218,7 @@ def _real(context: Any, builder: Any, kind: Any, number: Any) -> Any:
     return _parts(context, builder, number)[0]
 
 
-def _without_python(*arguments: Any) -> Any:
-    raise NotImplementedError("Dual numbers exist in compiled functions alone.")
-
-
-@intrinsic(_without_python)
+@intrinsic(without_python)
 def chained(typingctx, x, value, slope):
     """Return f(x) for a value f and a slope f' at the value of ``x``: the chain rule."""
 
@@ -234,7 +229,7 @@ def chained(typingctx, x, value, slope):
     return DUAL(x, types.float64, types.float64), generate
 
 
-@intrinsic(_without_python)
+@intrinsic(without_python)
 def with_slopes(typingctx, value, slopes):
     """Return the dual number of a value and eight derivatives."""
 
@@ -244,7 +239,7 @@ def with_slopes(typingctx, value, slopes):
     return DUAL(types.float64, LANES), generate
 
 
-@intrinsic(_without_python)
+@intrinsic(without_python)
 def slopes_of(typingctx, x):
     """Return the eight derivatives of a dual number, as lanes."""
     return LANES(x), lambda context, builder, signature, arguments: _parts(context, builder, arguments[0])[1]
@@ -255,73 +250,6 @@ def slopes_of(typingctx, x):
 duals, duals2 = view(Dual, 1), view(Dual, 2)
 
 dual_vector = vector_of(Dual)
-
-
-class DualRowType(types.Type):
-    """Named dual numbers one after the other in memory, by their address."""
-
-    def __init__(self, names: tuple[str, ...]) -> None:
-        self.names = names
-        super().__init__(f"DualRow({', '.join(names)})")
-
-
-class DualRowsType(types.Type):
-    """Rows of named dual numbers, by their address."""
-
-    def __init__(self, names: tuple[str, ...]) -> None:
-        self.row = DualRowType(names)
-        super().__init__(f"DualRows({', '.join(names)})")
-
-
-@register_model(DualRowType)
-@register_model(DualRowsType)
-class _AddressModel(models.PrimitiveModel):
-    def __init__(self, manager: Any, kind: Any) -> None:
-        super().__init__(manager, kind, WORD)
-
-
-class _Columns(AttributeTemplate):
-    key = DualRowType
-
-    def generic_resolve(self, kind: DualRowType, name: str) -> Any:
-        # None tells Numba that there is no such column; it then reports the name and the line.
-        return DUAL if name in kind.names else None
-
-
-infer_getattr(_Columns)
-
-
-@lower_getattr_generic(DualRowType)
-def _column(context: Any, builder: Any, kind: DualRowType, address: Any, name: str) -> Any:
-    place = builder.add(address, WORD(8 * ENTRIES * kind.names.index(name)))
-    model = context.data_model_manager[DUAL]
-    return model.load_from_data_pointer(builder, builder.inttoptr(place, model.get_data_type().as_pointer()))
-
-
-@intrinsic(_without_python)
-def _row(typingctx, rows, e):
-    def generate(context, builder, signature, arguments):
-        size = WORD(8 * ENTRIES * len(rows.row.names))
-        return builder.add(arguments[0], builder.mul(arguments[1], size))
-
-    return rows.row(rows, types.int64), generate
-
-
-@overload(operator.getitem)
-def _row_of(rows, e):
-    return (lambda rows, e: _row(rows, e)) if isinstance(rows, DualRowsType) else None  # noqa: PLW0108 - Numba's form
-
-
-def dual_records(names: tuple[str, ...]) -> Any:
-    """An intrinsic: rows of named dual numbers at an address."""
-    kind = DualRowsType(names)
-
-    @intrinsic(_without_python)
-    def rows(typingctx, address, count):
-        """The rows at an address."""
-        return kind(types.int64, types.int64), lambda context, builder, signature, arguments: arguments[0]
-
-    return rows
 
 
 def as_duals(value: np.ndarray, slopes: Any) -> np.ndarray:

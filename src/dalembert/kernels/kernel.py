@@ -14,6 +14,7 @@ from numba import njit
 from dalembert.kernels.compiler import Inner, caller, entry_point, object_code
 from dalembert.kernels.digest import digest, needs
 from dalembert.kernels.duals import Dual
+from dalembert.kernels.lanes import Lanes
 from dalembert.kernels.objects import OBJECTS
 from dalembert.kernels.pipeline import PIPELINE
 from dalembert.kernels.words import address, form, leaves, packer, unpack
@@ -54,7 +55,7 @@ Origin = tuple[str, str, tuple[str, ...]]
 Owner = tuple[Any, str, type]
 """A kind of component, a role and an arithmetic."""
 
-_NUMBERS = {kind.__name__: kind for kind in (float, complex, Dual)}
+_NUMBERS = {kind.__name__: kind for kind in (float, complex, Dual, Lanes)}
 
 
 class Compiled:

@@ -1,19 +1,24 @@
 """Eight real numbers side by side, as one number of a kernel: a vector register, or two or four of a smaller processor.
 
-`+ - * /` are single instructions. Eight is the width on every processor, so that one layout serves all: twelve spill
-registers on AVX-512, and four gain less there.
+`+ - * /` and the square root are single instructions, with the bits of real numbers in each lane. Eight is the width on
+every processor, so that one layout serves all: twelve spill registers on AVX-512, and four gain less there.
+
+A comparison is that of the first lane: a kind takes lanes only if its branches depend on integers, and on which of its
+numbers are zero, which all samples of a group share.
 """
 
+import math
 import operator
 from typing import Any
 
 from llvmlite import ir
 from numba import types
+from numba.core import cgutils
 from numba.core.typeconv.castgraph import Conversion
-from numba.core.typing.templates import AbstractTemplate, infer_global
-from numba.extending import lower_builtin, lower_cast, models, register_model
+from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, infer_getattr, infer_global
+from numba.extending import lower_builtin, lower_cast, lower_getattr, models, overload, register_model
 
-from dalembert.kernels.views import vector_of
+from dalembert.kernels.views import intrinsic, vector_of, view
 
 WIDTH = 8
 REAL, VECTOR = ir.DoubleType(), ir.VectorType(ir.DoubleType(), WIDTH)
@@ -100,4 +105,156 @@ for _instruction, _symbols in ARITHMETIC.items():
     _elementwise(_instruction, _symbols)
 
 
+@lower_builtin(operator.neg, LanesType)
+def _negate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    return builder.fneg(arguments[0])
+
+
+class _Negation(AbstractTemplate):
+    def generic(self, args: Any, kws: Any) -> Any:
+        return LANES(LANES) if args == (LANES,) else None
+
+
+_declare: Any = infer_global(operator.neg)
+_declare(_Negation)
+
+
+def _comparison(symbol: Any, sign: str) -> None:
+    class Template(AbstractTemplate):
+        def generic(self, args: Any, kws: Any) -> Any:
+            plain = all(isinstance(kind, LanesType | types.Float | types.Integer) for kind in args)
+            return types.boolean(LANES, LANES) if plain and LANES in args and len(args) == 2 else None
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        first = [builder.extract_element(value, ir.Constant(ir.IntType(32), 0)) for value in arguments]
+        return (builder.fcmp_unordered if sign == "!=" else builder.fcmp_ordered)(sign, *first)
+
+    declare: Any = infer_global(symbol)
+    declare(type(f"Lanes_{symbol.__name__}", (Template,), {}))
+    lower_builtin(symbol, LanesType, LanesType)(generate)
+
+
+for _symbol, _sign in (
+    (operator.lt, "<"), (operator.le, "<="), (operator.gt, ">"), (operator.ge, ">="), (operator.eq, "=="),
+    (operator.ne, "!="),
+):  # fmt: skip
+    _comparison(_symbol, _sign)
+
+
+class _Real(AttributeTemplate):
+    key = LanesType
+
+    def resolve_real(self, kind: Any) -> Any:
+        return LANES
+
+
+infer_getattr(_Real)
+
+
+@lower_getattr(LanesType, "real")
+def _real(context: Any, builder: Any, kind: Any, value: Any) -> Any:
+    return value
+
+
+def without_python(*arguments: Any) -> Any:
+    """Stand for an intrinsic in Python, where lanes and dual numbers do not exist."""
+    raise NotImplementedError("Lanes and dual numbers exist in compiled functions alone.")
+
+
+@intrinsic(without_python)
+def entry(typingctx, x, lane):
+    """Return the number of a lane."""
+    return types.float64(x, types.int64), lambda context, builder, signature, arguments: builder.extract_element(
+        *arguments
+    )
+
+
+@intrinsic(without_python)
+def with_entry(typingctx, x, lane, value):
+    """Return lanes with another number in one of them."""
+
+    def generate(context, builder, signature, arguments):
+        vector, place, number = arguments
+        return builder.insert_element(vector, number, place)
+
+    return LANES(x, types.int64, types.float64), generate
+
+
+def _by_entries(builder: Any, name: str, arguments: Any) -> Any:
+    """Generate a function of the processor, entry by entry."""
+    kind = ir.FunctionType(VECTOR, [VECTOR] * len(arguments))
+    return builder.call(cgutils.get_or_insert_function(builder.module, kind, name), arguments)
+
+
+@intrinsic(without_python)
+def vector_root(typingctx, x):
+    """Return the square roots, correctly rounded as those of real numbers."""
+
+    def generate(context, builder, signature, arguments):
+        return _by_entries(builder, "llvm.sqrt.v8f64", arguments)
+
+    return LANES(x), generate
+
+
+@intrinsic(without_python)
+def sizes(typingctx, x):
+    """Return the absolute values."""
+
+    def generate(context, builder, signature, arguments):
+        return _by_entries(builder, "llvm.fabs.v8f64", arguments)
+
+    return LANES(x), generate
+
+
+@intrinsic(without_python)
+def larger(typingctx, x, y):
+    """Return, lane by lane, y where it is not at most x, which holds for values that are no numbers, else x.
+
+    A value of x that is no number stays.
+    """
+
+    def generate(context, builder, signature, arguments):
+        a, b = arguments
+        known, above = builder.fcmp_ordered("==", a, a), builder.fcmp_unordered(">", b, a)
+        return builder.select(builder.and_(known, above), b, a)
+
+    return LANES(x, y), generate
+
+
+@intrinsic(without_python)
+def chosen(typingctx, mask, x):
+    """Return x in the lanes where the mask is not zero, and zero in the others."""
+
+    def generate(context, builder, signature, arguments):
+        zero = ir.Constant(VECTOR, [0.0] * WIDTH)
+        return builder.select(builder.fcmp_ordered("!=", arguments[0], zero), arguments[1], zero)
+
+    return LANES(mask, x), generate
+
+
+@intrinsic(without_python)
+def add_fused(typingctx, total, factor, x):
+    """Return total + factor x, contracted where the processor can: as `vector.add_multiple` does for real numbers."""
+
+    def generate(context, builder, signature, arguments):
+        product = builder.fmul(arguments[1], arguments[2], flags=("contract",))
+        return builder.fadd(arguments[0], product, flags=("contract",))
+
+    return LANES(total, factor, x), generate
+
+
+@intrinsic(without_python)
+def _floors(typingctx, x):
+    def generate(context, builder, signature, arguments):
+        return _by_entries(builder, "llvm.floor.v8f64", arguments)
+
+    return LANES(x), generate
+
+
+@overload(math.floor)
+def _floor(x):
+    return (lambda x: _floors(x)) if isinstance(x, LanesType) else None  # noqa: PLW0108 - Numba's form
+
+
+lanes, lanes2 = view(Lanes, 1), view(Lanes, 2)
 lane_vector = vector_of(Lanes)

@@ -10,6 +10,7 @@ import numpy as np
 
 from dalembert.kernels.duals import ENTRIES, Dual
 from dalembert.kernels.kernel import BlockKernel
+from dalembert.kernels.lanes import WIDTH, Lanes
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.nodes import CHANGE, RESTORE, SPREAD
 from dalembert.multibody.kernels.records import BLOCK, CALL, MODEL
@@ -43,9 +44,9 @@ class Signals:
 
 @dataclass(frozen=True, eq=False)
 class BlockModel:
-    """A whole model in real numbers, in complex ones as a direction of differentiation, or in dual ones with up to
-    eight directions. ``size``: unknowns; ``coordinates``: unknowns that are no multipliers; ``reduction``: rows of the
-    reduced system; ``roles``: kernels that it needs at once.
+    """A whole model in real numbers, in complex ones as a direction of differentiation, in dual ones with up to eight
+    directions, or in lanes of eight samples. ``size``: unknowns; ``coordinates``: unknowns that are no multipliers;
+    ``reduction``: rows of the reduced system; ``roles``: kernels that it needs at once.
     """
 
     blocks: Blocks
@@ -65,7 +66,7 @@ class BlockModel:
         head, own = np.zeros(1, MODEL), self.reduction
         for kind, numbers in self.blocks.numbers.items():
             # Quadratic kinds take their tangents in real numbers, from other models too.
-            plain = numbers[..., 0] if self.dtype is Dual else np.real(numbers)
+            plain = np.real(numbers) if numbers.ndim == 2 else numbers[..., 0]
             self._real_numbers[kind] = np.ascontiguousarray(plain)
         full = self._table(self.blocks.index, self.blocks.index)
         reduced = self._table(own.index, own.index) if own.nodes else full
@@ -79,9 +80,10 @@ class BlockModel:
         table["knots"], table["signal_data"] = self.signals.knots.ctypes.data, self.signals.data.ctypes.data
         table["knot_count"], table["number_count"] = len(self.signals.knots), len(self.signals.data)
         table["callbacks"], table["callback_count"] = self.callbacks.ctypes.data, len(self.callbacks)
-        evaluator = EVALUATORS[len(self.signals.index) > 1][self.dtype]
-        table["evaluate"] = evaluator.address
-        object.__setattr__(self, "_evaluator", evaluator)
+        if self.dtype is not Lanes:  # whose signals are those of each lane
+            evaluator = EVALUATORS[len(self.signals.index) > 1][self.dtype]
+            table["evaluate"] = evaluator.address
+            object.__setattr__(self, "_evaluator", evaluator)
         object.__setattr__(self, "_words", (head, full, reduced, nodes))
         self.need(*self.roles)
 
@@ -164,8 +166,9 @@ class Call:
         self, size: int, coordinates: int, signals: int, dtype: type, callbacks: np.ndarray | None = None
     ) -> None:
         # One call serves a model in real numbers and its directions in complex ones, so that it has room for both.
-        room = np.zeros((signals, 3, ENTRIES) if dtype is Dual else (signals, 3, 2))
-        self.signals = room if dtype is Dual else room.ravel().view(dtype)[: 3 * signals].reshape(signals, 3)
+        wide = {Dual: ENTRIES, Lanes: WIDTH}.get(dtype)
+        room = np.zeros((signals, 3, wide or 2))
+        self.signals = room if wide else room.ravel().view(dtype)[: 3 * signals].reshape(signals, 3)
         self._callbacks = np.zeros(1, np.int64) if callbacks is None else callbacks
         self._words = np.zeros(1, CALL)
         own = self._words[0]

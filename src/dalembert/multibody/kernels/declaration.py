@@ -54,7 +54,8 @@ class Declaration:
     ``driven``, ``loads``: whether a prescribed motion, or a load, may do work.
     ``holds``: whether a component on the ground keeps the mechanism from moving freely, as joints and springs do. It
     then has the columns ``a_kind b_kind`` (integers) and ``a_x a_y b_x b_y`` of two markers. ``holds_frame``: whether
-    it then holds the direction of a ground point, not only the point.
+    it then holds the direction of a ground point, not only the point. ``lanes``: whether the functions take eight
+    samples side by side: their branches depend on integers, and on which numbers are zero.
     """
 
     name: str
@@ -85,6 +86,7 @@ class Declaration:
     loads: bool = False
     holds: bool = False
     holds_frame: bool = True
+    lanes: bool = False
 
     def __post_init__(self) -> None:
         sizes = [chart.size for chart in self.parts]

@@ -1,4 +1,4 @@
-"""Elementary functions for the complex step and for dual numbers.
+"""Elementary functions for the complex step, for dual numbers and for lanes.
 
 In kernels an imaginary part is a direction of differentiation, as small as 1e-30, never a physical quantity. So each
 function here is exact in the real part and first order in the imaginary one. That is all that a complex step needs,
@@ -16,6 +16,7 @@ from numba.extending import overload
 from dalembert.kernels.duals import DualType
 from dalembert.kernels.duals import chained as chained_dual
 from dalembert.kernels.kernel import inner
+from dalembert.kernels.lanes import WIDTH, LanesType, entry, vector_root, with_entry
 
 #: Size of the imaginary step. Second-order terms vanish below the rounding of the first.
 STEP = 1e-30
@@ -28,7 +29,7 @@ def real(x):
 
 @overload(real, inline="always")
 def _real(x):
-    if not isinstance(x, types.Number | DualType):
+    if not isinstance(x, types.Number | DualType | LanesType):
         return None
     return (lambda x: x.real) if isinstance(x, types.Complex | DualType) else (lambda x: x)
 
@@ -45,10 +46,38 @@ def _chained(x, value, slope):
     return lambda x, value, slope: complex(value, slope * x.imag)
 
 
-def _elementary(of_reals: Callable) -> Callable[[Callable], Callable]:
+def lane_by_lane(function: Any) -> Callable:
+    """A function of lanes: that of real numbers in each lane, so that its bits are the same."""
+
+    def mapped(x):
+        y = x
+        for lane in range(WIDTH):
+            y = with_entry(y, lane, function(entry(x, lane)))
+        return y
+
+    return mapped
+
+
+def _sin_cos_of_lanes(x):
+    s, c = x, x
+    for lane in range(WIDTH):
+        one, other = sin_cos(entry(x, lane))
+        s, c = with_entry(s, lane, one), with_entry(c, lane, other)
+    return s, c
+
+
+def _angle_of_lanes(x, y):
+    angle = x
+    for lane in range(WIDTH):
+        angle = with_entry(angle, lane, angle_of(entry(x, lane), entry(y, lane)))
+    return angle
+
+
+def _elementary(of_reals: Callable, of_lanes: Callable | None = None) -> Callable[[Callable], Callable]:
     """Declare a function by its formula for real numbers, and by the decorated one, for complex and dual numbers.
 
-    Kernels and Python use both. Of jets (:mod:`jets`) the function is what their module declares.
+    Kernels and Python use both. In lanes it is that of real numbers lane by lane, or ``of_lanes``. Of jets
+    (:mod:`jets`) the function is what their module declares.
     """
 
     def declared(with_slopes: Callable) -> Callable:
@@ -62,6 +91,8 @@ def _elementary(of_reals: Callable) -> Callable[[Callable], Callable]:
         def compiled(*given):
             if isinstance(given[0], types.Complex | DualType):
                 return with_slopes
+            if isinstance(given[0], LanesType):
+                return of_lanes or lane_by_lane(function)
             return of_reals if isinstance(given[0], types.Number) else None
 
         return function
@@ -69,14 +100,14 @@ def _elementary(of_reals: Callable) -> Callable[[Callable], Callable]:
     return declared
 
 
-@_elementary(lambda x: (math.sin(x), math.cos(x)))
+@_elementary(lambda x: (math.sin(x), math.cos(x)), _sin_cos_of_lanes)
 def sin_cos(x):
     """Sine and cosine."""
     s, c = math.sin(x.real), math.cos(x.real)
     return chained(x, s, c), chained(x, c, -s)
 
 
-@_elementary(lambda x: math.sqrt(x))
+@_elementary(lambda x: math.sqrt(x), lambda x: vector_root(x))
 def root(x):
     """Square root of a quantity with a positive real part."""
     s = math.sqrt(x.real)
@@ -104,7 +135,7 @@ def logarithm(x):
     return chained(x, math.log(x.real), 1.0 / x.real)
 
 
-@_elementary(lambda x, y: math.atan2(y, x))
+@_elementary(lambda x, y: math.atan2(y, x), _angle_of_lanes)
 def angle_of(x, y):
     """Angle of the vector (x, y) in (-pi, pi]."""
     # d atan2(y, x) = (x dy - y dx) / (x^2 + y^2)
@@ -112,7 +143,7 @@ def angle_of(x, y):
     return chained(y, math.atan2(y.real, x.real), x.real * inverse) + chained(x, 0.0, -y.real * inverse)
 
 
-@_elementary(lambda x: 1.0 / x)
+@_elementary(lambda x: 1.0 / x, lambda x: 1.0 / x)
 def reciprocal(x):
     """1/x, without the scaling that a general complex division does."""
     inverse = 1.0 / x.real

@@ -18,6 +18,7 @@ from numba.core.typing.templates import infer_global as _infer_global
 from numba.extending import lower_builtin, lower_cast, models, overload, register_model
 
 from dalembert.kernels.duals import DualType
+from dalembert.kernels.lanes import LanesType
 from dalembert.kernels.views import intrinsic
 from dalembert.multibody.kernels import elementary
 
@@ -95,10 +96,10 @@ class JetType(types.Type):
         super().__init__(f"Jet({base})")
 
     def unify(self, typingctx: Any, other: types.Type) -> types.Type | None:
-        return self if isinstance(other, types.Number | DualType) else None
+        return self if isinstance(other, types.Number | DualType | LanesType) else None
 
     def can_convert_from(self, typingctx: Any, other: types.Type) -> Conversion | None:
-        return Conversion.safe if isinstance(other, types.Number | DualType) else None
+        return Conversion.safe if isinstance(other, types.Number | DualType | LanesType) else None
 
 
 class JetVectorType(types.Type):
@@ -160,6 +161,7 @@ def parts(typingctx, u):
 
 @lower_cast(types.Number, JetType)
 @lower_cast(DualType, JetType)
+@lower_cast(LanesType, JetType)
 def _constant(context: Any, builder: Any, source: Any, target: Any, value: Any) -> Any:
     zero = context.get_constant_null(target.base)
     return _struct(context, builder, target, [context.cast(builder, value, source, target.base), zero, zero])
@@ -236,7 +238,7 @@ def _binary(symbol: Any, rules: dict[str, Any]) -> None:
 
     lower_builtin(symbol, JetType, JetType)(lower(rules["jets"]))
     # A plain number beside a jet of dual numbers is cast to a dual one.
-    for number in (types.Number, DualType):
+    for number in (types.Number, DualType, LanesType):
         lower_builtin(symbol, JetType, number)(lower(rules["jet, number"]))
         lower_builtin(symbol, number, JetType)(lower(rules["number, jet"]))
 

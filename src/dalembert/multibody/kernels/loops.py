@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 from dalembert.kernels.arithmetic import VIEWS
 from dalembert.kernels.digest import digest
-from dalembert.kernels.duals import Dual, dual_records
 from dalembert.kernels.kernel import BlockKernel, inlined
+from dalembert.kernels.named_rows import named_rows
 from dalembert.kernels.views import integers, integers2, local, records
 from dalembert.multibody.kernels.charts import projecting
 from dalembert.multibody.kernels.declaration import Declaration
@@ -19,7 +19,7 @@ from dalembert.multibody.kernels.records import Inputs, block_at, call_at
 
 def number_rows(kind: Declaration, dtype: type) -> Any:
     """An intrinsic: the numbers of the components of a block, by the names of their columns."""
-    return dual_records(kind.number_names) if dtype is Dual else records(kind.number_record(dtype))
+    return records(kind.number_record(dtype)) if dtype in (float, complex) else named_rows(dtype, kind.number_names)
 
 
 def made(loop: Callable[[Any, Any], None], kind: Declaration, role: str, dtype: type) -> BlockKernel:

@@ -2,14 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
 
 import dalembert as da
 import dalembert.multibody as mb
-import mechanisms
 import planar_scenes
 import spatial_scenes
 from dalembert.kernels.duals import DIRECTIONS, Dual, as_duals
@@ -19,25 +17,12 @@ from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.model import directions
 from dalembert.multibody.model.directions import dual_models
 from dalembert.multibody.model.lowered import Lowered
-from dalembert.multibody.model.lowering import lower
+from kind_scenes import HOMES
 from spatial_scenes import SCENES
 
 TIME = 0.3
 
 
-@cache
-def planar() -> Lowered:
-    return lower(mechanisms.mechanism(*mechanisms.PIECES))
-
-
-@cache
-def spatial(scene: str) -> Lowered:
-    build, fields = SCENES[scene]
-    return lower(build(**fields))
-
-
-HOMES = dict.fromkeys(planar().data, planar)
-HOMES |= {kind: lambda scene=scene: spatial(scene) for scene in SCENES for kind in spatial(scene).data}
 #: Kinds whose kernels other tests need, too; the others are compiled for this test alone.
 COMMON = ("structural_beam", "ancf_cable", "rigid_body_in_space", "revolute", "revolute_in_space", "friction_in_space")
 ROLES = [

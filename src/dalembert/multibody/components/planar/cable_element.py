@@ -118,4 +118,5 @@ CABLE = Kind(
     lengths=("length",),
     gravity=("gravity_x", "gravity_y"),
     dissipates="delay",
+    lanes=True,
 )

@@ -116,4 +116,5 @@ CONTINUUM = Kind(
     lengths=("length",),
     gravity=("gravity_x", "gravity_y"),
     dissipates="delay",
+    lanes=True,
 )  # fmt: skip

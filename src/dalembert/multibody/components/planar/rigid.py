@@ -35,6 +35,7 @@ RIGID = Kind(
     residual=_residual,
     energy=_energy,
     gravity=("gravity_x", "gravity_y"),
+    lanes=True,
 )
 
 

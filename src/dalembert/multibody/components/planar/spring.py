@@ -41,7 +41,12 @@ def spring_kind(name: str, stretch: Callable[..., Any], residual: Callable[..., 
     """Kind of a spring, from ``stretch(x, v, p, m)``, which returns elongation and rate, and its residual."""
     energy, observe = law_functions(stretch)
     law: dict[str, Any] = {"residual": residual, "energy": energy, "observe": observe}
-    common: dict[str, Any] = {"outputs": (("elongation", "m"), ("force", "N")), "dissipates": "damping", "holds": True}
+    common: dict[str, Any] = {
+        "outputs": (("elongation", "m"), ("force", "N")),
+        "dissipates": "damping",
+        "holds": True,
+        "lanes": True,
+    }
     return pair_kind(name, NUMBERS, **common | law | properties)
 
 

@@ -212,4 +212,5 @@ STRUCTURAL = Kind(
     lengths=("length",),
     gravity=("gravity_x", "gravity_y"),
     dissipates="delay",
+    lanes=True,
 )  # fmt: skip

@@ -1,0 +1,43 @@
+"""Models in lanes: eight samples of one structure, side by side."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from dalembert.kernels.lanes import WIDTH, Lanes
+from dalembert.multibody.kernels.block_table import BlockModel
+from dalembert.multibody.model.lowered import Lowered
+
+FEWEST = 4
+"""Samples from which eight lanes cost less than runs one by one."""
+
+
+def share_lanes(samples: Sequence[Lowered]) -> bool:
+    """Return whether samples of one structure may run side by side, with the bits that each has alone.
+
+    Their components take lanes; the same numbers are zero, as branches of components ask for; loads jump together.
+    """
+    first = samples[0]
+    return (
+        len(samples) >= FEWEST
+        and first.in_duals
+        and not first.structure.reduction.nodes
+        and all(kind.lanes for kind in first.data)
+        and all(entry.jumps == first.jumps and entry.changes == first.changes for entry in samples)
+        and all(
+            np.array_equal(entry.data[kind] == 0.0, data == 0.0)
+            for entry in samples
+            for kind, data in first.data.items()
+        )
+    )
+
+
+def lane_model(samples: Sequence[Lowered], *roles: str) -> BlockModel:
+    """Return the model of up to eight samples, with the kernels of these roles; the first one fills the lanes left."""
+    filled = [*samples, *[samples[0]] * (WIDTH - len(samples))]
+
+    def lanes(arrays: list[np.ndarray]) -> np.ndarray:
+        return np.stack([np.real(array) for array in arrays], axis=-1)
+
+    numbers = {kind: lanes([entry.data[kind] for entry in filled]) for kind in samples[0].data}
+    return samples[0].model_of(Lanes, numbers, lanes([entry.signal_data for entry in filled]), *roles)

@@ -12,17 +12,20 @@ FEWEST = 4
 """Samples from which eight lanes cost less than runs one by one."""
 
 
+def takes_lanes(sample: Lowered) -> bool:
+    """Return whether samples of this structure may run side by side: all kinds of components take lanes."""
+    return sample.in_duals and not sample.structure.reduction.nodes and all(kind.lanes for kind in sample.data)
+
+
 def share_lanes(samples: Sequence[Lowered]) -> bool:
     """Return whether samples of one structure may run side by side, with the bits that each has alone.
 
-    Their components take lanes; the same numbers are zero, as branches of components ask for; loads jump together.
+    The same numbers are zero, as branches of components ask for; loads jump at the same times.
     """
     first = samples[0]
     return (
         len(samples) >= FEWEST
-        and first.in_duals
-        and not first.structure.reduction.nodes
-        and all(kind.lanes for kind in first.data)
+        and takes_lanes(first)
         and all(entry.jumps == first.jumps and entry.changes == first.changes for entry in samples)
         and all(
             np.array_equal(entry.data[kind] == 0.0, data == 0.0)

@@ -14,6 +14,7 @@ from dalembert.forward.adjoint import Pull
 from dalembert.forward.builders import built, inexact, restructured
 from dalembert.forward.complex_steps import Compared
 from dalembert.forward.differences import COMPLEX_STEP, central_differences
+from dalembert.kernels.lanes import WIDTH
 from dalembert.kernels.preparation import prepare
 from dalembert.multibody.integrators.shared.integrator import Integrator
 from dalembert.multibody.integrators.shared.problem import IntegrationProblem
@@ -22,6 +23,7 @@ from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.callbacks import in_complex_numbers
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.model.directions import are_many, dual_kernels
+from dalembert.multibody.model.lane_models import takes_lanes
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.lowering import lower
 from dalembert.multibody.model.observe import Observer, observer
@@ -97,7 +99,8 @@ class MotionModel(ABC):
                         values[row] = self._read(lowered, lowered.real, run.states, run.turns)
 
         with in_complex_numbers(strict=False):
-            list(ensemble(work, _parts(len(vectors), workers), workers=workers))
+            most = WIDTH if solver.takes_lanes and takes_lanes(self._built.shared) else 0
+            list(ensemble(work, _parts(len(vectors), workers, most), workers=workers))
         return Responses(values, tuple(failures))
 
     def jacobian(self, vector: np.ndarray) -> np.ndarray:
@@ -310,7 +313,10 @@ def _moves(perturbed: Lowered) -> bool:
     return bool(perturbed.callbacks) or any(np.iscomplexobj(one) and np.any(np.imag(one)) for one in arrays)
 
 
-def _parts(count: int, workers: int) -> list[np.ndarray]:
-    """Rows of a batch cut into parts: small enough that no worker waits long for another at the end."""
-    size = max(1, min(16, -(-count // (4 * workers))))
+def _parts(count: int, workers: int, lanes: int) -> list[np.ndarray]:
+    """Rows of a batch cut into parts: small enough that no worker waits long for another at the end.
+
+    Samples that run side by side fill as many ``lanes`` as all workers have samples for.
+    """
+    size = max(1, min(lanes or 16, -(-count // (workers if lanes else 4 * workers))))
     return [np.arange(begin, min(begin + size, count)) for begin in range(0, count, size)]

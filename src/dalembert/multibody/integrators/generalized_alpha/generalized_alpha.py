@@ -10,12 +10,14 @@ import numpy as np
 from dalembert.arguments import limited
 from dalembert.errors import require_known
 from dalembert.kernels.kernel import Compiled, inlined, inner, kernel
+from dalembert.kernels.lanes import WIDTH
 from dalembert.kernels.words import Address, Integers, Integers2, Reals2
 from dalembert.multibody.integrators.generalized_alpha.derivatives import (
     Differentiation,
     differentiate,
     differentiation,
 )
+from dalembert.multibody.integrators.generalized_alpha.lanes_run import run_in_lanes
 from dalembert.multibody.integrators.generalized_alpha.newton import Newton, converge, keep_slope, newton
 from dalembert.multibody.integrators.generalized_alpha.together import (
     Together,
@@ -56,6 +58,7 @@ from dalembert.multibody.kernels.states import (
     rows,
 )
 from dalembert.multibody.model.directions import are_many, dual_models
+from dalembert.multibody.model.lane_models import FEWEST, share_lanes
 from dalembert.multibody.model.structure import Structure
 from dalembert.multibody.model.turns import STEP_END, count_turns
 
@@ -112,6 +115,11 @@ class GeneralizedAlpha(Integrator):
         return 2 if self.initial_acceleration == "consistent" else 1
 
     @property
+    def takes_lanes(self) -> bool:  # type: ignore[override] - it depends on the settings
+        """Whether samples may run side by side: with fixed steps, and without projections of velocities."""
+        return not self.adaptive and self.spectral_radius < 1.0
+
+    @property
     def takes_duals(self) -> bool:  # type: ignore[override] - it depends on the settings
         """Whether derivatives along many directions may be dual numbers: not where velocities are projected."""
         return self.spectral_radius < 1.0
@@ -127,7 +135,29 @@ class GeneralizedAlpha(Integrator):
         return [integrate, *structure.full.linear_kernels, *structure.reduced_kernels(derivatives), *along]
 
     def run(self, batch: Batch) -> list[Run]:
-        """Runs of samples in one compiled loop that leaves the interpreter's lock free."""
+        """Runs of samples in compiled loops that leave the interpreter's lock free: in lanes, or one after the other.
+
+        A sample has the same bits in both.
+        """
+        plain = not (batch.perturbed or batch.counters or batch.logged)
+        if not (self.takes_lanes and plain and share_lanes(batch.samples)):
+            return self._one_by_one(batch)
+        runs: dict[int, Run] = {}
+        for first in range(0, len(batch.samples) - FEWEST + 1, WIDTH):
+            part = batch.part(range(first, min(first + WIDTH, len(batch.samples))))
+            out, alone = run_in_lanes(
+                part, self.step, self.spectral_radius, self.initial_acceleration == "consistent", self.newton_tolerance
+            )
+            dout, log = part.derivatives(), part.log(None)
+            for number in np.flatnonzero(~alone):
+                states = MotionState(*(values[number] for values in out))
+                runs[first + int(number)] = part.result(None, states, dout, log)
+        left = [number for number in range(len(batch.samples)) if number not in runs]
+        runs |= dict(zip(left, self._one_by_one(batch.part(left)) if left else [], strict=True))
+        return [runs[number] for number in range(len(batch.samples))]
+
+    def _one_by_one(self, batch: Batch) -> list[Run]:
+        """Runs of samples one after the other."""
         # at spectral radius 1 velocities leave the constraints and nothing damps what grows from there
         problem = batch.problem._replace(projected=self.spectral_radius == 1.0)
         samples, perturbed = batch.samples, batch.perturbed

@@ -22,9 +22,9 @@ from dalembert.multibody.kernels.assembly import displace, reduced_residual, red
 from dalembert.multibody.kernels.linear import Factors, factorise, solve, storage
 from dalembert.multibody.kernels.states import advance, shift
 
-_MOST_ITERATIONS = 12
-_SLOW = 0.3  # contraction at which an iteration is not worth going on with the kept factorisation
-_AGED = 0.02  # contraction at which the next step begins with a new one
+MOST_ITERATIONS = 12
+SLOW = 0.3  # contraction at which an iteration is not worth going on with the kept factorisation
+AGED = 0.02  # contraction at which the next step begins with a new one
 
 
 class Newton(NamedTuple):
@@ -114,14 +114,14 @@ def converge(problem, model, tangent_model, c, t, within, tolerance, old, new, n
     _predict(n, c, model, old, newton, new)
     # The matrix of an earlier step serves while the step is about as long and the last contraction was good: in a
     # smooth motion one factorisation lasts for many steps.
-    fresh = not (0.8 * memory[0] < c.step < 1.25 * memory[0]) or memory[1] > _AGED
+    fresh = not (0.8 * memory[0] < c.step < 1.25 * memory[0]) or memory[1] > AGED
     if fresh:
         log.counts[2] += 1
         if not _renew(problem, tangent_model, c, t, within, new, newton):
             return SINGULAR, 0
-        memory[1] = _AGED
+        memory[1] = AGED
     before, norm, left, worst, force = 0.0, 1.0, 1.0, 0, 0.0
-    for iteration in range(1, _MOST_ITERATIONS + 1):
+    for iteration in range(1, MOST_ITERATIONS + 1):
         reduced_residual(model, own.increments, new.x, new.v, new.a, newton.work, 1.0 / c.dq, newton.r)
         if iteration == 1:  # of the prediction, and of the constraints
             force = max(largest_entry(newton.r, 0, own.increments), largest_entry(new.x, n, len(old.x) - 1))
@@ -145,7 +145,7 @@ def converge(problem, model, tangent_model, c, t, within, tolerance, old, new, n
                 break
         if iteration > 1 and norm > NOISE:
             memory[1] = rate
-        if iteration > 1 and rate > _SLOW:
+        if iteration > 1 and rate > SLOW:
             # A new matrix that diverges helps no more: the step must be shorter.
             if fresh and rate > 2.0:
                 break

@@ -82,10 +82,11 @@ class Batch:
         iterations, ends = log.iterations[:taken].copy(), log.ends[:taken].copy()
         return Run(reason, self.problem.times, states, derivatives, log.counts, iterations, ends)
 
-    def only(self, number: int) -> "Batch":
-        """Return the batch of one of the samples, at the start."""
-        batch = make_batch([self.samples[number]], self.perturbed, self.problem, self.end, self.logged)
-        return replace(batch, counters=self.counters[number : number + 1])
+    def part(self, numbers: Sequence[int]) -> "Batch":
+        """Return the batch of some of the samples, at the start."""
+        samples = [self.samples[number] for number in numbers]
+        batch = make_batch(samples, self.perturbed, self.problem, self.end, self.logged)
+        return replace(batch, counters=[self.counters[number] for number in numbers if self.counters])
 
 
 def make_batch(

@@ -30,6 +30,7 @@ class Integrator(Checked, ABC):
 
     takes_redundancy = False  #: whether constraints may follow from others
     constant_masses = False  #: whether masses must not change with the coordinates
+    takes_lanes = False  #: whether samples may run side by side
     takes_duals = False  #: whether derivatives along many directions may be dual numbers
     convergence: int | None = None  #: order of coordinates and velocities at fixed steps; None if not known
 

@@ -1,0 +1,122 @@
+"""Runs of generalized-alpha with fixed steps for eight samples side by side, and which of them have to run alone."""
+
+import numpy as np
+
+from dalembert.kernels.kernel import inner, kernel
+from dalembert.kernels.lanes import WIDTH, lane_vector
+from dalembert.kernels.words import Integers, Reals, Reals4
+from dalembert.multibody.integrators.generalized_alpha.lanes_newton import (
+    LanesNewton,
+    converge_lanes,
+    lanes_newton,
+    put_lane,
+    take_lane,
+)
+from dalembert.multibody.integrators.shared.batch import Batch, restarts
+from dalembert.multibody.integrators.shared.consistent import Consistency, accelerate, consistency
+from dalembert.multibody.integrators.shared.problem import IntegrationProblem, SampleModels
+from dalembert.multibody.kernels.block_table import addresses
+from dalembert.multibody.kernels.states import (
+    Histories,
+    MotionState,
+    MotionStates,
+    coefficients,
+    interpolate,
+    resting,
+)
+from dalembert.multibody.model.lane_models import lane_model
+
+
+def run_in_lanes(
+    batch: Batch, step: float, radius: float, consistent: bool, tolerance: float
+) -> tuple[MotionState, np.ndarray]:
+    """Run up to eight samples; return their states (samples, times, N + 1), and which of them have to run alone."""
+    problem, samples = batch.problem, batch.samples
+    filled = [*range(len(samples)), *[0] * (WIDTH - len(samples))]
+    models = [samples[number].real.need("rates") for number in filled]
+    together = lane_model(samples)
+    call, work = together.call(), models[0].call()
+    newton = lanes_newton(
+        problem, together.address, call.address, call.signals, addresses(models), work.address, work.signals
+    )
+    ends, out = np.zeros((2, 4, len(problem.scale), WIDTH)), resting(len(samples), *batch.shape)
+    for lane, number in enumerate(filled):
+        for part, values in enumerate(batch.states):
+            ends[1, part, :, lane] = values[number]
+    integrate_lanes(
+        problem, problem.edges[0, : problem.stretches[0] + 1], restarts(samples, problem)[0], step, radius, consistent,
+        tolerance, ends, Histories(*out), consistency(problem, work.address, work.address, 0), newton,
+        resting(0, len(problem.scale)),
+    )  # fmt: skip
+    return out, newton.alone[: len(samples)] == 1
+
+
+@kernel
+def integrate_lanes(
+    problem: IntegrationProblem, edges: Reals, opens: Integers, step: float, radius: float, consistent: bool,
+    tolerance: float, ends: Reals4, out: Histories, start: Consistency, scratch: LanesNewton,
+    none: MotionStates,
+) -> None:  # fmt: skip
+    """Run eight samples from the first to the last edge, as :func:`generalized_alpha.integrate` runs one.
+
+    ``ends`` (2, 4, N + 1, 8): x, v, a and w at both ends of a step. A lane is marked whose step needs to be halved.
+    """
+    n, due, one, alone = problem.n, 0, scratch.one, scratch.alone
+    old, new = ends[0], ends[1]
+    slope = lane_vector(scratch.slope)
+    for stretch in range(len(edges) - 1):
+        begin, end = edges[stretch], edges[stretch + 1]
+        within = 0.5 * (begin + end)
+        fresh, last = opens[stretch] == 1, stretch + 2 == len(edges) or opens[stretch + 1] == 1
+        if fresh:
+            for i in range(len(slope)):
+                slope[i] = 0.0
+        if fresh and (stretch > 0 or consistent):
+            for lane in range(WIDTH):
+                take_lane(new, lane, one)
+                models = SampleModels(scratch.reals[lane], scratch.reals[lane], opens[:0], 0)
+                if not accelerate(problem, models, begin, within, one, none, start):
+                    alone[lane] = 1
+                put_lane(one, lane, new)
+        if stretch == 0:
+            while due < len(problem.times) and problem.times[due] <= begin:
+                _record(n, 1.0, 1.0, new, new, out, due, scratch)
+                due += 1
+        steps = max(1, int(np.ceil((end - begin) / step - 1e-6)))
+        length = (end - begin) / steps
+        t = begin
+        c = coefficients(length, radius)
+        for number in range(1, steps + 1):
+            target = end if number == steps else begin + length * (1.0 * number)
+            for part in range(4):
+                source, copy = lane_vector(new[part]), lane_vector(old[part])
+                for i in range(len(source)):
+                    copy[i] = source[i]
+            # The signals of a step that ends at a jump are those before the jump.
+            side = within if last or target < end else end
+            converge_lanes(problem, c, target, side, tolerance, old, new, scratch)
+            after, before = lane_vector(new[2]), lane_vector(old[2])
+            for i in range(n):
+                slope[i] = (after[i] - before[i]) / c.step
+            after, before = lane_vector(new[0]), lane_vector(old[0])
+            for i in range(n, len(slope) - 1):
+                slope[i] = (after[i] - before[i]) / c.step
+            while due < len(problem.times) and problem.times[due] <= target + 1e-9 * length:
+                _record(n, length, min(1.0, (problem.times[due] - t) / length), old, new, out, due, scratch)
+                due += 1
+            t = target
+        running = False
+        for lane in range(WIDTH):
+            running = running or alone[lane] == 0
+        if not running:
+            return
+
+
+@inner
+def _record(n, length, share, old, new, out, due, scratch):
+    """Write the states of all lanes at an output time."""
+    before, after = scratch.other, scratch.one
+    for lane in range(out.x.shape[0]):
+        take_lane(old, lane, before)
+        take_lane(new, lane, after)
+        interpolate(n, length, share, before, after, out.x[lane, due], out.v[lane, due], out.a[lane, due])

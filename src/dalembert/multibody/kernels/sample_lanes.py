@@ -1,0 +1,79 @@
+"""Solutions with the factorised matrices of eight samples side by side, each with the bits that it has alone."""
+
+from dalembert.kernels.kernel import inlined, kernel
+from dalembert.kernels.lanes import add_fused, lane_vector
+from dalembert.kernels.words import Integers, Reals2
+from dalembert.multibody.kernels.linear import DENSE, Layout
+
+
+@kernel
+def solve_samples(
+    layout: Layout, matrix: Reals2, pivots: Integers, tops: Integers, given: Reals2, buffer: Reals2, answer: Reals2
+) -> None:
+    """Solve for the first N rows of ``given`` (N + 1, 8) into those of ``answer``, lane by lane with the matrices
+    ``matrix`` (entries, 8), whose exchanges of rows are the same; ``buffer`` (N + 3 reach, 8).
+    """
+    a, right, left = lane_vector(matrix), lane_vector(given), lane_vector(answer)
+    if layout.kind == DENSE:
+        _multiply(a, layout.size, layout.lead, right, left)
+    else:
+        _substitute(layout, a, pivots, tops, right, lane_vector(buffer), left)
+
+
+@inlined
+def _multiply(matrix, size, lead, given, answer):
+    """Products of square matrices by columns with vectors: the sums of `linear._multiply`, in its order."""
+    whole = size // 4 * 4
+    for i in range(size):
+        total = 0.0 * given[size]  # the entry behind the last one is zero
+        for j in range(0, whole, 4):
+            total += (
+                matrix[j * lead + i] * given[j] + matrix[(j + 1) * lead + i] * given[j + 1]
+                + matrix[(j + 2) * lead + i] * given[j + 2] + matrix[(j + 3) * lead + i] * given[j + 3]
+            )  # fmt: skip
+        for j in range(whole, size):
+            total += matrix[j * lead + i] * given[j]
+        answer[i] = total
+
+
+@inlined
+def _substitute(layout, a, pivots, tops, given, x, answer):
+    """Forward and backward substitution: `linear.solve_band`, with its pairs of columns and contracted products."""
+    size, reach, lead, order = layout.size, layout.reach, layout.lead, layout.order
+    above, zero = 2 * reach, 0.0 * given[size]
+    for i in range(size):
+        x[above + order[i]] = given[i]
+    for i in range(above + size, len(x)):
+        x[i] = zero
+    k = 0
+    while k < size:
+        own, at = k * lead + above, above + k
+        if pivots[k] > 0:
+            first = x[at]
+            x[at] = x[at + pivots[k]]
+            x[at + pivots[k]] = first
+        first = -x[at]
+        if k + 1 < size and pivots[k + 1] == 0:
+            x[at + 1] -= x[at] * a[own + 1]
+            second = -x[at + 1]
+            for i in range(reach):
+                total = add_fused(x[at + 2 + i], first, a[own + 2 + i])
+                x[at + 2 + i] = add_fused(total, second, a[own + lead + 1 + i])
+            k += 2
+        else:
+            for i in range(reach):
+                x[at + 1 + i] = add_fused(x[at + 1 + i], first, a[own + 1 + i])
+            k += 1
+    while k > 0:
+        k -= 1
+        own, at = k * lead + above, above + k
+        x[at] *= a[own]
+        if k > 0:
+            x[at - 1] = (x[at - 1] - x[at] * a[own - 1]) * a[own - lead]
+            count, first, second = k - 1 - min(tops[k], tops[k - 1]), -x[at], -x[at - 1]
+            for i in range(count):
+                total = add_fused(x[at - 1 - count + i], first, a[own - 1 - count + i])
+                x[at - 1 - count + i] = add_fused(total, second, a[own - lead - count + i])
+            k -= 1
+    for i in range(size):
+        answer[i] = x[above + order[i]]

@@ -13,6 +13,7 @@ NAMES = (
     "sensitivities",
     "adjoint",
     "batches",
+    "lanes",
     "cluster",
     "identification",
     "regressions",

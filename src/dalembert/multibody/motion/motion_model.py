@@ -14,7 +14,7 @@ from dalembert.forward.adjoint import Pull
 from dalembert.forward.builders import built, inexact, restructured
 from dalembert.forward.complex_steps import Compared
 from dalembert.forward.differences import COMPLEX_STEP, central_differences
-from dalembert.kernels.lanes import WIDTH
+from dalembert.kernels.lanes import WIDTH, Lanes
 from dalembert.kernels.preparation import prepare
 from dalembert.multibody.integrators.shared.integrator import Integrator
 from dalembert.multibody.integrators.shared.problem import IntegrationProblem
@@ -23,7 +23,7 @@ from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.callbacks import in_complex_numbers
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.model.directions import are_many, dual_kernels
-from dalembert.multibody.model.lane_models import takes_lanes
+from dalembert.multibody.model.lane_models import FEWEST, takes_lanes
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.lowering import lower
 from dalembert.multibody.model.observe import Observer, observer
@@ -99,7 +99,7 @@ class MotionModel(ABC):
                         values[row] = self._read(lowered, lowered.real, run.states, run.turns)
 
         with in_complex_numbers(strict=False):
-            most = WIDTH if solver.takes_lanes and takes_lanes(self._built.shared) else 0
+            most = self._built.lanes_of(len(vectors) // workers)
             list(ensemble(work, _parts(len(vectors), workers, most), workers=workers))
         return Responses(values, tuple(failures))
 
@@ -209,6 +209,17 @@ class BuiltModel(MotionModel):
         kernels = dual_kernels(self.shared) if together else self.shared.kernels(complex)
         prepare([*solver.kernels(self.shared.structure, True), *kernels, *self.observer.kernels(self.shared, True)])
         return self.solver
+
+    def lanes_of(self, samples: int) -> int:
+        """How many of a worker's samples run side by side, with what that needs compiled once; 0: one by one."""
+        if samples < FEWEST or not self.solver.takes_lanes or not takes_lanes(self.shared):
+            return 0
+        return self._lanes
+
+    @cached_property
+    def _lanes(self) -> int:
+        prepare([*(kind.kernel("residual", Lanes) for kind in self.shared.data), *self.solver.lane_kernels()])
+        return WIDTH
 
     def check_derivatives(self, vector: np.ndarray) -> None:
         """Compare the complex step with differences of the model's numbers at a vector (parameters,). Nothing is

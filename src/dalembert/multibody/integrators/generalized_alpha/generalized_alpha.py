@@ -17,7 +17,7 @@ from dalembert.multibody.integrators.generalized_alpha.derivatives import (
     differentiate,
     differentiation,
 )
-from dalembert.multibody.integrators.generalized_alpha.lanes_run import run_in_lanes
+from dalembert.multibody.integrators.generalized_alpha.lanes_run import integrate_lanes, run_in_lanes
 from dalembert.multibody.integrators.generalized_alpha.newton import Newton, converge, keep_slope, newton
 from dalembert.multibody.integrators.generalized_alpha.together import (
     Together,
@@ -45,6 +45,7 @@ from dalembert.multibody.integrators.shared.problem import (
 from dalembert.multibody.integrators.shared.run import Run, explain
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.block_table import addresses
+from dalembert.multibody.kernels.sample_lanes import solve_samples
 from dalembert.multibody.kernels.states import (
     Histories,
     MotionState,
@@ -133,6 +134,10 @@ class GeneralizedAlpha(Integrator):
         """The loop with its linear systems, and what differentiates a step."""
         along = [differentiate, accelerate_along] * derivatives
         return [integrate, *structure.full.linear_kernels, *structure.reduced_kernels(derivatives), *along]
+
+    def lane_kernels(self) -> list[Compiled]:
+        """The loop for samples side by side, and its solutions."""
+        return [integrate_lanes, solve_samples]
 
     def run(self, batch: Batch) -> list[Run]:
         """Runs of samples in compiled loops that leave the interpreter's lock free: in lanes, or one after the other.

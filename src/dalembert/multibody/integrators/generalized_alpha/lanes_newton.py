@@ -22,7 +22,7 @@ from dalembert.multibody.kernels.states import MotionState, advance, resting
 
 
 class LanesNewton(NamedTuple):
-    """Work of the iteration. ``model``, ``call``: in lanes, with its ``signals`` (signals, 3, 8); ``reals`` (8,): models
+    """Work of the iteration. ``model``, ``call``: in lanes, with its ``signals`` (signals, 3, 8); ``reals`` (8,): those
     of the lanes in real numbers; ``work``: their call, with its signals (signals, 3). ``factors``, ``one``, ``other``:
     a matrix and two states of one lane. ``matrix`` (entries, 8): factorised matrices; ``pivots``, ``tops`` (N,): of all
     lanes; ``has_pivots`` (1,): whether they are known. ``memory`` (2, 8): as of :class:`newton.Newton`. ``alone`` (8,):

@@ -98,6 +98,10 @@ class Integrator(Checked, ABC):
         """Kernels of the method, without those of components; and those for derivatives along directions."""
         return []
 
+    def lane_kernels(self) -> list[Compiled]:
+        """Kernels of the method for samples side by side, without those of components."""
+        return []
+
     def suiting(self, lowered: Lowered, end: float) -> "Integrator":
         """The integrator for a mechanism's motion until ``end`` (s): itself, but for one that chooses."""
         return self

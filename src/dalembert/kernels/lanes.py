@@ -126,6 +126,7 @@ def _comparison(symbol: Any, sign: str) -> None:
             return types.boolean(LANES, LANES) if plain and LANES in args and len(args) == 2 else None
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        # The first lane speaks for all: samples of a group agree in what branches of kinds with lanes ask for.
         first = [builder.extract_element(value, ir.Constant(ir.IntType(32), 0)) for value in arguments]
         return (builder.fcmp_unordered if sign == "!=" else builder.fcmp_ordered)(sign, *first)
 
@@ -214,6 +215,7 @@ def larger(typingctx, x, y):
     """
 
     def generate(context, builder, signature, arguments):
+        # "not b <= a" holds for a b that is no number, too: a failed lane shows in the largest value.
         a, b = arguments
         known, above = builder.fcmp_ordered("==", a, a), builder.fcmp_unordered(">", b, a)
         return builder.select(builder.and_(known, above), b, a)
@@ -237,6 +239,7 @@ def add_fused(typingctx, total, factor, x):
     """Return total + factor x, contracted where the processor can: as `vector.add_multiple` does for real numbers."""
 
     def generate(context, builder, signature, arguments):
+        # With this flag LLVM makes one instruction of both where the processor has it, with one rounding.
         product = builder.fmul(arguments[1], arguments[2], flags=("contract",))
         return builder.fadd(arguments[0], product, flags=("contract",))
 

@@ -59,10 +59,11 @@ def lane_by_lane(function: Any) -> Callable:
 
 
 def _sin_cos_of_lanes(x):
+    # The library's vector functions have other roundings than the scalar ones: each lane takes the scalar function.
     s, c = x, x
     for lane in range(WIDTH):
-        one, other = sin_cos(entry(x, lane))
-        s, c = with_entry(s, lane, one), with_entry(c, lane, other)
+        sine, cosine = sin_cos(entry(x, lane))
+        s, c = with_entry(s, lane, sine), with_entry(c, lane, cosine)
     return s, c
 
 

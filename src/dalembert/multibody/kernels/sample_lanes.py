@@ -46,39 +46,43 @@ def _substitute(layout, a, pivots, tops, given, x, answer):
     """Forward and backward substitution: `linear.solve_band`, with its pairs of columns and contracted products."""
     size, reach, lead, order = layout.size, layout.reach, layout.lead, layout.order
     above, zero = 2 * reach, 0.0 * given[size]
+    # The order of the band, with room before the first unknown and behind the last one, as for one sample.
     for i in range(size):
         x[above + order[i]] = given[i]
     for i in range(above + size, len(x)):
         x[i] = zero
     k = 0
     while k < size:
-        own, at = k * lead + above, above + k
+        column, at = k * lead + above, above + k
         if pivots[k] > 0:
             first = x[at]
             x[at] = x[at + pivots[k]]
             x[at + pivots[k]] = first
         first = -x[at]
+        # Two columns at a time where the second has no exchange of rows: the products are contracted in pairs, and
+        # another order would have other bits.
         if k + 1 < size and pivots[k + 1] == 0:
-            x[at + 1] -= x[at] * a[own + 1]
+            x[at + 1] -= x[at] * a[column + 1]
             second = -x[at + 1]
             for i in range(reach):
-                total = add_fused(x[at + 2 + i], first, a[own + 2 + i])
-                x[at + 2 + i] = add_fused(total, second, a[own + lead + 1 + i])
+                total = add_fused(x[at + 2 + i], first, a[column + 2 + i])
+                x[at + 2 + i] = add_fused(total, second, a[column + lead + 1 + i])
             k += 2
         else:
             for i in range(reach):
-                x[at + 1 + i] = add_fused(x[at + 1 + i], first, a[own + 1 + i])
+                x[at + 1 + i] = add_fused(x[at + 1 + i], first, a[column + 1 + i])
             k += 1
+    # Backward substitution in pairs of columns, over the rows that they reach.
     while k > 0:
         k -= 1
-        own, at = k * lead + above, above + k
-        x[at] *= a[own]
+        column, at = k * lead + above, above + k
+        x[at] *= a[column]
         if k > 0:
-            x[at - 1] = (x[at - 1] - x[at] * a[own - 1]) * a[own - lead]
+            x[at - 1] = (x[at - 1] - x[at] * a[column - 1]) * a[column - lead]
             count, first, second = k - 1 - min(tops[k], tops[k - 1]), -x[at], -x[at - 1]
             for i in range(count):
-                total = add_fused(x[at - 1 - count + i], first, a[own - 1 - count + i])
-                x[at - 1 - count + i] = add_fused(total, second, a[own - lead - count + i])
+                total = add_fused(x[at - 1 - count + i], first, a[column - 1 - count + i])
+                x[at - 1 - count + i] = add_fused(total, second, a[column - lead - count + i])
             k -= 1
     for i in range(size):
         answer[i] = x[above + order[i]]

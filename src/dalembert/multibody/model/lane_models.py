@@ -42,5 +42,6 @@ def lane_model(samples: Sequence[Lowered], *roles: str) -> BlockModel:
     def lanes(arrays: list[np.ndarray]) -> np.ndarray:
         return np.stack([np.real(array) for array in arrays], axis=-1)
 
+    # Entry i of all samples side by side: one load fills a vector.
     numbers = {kind: lanes([entry.data[kind] for entry in filled]) for kind in samples[0].data}
     return samples[0].model_of(Lanes, numbers, lanes([entry.signal_data for entry in filled]), *roles)

@@ -13,21 +13,25 @@ from dalembert.kernels.kernel import inlined, inner
 from dalembert.kernels.lanes import WIDTH, chosen, entry, lane_vector, larger, sizes
 from dalembert.kernels.words import Address, Integers, Integers2, Reals2, Reals3
 from dalembert.multibody.integrators.generalized_alpha.newton import AGED, MOST_ITERATIONS, SLOW
-from dalembert.multibody.integrators.shared.convergence import BALANCED, MAGNIFIED, NOISE, ROUNDING
+from dalembert.multibody.integrators.shared.convergence import BALANCED, NOISE, ROUNDING
 from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.kernels.assembly import reduced_residual, reduced_tangent, set_signals
 from dalembert.multibody.kernels.linear import BAND, Factors, factorise, storage
 from dalembert.multibody.kernels.sample_lanes import solve_samples
 from dalembert.multibody.kernels.states import MotionState, advance, resting
 
+NORM, BEFORE, LEFT, FORCE, ITERATES, IS_FRESH = range(6)
+"""Rows of the numbers of lanes: see :class:`LanesNewton`."""
+
 
 class LanesNewton(NamedTuple):
     """Work of the iteration. ``model``, ``call``: in lanes, with its ``signals`` (signals, 3, 8); ``reals`` (8,): those
-    of the lanes in real numbers; ``work``: their call, with its signals (signals, 3). ``factors``, ``one``, ``other``:
-    a matrix and two states of one lane. ``matrix`` (entries, 8): factorised matrices; ``pivots``, ``tops`` (N,): of all
-    lanes; ``has_pivots`` (1,): whether they are known. ``memory`` (2, 8): as of :class:`newton.Newton`. ``alone`` (8,):
-    lanes that are to run alone. ``numbers`` (6, 8): norms, those before, what is left, forces, whether the lane
-    iterates, whether its matrix is of this step. ``counts`` (8, 4): as those of a log.
+    of the lanes in real numbers; ``work``: their call, with its signals (signals, 3). ``factors``, ``before``,
+    ``after``: a matrix and two states of one lane. ``matrix`` (entries, 8): factorised matrices; ``pivots``, ``tops``
+    (N,): of all lanes; ``has_pivots`` (1,): whether they are known. ``memory`` (2, 8): as of :class:`newton.Newton`.
+    ``alone`` (8,): lanes that are to run alone. ``numbers`` (6, 8): size of the last correction, of the one before,
+    bound of those to come, forces at the prediction, whether the lane iterates, whether its matrix is of this step.
+    ``counts`` (8, 4): as those of a log.
     """
 
     model: Address
@@ -37,8 +41,8 @@ class LanesNewton(NamedTuple):
     work: Address
     signals_alone: Reals2
     factors: Factors
-    one: MotionState
-    other: MotionState
+    before: MotionState
+    after: MotionState
     matrix: Reals2
     pivots: Integers
     tops: Integers
@@ -75,10 +79,10 @@ def lanes_newton(
 
 
 @inner
-def take_lane(stack, lane, one):
+def take_lane(stack, lane, state):
     """Fill a state with that of a lane of ``stack`` (4, N + 1, 8)."""
     for i in range(stack.shape[1]):
-        one.x[i], one.v[i], one.a[i], one.w[i] = (
+        state.x[i], state.v[i], state.a[i], state.w[i] = (
             stack[0, i, lane],
             stack[1, i, lane],
             stack[2, i, lane],
@@ -87,20 +91,21 @@ def take_lane(stack, lane, one):
 
 
 @inner
-def put_lane(one, lane, stack):
+def put_lane(state, lane, stack):
     """Fill a lane of ``stack`` with a state."""
     for i in range(stack.shape[1]):
         stack[0, i, lane], stack[1, i, lane], stack[2, i, lane], stack[3, i, lane] = (
-            one.x[i],
-            one.v[i],
-            one.a[i],
-            one.w[i],
+            state.x[i],
+            state.v[i],
+            state.a[i],
+            state.w[i],
         )
 
 
 @inner
 def set_lane_signals(t, within, scratch):
     """Evaluate the signals of each lane alone, which is cheap, into those of all lanes."""
+    # Signals have branches on time and on their tables: some nanoseconds for each lane in real numbers.
     for lane in range(WIDTH):
         set_signals(scratch.reals[lane], t, within, scratch.work)
         for k in range(scratch.signals.shape[0]):
@@ -113,26 +118,29 @@ def _renew(problem, c, t, within, stack, lane, scratch):
     """Factorise the matrix of one lane, by the kernels of one sample; mark the lane where that fails, or where it
     exchanges other rows than the lanes before.
     """
-    own, factors, one = problem.reduced, scratch.factors, scratch.one
+    reduced, factors, state = problem.reduced, scratch.factors, scratch.after
+    # The derivative of the residual along da, with dv = c.dv da and dq = c.dq da.
     scratch.counts[lane, 2] += 1
-    take_lane(stack, lane, one)
+    take_lane(stack, lane, state)
     set_signals(scratch.reals[lane], t, within, scratch.work)
     reduced_tangent(
-        scratch.reals[lane], own.slots, own.increments, own.layout.size, one.x, one.v, one.a, (c.dq, c.dv, 1.0),
-        (1.0, 1.0 / c.dq), scratch.work, factors.matrix,
+        scratch.reals[lane], reduced.slots, reduced.increments, reduced.layout.size, state.x, state.v, state.a,
+        (c.dq, c.dv, 1.0), (1.0, 1.0 / c.dq), scratch.work, factors.matrix,
     )  # fmt: skip
-    if not factorise(own.layout, factors):
+    if not factorise(reduced.layout, factors):
         scratch.alone[lane] = 1
         return
     scratch.memory[0, lane] = c.step
-    if own.layout.kind == BAND:
-        for i in range(own.layout.size):
+    if reduced.layout.kind == BAND:
+        # Rows are exchanged by value. One sequence of exchanges serves all lanes, so that a substitution has no branch.
+        for i in range(reduced.layout.size):
             if scratch.has_pivots[0] == 0:
                 scratch.pivots[i], scratch.tops[i] = factors.pivots[i], factors.tops[i]
             elif scratch.pivots[i] != factors.pivots[i] or scratch.tops[i] != factors.tops[i]:
                 scratch.alone[lane] = 1
                 return
         scratch.has_pivots[0] = 1
+    # The factors as one sample has them, so that no bit depends on the group; the other lanes keep theirs.
     for i in range(len(factors.matrix)):
         scratch.matrix[i, lane] = factors.matrix[i]
 
@@ -147,87 +155,105 @@ def _largest(values, begin, end, zero):
 
 
 @inner
+def _predict(n, c, old, new, slope):
+    """Fill the new states with linear extrapolations of accelerations and multipliers, as for one sample."""
+    for i in range(n):
+        new.a[i] = old.a[i] + c.step * slope[i]
+    # Multipliers stand behind the coordinates.
+    for i in range(n, len(old.x) - 1):
+        new.x[i] = old.x[i] + c.step * slope[i]
+    advance(n, c, old, new)
+
+
+@inner
+def _correct(n, c, scale, mask, delta, old, new, zero):
+    """Apply the corrections of lanes that iterate; return their sizes against the scales."""
+    size = zero
+    for i in range(n):
+        # A frozen lane takes off zero, which keeps its bits.
+        change = chosen(mask, delta[i])
+        new.a[i] -= change
+        size = larger(size, c.dq * sizes(change) / scale[i])
+    for i in range(n, len(old.x) - 1):
+        new.x[i] -= chosen(mask, delta[i])
+    advance(n, c, old, new)
+    return size
+
+
+@inner
+def _stops(lane, iteration, tolerance, size, forces, scratch):
+    """Return whether a lane stops to iterate, and whether it needs a new matrix: the rules of `newton.converge`."""
+    values, memory = scratch.numbers, scratch.memory
+    values[NORM, lane] = size
+    if not size < 1e100 or size <= tolerance:
+        return True, False
+    # Of a linear contraction rate, norm rate / (1 - rate) bounds the sum of all corrections to come.
+    rate = memory[1, lane] if iteration == 1 else size / values[BEFORE, lane]
+    values[LEFT, lane] = size * rate / (1.0 - rate) if rate < 1.0 else size
+    if values[LEFT, lane] <= tolerance:
+        return True, False
+    # Small corrections that do not shrink are rounding only if the forces are in balance.
+    if iteration > 2 and rate > 0.5 and size <= ROUNDING and forces <= BALANCED * values[FORCE, lane]:
+        values[LEFT, lane] = 0.0
+        return True, False
+    if iteration > 1 and size > NOISE:
+        memory[1, lane] = rate
+    values[BEFORE, lane] = size
+    slow = iteration > 1 and rate > SLOW
+    # A new matrix that diverges helps no more: the step must be shorter.
+    return slow and values[IS_FRESH, lane] == 1.0 and rate > 2.0, slow
+
+
+@inner
 def converge_lanes(problem, c, t, within, tolerance, old_stack, new_stack, scratch):
-    """Newton's iteration on new accelerations and multipliers of all lanes that are not marked; `newton.converge`."""
-    n, own, memory, alone = problem.n, problem.reduced, scratch.memory, scratch.alone
+    """Newton's iteration on new accelerations and multipliers of all lanes that are not marked: `newton.converge`.
+
+    ``old_stack``, ``new_stack`` (4, N + 1, 8): x, v, a and w of the lanes. A lane that does not converge is marked.
+    """
+    n, reduced, memory, alone, values = problem.n, problem.reduced, scratch.memory, scratch.alone, scratch.numbers
     old = MotionState(
         lane_vector(old_stack[0]), lane_vector(old_stack[1]), lane_vector(old_stack[2]), lane_vector(old_stack[3])
     )
     new = MotionState(
         lane_vector(new_stack[0]), lane_vector(new_stack[1]), lane_vector(new_stack[2]), lane_vector(new_stack[3])
     )
-    r, delta, slope = lane_vector(scratch.r), lane_vector(scratch.delta), lane_vector(scratch.slope)
-    numbers = lane_vector(scratch.numbers)
-    norm, before, left, force, iterates = 0, 1, 2, 3, 4
-    values, zero = scratch.numbers, 0.0 * old.x[len(old.x) - 1]
-    for i in range(n):
-        new.a[i] = old.a[i] + c.step * slope[i]
-    for i in range(n, len(old.x) - 1):
-        new.x[i] = old.x[i] + c.step * slope[i]
-    advance(n, c, old, new)
+    r, delta, numbers = lane_vector(scratch.r), lane_vector(scratch.delta), lane_vector(scratch.numbers)
+    zero = 0.0 * old.x[len(old.x) - 1]
+    _predict(n, c, old, new, lane_vector(scratch.slope))
     for lane in range(WIDTH):
-        values[norm, lane], values[before, lane], values[left, lane] = 1.0, 0.0, 1.0
-        values[5, lane] = 0.0
-        if alone[lane] == 0 and (
-            not (0.8 * memory[0, lane] < c.step < 1.25 * memory[0, lane]) or memory[1, lane] > AGED
-        ):
+        values[NORM, lane], values[BEFORE, lane], values[LEFT, lane] = 1.0, 0.0, 1.0
+        # Each lane keeps its matrix while its step is about as long and its last contraction was good.
+        is_aged = not (0.8 * memory[0, lane] < c.step < 1.25 * memory[0, lane]) or memory[1, lane] > AGED
+        values[IS_FRESH, lane] = 0.0
+        if alone[lane] == 0 and is_aged:
             _renew(problem, c, t, within, new_stack, lane, scratch)
-            memory[1, lane] = AGED
-            values[5, lane] = 1.0
-        values[iterates, lane] = 1.0 - alone[lane]
+            memory[1, lane], values[IS_FRESH, lane] = AGED, 1.0
+        values[ITERATES, lane] = 1.0 - alone[lane]
     set_lane_signals(t, within, scratch)
     for iteration in range(1, MOST_ITERATIONS + 1):
-        reduced_residual(scratch.model, own.increments, new.x, new.v, new.a, scratch.call, 1.0 / c.dq, r)
-        if iteration == 1:
-            numbers[force] = larger(_largest(r, 0, own.increments, zero), _largest(new.x, n, len(old.x) - 1, zero))
+        reduced_residual(scratch.model, reduced.increments, new.x, new.v, new.a, scratch.call, 1.0 / c.dq, r)
+        if iteration == 1:  # of the prediction, and of the constraints
+            numbers[FORCE] = larger(_largest(r, 0, reduced.increments, zero), _largest(new.x, n, len(old.x) - 1, zero))
+        # Increments by the kept matrices, then the step by its formulas, as for one sample.
         solve_samples(
-            own.layout, scratch.matrix, scratch.pivots, scratch.tops, scratch.r, scratch.buffer, scratch.delta
+            reduced.layout, scratch.matrix, scratch.pivots, scratch.tops, scratch.r, scratch.buffer, scratch.delta
         )
-        mask, moved = numbers[iterates], zero
-        for i in range(n):
-            change = chosen(mask, delta[i])
-            new.a[i] -= change
-            moved = larger(moved, c.dq * sizes(change) / problem.scale[i])
-        for i in range(n, len(old.x) - 1):
-            new.x[i] -= chosen(mask, delta[i])
-        advance(n, c, old, new)
+        moved = _correct(n, c, problem.scale, numbers[ITERATES], delta, old, new, zero)
+        forces = _largest(r, 0, reduced.increments, zero) if iteration > 2 else zero
         running = False
         for lane in range(WIDTH):
-            if values[iterates, lane] == 0.0:
-                continue
-            scratch.counts[lane, 1] += 1
-            size = entry(moved, lane)
-            values[norm, lane] = size
-            if not size < 1e100 or size <= tolerance:
-                values[iterates, lane] = 0.0
-                continue
-            rate = memory[1, lane] if iteration == 1 else size / values[before, lane]
-            values[left, lane] = size * rate / (1.0 - rate) if rate < 1.0 else size
-            if values[left, lane] <= tolerance:
-                values[iterates, lane] = 0.0
-                continue
-            if iteration > 2 and rate > 0.5 and size <= ROUNDING:
-                if entry(_largest(r, 0, own.increments, zero), lane) <= BALANCED * values[force, lane]:
-                    values[iterates, lane] = 0.0
-                    continue
-            if iteration > 1 and size > NOISE:
-                memory[1, lane] = rate
-            if iteration > 1 and rate > SLOW:
-                if values[5, lane] == 1.0 and rate > 2.0:
-                    values[iterates, lane] = 0.0
-                    continue
-                _renew(problem, c, t, within, new_stack, lane, scratch)
-                values[5, lane] = 1.0
-                if alone[lane] == 1:
-                    values[iterates, lane] = 0.0
-                    continue
-            values[before, lane] = size
-            running = True
+            if values[ITERATES, lane] == 1.0:
+                scratch.counts[lane, 1] += 1
+                ends, is_slow = _stops(lane, iteration, tolerance, entry(moved, lane), entry(forces, lane), scratch)
+                if is_slow and not ends:
+                    # The matrix of this lane alone: the others keep theirs.
+                    _renew(problem, c, t, within, new_stack, lane, scratch)
+                    values[IS_FRESH, lane], ends = 1.0, alone[lane] == 1
+                values[ITERATES, lane] = 0.0 if ends else 1.0
+                running = running or not ends
         if not running:
             break
     for lane in range(WIDTH):
-        done = values[norm, lane] <= tolerance or values[left, lane] <= tolerance
-        if not done and values[norm, lane] <= MAGNIFIED:
-            done = entry(_largest(r, 0, own.increments, zero), lane) <= BALANCED * values[force, lane]
-        if not done:
+        # What else may pass as converged is decided where the sample runs alone.
+        if not (values[NORM, lane] <= tolerance or values[LEFT, lane] <= tolerance):
             alone[lane] = 1

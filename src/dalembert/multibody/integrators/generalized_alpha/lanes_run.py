@@ -61,7 +61,7 @@ def integrate_lanes(
 
     ``ends`` (2, 4, N + 1, 8): x, v, a and w at both ends of a step. A lane is marked whose step needs to be halved.
     """
-    n, due, one, alone = problem.n, 0, scratch.one, scratch.alone
+    n, due, state, alone = problem.n, 0, scratch.after, scratch.alone
     old, new = ends[0], ends[1]
     slope = lane_vector(scratch.slope)
     for stretch in range(len(edges) - 1):
@@ -71,13 +71,14 @@ def integrate_lanes(
         if fresh:
             for i in range(len(slope)):
                 slope[i] = 0.0
+        # Accelerations at the start and behind jumps: some solutions a stretch, so one sample after the other.
         if fresh and (stretch > 0 or consistent):
             for lane in range(WIDTH):
-                take_lane(new, lane, one)
+                take_lane(new, lane, state)
                 models = SampleModels(scratch.reals[lane], scratch.reals[lane], opens[:0], 0)
-                if not accelerate(problem, models, begin, within, one, none, start):
+                if not accelerate(problem, models, begin, within, state, none, start):
                     alone[lane] = 1
-                put_lane(one, lane, new)
+                put_lane(state, lane, new)
         if stretch == 0:
             while due < len(problem.times) and problem.times[due] <= begin:
                 _record(n, 1.0, 1.0, new, new, out, due, scratch)
@@ -85,6 +86,7 @@ def integrate_lanes(
         steps = max(1, int(np.ceil((end - begin) / step - 1e-6)))
         length = (end - begin) / steps
         t = begin
+        # A step that has to be halved leaves the common grid, so its lane runs alone: all lanes have one step length.
         c = coefficients(length, radius)
         for number in range(1, steps + 1):
             target = end if number == steps else begin + length * (1.0 * number)
@@ -92,9 +94,11 @@ def integrate_lanes(
                 source, copy = lane_vector(new[part]), lane_vector(old[part])
                 for i in range(len(source)):
                     copy[i] = source[i]
+            # A step begins with the state at the end of the one before, in all lanes.
             # The signals of a step that ends at a jump are those before the jump.
             side = within if last or target < end else end
             converge_lanes(problem, c, target, side, tolerance, old, new, scratch)
+            # Rates of accelerations and multipliers over the step, for the next prediction.
             after, before = lane_vector(new[2]), lane_vector(old[2])
             for i in range(n):
                 slope[i] = (after[i] - before[i]) / c.step
@@ -105,6 +109,7 @@ def integrate_lanes(
                 _record(n, length, min(1.0, (problem.times[due] - t) / length), old, new, out, due, scratch)
                 due += 1
             t = target
+        # Nothing is left to do where all lanes run alone.
         running = False
         for lane in range(WIDTH):
             running = running or alone[lane] == 0
@@ -115,7 +120,8 @@ def integrate_lanes(
 @inner
 def _record(n, length, share, old, new, out, due, scratch):
     """Write the states of all lanes at an output time."""
-    before, after = scratch.other, scratch.one
+    before, after = scratch.before, scratch.after
+    # Lanes that only fill the group have no rows.
     for lane in range(out.x.shape[0]):
         take_lane(old, lane, before)
         take_lane(new, lane, after)

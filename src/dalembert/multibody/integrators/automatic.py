@@ -75,6 +75,6 @@ class Automatic(Integrator):
         runs = self.suiting(batch.samples[0], batch.end).run(batch)
         for number, run in enumerate(runs):
             if other := self.instead(run.reason):
-                (second,) = other.run(batch.only(number))
+                (second,) = other.run(batch.part([number]))
                 runs[number] = run if second.reason else second
         return runs

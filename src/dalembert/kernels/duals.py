@@ -1,7 +1,7 @@
 """Dual numbers in kernels: a value with its derivatives along eight directions, a double and eight lanes.
 
 (u, u')(v, v') = (uv, uv' + vu'), (u, u')/(v, v') = (q, (u' - q v')/v) with q = u/v. A number without derivatives stays
-plain: it costs no more than it has to. Comparisons are of values, and so is `real`.
+plain: it costs no more than it has to. Inequalities are of values, and so is `real`; equality is of derivatives, too.
 """
 
 import operator
@@ -176,10 +176,17 @@ def _comparison(symbol: Any, sign: str) -> None:
             return types.boolean(DUAL, DUAL) if plain and DUAL in args and len(args) == 2 else None
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        values = [_parts(context, builder, value)[0] for value in arguments]
-        # Branches depend on values alone: a derivative is that of the branch that is taken.
-        # As in Python, a comparison with nan is false, but for "!=".
-        return (builder.fcmp_unordered if sign == "!=" else builder.fcmp_ordered)(sign, *values)
+        values, slopes = zip(*(_parts(context, builder, value) for value in arguments), strict=True)
+        if sign not in ("==", "!="):
+            # Branches depend on values alone: a derivative is that of the branch that is taken.
+            return builder.fcmp_ordered(sign, *values)
+        # A number differs from zero if a derivative does, as in complex numbers: `if damping != 0.0` must not drop the
+        # derivative by a damping that is zero.
+        apart = builder.bitcast(builder.fcmp_unordered("!=", *slopes), ir.IntType(WIDTH))
+        differ = builder.or_(
+            builder.fcmp_unordered("!=", *values), builder.icmp_unsigned("!=", apart, ir.Constant(ir.IntType(WIDTH), 0))
+        )
+        return differ if sign == "!=" else builder.not_(differ)
 
     declare: Any = infer_global(symbol)
     declare(type(f"Dual_{symbol.__name__}", (Template,), {}))

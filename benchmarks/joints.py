@@ -18,7 +18,6 @@ from dalembert.multibody.components.planar.revolute_joint import REVOLUTE
 from dalembert.multibody.kernels.block_table import BlockModel, Blocks
 from dalembert.multibody.kernels.elementary import sin_cos
 from dalembert.multibody.kernels.kind import Kind
-from dalembert.multibody.kernels.records import RESIDUAL, TANGENT
 from dalembert.multibody.kernels.reduction import reduction
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.lowering import lower
@@ -78,7 +77,7 @@ def main() -> list[dict[str, object]]:
     for place, bodies in {"rigid bodies": _rigid_bodies, "beams": _beams}.items():
         for name, (joint, kind, rates) in JOINTS.items():
             chain, by_hand = _chain(bodies, joint), _by_hand(kind, rates)
-            automatic = replace(kind, name=f"{name}_automatic", forces=None, tangent=None, known=None)
+            automatic = replace(kind, name=f"{name}_automatic", forces=None)
             rows += [
                 _row(
                     f"{name}, {place}: first and second rates", *(_Rates(chain, own, kind) for own in (by_hand, kind))
@@ -161,17 +160,17 @@ class _Rates(_Kernel):
 
 class _Forces(_Kernel):
     def arguments(self) -> dict[str, Any]:
-        return {"r": self.out[0], "mode": RESIDUAL}
+        return {"r": self.out[0]}
 
 
 class _Tangent(_Kernel):
-    """In complex numbers, by the complex step or by its formula."""
+    """By dual numbers, with the formula of the forces or without."""
 
-    dtype = complex
+    dtype = float
 
     def arguments(self) -> dict[str, Any]:
         factors = {"by_x": 1.0, "by_v": 0.0, "by_a": 0.0, "motion": 1.0, "constraint": 1.0}
-        return {"matrix": self.out[0], "entries": self.out.shape[1], "mode": TANGENT, **factors}
+        return {"matrix": self.out[0], "entries": self.out.shape[1], **factors}
 
 
 def _row(what: str, formula: _Kernel, automatic: _Kernel) -> dict[str, object]:

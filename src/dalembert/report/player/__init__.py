@@ -18,7 +18,7 @@ PAGE_LOOKS = [
     {"series": look.series, "ink": look.ink, "muted": look.muted, "faint": look.grid, "paper": look.surface}
     for look in (LIGHT, DARK)
 ]
-"""Colours of the player on a light and on a dark page of the player."""
+"""Colours of the player on a light and on a dark page."""
 BROWSER = Path(__file__).with_name("browser")
 """Folder of the JavaScript: ``index.js`` plays, ``space.js`` draws a scene in space."""
 PICTURES = BROWSER / "pictures.js"

@@ -166,7 +166,7 @@ class _Forces(_Kernel):
 class _Tangent(_Kernel):
     """By dual numbers, with the formula of the forces or without."""
 
-    dtype = float
+    role = "tangent"
 
     def arguments(self) -> dict[str, Any]:
         factors = {"by_x": 1.0, "by_v": 0.0, "by_a": 0.0, "motion": 1.0, "constraint": 1.0}

@@ -182,8 +182,8 @@ def _plain(
         return _C_FUNCTION(call)
 
     pair = trampoline(float), trampoline(complex)
-    own, complex_address = (ctypes.cast(entry, ctypes.c_void_p).value or 0 for entry in pair)
-    return Callback(own, complex_address, pair)
+    real_address, complex_address = (ctypes.cast(entry, ctypes.c_void_p).value or 0 for entry in pair)
+    return Callback(real_address, complex_address, pair)
 
 
 def _wrong_answer(owner: str, numbers: Any, expected: str, time: float) -> AnswerError:

@@ -116,12 +116,12 @@ class GeneralizedAlpha(Integrator):
         return 2 if self.initial_acceleration == "consistent" else 1
 
     @property
-    def takes_lanes(self) -> bool:  # type: ignore[override] - it depends on the settings
+    def takes_lanes(self) -> bool:
         """Whether samples may run side by side: with fixed steps, and without projections of velocities."""
         return not self.adaptive and self.spectral_radius < 1.0
 
     @property
-    def takes_duals(self) -> bool:  # type: ignore[override] - it depends on the settings
+    def takes_duals(self) -> bool:
         """Whether derivatives along many directions may be dual numbers: not where velocities are projected."""
         return self.spectral_radius < 1.0
 

@@ -30,8 +30,6 @@ class Integrator(Checked, ABC):
 
     takes_redundancy = False  #: whether constraints may follow from others
     constant_masses = False  #: whether masses must not change with the coordinates
-    takes_lanes = False  #: whether samples may run side by side
-    takes_duals = False  #: whether derivatives along many directions may be dual numbers
     convergence: int | None = None  #: order of coordinates and velocities at fixed steps; None if not known
 
     @abstractmethod
@@ -97,6 +95,16 @@ class Integrator(Checked, ABC):
     def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
         """Kernels of the method, without those of components; and those for derivatives along directions."""
         return []
+
+    @property
+    def takes_lanes(self) -> bool:
+        """Whether samples may run side by side."""
+        return False
+
+    @property
+    def takes_duals(self) -> bool:
+        """Whether derivatives along many directions may be dual numbers."""
+        return False
 
     def lane_kernels(self) -> list[Compiled]:
         """Kernels of the method for samples side by side, without those of components."""

@@ -12,8 +12,10 @@ from dalembert.multibody.model.lowered import Lowered
 from kind_scenes import HOMES
 
 TIME = 0.3
+#: Kinds whose kernels other tests need, too; the others are compiled for this test alone.
+COMMON = ("structural_beam", "rigid_body", "revolute", "spring")
 KINDS = [
-    pytest.param(kind, role, id=f"{kind.name}-{role}")
+    pytest.param(kind, role, id=f"{kind.name}-{role}", marks=() if kind.name in COMMON else pytest.mark.slow)
     for kind in HOMES
     for role in ("residual",)
     if kind.has(role) and kind.lanes and not HOMES[kind]().callbacks

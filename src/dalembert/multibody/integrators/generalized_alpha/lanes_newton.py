@@ -11,7 +11,7 @@ import numpy as np
 
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.kernels.lanes import WIDTH, chosen, entry, lane_vector, larger, sizes
-from dalembert.kernels.words import Address, Integers, Integers2, Reals2, Reals3
+from dalembert.kernels.words import Address, Integers, Reals2, Reals3
 from dalembert.multibody.integrators.generalized_alpha.newton import AGED, MOST_ITERATIONS, SLOW
 from dalembert.multibody.integrators.shared.convergence import BALANCED, NOISE, ROUNDING
 from dalembert.multibody.integrators.shared.problem import IntegrationProblem
@@ -31,7 +31,6 @@ class LanesNewton(NamedTuple):
     (N,): of all lanes; ``has_pivots`` (1,): whether they are known. ``memory`` (2, 8): as of :class:`newton.Newton`.
     ``alone`` (8,): lanes that are to run alone. ``numbers`` (6, 8): size of the last correction, of the one before,
     bound of those to come, forces at the prediction, whether the lane iterates, whether its matrix is of this step.
-    ``counts`` (8, 4): as those of a log.
     """
 
     model: Address
@@ -54,7 +53,6 @@ class LanesNewton(NamedTuple):
     memory: Reals2
     alone: Integers
     numbers: Reals2
-    counts: Integers2
 
 
 def lanes_newton(
@@ -74,7 +72,7 @@ def lanes_newton(
         np.zeros((len(factors.matrix), WIDTH)), np.zeros(layout.size, np.int64), np.zeros(layout.size, np.int64),
         np.zeros(1, np.int64), np.zeros((layout.size + 1, WIDTH)), np.zeros((layout.size + 1, WIDTH)),
         np.zeros((layout.size + 3 * layout.reach, WIDTH)), np.zeros((width, WIDTH)), np.zeros((2, WIDTH)),
-        np.zeros(WIDTH, np.int64), np.zeros((6, WIDTH)), np.zeros((WIDTH, 4), np.int64),
+        np.zeros(WIDTH, np.int64), np.zeros((6, WIDTH)),
     )  # fmt: skip
 
 
@@ -120,7 +118,6 @@ def _renew(problem, c, t, within, stack, lane, scratch):
     """
     reduced, factors, state = problem.reduced, scratch.factors, scratch.after
     # The derivative of the residual along da, with dv = c.dv da and dq = c.dq da.
-    scratch.counts[lane, 2] += 1
     take_lane(stack, lane, state)
     set_signals(scratch.reals[lane], t, within, scratch.work)
     reduced_tangent(
@@ -243,7 +240,6 @@ def converge_lanes(problem, c, t, within, tolerance, old_stack, new_stack, scrat
         running = False
         for lane in range(WIDTH):
             if values[ITERATES, lane] == 1.0:
-                scratch.counts[lane, 1] += 1
                 ends, is_slow = _stops(lane, iteration, tolerance, entry(moved, lane), entry(forces, lane), scratch)
                 if is_slow and not ends:
                     # The matrix of this lane alone: the others keep theirs.

@@ -62,7 +62,7 @@ def integrate_lanes(
     ``ends`` (2, 4, N + 1, 8): x, v, a and w at both ends of a step. A lane is marked whose step needs to be halved.
     """
     n, due, state, alone = problem.n, 0, scratch.after, scratch.alone
-    # A stack holds x, v, a and w of all lanes, entry by entry side by side: one load fills a vector. Decisions of a lane
+    # A stack holds x, v, a and w of all lanes, entry by entry side by side: one load fills a vector. Its decisions
     # are made in `converge_lanes`; here all lanes share the grid of steps, the signals' smooth stretches and the times
     # of the output.
     old, new = ends[0], ends[1]

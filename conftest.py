@@ -16,14 +16,16 @@ from sybil.parsers.markdown import CodeBlockParser, PythonCodeBlockParser, SkipP
 
 collect_ignore = ["docs/conf.py", "docs/mathml.py"]
 """It is Sphinx's, which the tests do without."""
-SLOW_PAGES = {"raw-records.md", "real-measurements.md"}
-"""Pages whose examples fit long records: `make verify` runs them."""
+SLOW_PAGES = {"posterior.md", "raw-records.md", "real-measurements.md", "ten-minutes.md"}
+"""Pages whose examples take more than ten seconds: `make verify` runs them."""
+LONG_TESTS = frozenset((Path(__file__).parent / "tests" / "long_tests.txt").read_text().splitlines())
+"""Tests that take more than a second, which `tools/long_tests.py` lists: `make verify` runs them."""
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
-        if item.path.name in SLOW_PAGES:
+        if item.path.name in SLOW_PAGES or item.nodeid in LONG_TESTS:
             item.add_marker("slow")
 
 

@@ -1,0 +1,36 @@
+"""Write the list of tests that only `make verify` runs, from the log of a whole run with ``--durations=0 -v``.
+
+A test that takes more than a second is on the list. Each file keeps its fastest test in `make test`, and example studies
+are all there.
+"""
+
+import re
+import sys
+from collections import defaultdict
+from pathlib import Path
+
+LIST = Path(__file__).parents[1] / "tests" / "long_tests.txt"
+LONGEST = 1.0  # s, with set-up and the kernels that it is the first to compile
+ALWAYS = "tests/studies/"
+"""Tests of example studies, which each change must pass."""
+_DURATION = re.compile(r"^([0-9.]+)s (?:call|setup|teardown) +(tests/\S.*)$", re.MULTILINE)
+
+
+def long_tests(log: str) -> list[str]:
+    """Return the tests that take longer than `LONGEST`, but for the fastest of each file."""
+    seconds: defaultdict[str, float] = defaultdict(float)
+    for duration, test in _DURATION.findall(log):
+        seconds[test] += float(duration)
+    files = defaultdict(list)
+    for test in re.findall(r"(?:PASSED|SKIPPED) (tests/\S.*?) *$", log, re.MULTILINE):
+        files[test.split("::")[0]].append(test)
+    kept = {min(tests, key=lambda test: seconds[test]) for tests in files.values()}
+    return sorted(
+        test for test, duration in seconds.items()
+        if duration > LONGEST and test not in kept and not test.startswith(ALWAYS)
+    )  # fmt: skip
+
+
+if __name__ == "__main__":
+    listed = set(LIST.read_text().splitlines()) if LIST.exists() else set()
+    LIST.write_text("\n".join(sorted(listed | set(long_tests(Path(sys.argv[1]).read_text())))) + "\n")

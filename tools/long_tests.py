@@ -1,7 +1,7 @@
 """Write the list of tests that only `make verify` runs, from the log of a whole run with ``--durations=0 -v``.
 
-A test that takes more than a second is on the list. Each file keeps its fastest test in `make test`, and example studies
-are all there.
+A test that takes more than a second is on the list. Each file keeps its fastest test in `make test`. Example studies
+are all in it.
 """
 
 import re

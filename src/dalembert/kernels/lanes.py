@@ -3,8 +3,8 @@
 `+ - * /` and the square root are single instructions, with the bits of real numbers in each lane. Eight is the width on
 every processor, so that one layout serves all: twelve spill registers on AVX-512, and four gain less there.
 
-A comparison is that of the first lane: a kind takes lanes only if its branches depend on integers, and on which of its
-numbers are zero, which all samples of a group share.
+A comparison gives a mask, one truth value a lane. A branch cannot depend on it: a select does (`where`). Branches on
+integers, and on which numbers are zero (`is_zero`), are common to all samples of a group.
 """
 
 import math
@@ -48,6 +48,16 @@ class LanesType(types.Type):
 LANES = LanesType()
 
 
+class MaskType(types.Type):
+    """Numba's type of eight truth values. It has no truth value of its own, so that no branch can depend on it."""
+
+    def __init__(self) -> None:
+        super().__init__("Mask")
+
+
+MASK = MaskType()
+
+
 class Lanes:
     """Stands for eight real numbers side by side where NumPy's types stand for other numbers."""
 
@@ -71,6 +81,12 @@ class _LanesModel(models.PrimitiveModel):
 
     def from_data(self, builder: Any, value: Any) -> Any:
         return builder.extract_value(value, 0)
+
+
+@register_model(MaskType)
+class _MaskModel(models.PrimitiveModel):
+    def __init__(self, manager: Any, kind: Any) -> None:
+        super().__init__(manager, kind, ir.VectorType(ir.IntType(1), WIDTH))
 
 
 def spread(builder: Any, value: Any) -> Any:
@@ -123,12 +139,10 @@ def _comparison(symbol: Any, sign: str) -> None:
     class Template(AbstractTemplate):
         def generic(self, args: Any, kws: Any) -> Any:
             plain = all(isinstance(kind, LanesType | types.Float | types.Integer) for kind in args)
-            return types.boolean(LANES, LANES) if plain and LANES in args and len(args) == 2 else None
+            return MASK(LANES, LANES) if plain and LANES in args and len(args) == 2 else None
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        # The first lane speaks for all: samples of a group agree in what branches of kinds with lanes ask for.
-        first = [builder.extract_element(value, ir.Constant(ir.IntType(32), 0)) for value in arguments]
-        return (builder.fcmp_unordered if sign == "!=" else builder.fcmp_ordered)(sign, *first)
+        return (builder.fcmp_unordered if sign == "!=" else builder.fcmp_ordered)(sign, *arguments)
 
     declare: Any = infer_global(symbol)
     declare(type(f"Lanes_{symbol.__name__}", (Template,), {}))
@@ -205,6 +219,38 @@ def sizes(typingctx, x):
         return _by_entries(builder, "llvm.fabs.v8f64", arguments)
 
     return LANES(x), generate
+
+
+@intrinsic(without_python)
+def select(typingctx, mask, x, y):
+    """Return, lane by lane, x where the mask is true, else y."""
+
+    def generate(context, builder, signature, arguments):
+        return builder.select(*arguments)
+
+    return LANES(MASK, LANES, LANES), generate
+
+
+@intrinsic(without_python)
+def any_lane(typingctx, mask):
+    """Return whether the mask is true in a lane."""
+
+    def generate(context, builder, signature, arguments):
+        bits = ir.IntType(WIDTH)
+        return builder.icmp_unsigned("!=", builder.bitcast(arguments[0], bits), ir.Constant(bits, 0))
+
+    return types.boolean(MASK), generate
+
+
+@intrinsic(without_python)
+def first_is_zero(typingctx, x):
+    """Return whether the number of the first lane is zero, which speaks for all: a group shares its zero numbers."""
+
+    def generate(context, builder, signature, arguments):
+        first = builder.extract_element(arguments[0], ir.Constant(ir.IntType(32), 0))
+        return builder.fcmp_ordered("==", first, REAL(0.0))
+
+    return types.boolean(LANES), generate
 
 
 @intrinsic(without_python)

@@ -17,6 +17,10 @@ _RAISES = "a kernel cannot raise an exception. Return nan, or check the input be
 _ALLOCATES = (
     "a kernel cannot make arrays, lists or texts. Use numbers, tuples, or stack(x, n) for n numbers like those of x"
 )
+_BRANCHES = (
+    "a branch depends on the state, but samples side by side take the same branches. Select by where(condition, a, b), "
+    "branch on a number by is_zero(number), or declare the kind with lanes=False"
+)
 _PRINTS = "a kernel cannot call {}. Run the component in plain Python for that: with in_python(...)"
 _TALKS = ("print", "open", "input", "breakpoint")
 _ARRAYS = re.compile(
@@ -75,6 +79,8 @@ def _sentence(error: NumbaError, function: Callable) -> str:
     name = function.__name__
     file, line = _innermost(places) if places else ("", "")
     where = f"{Path(file).resolve()}, line {line}" if places else f"in {name}"
+    if "bool(Mask)" in text:
+        return f"{where}: {_BRANCHES}"
     if _ARRAYS.search(text):
         return f"{where}: {_ALLOCATES}"
     lines = [line.strip() for line in text.splitlines() if not _NOISE.match(line)]

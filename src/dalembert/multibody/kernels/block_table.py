@@ -119,12 +119,13 @@ class BlockModel:
             for block, kind in zip(self._words[2], self.reduction.index, strict=False):
                 for role in self.roles:
                     block[role] = self._load(kind, role, self.dtype)
-            whole = {"change": CHANGE} if self.dtype is float else {}
-            whole |= {"spread": SPREAD} if spreads else {}
-            for role, kernel in {**whole, "restore": RESTORE[self.dtype]}.items():
+            # Nodes change in steps, which are of real numbers or in lanes; their derivatives are restored and spread.
+            whole = {"change": (CHANGE[self.dtype], self.dtype)} if self.dtype in CHANGE else {}
+            whole |= {"spread": (SPREAD, float)} if spreads else {}
+            for role, (kernel, dtype) in {**whole, "restore": (RESTORE[self.dtype], self.dtype)}.items():
                 head[role] = kernel.address
                 for node, kind in zip(self._words[3], self.reduction.nodes, strict=False):
-                    node[role] = self._load(kind, role, self.dtype if role == "restore" else float)
+                    node[role] = self._load(kind, role, dtype)
         return self
 
     def _load(self, kind: Kind, role: str, dtype: type) -> int:

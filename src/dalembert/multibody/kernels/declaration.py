@@ -55,7 +55,8 @@ class Declaration:
     ``holds``: whether a component on the ground keeps the mechanism from moving freely, as joints and springs do. It
     then has the columns ``a_kind b_kind`` (integers) and ``a_x a_y b_x b_y`` of two markers. ``holds_frame``: whether
     it then holds the direction of a ground point, not only the point. ``lanes``: whether the functions take eight
-    samples side by side: their branches depend on integers, and on which numbers are zero.
+    samples side by side, in one call: no branch depends on the state, but `where` selects; branches on numbers ask
+    `is_zero`. By default kinds of the package do, kinds of users do not.
     """
 
     name: str
@@ -86,7 +87,7 @@ class Declaration:
     loads: bool = False
     holds: bool = False
     holds_frame: bool = True
-    lanes: bool = False
+    lanes: bool | None = None
 
     def __post_init__(self) -> None:
         sizes = [chart.size for chart in self.parts]
@@ -100,6 +101,16 @@ class Declaration:
     def is_built_in(self) -> bool:
         """Whether it is a kind of the package."""
         return (self.module or "").startswith("dalembert.")
+
+    @cached_property
+    def takes_lanes(self) -> bool:
+        """Whether eight samples may run side by side."""
+        return self.is_built_in if self.lanes is None else self.lanes
+
+    @property
+    def takes_duals(self) -> bool:
+        """Whether the functions take dual numbers, for derivatives along eight directions at once."""
+        return self.is_built_in or self.takes_lanes
 
     @property
     def parts(self) -> tuple[Chart, ...]:

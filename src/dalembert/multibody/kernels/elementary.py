@@ -16,7 +16,18 @@ from numba.extending import overload
 from dalembert.kernels.duals import DualType
 from dalembert.kernels.duals import chained as chained_dual
 from dalembert.kernels.kernel import inner
-from dalembert.kernels.lanes import WIDTH, LanesType, entry, vector_root, with_entry
+from dalembert.kernels.lanes import (
+    WIDTH,
+    LanesType,
+    MaskType,
+    any_lane,
+    entry,
+    first_is_zero,
+    select,
+    sizes,
+    vector_root,
+    with_entry,
+)
 
 #: Size of the imaginary step. Second-order terms vanish below the rounding of the first.
 STEP = 1e-30
@@ -32,6 +43,56 @@ def _real(x):
     if not isinstance(x, types.Number | DualType | LanesType):
         return None
     return (lambda x: x.real) if isinstance(x, types.Complex | DualType) else (lambda x: x)
+
+
+def where(condition, a, b):
+    """Return a where the condition holds, else b: in place of a branch on the state, which lanes cannot take.
+
+    Both are evaluated; what is not a number in the other one does not matter.
+    """
+    return a if condition else b
+
+
+@overload(where, inline="always")
+def _where(condition, a, b):
+    if isinstance(condition, MaskType):
+        return lambda condition, a, b: select(condition, a, b)
+    return lambda condition, a, b: a if condition else b
+
+
+def is_any(condition):
+    """Return whether a condition holds; of lanes, whether it does in one of them."""
+    return condition
+
+
+@overload(is_any, inline="always")
+def _is_any(condition):
+    return (lambda condition: any_lane(condition)) if isinstance(condition, MaskType) else lambda condition: condition
+
+
+def is_zero(number):
+    """Return whether a number of a component is zero, with its derivatives.
+
+    A branch may depend on this, in lanes too: samples side by side share their zero numbers.
+    """
+    return number == 0.0
+
+
+@overload(is_zero, inline="always")
+def _is_zero(number):
+    if isinstance(number, LanesType):
+        return lambda number: first_is_zero(number)
+    return lambda number: number == 0.0
+
+
+def size_of(x):
+    """Return the absolute value of the real part, for decisions."""
+    return abs(x.real)
+
+
+@overload(size_of, inline="always")
+def _size(x):
+    return (lambda x: sizes(x)) if isinstance(x, LanesType) else lambda x: abs(x.real)
 
 
 def chained(x, value, slope):

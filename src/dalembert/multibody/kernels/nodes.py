@@ -10,7 +10,8 @@ from typing import Any
 from dalembert.kernels.arithmetic import VIEWS
 from dalembert.kernels.duals import Dual
 from dalembert.kernels.kernel import BlockKernel, inlined
-from dalembert.kernels.views import call, integers, integers2, local, reals, records
+from dalembert.kernels.lanes import Lanes
+from dalembert.kernels.views import call, integers, integers2, local, records
 from dalembert.multibody.kernels.declaration import Declaration
 from dalembert.multibody.kernels.loops import made, number_rows
 from dalembert.multibody.kernels.records import BLOCK_SIZE, block_at, call_at, model_at
@@ -78,14 +79,19 @@ def _of_all(role: Callable[..., int], begin: Callable[..., None], symbol: str) -
     return BlockKernel(nodes, symbol)
 
 
-@inlined
-def _deal(own, table):
-    """Increments of coordinates that belong to no node, and of multipliers; 0 for the others."""
-    size = own.last + 1
-    rows, delta, change = integers(table.rows, size), reals(own.delta, own.last_row + 1), reals(own.change, size)
-    for i in range(size):
-        # Coordinates of nodes are filled by the kernels of their kinds after this.
-        change[i] = delta[rows[i]]
+def _deal(role: Callable[..., int], dtype: type, symbol: str) -> BlockKernel:
+    view, _ = VIEWS[dtype]
+
+    @inlined
+    def deal(own, table):
+        """Increments of coordinates that belong to no node, and of multipliers; 0 for the others."""
+        size = own.last + 1
+        rows, delta, change = integers(table.rows, size), view(own.delta, own.last_row + 1), view(own.change, size)
+        for i in range(size):
+            # Coordinates of nodes are filled by the kernels of their kinds after this.
+            change[i] = delta[rows[i]]
+
+    return _of_all(role, deal, symbol)
 
 
 def _restore(dtype: type) -> BlockKernel:
@@ -100,7 +106,9 @@ def _restore(dtype: type) -> BlockKernel:
     return _of_all(inlined(lambda node: node.restore), clear, f"dal_nodes_restore_{dtype.__name__.lower()}")
 
 
-SPREAD = _of_all(inlined(lambda node: node.spread), _deal, "dal_nodes_spread")
-CHANGE = _of_all(inlined(lambda node: node.change), _deal, "dal_nodes_change")
-RESTORE_REAL, RESTORE_COMPLEX, RESTORE_DUAL = map(_restore, (float, complex, Dual))
-RESTORE = {float: RESTORE_REAL, complex: RESTORE_COMPLEX, Dual: RESTORE_DUAL}
+_change = inlined(lambda node: node.change)
+SPREAD = _deal(inlined(lambda node: node.spread), float, "dal_nodes_spread")
+CHANGE_REAL, CHANGE_LANES = _deal(_change, float, "dal_nodes_change"), _deal(_change, Lanes, "dal_nodes_change_lanes")
+CHANGE = {float: CHANGE_REAL, Lanes: CHANGE_LANES}
+RESTORE_REAL, RESTORE_COMPLEX, RESTORE_DUAL, RESTORE_LANES = map(_restore, (float, complex, Dual, Lanes))
+RESTORE = {float: RESTORE_REAL, complex: RESTORE_COMPLEX, Dual: RESTORE_DUAL, Lanes: RESTORE_LANES}

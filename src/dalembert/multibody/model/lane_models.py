@@ -4,8 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from dalembert.kernels.kernel import Compiled
 from dalembert.kernels.lanes import WIDTH, Lanes
 from dalembert.multibody.kernels.block_table import BlockModel
+from dalembert.multibody.kernels.nodes import CHANGE, RESTORE
 from dalembert.multibody.model.lowered import Lowered
 
 FEWEST = 4
@@ -14,7 +16,15 @@ FEWEST = 4
 
 def takes_lanes(sample: Lowered) -> bool:
     """Return whether samples of this structure may run side by side: all kinds of components take lanes."""
-    return sample.in_duals and not sample.structure.reduction.nodes and all(kind.lanes for kind in sample.data)
+    return sample.in_duals and all(kind.takes_lanes for kind in sample.data)
+
+
+def prevents_lanes(sample: Lowered) -> str:
+    """Return the first component because of which samples run one by one, by its name; empty if there is none."""
+    for kind, names in sample.parts.items():
+        if not kind.takes_lanes:
+            return names[0]
+    return ""
 
 
 def share_lanes(samples: Sequence[Lowered]) -> bool:
@@ -33,6 +43,14 @@ def share_lanes(samples: Sequence[Lowered]) -> bool:
             for kind, data in first.data.items()
         )
     )
+
+
+def lane_kernels(sample: Lowered) -> list[Compiled]:
+    """Return the kernels of components that samples side by side need."""
+    reduction = sample.structure.reduction
+    own = [kind.kernel("residual", Lanes) for kind in reduction.index if "residual" in kind.roles]
+    nodes = [kind.kernel(role, Lanes) for kind in reduction.nodes for role in ("change", "restore")]
+    return [*own, *nodes, *[CHANGE[Lanes], RESTORE[Lanes]] * bool(nodes)]
 
 
 def lane_model(samples: Sequence[Lowered], *roles: str) -> BlockModel:

@@ -90,8 +90,8 @@ class Lowered:
 
     @cached_property
     def in_duals(self) -> bool:
-        """Whether its components take dual numbers: functions of users, and kinds of users, take complex ones."""
-        return all(kind.is_built_in for kind in self.data) and not self.callbacks and not PLAIN.get()
+        """Whether its components take dual numbers: functions of users, and most kinds of users, take complex ones."""
+        return all(kind.takes_duals for kind in self.data) and not self.callbacks and not PLAIN.get()
 
     @cached_property
     def real(self) -> BlockModel:

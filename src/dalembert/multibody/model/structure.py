@@ -65,4 +65,4 @@ class Structure:
         linear = [kernel for kernel in self.reduced.linear_kernels if kernel not in self.full.linear_kernels]
         roles = [("change", float), ("restore", float), *[("spread", float), ("restore", complex)] * derivatives]
         nodes = [kind.kernel(*role) for role in roles for kind in self.reduction.nodes]
-        return [*linear, *nodes, CHANGE, RESTORE[float], *[SPREAD, RESTORE[complex]] * derivatives]
+        return [*linear, *nodes, CHANGE[float], RESTORE[float], *[SPREAD, RESTORE[complex]] * derivatives]

@@ -14,7 +14,7 @@ from dalembert.forward.adjoint import Pull
 from dalembert.forward.builders import built, inexact, restructured
 from dalembert.forward.complex_steps import Compared
 from dalembert.forward.differences import COMPLEX_STEP, central_differences
-from dalembert.kernels.lanes import WIDTH, Lanes
+from dalembert.kernels.lanes import WIDTH
 from dalembert.kernels.preparation import prepare
 from dalembert.multibody.integrators.shared.integrator import Integrator
 from dalembert.multibody.integrators.shared.problem import IntegrationProblem
@@ -23,7 +23,7 @@ from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.callbacks import in_complex_numbers
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.model.directions import are_many, dual_kernels
-from dalembert.multibody.model.lane_models import FEWEST, takes_lanes
+from dalembert.multibody.model.lane_models import FEWEST, lane_kernels, takes_lanes
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.lowering import lower
 from dalembert.multibody.model.observe import Observer, observer
@@ -218,7 +218,7 @@ class BuiltModel(MotionModel):
 
     @cached_property
     def _lanes(self) -> int:
-        prepare([*(kind.kernel("residual", Lanes) for kind in self.shared.data), *self.solver.lane_kernels()])
+        prepare([*lane_kernels(self.shared), *self.solver.lane_kernels()])
         return WIDTH
 
     def check_derivatives(self, vector: np.ndarray) -> None:

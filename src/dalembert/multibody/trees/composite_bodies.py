@@ -4,10 +4,13 @@ Walker and Orin (1982); Featherstone, Rigid Body Dynamics Algorithms (2008), sec
 """
 
 from dalembert.kernels.kernel import inlined, inner, kernel
-from dalembert.kernels.words import Complexes, Complexes2, Complexes3, Reals, Reals2, Reals3
+from dalembert.kernels.lanes import WIDTH as LANES
+from dalembert.kernels.lanes import lane_vector
+from dalembert.kernels.words import Complexes, Complexes2, Reals, Reals2
 from dalembert.multibody.components.spatial.vectors import at, combined, cross, dot, plus, times
 from dalembert.multibody.trees.frame_motion import SHIFT, inertia_times, out_of, place_frame
 from dalembert.multibody.trees.frames import AXIS, INERTIA, WIDTH, ComplexFrames, Frames
+from dalembert.multibody.trees.sample_lanes import gather, scatter
 
 WHOLE, ROOM = 12, 22
 """Row of the workspace: rotation and position in the parent; mass, mass x centre and inertia about the origin of all
@@ -44,40 +47,58 @@ def _add_to_parent(scratch, o, up):
 
 
 @inner
-def _fill(frames, q, scratch, masses):
+def _fill_sample(frames, q, scratch, masses):
+    """Fill the mass matrix (frames x frames,) of one sample, or of eight in lanes."""
     count, x = len(frames.parents), frames.numbers
+    for k in range(count):
+        o = (k + 1) * ROOM
+        place_frame(frames, k, q[k], scratch, o)
+        for i in range(10):
+            scratch[o + WHOLE + i] = x[k * WIDTH + INERTIA + i]
+    for k in range(count - 1, -1, -1):
+        o, up = (k + 1) * ROOM, frames.parents[k]
+        u, h = at(x, k * WIDTH + AXIS), at(scratch, o + WHOLE + 1)
+        if frames.turns[k]:
+            force, torque = cross(u, h), inertia_times(scratch, o + WHOLE + 4, u)
+        else:
+            force, torque = times(scratch[o + WHOLE], u), cross(h, u)
+        masses[k * count + k] = dot(u, torque if frames.turns[k] else force)
+        if up > 0:
+            _add_to_parent(scratch, o, up * ROOM)
+        while up > 0:  # force and torque of a unit acceleration of joint k, in the frames above it
+            force = out_of(scratch, o, force)
+            torque = plus(out_of(scratch, o, torque), cross(at(scratch, o + SHIFT), force))
+            j, o = up - 1, up * ROOM
+            across = dot(at(x, j * WIDTH + AXIS), torque if frames.turns[j] else force)
+            masses[j * count + k] = masses[k * count + j] = across
+            up = frames.parents[j]
+
+
+@inner
+def _fill(frames, q, scratch, masses):
     for s in range(len(q)):
-        for k in range(count):
-            o = (k + 1) * ROOM
-            place_frame(frames, k, q[s, k], scratch, o)
-            for i in range(10):
-                scratch[o + WHOLE + i] = x[k * WIDTH + INERTIA + i]
-        for k in range(count - 1, -1, -1):
-            o, up = (k + 1) * ROOM, frames.parents[k]
-            u, h = at(x, k * WIDTH + AXIS), at(scratch, o + WHOLE + 1)
-            if frames.turns[k]:
-                force, torque = cross(u, h), inertia_times(scratch, o + WHOLE + 4, u)
-            else:
-                force, torque = times(scratch[o + WHOLE], u), cross(h, u)
-            masses[s, k, k] = dot(u, torque if frames.turns[k] else force)
-            if up > 0:
-                _add_to_parent(scratch, o, up * ROOM)
-            while up > 0:  # force and torque of a unit acceleration of joint k, in the frames above it
-                force = out_of(scratch, o, force)
-                torque = plus(out_of(scratch, o, torque), cross(at(scratch, o + SHIFT), force))
-                j, o = up - 1, up * ROOM
-                masses[s, j, k] = dot(at(x, j * WIDTH + AXIS), torque if frames.turns[j] else force)
-                masses[s, k, j] = masses[s, j, k]
-                up = frames.parents[j]
+        _fill_sample(frames, q[s], scratch, masses[s])
 
 
 @kernel
-def fill_masses(frames: Frames, q: Reals2, scratch: Reals, masses: Reals3) -> None:
-    """Fill the mass matrices (samples, frames, frames), zero before; the workspace has (frames + 1) x ROOM entries."""
+def fill_masses(frames: Frames, q: Reals2, scratch: Reals, masses: Reals2) -> None:
+    """Fill the mass matrices (samples, frames x frames), zero before; the workspace has (frames + 1) x ROOM entries."""
     _fill(frames, q, scratch, masses)
 
 
 @kernel
-def fill_complex_masses(frames: ComplexFrames, q: Complexes2, scratch: Complexes, masses: Complexes3) -> None:
+def fill_complex_masses(frames: ComplexFrames, q: Complexes2, scratch: Complexes, masses: Complexes2) -> None:
     """The same in complex numbers."""
     _fill(frames, q, scratch, masses)
+
+
+@kernel
+def fill_masses_in_lanes(frames: Frames, q: Reals2, rows: Reals2, masses: Reals2) -> None:
+    """The same for eight samples at once; the workspace has rows of eight numbers, zero before."""
+    count, work = len(frames.parents), lane_vector(rows)
+    end = (count + 1) * ROOM
+    own_q, own_masses = work[end : end + count], work[end + count :]
+    for s in range(0, len(q), LANES):
+        gather(q, s, own_q)
+        _fill_sample(frames, own_q, work, own_masses)
+        scatter(own_masses, s, masses)

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dalembert.errors import InputError, shown
+from dalembert.kernels.lanes import WIDTH as LANES
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.trees import composite_bodies, frame_motion, newton_euler, torque_columns
 from dalembert.multibody.trees.frames import (
@@ -33,6 +34,7 @@ from dalembert.multibody.trees.parameters import heavy, parameter_names
 from dalembert.multibody.trees.tree import JOINT_NUMBERS, Tree
 
 GRAVITY = (0.0, 0.0, -9.81)
+_FEWEST_IN_LANES = 32  # samples: fewer of some microseconds each are not worth the kernels for eight at once
 Samples = np.ndarray | Sequence[Sequence[Number]]
 
 
@@ -89,8 +91,8 @@ def inverse_dynamics(
     q, v, a = _joints(own, q, v, a)
     dtype = np.result_type(own.frames.numbers, q, v, a, _gravity(gravity))
     torques = _filled(
-        (newton_euler.fill_torques, newton_euler.fill_complex_torques), own, dtype, (_gravity(gravity), q, v, a),
-        frame_motion.ROOM, q.shape,
+        (newton_euler.fill_torques, newton_euler.fill_complex_torques, newton_euler.fill_torques_in_lanes),
+        own, dtype, (_gravity(gravity), q, v, a), frame_motion.ROOM, q.shape,
     )  # fmt: skip
     damping, coulomb, inertia = np.array([[getattr(joint, name) for joint in own.joints] for name in JOINT_NUMBERS])
     if friction and damping.any():
@@ -133,9 +135,9 @@ def mass_matrix(tree: Tree, q: Samples, *, armature: bool = True) -> np.ndarray:
     own = flat(tree)
     (q,) = _joints(own, *_given(tree, q=q))
     masses = _filled(
-        (composite_bodies.fill_masses, composite_bodies.fill_complex_masses), own,
-        np.result_type(own.frames.numbers, q), (q,), composite_bodies.ROOM, (*q.shape, q.shape[1]),
-    )  # fmt: skip
+        (composite_bodies.fill_masses, composite_bodies.fill_complex_masses, composite_bodies.fill_masses_in_lanes),
+        own, np.result_type(own.frames.numbers, q), (q,), composite_bodies.ROOM, (len(q), q.shape[1] ** 2),
+    ).reshape(*q.shape, q.shape[1])  # fmt: skip
     if armature:
         masses = masses + np.diag([joint.armature for joint in own.joints])
     return masses if own.one_to_one else own.factors.T @ masses @ own.factors
@@ -181,7 +183,7 @@ def regressor(
     direct = np.array_equal(own.homes[slots], np.arange(1, count + 1)) and all(link.joint.moves for link in links)
     width = len(parameter_names(tree)) if direct else 10 * count
     columns = _filled(
-        (torque_columns.fill_columns, torque_columns.fill_complex_columns), own,
+        (torque_columns.fill_columns, torque_columns.fill_complex_columns, torque_columns.fill_columns_in_lanes), own,
         np.result_type(own.frames.numbers, q, v, a, _gravity(gravity)), (_gravity(gravity), q, v, a),
         torque_columns.ROOM, (*q.shape, width),
     )  # fmt: skip
@@ -296,13 +298,18 @@ def _signs(v: np.ndarray, slip: float | None) -> np.ndarray:
 
 
 def _filled(
-    kernels: tuple[Any, Any], own: FlatTree, dtype: Any, given: tuple, scratch: int, shape: tuple[int, ...]
+    kernels: tuple[Any, Any, Any], own: FlatTree, dtype: Any, given: tuple, scratch: int, shape: tuple[int, ...]
 ) -> np.ndarray:
-    """The array that the real or the complex kernel fills."""
+    """The array that the kernel of real or of complex numbers fills, or that of lanes for many samples."""
     is_complex = np.issubdtype(dtype, np.complexfloating)
-    dtype, frames = (complex if is_complex else float), own.frames
+    dtype, frames, count = (complex if is_complex else float), own.frames, len(own.joints)
     if is_complex:
         frames = ComplexFrames(frames.parents, frames.turns, frames.numbers.astype(complex))
-    answer, workspace = np.zeros(shape, dtype), np.zeros((len(own.joints) + 1) * scratch, dtype)
-    kernels[is_complex](frames, *(np.ascontiguousarray(array, dtype) for array in given), workspace, answer)
+    answer, entries = np.zeros(shape, dtype), (count + 1) * scratch
+    given = tuple(np.ascontiguousarray(array, dtype) for array in given)
+    if is_complex or shape[0] < _FEWEST_IN_LANES:
+        kernels[is_complex](frames, *given, np.zeros(entries, dtype), answer)
+    else:
+        # Behind the workspace of one sample: positions, velocities and accelerations, and what is filled of a sample.
+        kernels[2](frames, *given, np.zeros((entries + 3 * count + max(count * count, 10), LANES)), answer)
     return answer

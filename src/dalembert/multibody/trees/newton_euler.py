@@ -4,6 +4,8 @@ Luh, Walker and Paul (1980); Featherstone, Rigid Body Dynamics Algorithms (2008)
 """
 
 from dalembert.kernels.kernel import inlined, inner, kernel
+from dalembert.kernels.lanes import WIDTH as LANES
+from dalembert.kernels.lanes import lane_vector
 from dalembert.kernels.words import Complexes, Complexes2, Reals, Reals2
 from dalembert.multibody.components.spatial.vectors import at, cross, dot, plus, times
 from dalembert.multibody.trees.frame_motion import (
@@ -22,6 +24,7 @@ from dalembert.multibody.trees.frame_motion import (
     start_base,
 )  # fmt: skip
 from dalembert.multibody.trees.frames import AXIS, INERTIA, WIDTH, ComplexFrames, Frames
+from dalembert.multibody.trees.sample_lanes import gather, scatter
 
 
 @inlined
@@ -35,24 +38,30 @@ def _load_frame(frames, k, scratch, o):
 
 
 @inner
-def _fill(frames, gravity, q, v, a, scratch, torques):
+def _fill_sample(frames, q, v, a, scratch, torques):
+    """Fill the torques of one sample, or of eight in lanes."""
     count = len(frames.parents)
+    for k in range(count):
+        o = (k + 1) * ROOM
+        place_frame(frames, k, q[k], scratch, o)
+        move_frame(frames, k, v[k], a[k], scratch, o, frames.parents[k] * ROOM)
+        _load_frame(frames, k, scratch, o)
+    for k in range(count - 1, -1, -1):
+        o, up = (k + 1) * ROOM, frames.parents[k] * ROOM
+        force, torque = at(scratch, o + FORCE), at(scratch, o + TORQUE)
+        torques[k] = dot(at(frames.numbers, k * WIDTH + AXIS), torque if frames.turns[k] else force)
+        if up > 0:
+            force, torque = out_of(scratch, o, force), out_of(scratch, o, torque)
+            put(scratch, up + FORCE, plus(at(scratch, up + FORCE), force))
+            moment = plus(torque, cross(at(scratch, o + SHIFT), force))
+            put(scratch, up + TORQUE, plus(at(scratch, up + TORQUE), moment))
+
+
+@inner
+def _fill(frames, gravity, q, v, a, scratch, torques):
     start_base(gravity, scratch)
     for s in range(len(q)):
-        for k in range(count):
-            o = (k + 1) * ROOM
-            place_frame(frames, k, q[s, k], scratch, o)
-            move_frame(frames, k, v[s, k], a[s, k], scratch, o, frames.parents[k] * ROOM)
-            _load_frame(frames, k, scratch, o)
-        for k in range(count - 1, -1, -1):
-            o, up = (k + 1) * ROOM, frames.parents[k] * ROOM
-            force, torque = at(scratch, o + FORCE), at(scratch, o + TORQUE)
-            torques[s, k] = dot(at(frames.numbers, k * WIDTH + AXIS), torque if frames.turns[k] else force)
-            if up > 0:
-                force, torque = out_of(scratch, o, force), out_of(scratch, o, torque)
-                put(scratch, up + FORCE, plus(at(scratch, up + FORCE), force))
-                moment = plus(torque, cross(at(scratch, o + SHIFT), force))
-                put(scratch, up + TORQUE, plus(at(scratch, up + TORQUE), moment))
+        _fill_sample(frames, q[s], v[s], a[s], scratch, torques[s])
 
 
 @kernel
@@ -75,3 +84,21 @@ def fill_complex_torques(
 ) -> None:
     """The same in complex numbers."""
     _fill(frames, gravity, q, v, a, scratch, torques)
+
+
+@kernel
+def fill_torques_in_lanes(
+    frames: Frames, gravity: Reals, q: Reals2, v: Reals2, a: Reals2, rows: Reals2, torques: Reals2
+) -> None:
+    """The same for eight samples at once; the workspace has rows of eight numbers, (frames + 1) x ROOM + 4 frames."""
+    count, work = len(frames.parents), lane_vector(rows)
+    end = (count + 1) * ROOM
+    own_q, own_v, own_a = work[end : end + count], work[end + count : end + 2 * count], work[end + 2 * count :]
+    own_torques = work[end + 3 * count :]
+    start_base(gravity, work)
+    for s in range(0, len(q), LANES):
+        gather(q, s, own_q)
+        gather(v, s, own_v)
+        gather(a, s, own_a)
+        _fill_sample(frames, own_q, own_v, own_a, work, own_torques)
+        scatter(own_torques, s, torques)

@@ -6,6 +6,8 @@ d. The torque of that joint is m d.a + h.(d x b + (d x w) x w + a x t) + t.J b +
 """
 
 from dalembert.kernels.kernel import inlined, inner, kernel
+from dalembert.kernels.lanes import WIDTH as LANES
+from dalembert.kernels.lanes import lane_vector
 from dalembert.kernels.words import Complexes, Complexes2, Complexes3, Reals, Reals2, Reals3
 from dalembert.multibody.components.spatial.vectors import at, cross, dot, minus, plus
 from dalembert.multibody.trees.frame_motion import (
@@ -21,6 +23,7 @@ from dalembert.multibody.trees.frame_motion import (
     within,
 )  # fmt: skip
 from dalembert.multibody.trees.frames import AXIS, WIDTH, ComplexFrames, Frames
+from dalembert.multibody.trees.sample_lanes import gather, scatter
 
 TURNED, ORIGIN, DIRECTION, ROOM = 21, 30, 33, 36
 """Row of the workspace: that of the frame's motion up to its acceleration, then columns of the rotation to the base,
@@ -50,29 +53,46 @@ def _put_columns(y, w, b, a, t, d):
     y[9] = t[1] * b[2] + t[2] * b[1] + u[1] * w[2] + u[2] * w[1]
 
 
-@inner
-def _fill(frames, gravity, q, v, a, scratch, columns):
-    count = len(frames.parents)
+@inlined
+def _start(gravity, scratch):
     start_base(gravity, scratch)
     for i in range(TURNED, ROOM):
         scratch[i] = 0.0
     scratch[TURNED] = scratch[TURNED + 4] = scratch[TURNED + 8] = 1.0
+
+
+@inlined
+def _move(frames, k, q, v, a, scratch):
+    """Write position and motion of a frame, in its parent and in the base."""
+    o, up = (k + 1) * ROOM, frames.parents[k] * ROOM
+    place_frame(frames, k, q, scratch, o)
+    move_frame(frames, k, v, a, scratch, o, up)
+    _place_in_base(frames, k, scratch, o, up)
+
+
+@inlined
+def _columns_of(frames, k, j, scratch, y):
+    """Set the ten columns of frame k in the row of joint j - 1."""
+    o = (k + 1) * ROOM
+    w, b, linear = at(scratch, o + SPIN), at(scratch, o + ANGULAR), at(scratch, o + LINEAR)
+    axis = at(scratch, j * ROOM + DIRECTION)
+    turn = within(scratch, o + TURNED, axis)
+    if frames.turns[j - 1]:
+        lever = minus(at(scratch, o + ORIGIN), at(scratch, j * ROOM + ORIGIN))
+        _put_columns(y, w, b, linear, turn, within(scratch, o + TURNED, cross(axis, lever)))
+    else:
+        _put_columns(y, w, b, linear, (0.0 * turn[0], 0.0 * turn[0], 0.0 * turn[0]), turn)
+
+
+@inner
+def _fill(frames, gravity, q, v, a, scratch, columns):
+    _start(gravity, scratch)
     for s in range(len(q)):
-        for k in range(count):
-            o, up = (k + 1) * ROOM, frames.parents[k] * ROOM
-            place_frame(frames, k, q[s, k], scratch, o)
-            move_frame(frames, k, v[s, k], a[s, k], scratch, o, up)
-            _place_in_base(frames, k, scratch, o, up)
-            w, b, linear = at(scratch, o + SPIN), at(scratch, o + ANGULAR), at(scratch, o + LINEAR)
+        for k in range(len(frames.parents)):
+            _move(frames, k, q[s, k], v[s, k], a[s, k], scratch)
             j = k + 1
             while j > 0:
-                y, axis = columns[s, j - 1, 10 * k : 10 * k + 10], at(scratch, j * ROOM + DIRECTION)
-                turn = within(scratch, o + TURNED, axis)
-                if frames.turns[j - 1]:
-                    lever = minus(at(scratch, o + ORIGIN), at(scratch, j * ROOM + ORIGIN))
-                    _put_columns(y, w, b, linear, turn, within(scratch, o + TURNED, cross(axis, lever)))
-                else:
-                    _put_columns(y, w, b, linear, (0.0 * turn[0], 0.0 * turn[0], 0.0 * turn[0]), turn)
+                _columns_of(frames, k, j, scratch, columns[s, j - 1, 10 * k : 10 * k + 10])
                 j = frames.parents[j - 1]
 
 
@@ -96,3 +116,27 @@ def fill_complex_columns(
 ) -> None:
     """The same in complex numbers."""
     _fill(frames, gravity, q, v, a, scratch, columns)
+
+
+@kernel
+def fill_columns_in_lanes(
+    frames: Frames, gravity: Reals, q: Reals2, v: Reals2, a: Reals2, rows: Reals2, columns: Reals3
+) -> None:
+    """The same for eight samples at once; the workspace has (frames + 1) x ROOM + 3 frames + 10 rows of eight."""
+    count, work = len(frames.parents), lane_vector(rows)
+    end = (count + 1) * ROOM
+    own_q, own_v, own_a = work[end : end + count], work[end + count : end + 2 * count], work[end + 2 * count :]
+    y = work[end + 3 * count :]
+    _start(gravity, work)
+    for s in range(0, len(q), LANES):
+        gather(q, s, own_q)
+        gather(v, s, own_v)
+        gather(a, s, own_a)
+        for k in range(count):
+            _move(frames, k, own_q[k], own_v[k], own_a[k], work)
+            j = k + 1
+            while j > 0:
+                _columns_of(frames, k, j, work, y)
+                # Into the rows of the samples at once: the answer is much larger than the nearest cache.
+                scatter(y, s, columns[:, j - 1, 10 * k : 10 * k + 10])
+                j = frames.parents[j - 1]

@@ -9,6 +9,9 @@ from dalembert.study.tables.unused import few, unused_parameters
 from dalembert.study.tasks import TASKS
 from dalembert.study.tasks.requirements import needs_robot
 
+_BATCHES = ("propagate", "sample", "sweep", "global_sensitivity", "identify_set", "identify_bands")
+"""Tasks that evaluate many samples at once."""
+
 
 def model_findings(study: Study) -> tuple[Finding, ...]:
     """Return the findings about the mechanism of a study: what the import of a robot left out, elements that lock."""
@@ -16,7 +19,7 @@ def model_findings(study: Study) -> tuple[Finding, ...]:
     robot = study.file.model.robot_table
     if robot is not None and needs_robot in TASKS[study.task].needs:  # the task makes no mechanism of the robot
         return (*unused, *robot.tree.findings)
-    return (*unused, *(study.system().findings if study.has_system else ()))
+    return (*unused, *_one_by_one(study), *(study.system().findings if study.has_system else ()))
 
 
 def _unused(study: Study) -> tuple[Finding, ...]:
@@ -26,6 +29,21 @@ def _unused(study: Study) -> tuple[Finding, ...]:
     message = f"No number of the model depends on {few(names)}."
     advice = "Use each parameter in the model, or remove it from [parameters]."
     return (Finding("unused-parameters", "warning", {"parameters": ", ".join(names)}, message, advice),)
+
+
+def _one_by_one(study: Study) -> tuple[Finding, ...]:
+    """Return the finding about a component because of which samples cannot run side by side."""
+    if study.task not in _BATCHES or not study.has_system or not study.solver.takes_lanes:
+        return ()
+    from dalembert.multibody.model.lane_models import prevents_lanes
+    from dalembert.multibody.model.lowering import lower
+
+    name = prevents_lanes(lower(study.system()))
+    if not name:
+        return ()
+    message = f"The samples run one by one, because {name!r} cannot take eight at once."
+    advice = "Results do not depend on this. A study without this component takes less time."
+    return (Finding("samples-one-by-one", "note", {"component": name}, message, advice),)
 
 
 def model_lines(study: Study) -> Iterator[str]:

@@ -18,7 +18,7 @@ KINDS = [
     pytest.param(kind, role, id=f"{kind.name}-{role}", marks=() if kind.name in COMMON else pytest.mark.slow)
     for kind in HOMES
     for role in ("residual",)
-    if kind.has(role) and kind.lanes and not HOMES[kind]().callbacks
+    if kind.has(role) and kind.takes_lanes and not HOMES[kind]().callbacks
 ]
 
 

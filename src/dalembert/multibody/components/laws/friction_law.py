@@ -5,7 +5,7 @@ from typing import Any
 from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number
-from dalembert.multibody.kernels.elementary import exponential, logarithm, tanh
+from dalembert.multibody.kernels.elementary import exponential, is_zero, logarithm, tanh
 
 #: Viscous coefficient, constant Coulomb force or torque, what it grows by with the reaction (friction coefficient
 #: times pin radius, or friction coefficient), the rate at which tanh(rate / slip) turns its sign, and how much larger
@@ -20,7 +20,7 @@ TINY = 1e-18  # keeps |reaction| differentiable where the reaction vanishes, N^2
 def resistance(reaction, rate, p):
     """Friction against a rate."""
     dry = p.coulomb + p.per_reaction * reaction
-    if p.stribeck != 0.0:
+    if not is_zero(p.stribeck):
         ratio = rate / p.stribeck_rate
         power = exponential(0.5 * p.stribeck_exponent * logarithm(ratio * ratio + TINY))
         dry += p.stribeck * exponential(-power)

@@ -13,7 +13,7 @@ from dalembert.multibody.components.base_load import BaseLoad
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.rows import Rows
 from dalembert.multibody.components.signals import Course
-from dalembert.multibody.kernels.elementary import exponential, logarithm, root, tanh
+from dalembert.multibody.kernels.elementary import exponential, logarithm, real, root, tanh, where
 
 NUMBERS = ("torque_constant", "resistance", "back_emf", "limit", "ratio", "log_efficiency", "slip", "inertia")
 INTEGERS = ("limited", "by_current", "enabled")
@@ -24,7 +24,7 @@ TINY = 1e-18  # keeps |torque| differentiable where the torque vanishes, N^2 m^2
 @inlined
 def _log_cosh(z):
     """Logarithm of cosh(z), less ln 2."""
-    size = z if z.real > 0 else -z
+    size = where(real(z) > 0.0, z, -z)
     return size + logarithm(1.0 + exponential(-2.0 * size))
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.multibody.components.planar import hermite
 from dalembert.multibody.components.planar.line_bending import curvature
-from dalembert.multibody.kernels.elementary import reciprocal, root
+from dalembert.multibody.kernels.elementary import is_zero, reciprocal, root
 from dalembert.multibody.kernels.kind import Kind
 
 WIDTH = 8
@@ -49,7 +49,7 @@ def residual(x, v, a, p, m, inputs, r):
         tx, ty = s1 * dx + s2 * ax + s5 * bx, s1 * dy + s2 * ay + s5 * by
         inverse = reciprocal(root(tx * tx + ty * ty))
         force = AW[g] * h * axial * (1.0 - inverse)
-        if delay != 0.0:
+        if not is_zero(delay):
             ux, uy = _line(s1, s2, s5, v)
             force += AW[g] * h * axial * delay * (tx * ux + ty * uy) * inverse * inverse
         px, py = force * tx, force * ty
@@ -61,7 +61,7 @@ def residual(x, v, a, p, m, inputs, r):
         cx, cy = c1 * dx + c2 * ax + c5 * bx, c1 * dy + c2 * ay + c5 * by
         kappa, px, py, square = curvature(tx, ty, cx, cy)
         moment = kappa
-        if delay != 0.0:
+        if not is_zero(delay):
             ux, uy = _line(s1, s2, s5, v)
             wx, wy = _line(c1, c2, c5, v)
             moment += delay * (px * ux + py * uy + (tx * wy - ty * wx) * square)
@@ -118,5 +118,4 @@ CABLE = Kind(
     lengths=("length",),
     gravity=("gravity_x", "gravity_y"),
     dissipates="delay",
-    lanes=True,
 )

@@ -16,7 +16,7 @@ from dalembert.multibody.components.planar.section_inertia import (
     inertia_and_weight,
     kinetic_and_weight,
 )
-from dalembert.multibody.kernels.elementary import reciprocal
+from dalembert.multibody.kernels.elementary import is_zero, reciprocal
 from dalembert.multibody.kernels.kind import Kind
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
@@ -46,7 +46,7 @@ def residual(x, v, a, p, m, inputs, r):
             exx = 0.5 * (fx * fx + fy * fy - 1.0)
             twice = fx * nx + fy * ny
             sxx, syy, sxy = c11 * exx + c12 * eyy, c12 * exx + c11 * eyy, shear * twice
-            if delay != 0.0:
+            if not is_zero(delay):
                 rates = _strain_rates(v, xi, s1, s2, s5, y * across, fx, fy, nx, ny)
                 sxx += delay * (c11 * rates[0] + c12 * rates[1])
                 syy += delay * (c12 * rates[0] + c11 * rates[1])
@@ -116,5 +116,4 @@ CONTINUUM = Kind(
     lengths=("length",),
     gravity=("gravity_x", "gravity_y"),
     dissipates="delay",
-    lanes=True,
 )  # fmt: skip

@@ -26,9 +26,7 @@ def _observe(x, v, a, p, m, inputs, out):
     observe_joint(x, v, p, m, 0.0 * x[8], 0.0 * x[8], -x[8], out)
 
 
-GEAR = pair_kind(
-    "gear", ("ratio", "offset"), multipliers=1, constraint=_constraint, outputs=OUTPUTS, observe=_observe, lanes=True
-)
+GEAR = pair_kind("gear", ("ratio", "offset"), multipliers=1, constraint=_constraint, outputs=OUTPUTS, observe=_observe)
 
 
 @dataclass(frozen=True)

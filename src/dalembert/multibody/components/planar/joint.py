@@ -25,7 +25,7 @@ def joint_kind(
     name: str, multipliers: int, numbers: tuple[str, ...] = (), integers: tuple[str, ...] = (), **declared: Any
 ) -> Kind:
     """Kind of a joint that holds points, with the outputs of all joints if it declares no others."""
-    common = {"outputs": OUTPUTS, "lengths": ("a_x", "a_y", "b_x", "b_y"), "holds": True, "lanes": True}
+    common = {"outputs": OUTPUTS, "lengths": ("a_x", "a_y", "b_x", "b_y"), "holds": True}
     return pair_kind(name, numbers, integers, multipliers=multipliers, **common | declared)
 
 

@@ -36,7 +36,6 @@ POINT_MASS = Kind(
     residual=_residual,
     energy=_energy,
     gravity=("gravity_x", "gravity_y"),
-    lanes=True,
 )
 
 

@@ -35,7 +35,6 @@ RIGID = Kind(
     residual=_residual,
     energy=_energy,
     gravity=("gravity_x", "gravity_y"),
-    lanes=True,
 )
 
 

@@ -27,7 +27,7 @@ from dalembert.multibody.components.planar.section_inertia import (
     inertia_and_weight,
     kinetic_and_weight,
 )
-from dalembert.multibody.kernels.elementary import reciprocal
+from dalembert.multibody.kernels.elementary import is_zero, reciprocal
 from dalembert.multibody.kernels.kind import Kind
 
 AT, WEIGHT = math.sqrt(0.15), (5 / 18, 8 / 18, 5 / 18)  # Gauss' three points: the middle -+ AT lengths, and weights
@@ -132,7 +132,7 @@ def residual(x, v, a, p, m, inputs, r):
     line = _line(x, across)
     first, middle, last = _bend(line, -AT), _bend(line, 0.0), _bend(line, AT)
     e = _strains(x, line, first, middle, last)
-    if delay != 0.0:
+    if not is_zero(delay):
         d = _rates(x, v, line, first, middle, last, across)
         e = (
             e[0] + delay * d[0], e[1] + delay * d[1], e[2] + delay * d[2], e[3] + delay * d[3], e[4] + delay * d[4],
@@ -212,5 +212,4 @@ STRUCTURAL = Kind(
     lengths=("length",),
     gravity=("gravity_x", "gravity_y"),
     dissipates="delay",
-    lanes=True,
 )  # fmt: skip

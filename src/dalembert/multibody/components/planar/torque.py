@@ -25,7 +25,7 @@ def _energy(x, v, p, m, inputs):
     return 0.0 * torque, 0.0 * torque, -torque * relative_spin(x, v, m)
 
 
-TORQUE = pair_kind("torque", integers=("torque",), residual=_residual, energy=_energy, loads=True, lanes=True)
+TORQUE = pair_kind("torque", integers=("torque",), residual=_residual, energy=_energy, loads=True)
 
 
 @dataclass(frozen=True)

@@ -58,7 +58,9 @@ def _energy(x, v, p, m, inputs):
     return 0.0 * given[0], 0.0 * given[0], power
 
 
-USER_FORCE = pair_kind("user_force", integers=("function",), residual=_residual, energy=_energy, dissipates=True)
+USER_FORCE = pair_kind(
+    "user_force", integers=("function",), residual=_residual, energy=_energy, dissipates=True, lanes=False
+)
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import stack
 from dalembert.multibody.components.spatial.vectors import add_at, at, cross, dot, plus, times
 from dalembert.multibody.kernels.charts import Chart, flat
-from dalembert.multibody.kernels.elementary import reciprocal
+from dalembert.multibody.kernels.elementary import is_any, real, reciprocal, size_of, where
 from dalembert.multibody.kernels.kind import Kind
 
 
@@ -34,11 +34,11 @@ def _projected(x, r, s):
 @inlined
 def _orthonormal(x, p, m, dx):
     """Newton's iteration for the nearest rotation, D <- 1.5 D - 0.5 D (D^T D), to rounding."""
-    before = stack(x, 9)
+    before, active = stack(x, 9), 0.0 * real(x[0]) + 1.0
     for i in range(9):
         dx[i] = 0.0 * x[i]
     for _ in range(20):
-        largest = 0.0
+        largest = 0.0 * active
         for i in range(9):
             before[i] = x[i] + dx[i]
         for i in range(0, 9, 3):
@@ -46,9 +46,11 @@ def _orthonormal(x, p, m, dx):
                 product = dot(at(before, i), at(before, j))
                 if i == j:
                     product -= 1.0
-                largest = max(largest, abs(product.real))
-                add_at(dx, i, times(-0.5 * product, at(before, j)))
-        if largest < 1e-8:  # its square is rounding
+                largest = where(size_of(product) > largest, size_of(product), largest)
+                # A lane that has converged keeps its directors, as a sample alone does: the factor is 1 or 0.
+                add_at(dx, i, times(-0.5 * active * product, at(before, j)))
+        active = where(largest < 1e-8, 0.0, active)  # its square is rounding
+        if not is_any(active > 0.0):
             break
 
 

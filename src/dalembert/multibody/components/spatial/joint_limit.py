@@ -21,27 +21,42 @@ from dalembert.multibody.components.spatial.joint_coordinate import CHANNELS, Jo
 from dalembert.multibody.components.spatial.spatial_joint import Joint
 from dalembert.multibody.components.spatial.spatial_load import Load
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
-from dalembert.multibody.kernels.elementary import root
+from dalembert.multibody.kernels.elementary import real, root, where
 from dalembert.multibody.kernels.kind import Kind
 
 
 @inlined
 def _beyond(x, v, p, m):
     """How far the coordinate is beyond a limit, its rate there, and the direction, 1, -1 or 0 between the limits."""
-    if m.has_upper == 1 and x[0].real > p.upper.real:
-        return x[0] - p.upper, v[0], 1.0
-    if m.has_lower == 1 and x[0].real < p.lower.real:
-        return p.lower - x[0], -v[0], -1.0
-    return 0.0 * x[0], 0.0 * v[0], 0.0
+    depth, rate, side = 0.0 * x[0], 0.0 * v[0], 0.0 * real(x[0])
+    if m.has_lower == 1:
+        is_below = real(x[0]) < real(p.lower)
+        depth, rate, side = (
+            where(is_below, p.lower - x[0], depth),
+            where(is_below, -v[0], rate),
+            where(is_below, -1.0, side),
+        )
+    if m.has_upper == 1:
+        is_above = real(x[0]) > real(p.upper)
+        depth, rate, side = (
+            where(is_above, x[0] - p.upper, depth),
+            where(is_above, v[0], rate),
+            where(is_above, 1.0, side),
+        )
+    return depth, rate, side
+
+
+@inlined
+def _force(depth, side, p):
+    """Elastic force of a stop. The root has no derivative at zero: between the limits it is that of 1."""
+    return p.stiffness * depth * root(where(side == 0.0, 1.0, depth))
 
 
 @inlined
 def _pushed(x, v, p, m):
     """What pushes the coordinate back, against its direction."""
     depth, rate, side = _beyond(x, v, p, m)
-    if side == 0.0:
-        return depth
-    return side * p.stiffness * depth * root(depth) * (1.0 + p.damping * rate)
+    return side * _force(depth, side, p) * (1.0 + p.damping * rate)
 
 
 @inlined
@@ -53,9 +68,7 @@ def _residual(x, v, a, p, m, inputs, r):
 def _energy(x, v, p, m, inputs):
     """No kinetic energy; stiffness d^(5/2) / (5/2); power of the damping."""
     depth, rate, side = _beyond(x, v, p, m)
-    if side == 0.0:
-        return depth, depth, depth
-    force = p.stiffness * depth * root(depth)
+    force = _force(depth, side, p)
     return 0.0 * force, 0.4 * force * depth, -force * p.damping * rate * rate
 
 

@@ -178,6 +178,7 @@ BUSHING = pair_kind(
     observe=_observe,
     dissipates=tuple(name for name in _NUMBERS if name.startswith("damping")),
     holds=True,
+    lanes=False,  # which entry of a quaternion is the largest is a branch on the state
 )  # fmt: skip
 
 

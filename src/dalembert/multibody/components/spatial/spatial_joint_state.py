@@ -51,7 +51,9 @@ def _elevation(x, p, m, inputs, g):
 
 
 def _stated(name: str, constraint: Any) -> Kind:
-    return pair_kind(name, __name__, integers=("course",), multipliers=1, constraint=constraint, lengths=LENGTHS)
+    return pair_kind(
+        name, __name__, integers=("course",), multipliers=1, constraint=constraint, lengths=LENGTHS, lanes=False
+    )
 
 
 STATED_ANGLE, STATED_DISPLACEMENT = _stated("stated_angle", _angle), _stated("stated_displacement", _displacement)

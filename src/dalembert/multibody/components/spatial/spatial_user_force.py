@@ -74,7 +74,13 @@ def _energy(x, v, p, m, inputs):
 
 
 USER_FORCE = pair_kind(
-    "user_force_in_space", __name__, integers=("function",), residual=_residual, energy=_energy, dissipates=True
+    "user_force_in_space",
+    __name__,
+    integers=("function",),
+    residual=_residual,
+    energy=_energy,
+    dissipates=True,
+    lanes=False,
 )
 
 

@@ -144,7 +144,7 @@ class GeneralizedAlpha(Integrator):
 
         A sample has the same bits in both.
         """
-        plain = not (batch.perturbed or batch.counters or batch.logged)
+        plain = not (batch.perturbed or batch.logged)
         if not (self.takes_lanes and plain and share_lanes(batch.samples)):
             return self._one_by_one(batch)
         runs: dict[int, Run] = {}

@@ -15,10 +15,10 @@ from dalembert.kernels.words import Address, Integers, Reals2, Reals3
 from dalembert.multibody.integrators.generalized_alpha.newton import AGED, MOST_ITERATIONS, SLOW
 from dalembert.multibody.integrators.shared.convergence import BALANCED, NOISE, ROUNDING
 from dalembert.multibody.integrators.shared.problem import IntegrationProblem
-from dalembert.multibody.kernels.assembly import reduced_residual, reduced_tangent, set_signals
+from dalembert.multibody.kernels.assembly import displace, reduced_residual, reduced_tangent, restore, set_signals
 from dalembert.multibody.kernels.linear import BAND, Factors, factorise, storage
 from dalembert.multibody.kernels.sample_lanes import solve_samples
-from dalembert.multibody.kernels.states import MotionState, advance, resting
+from dalembert.multibody.kernels.states import MotionState, advance, resting, shift
 
 NORM, BEFORE, LEFT, FORCE, ITERATES, IS_FRESH = range(6)
 """Rows of the numbers of lanes: see :class:`LanesNewton`."""
@@ -29,8 +29,9 @@ class LanesNewton(NamedTuple):
     of the lanes in real numbers; ``work``: their call, with its signals (signals, 3). ``factors``, ``before``,
     ``after``: a matrix and two states of one lane. ``matrix`` (entries, 8): factorised matrices; ``pivots``, ``tops``
     (N,): of all lanes; ``has_pivots`` (1,): whether they are known. ``memory`` (2, 8): as of :class:`newton.Newton`.
-    ``alone`` (8,): lanes that are to run alone. ``numbers`` (6, 8): size of the last correction, of the one before,
-    bound of those to come, forces at the prediction, whether the lane iterates, whether its matrix is of this step.
+    ``turns`` (8,): what counts the turns of angles, 0 for none; ``alone`` (8,): lanes that are to run alone.
+    ``numbers`` (6, 8): size of the last correction, of the one before, bound of those to come, forces at the
+    prediction, whether the lane iterates, whether its matrix is of this step.
     """
 
     model: Address
@@ -48,9 +49,11 @@ class LanesNewton(NamedTuple):
     has_pivots: Integers
     r: Reals2
     delta: Reals2
+    change: Reals2
     buffer: Reals2
     slope: Reals2
     memory: Reals2
+    turns: Integers
     alone: Integers
     numbers: Reals2
 
@@ -63,16 +66,20 @@ def lanes_newton(
     reals: np.ndarray,
     work: int,
     signals_alone: np.ndarray,
+    turns: np.ndarray,
 ) -> LanesNewton:
     """Workspace for the iteration."""
     layout, width = problem.reduced.layout, len(problem.scale)
     factors = storage(layout)
+    r, delta = np.zeros((2, layout.size + 1, WIDTH))
+    # The same array where no node makes them differ, as of one sample.
+    change = delta if problem.reduced.increments == problem.n else np.zeros((width, WIDTH))
     return LanesNewton(
         model, call, signals, reals, work, signals_alone, factors, resting(width), resting(width),
         np.zeros((len(factors.matrix), WIDTH)), np.zeros(layout.size, np.int64), np.zeros(layout.size, np.int64),
-        np.zeros(1, np.int64), np.zeros((layout.size + 1, WIDTH)), np.zeros((layout.size + 1, WIDTH)),
+        np.zeros(1, np.int64), r, delta, change,
         np.zeros((layout.size + 3 * layout.reach, WIDTH)), np.zeros((width, WIDTH)), np.zeros((2, WIDTH)),
-        np.zeros(WIDTH, np.int64), np.zeros((6, WIDTH)),
+        turns, np.zeros(WIDTH, np.int64), np.zeros((6, WIDTH)),
     )  # fmt: skip
 
 
@@ -152,27 +159,32 @@ def _largest(values, begin, end, zero):
 
 
 @inner
-def _predict(n, c, old, new, slope):
+def _predict(n, c, old, new, scratch):
     """Fill the new states with linear extrapolations of accelerations and multipliers, as for one sample."""
+    slope = lane_vector(scratch.slope)
     for i in range(n):
         new.a[i] = old.a[i] + c.step * slope[i]
     # Multipliers stand behind the coordinates.
     for i in range(n, len(old.x) - 1):
         new.x[i] = old.x[i] + c.step * slope[i]
     advance(n, c, old, new)
+    # The predicted coordinates of nodes are moved onto their internal constraints.
+    change = lane_vector(scratch.change)
+    if restore(scratch.model, c.dq, new.x, scratch.call, change):
+        shift(n, c, change, new)
 
 
 @inner
-def _correct(n, c, scale, mask, delta, old, new, zero):
+def _correct(n, c, scale, mask, corrections, old, new, zero):
     """Apply the corrections of lanes that iterate; return their sizes against the scales."""
     size = zero
     for i in range(n):
         # A frozen lane takes off zero, which keeps its bits.
-        change = chosen(mask, delta[i])
+        change = chosen(mask, corrections[i])
         new.a[i] -= change
         size = larger(size, c.dq * sizes(change) / scale[i])
     for i in range(n, len(old.x) - 1):
-        new.x[i] -= chosen(mask, delta[i])
+        new.x[i] -= chosen(mask, corrections[i])
     advance(n, c, old, new)
     return size
 
@@ -215,8 +227,9 @@ def converge_lanes(problem, c, t, within, tolerance, old_stack, new_stack, scrat
         lane_vector(new_stack[0]), lane_vector(new_stack[1]), lane_vector(new_stack[2]), lane_vector(new_stack[3])
     )
     r, delta, numbers = lane_vector(scratch.r), lane_vector(scratch.delta), lane_vector(scratch.numbers)
+    change = lane_vector(scratch.change)
     zero = 0.0 * old.x[len(old.x) - 1]
-    _predict(n, c, old, new, lane_vector(scratch.slope))
+    _predict(n, c, old, new, scratch)
     for lane in range(WIDTH):
         values[NORM, lane], values[BEFORE, lane], values[LEFT, lane] = 1.0, 0.0, 1.0
         # Each lane keeps its matrix while its step is about as long and its last contraction was good.
@@ -235,7 +248,8 @@ def converge_lanes(problem, c, t, within, tolerance, old_stack, new_stack, scrat
         solve_samples(
             reduced.layout, scratch.matrix, scratch.pivots, scratch.tops, scratch.r, scratch.buffer, scratch.delta
         )
-        moved = _correct(n, c, problem.scale, numbers[ITERATES], delta, old, new, zero)
+        displace(scratch.model, c.dq, new.x, delta, scratch.call, change)
+        moved = _correct(n, c, problem.scale, numbers[ITERATES], change, old, new, zero)
         forces = _largest(r, 0, reduced.increments, zero) if iteration > 2 else zero
         running = False
         for lane in range(WIDTH):

@@ -23,8 +23,11 @@ from dalembert.multibody.kernels.states import (
     coefficients,
     interpolate,
     resting,
+    row,
+    rows,
 )
 from dalembert.multibody.model.lane_models import lane_model
+from dalembert.multibody.model.turns import STEP_END, count_turns
 
 
 def run_in_lanes(
@@ -33,11 +36,13 @@ def run_in_lanes(
     """Run up to eight samples; return their states (samples, times, N + 1), and which of them have to run alone."""
     problem, samples = batch.problem, batch.samples
     filled = [*range(len(samples)), *[0] * (WIDTH - len(samples))]
-    models = [samples[number].real.need("rates") for number in filled]
-    together = lane_model(samples)
+    models = [samples[number].real.need("rates").reduced() for number in filled]
+    together = lane_model(samples).reduced()
     call, work = together.call(), models[0].call()
+    turns = np.zeros(WIDTH, np.int64)
+    turns[: len(samples)] = batch.begin_counting()
     newton = lanes_newton(
-        problem, together.address, call.address, call.signals, addresses(models), work.address, work.signals
+        problem, together.address, call.address, call.signals, addresses(models), work.address, work.signals, turns
     )
     ends, out = np.zeros((2, 4, len(problem.scale), WIDTH)), resting(len(samples), *batch.shape)
     for lane, number in enumerate(filled):
@@ -83,6 +88,7 @@ def integrate_lanes(
                     alone[lane] = 1
                 put_lane(state, lane, new)
         if stretch == 0:
+            _count(begin, new, scratch)
             while due < len(problem.times) and problem.times[due] <= begin:
                 _record(n, 1.0, 1.0, new, new, out, due, scratch)
                 due += 1
@@ -110,7 +116,10 @@ def integrate_lanes(
                 slope[i] = (after[i] - before[i]) / c.step
             while due < len(problem.times) and problem.times[due] <= target + 1e-9 * length:
                 _record(n, length, min(1.0, (problem.times[due] - t) / length), old, new, out, due, scratch)
+                for lane in range(out.x.shape[0]):
+                    count_turns(scratch.turns[lane], problem.times[due], row(rows(out, lane), due), due)
                 due += 1
+            _count(target, new, scratch)
             t = target
         # Nothing is left to do where all lanes run alone.
         running = False
@@ -118,6 +127,15 @@ def integrate_lanes(
             running = running or alone[lane] == 0
         if not running:
             return
+
+
+@inner
+def _count(t, stack, scratch):
+    """Count the turns of angles in all lanes at the end of a step."""
+    for lane in range(WIDTH):
+        if scratch.turns[lane] != 0:
+            take_lane(stack, lane, scratch.after)
+            count_turns(scratch.turns[lane], t, scratch.after, STEP_END)
 
 
 @inner

@@ -1,0 +1,23 @@
+"""Samples of a motion in lanes: eight rows of arrays side by side, and back."""
+
+from dalembert.kernels.kernel import inner
+from dalembert.kernels.lanes import WIDTH, entry, with_entry
+
+
+@inner
+def gather(array, first, columns):
+    """Fill a vector of lanes with the rows from ``first`` on of an array (samples, columns); the last row repeats."""
+    last = len(array) - 1
+    for k in range(array.shape[1]):
+        column = columns[k]
+        for lane in range(WIDTH):
+            column = with_entry(column, lane, array[min(first + lane, last), k])
+        columns[k] = column
+
+
+@inner
+def scatter(columns, first, array):
+    """Write a vector of lanes to the rows from ``first`` on of an array (samples, columns)."""
+    for lane in range(min(WIDTH, len(array) - first)):
+        for k in range(array.shape[1]):
+            array[first + lane, k] = entry(columns[k], lane)

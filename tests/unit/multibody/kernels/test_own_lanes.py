@@ -9,6 +9,7 @@ import dalembert.multibody as mb
 from dalembert.errors import ModelError
 from dalembert.kernels.kernel import inner
 from dalembert.multibody.components.planar import pairs
+from dalembert.multibody.components.points import Side
 from dalembert.multibody.kernels.elementary import is_zero, where
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.model.lane_models import takes_lanes
@@ -46,9 +47,8 @@ KINDS = {
 
 @dataclass(frozen=True)
 class OneSided(mb.Load):
-    a: mb.Point
-    b: mb.Point
-    kind: Kind
+    a: Side
+    b: Side
     stiffness: float
     damping: float
 
@@ -58,12 +58,20 @@ class OneSided(mb.Load):
         lowering.add(self.kind, pair.slots, numbers, pair.integers, self.name)
 
 
-def response(kind: str) -> mb.TimeResponse:
+class Selecting(OneSided):
+    kind = KINDS["selects"]
+
+
+class Branching(OneSided):
+    kind = KINDS["branches"]
+
+
+def response(load: type[OneSided]) -> mb.TimeResponse:
     def build(stiffness: float, damping: float) -> mb.System:
         system = mb.System(gravity=(0.0, -9.81))
         bar = system.add(mb.RigidBar("bar", 1.0, 1.0, angle=-1.2))
         system.add(mb.RevoluteJoint("pin", system.ground, bar.start))
-        system.add(OneSided("rope", system.ground.point(0.0, -1.0), bar.end, KINDS[kind], stiffness, damping))
+        system.add(load("rope", system.ground.point(0.0, -1.0), bar.end, stiffness, damping))
         return system
 
     ranges = {"stiffness": (10.0, 90.0), "damping": (0.1, 0.9)}
@@ -73,7 +81,7 @@ def response(kind: str) -> mb.TimeResponse:
 
 
 def test_samples_have_the_bits_of_each_alone() -> None:
-    model, chance = response("selects"), np.random.default_rng(3)
+    model, chance = response(Selecting), np.random.default_rng(3)
     batch = np.stack([chance.uniform(10.0, 90.0, 8), chance.uniform(0.1, 0.9, 8)], axis=1)
     assert takes_lanes(lower(model.builder(*batch[0])))
     alone = np.stack([model.evaluate(row).only()[0] for row in batch])
@@ -81,7 +89,7 @@ def test_samples_have_the_bits_of_each_alone() -> None:
 
 
 def test_a_branch_on_the_state_is_refused() -> None:
-    model = response("branches")
+    model = response(Branching)
     with pytest.raises(ModelError) as error:
         model.evaluate(np.full((4, 2), 0.5) * [100.0, 1.0])
     line = branches.__code__.co_firstlineno + 4

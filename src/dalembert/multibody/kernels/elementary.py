@@ -15,7 +15,7 @@ from numba.extending import overload
 
 from dalembert.kernels.duals import DualType
 from dalembert.kernels.duals import chained as chained_dual
-from dalembert.kernels.kernel import inner
+from dalembert.kernels.kernel import inlined, inner
 from dalembert.kernels.lanes import (
     WIDTH,
     LanesType,
@@ -53,11 +53,11 @@ def where(condition, a, b):
     return a if condition else b
 
 
-@overload(where, inline="always")
+@overload(where, strict=False)
 def _where(condition, a, b):
     if isinstance(condition, MaskType):
         return lambda condition, a, b: select(condition, a, b)
-    return lambda condition, a, b: a if condition else b
+    return where
 
 
 def is_any(condition):
@@ -119,12 +119,64 @@ def lane_by_lane(function: Any) -> Callable:
     return mapped
 
 
+@inlined
+def _sine_and_cosine(x):
+    """Sine and cosine below `_LARGE`, of a real number or of lanes, by the same operations in the same order.
+
+    x = k pi/2 + r + tail with |r| <= pi/4, pi/2 in three parts, so that the products with k are exact (Cody and Waite
+    1980); then polynomials in r^2 (`_SINE`, `_COSINE`). Errors are below one unit in the last place. In contrast to the
+    system's functions, the bits are the same on every processor.
+    """
+    k = 1.0 * math.floor(x * _TWO_OVER_PI + 0.5)
+    first = x - k * _HALF_PI[0]
+    second = k * _HALF_PI[1]
+    near = first - second
+    # What rounding took off the difference goes to the tail.
+    rest = k * _HALF_PI[2] - ((first - near) - second)
+    r = near - rest
+    tail = (near - r) - rest
+    z = r * r
+    cube = z * r
+    polynomial = _SINE[1] + z * (_SINE[2] + z * (_SINE[3] + z * (_SINE[4] + z * _SINE[5])))
+    s = r - ((z * (0.5 * tail - cube * polynomial) - tail) - cube * _SINE[0])
+    polynomial = _COSINE[1] + z * (_COSINE[2] + z * (_COSINE[3] + z * (_COSINE[4] + z * _COSINE[5])))
+    half = 0.5 * z
+    c = 1.0 - half
+    c = c + (((1.0 - c) - half) + (z * (z * (_COSINE[0] + z * polynomial)) - r * tail))
+    # The quadrant exchanges sine and cosine, and turns their signs.
+    quadrant = k - 4.0 * math.floor(0.25 * k)
+    is_odd = quadrant - 2.0 * math.floor(0.5 * quadrant) == 1.0
+    sine, cosine = where(is_odd, c, s), where(is_odd, s, c)
+    return where(quadrant >= 2.0, -sine, sine), where(size_of(quadrant - 1.5) < 1.0, -cosine, cosine)
+
+
+_LARGE = 1e6  # rad, above which the products with k are no more exact
+_TWO_OVER_PI = 2.0 / math.pi
+_HALF_PI = 1.57079632673412561417, 6.07710050630396597660e-11, 2.02226624879595063154e-21
+#: Minimax polynomials on [-pi/4, pi/4]: coefficients of Sun Microsystems' fdlibm (1993), k_sin.c and k_cos.c.
+_SINE = (
+    -1.66666666666666324348e-01, 8.33333333332248946124e-03, -1.98412698298579493134e-04,
+    2.75573137070700676789e-06, -2.50507602534068634195e-08, 1.58969099521155010221e-10,
+)  # fmt: skip
+_COSINE = (
+    4.16666666666666019037e-02, -1.38888888888741095749e-03, 2.48015872894767294178e-05,
+    -2.75573143513906633035e-07, 2.08757232129817482790e-09, -1.13596475577881948265e-11,
+)  # fmt: skip
+
+
+@inner
+def _sin_cos_of_reals(x):
+    if abs(x) < _LARGE:
+        return _sine_and_cosine(x)
+    return math.sin(x), math.cos(x)
+
+
 def _sin_cos_of_lanes(x):
-    # The library's vector functions have other roundings than the scalar ones: each lane takes the scalar function.
-    s, c = x, x
-    for lane in range(WIDTH):
-        sine, cosine = sin_cos(entry(x, lane))
-        s, c = with_entry(s, lane, sine), with_entry(c, lane, cosine)
+    s, c = _sine_and_cosine(x)
+    if is_any(sizes(x) >= _LARGE):
+        for lane in range(WIDTH):
+            sine, cosine = sin_cos(entry(x, lane))
+            s, c = with_entry(s, lane, sine), with_entry(c, lane, cosine)
     return s, c
 
 
@@ -162,10 +214,10 @@ def _elementary(of_reals: Callable, of_lanes: Callable | None = None) -> Callabl
     return declared
 
 
-@_elementary(lambda x: (math.sin(x), math.cos(x)), _sin_cos_of_lanes)
+@_elementary(lambda x: _sin_cos_of_reals(x), _sin_cos_of_lanes)
 def sin_cos(x):
-    """Sine and cosine."""
-    s, c = math.sin(x.real), math.cos(x.real)
+    """Sine and cosine, with the same bits on every processor."""
+    s, c = _sin_cos_of_reals(x.real)
     return chained(x, s, c), chained(x, c, -s)
 
 

@@ -37,7 +37,7 @@ from dalembert.multibody.motion.complex_steps import (
 )
 from dalembert.multibody.motion.long_runs import check_pace
 from dalembert.multibody.motion.simulation import prepared
-from dalembert.multibody.start.assemble import assembled, moves_start
+from dalembert.multibody.start.assemble import assembled, moves_start, start_key
 from dalembert.parameters import Parameters
 
 
@@ -280,7 +280,19 @@ class BuiltModel(MotionModel):
     def lowered_at(self, vector: np.ndarray, begin: float, *, closed: bool) -> Lowered:
         """Arrays of the mechanism at a parameter vector and a time of the signals; as placed if not ``closed``."""
         system = self.system(vector)
-        return self._fit(assembled(system, begin=begin) if closed else lower(system, begin))
+        # In the structure of the first sample before its joints are closed: what follows from it is computed once.
+        placed = self._fit(lower(system, begin))
+        return self._closed(system, placed, begin) if closed else placed
+
+    def _closed(self, system: BaseSystem, placed: Lowered, begin: float) -> Lowered:
+        """The arrays with closed joints. Samples that differ in stiffnesses or masses start alike: that is kept."""
+        key = start_key(system, placed)
+        known, start = vars(self).get("_start", (b"", {}))
+        if key and key == known:
+            return placed.moved(**start)
+        lowered = assembled(system, placed=placed, begin=begin)
+        vars(self)["_start"] = key, {name: getattr(lowered, name) for name in ("frames", "x", "v")}
+        return lowered
 
     def along(self, vector: np.ndarray, direction: np.ndarray, begin: float) -> Lowered:
         """The closed arrays of :meth:`lowered_at`, moved by a complex step along a direction of all parameters.
@@ -296,9 +308,9 @@ class BuiltModel(MotionModel):
 
     def _moved(self, system: BaseSystem, begin: float) -> Lowered:
         """The closed arrays of a perturbed system; as placed where no initial state moves with the perturbation."""
-        placed = lower(system, begin)
+        placed = self._fit(lower(system, begin))
         moves = moves_start(system, placed)
-        return self._fit(assembled(system, perturbed=True, placed=placed, begin=begin) if moves else placed)
+        return assembled(system, perturbed=True, placed=placed, begin=begin) if moves else placed
 
     def perturbed_at(self, vector: np.ndarray, column: int, begin: float, *, closed: bool) -> Lowered:
         """The arrays of :meth:`lowered_at`, moved by a complex step of the scale of one parameter."""

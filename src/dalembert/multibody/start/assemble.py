@@ -99,6 +99,20 @@ def _refuse_misalignment(system: BaseSystem, lowered: Lowered, placed: np.ndarra
             )
 
 
+def start_key(system: BaseSystem, placed: Lowered) -> bytes:
+    """Return what the initial state of a placed system follows from: systems with the same key start alike.
+
+    Empty where functions of the user's, or an equilibrium or stated coordinates, may contribute more.
+    """
+    if system.start == EQUILIBRIUM or system.stated.coordinates or system.stated.rates or placed.callbacks:
+        return b""
+    joints = (data for kind, data in placed.data.items() if kind.constraint is not None)
+    lengths = (data[:, kind.length_columns] for kind, data in placed.data.items())  # of which the extent follows
+    signals = placed.signal_data, placed.knots
+    arrays = (placed.x, placed.v, placed.frames, placed.rates, placed.stated, *signals, *joints, *lengths)
+    return repr(system.driving).encode() + b"".join(array.tobytes() for array in arrays)
+
+
 def moves_start(system: BaseSystem, placed: Lowered) -> bool:
     """Whether a complex step in the numbers of a placed system may change its initial state: if not, nothing is solved.
 

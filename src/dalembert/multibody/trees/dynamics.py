@@ -34,7 +34,7 @@ from dalembert.multibody.trees.parameters import heavy, parameter_names
 from dalembert.multibody.trees.tree import JOINT_NUMBERS, Tree
 
 GRAVITY = (0.0, 0.0, -9.81)
-_FEWEST_IN_LANES = 32  # samples: fewer of some microseconds each are not worth the kernels for eight at once
+FEWEST_IN_LANES = 32  # samples: fewer of some microseconds each are not worth the kernels for eight at once
 Samples = np.ndarray | Sequence[Sequence[Number]]
 
 
@@ -307,7 +307,7 @@ def _filled(
         frames = ComplexFrames(frames.parents, frames.turns, frames.numbers.astype(complex))
     answer, entries = np.zeros(shape, dtype), (count + 1) * scratch
     given = tuple(np.ascontiguousarray(array, dtype) for array in given)
-    if is_complex or shape[0] < _FEWEST_IN_LANES:
+    if is_complex or shape[0] < FEWEST_IN_LANES:
         kernels[is_complex](frames, *given, np.zeros(entries, dtype), answer)
     else:
         # Behind the workspace of one sample: positions, velocities and accelerations, and what is filled of a sample.

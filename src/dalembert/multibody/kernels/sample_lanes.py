@@ -11,34 +11,30 @@ def solve_samples(
     layout: Layout, matrix: Reals2, pivots: Integers, tops: Integers, given: Reals2, buffer: Reals2, answer: Reals2
 ) -> None:
     """Solve for the first N rows of ``given`` (N + 1, 8) into those of ``answer``, lane by lane with the matrices
-    ``matrix`` (entries, 8), whose exchanges of rows are the same; ``buffer`` (N + 3 reach, 8).
+    ``matrix`` (entries, 8), dense ones by rows, whose exchanges of rows are the same; ``buffer`` (N + 3 reach, 8).
     """
     a, right, left = lane_vector(matrix), lane_vector(given), lane_vector(answer)
     if layout.kind == DENSE:
-        _multiply(a, layout.size, layout.lead, right, left)
+        _multiply(a, layout.size, right, left)
     else:
         _substitute(layout, a, pivots, tops, right, lane_vector(buffer), left)
 
 
 @inlined
-def _multiply(matrix, size, lead, given, answer):
-    """Products of square matrices by columns with vectors: the sums of `linear._multiply`, in its order."""
-    zero = 0.0 * given[size]  # the entry behind the last one is zero
-    for i in range(size):
-        answer[i] = zero
-    # Four columns are read side by side, each in its order: eight matrices do not fit into the nearest cache, and the
-    # processor fetches streams ahead.
+def _multiply(matrix, size, given, answer):
+    """Products of square matrices by rows with vectors: the sums of `linear._multiply`, in its order."""
+    # By rows, since eight matrices do not fit into the nearest cache: they are read once, in the order of memory, and
+    # sums stay in registers.
     whole = size // 4 * 4
-    for j in range(0, whole, 4):
-        a, b, c, d = given[j], given[j + 1], given[j + 2], given[j + 3]
-        at = j * lead
-        for i in range(size):
-            sums = matrix[at + i] * a + matrix[at + lead + i] * b
-            answer[i] += sums + matrix[at + 2 * lead + i] * c + matrix[at + 3 * lead + i] * d
-    for j in range(whole, size):
-        a, at = given[j], j * lead
-        for i in range(size):
-            answer[i] += matrix[at + i] * a
+    for i in range(size):
+        at = i * size
+        total = 0.0 * given[size]  # the entry behind the last one is zero
+        for j in range(0, whole, 4):
+            sums = matrix[at + j] * given[j] + matrix[at + j + 1] * given[j + 1]
+            total += sums + matrix[at + j + 2] * given[j + 2] + matrix[at + j + 3] * given[j + 3]
+        for j in range(whole, size):
+            total += matrix[at + j] * given[j]
+        answer[i] = total
 
 
 @inlined

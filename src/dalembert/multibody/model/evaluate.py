@@ -11,6 +11,8 @@ from dalembert.multibody.kernels.histories import energy_history
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.model.lowered import Lowered
 
+_DENSE = 10_000  # entries up to which a dense matrix takes less time than a sparse one
+
 
 def residual(
     lowered: Lowered,
@@ -44,8 +46,25 @@ def tangent(
 
     Accelerations are zero if not given. ``within`` says on which side of a jump the time ``t`` lies.
     """
-    structure, model = lowered.structure, lowered.tangents
-    slots, i, j = structure.full.separate
+    values, i, j = _tangent_entries(lowered, x, v, by, rows, t, a, within)
+    size = lowered.structure.size
+    inside = (i < size) & (j < size)
+    return csr_matrix((values[inside], (i[inside], j[inside])), shape=(size, size))
+
+
+def _tangent_entries(
+    lowered: Lowered,
+    x: np.ndarray,
+    v: np.ndarray,
+    by: tuple[float, float, float],
+    rows: tuple[float, float],
+    t: float,
+    a: np.ndarray | None = None,
+    within: float | None = None,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Entries that components add to the tangent, their rows and columns; absent ones have the number N."""
+    slots, i, j = lowered.structure.full.separate
+    model = lowered.tangents
     x, v = map(np.ascontiguousarray, (x, v))
     values, a = np.zeros(len(i)), np.zeros_like(x) if a is None else np.ascontiguousarray(a)
     call = model.call().set(x=x, v=v, a=a, matrix=values, entries=len(values), motion=rows[0], constraint=rows[1])
@@ -54,14 +73,24 @@ def tangent(
     if model.dtype is complex:
         call.signals.imag = 0.0  # a function of the user's may answer with a direction of its own
     model.each("tangent", call, slots)
-    inside = (i < structure.size) & (j < structure.size)
-    return csr_matrix((values[inside], (i[inside], j[inside])), shape=(structure.size, structure.size))
+    return values, i, j
 
 
 def constraint_jacobian(lowered: Lowered, x: np.ndarray, t: float = 0.0) -> csr_matrix:
     """Derivative of the constraints by the coordinates, sparse (m, n)."""
     n = lowered.structure.n
     return tangent(lowered, x, np.zeros_like(x), (1.0, 0.0, 0.0), (0.0, 1.0), t)[n:, :n]
+
+
+def changes_of_constraints(lowered: Lowered, x: np.ndarray, modes: np.ndarray) -> np.ndarray:
+    """Derivatives of the constraints along changes of the coordinates, J ``modes``, (m, -)."""
+    n, m = lowered.structure.n, lowered.structure.size - lowered.structure.n
+    if m * n > _DENSE:
+        return constraint_jacobian(lowered, x) @ modes
+    values, i, j = _tangent_entries(lowered, x, np.zeros_like(x), (1.0, 0.0, 0.0), (0.0, 1.0), 0.0)
+    inside = (i >= n) & (i < n + m) & (j < n)
+    places = (i[inside] - n) * n + j[inside]
+    return np.bincount(places, values[inside], m * n).reshape(m, n) @ modes
 
 
 def constraint_rates(

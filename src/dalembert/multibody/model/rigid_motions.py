@@ -7,7 +7,7 @@ import numpy as np
 from dalembert.multibody.components.base_body import BaseBody
 from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.elementary import STEP
-from dalembert.multibody.model.evaluate import constraint_jacobian, constraint_rates, residual
+from dalembert.multibody.model.evaluate import changes_of_constraints, constraint_rates, residual
 from dalembert.multibody.model.lowered import Lowered
 
 CLOSED = 1e-13  # violation against the scale that counts as none
@@ -63,7 +63,7 @@ def smallest(lowered: Lowered, model: BlockModel, x: np.ndarray, modes: np.ndarr
     both products, so that in complex numbers the derivative of J counts, too; only the inverse is the real part's.
     """
     n = lowered.structure.n
-    jacobian = constraint_jacobian(lowered, np.real(x)) @ np.real(modes)
+    jacobian = changes_of_constraints(lowered, np.real(x), np.real(modes))
     inverse = np.linalg.pinv(jacobian, rcond=1e-10)
     if not np.iscomplexobj(x):
         return inverse @ wanted

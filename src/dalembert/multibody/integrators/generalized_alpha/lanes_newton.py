@@ -145,8 +145,14 @@ def _renew(problem, c, t, within, stack, lane, scratch):
                 return
         scratch.has_pivots[0] = 1
     # The factors as one sample has them, so that no bit depends on the group; the other lanes keep theirs.
-    for i in range(len(factors.matrix)):
-        scratch.matrix[i, lane] = factors.matrix[i]
+    size, lead = reduced.layout.size, reduced.layout.lead
+    if reduced.layout.kind == BAND:
+        for i in range(len(factors.matrix)):
+            scratch.matrix[i, lane] = factors.matrix[i]
+    else:
+        for i in range(size):
+            for j in range(size):
+                scratch.matrix[i * size + j, lane] = factors.matrix[j * lead + i]
 
 
 @inlined

@@ -45,6 +45,7 @@ AREAS = {
             "Convergence",
             "Index-1 methods",
             "Radau IIA",
+            "Samples side by side",
             "Structure-preserving integrators",
         ),
     ),

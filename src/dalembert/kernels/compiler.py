@@ -24,6 +24,7 @@ from numba.extending import lower_builtin
 
 from dalembert.kernels.arguments import accepted, load_words, numba_type, read_words, store_words
 from dalembert.kernels.pipeline import PIPELINE, hastened
+from dalembert.kernels.processor import processor
 from dalembert.kernels.refusals import refusals
 from dalembert.kernels.views import WORD, intrinsic
 from dalembert.kernels.words import count
@@ -267,7 +268,7 @@ def target_machine(cpu: str | None = None) -> Any:
     ll.initialize_native_target()
     ll.initialize_native_asmprinter()
     target = ll.Target.from_triple(ll.get_process_triple())
-    features = ll.get_host_cpu_features().flatten() if cpu is None else ""
+    name, features = (cpu, "") if cpu else processor()
     return target.create_target_machine(
-        cpu=cpu or ll.get_host_cpu_name(), features=features, opt=_OPTIMISATION, codemodel="jitdefault", jit=True
+        cpu=name, features=features, opt=_OPTIMISATION, codemodel="jitdefault", jit=True
     )

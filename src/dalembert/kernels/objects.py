@@ -18,6 +18,7 @@ import llvmlite.binding as ll
 
 from dalembert.kernels.digest import file_digest
 from dalembert.kernels.packaged import packaged
+from dalembert.kernels.processor import processor
 
 _UNUSED = 30 * 86400  # s after which a cached object is removed
 _DAY = 86400
@@ -62,10 +63,9 @@ def cache_folder() -> Path:
 
     # The compiler itself is a part of the source of each object.
     own = sorted(Path(__file__).parent.glob("*.py"))
-    features = ll.get_host_cpu_features().flatten()
     parts = (
-        numba.__version__, llvmlite.__version__, platform.python_version(), platform.machine(), ll.get_host_cpu_name(),
-        features, *(file_digest(str(path)) for path in own),
+        numba.__version__, llvmlite.__version__, platform.python_version(), platform.machine(), *processor(),
+        *(file_digest(str(path)) for path in own),
     )  # fmt: skip
     return cache_root() / "kernels" / hashlib.sha256("\n".join(parts).encode()).hexdigest()[:16]
 

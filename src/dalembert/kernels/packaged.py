@@ -6,12 +6,15 @@ Python nor the Numba version. It is used if it was made from the present sources
 
 import hashlib
 import json
+import os
 import platform
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
 import llvmlite.binding as ll
+
+from dalembert.kernels.processor import VARIABLE
 
 HERE = Path(__file__).parent
 _HOMES = ("kernels", "multibody", "vibration", "surrogate")  # folders of the package that hold kernels
@@ -50,7 +53,7 @@ def source_digest() -> str:
 def family() -> Family | None:
     """The family of this machine's processor; None for one that no object serves."""
     own = FAMILIES.get(platform.machine())
-    if own is None or platform.system() != "Linux":
+    if own is None or platform.system() != "Linux" or os.environ.get(VARIABLE):
         return None
     features = ll.get_host_cpu_features()
     return own if all(features.get(name, False) for name in own.features) else None

@@ -11,6 +11,7 @@ import math
 import operator
 from typing import Any
 
+import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
@@ -34,6 +35,8 @@ ARITHMETIC = {
 
 class LanesType(types.Type):
     """Numba's type of eight real numbers; a plain number stands for eight equal ones."""
+
+    alignment = 8 * WIDTH  # of arrays on the stack, bytes
 
     def __init__(self) -> None:
         super().__init__("Lanes")
@@ -62,6 +65,14 @@ class Lanes:
     """Stands for eight real numbers side by side where NumPy's types stand for other numbers."""
 
     numba = LANES
+
+
+def lane_zeros(*shape: int) -> np.ndarray:
+    """Return zeros (*shape, 8) whose vectors are at multiples of their size, so that none is on two cache lines."""
+    count = int(np.prod(shape)) * WIDTH
+    room = np.zeros(count + WIDTH - 1)
+    first = -(room.ctypes.data // 8) % WIDTH
+    return room[first : first + count].reshape(*shape, WIDTH)
 
 
 @register_model(LanesType)

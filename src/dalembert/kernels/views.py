@@ -182,6 +182,8 @@ def _on_stack(context: Any, builder: Any, kind: types.Array, shape: tuple[int, .
     with builder.goto_entry_block():
         # In the entry block, else a loop around the call would use more stack at each turn.
         cells = builder.alloca(context.get_data_type(kind.dtype), size=int(np.prod(shape)))
+        # Vectors of lanes fill a cache line each: at other addresses each load would touch two of them.
+        cells.align = getattr(kind.dtype, "alignment", None)
     return array_at(context, builder, kind, builder.ptrtoint(cells, WORD), [WORD(length) for length in shape])
 
 

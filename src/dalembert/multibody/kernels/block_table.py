@@ -10,7 +10,7 @@ import numpy as np
 
 from dalembert.kernels.duals import ENTRIES, Dual
 from dalembert.kernels.kernel import BlockKernel
-from dalembert.kernels.lanes import WIDTH, Lanes
+from dalembert.kernels.lanes import Lanes, lane_zeros
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.nodes import CHANGE, RESTORE, SPREAD
 from dalembert.multibody.kernels.records import BLOCK, CALL, MODEL
@@ -167,9 +167,12 @@ class Call:
         self, size: int, coordinates: int, signals: int, dtype: type, callbacks: np.ndarray | None = None
     ) -> None:
         # One call serves a model in real numbers and its directions in complex ones, so that it has room for both.
-        wide = {Dual: ENTRIES, Lanes: WIDTH}.get(dtype)
-        room = np.zeros((signals, 3, wide or 2))
-        self.signals = room if wide else room.ravel().view(dtype)[: 3 * signals].reshape(signals, 3)
+        if dtype is Lanes:
+            self.signals = lane_zeros(signals, 3)
+        elif dtype is Dual:
+            self.signals = np.zeros((signals, 3, ENTRIES))
+        else:
+            self.signals = np.zeros(6 * signals).view(dtype)[: 3 * signals].reshape(signals, 3)
         self._callbacks = np.zeros(1, np.int64) if callbacks is None else callbacks
         self._words = np.zeros(1, CALL)
         own = self._words[0]

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from dalembert.kernels.kernel import Compiled
-from dalembert.kernels.lanes import WIDTH, Lanes
+from dalembert.kernels.lanes import WIDTH, Lanes, lane_zeros
 from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.nodes import CHANGE, RESTORE
 from dalembert.multibody.model.lowered import Lowered
@@ -58,7 +58,10 @@ def lane_model(samples: Sequence[Lowered], *roles: str) -> BlockModel:
     filled = [*samples, *[samples[0]] * (WIDTH - len(samples))]
 
     def lanes(arrays: list[np.ndarray]) -> np.ndarray:
-        return np.stack([np.real(array) for array in arrays], axis=-1)
+        together = lane_zeros(*arrays[0].shape)
+        for lane, array in enumerate(arrays):
+            together[..., lane] = np.real(array)
+        return together
 
     # Entry i of all samples side by side: one load fills a vector.
     numbers = {kind: lanes([entry.data[kind] for entry in filled]) for kind in samples[0].data}

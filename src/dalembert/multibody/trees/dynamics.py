@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dalembert.errors import InputError, shown
-from dalembert.kernels.lanes import WIDTH as LANES
+from dalembert.kernels.lanes import lane_zeros
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.trees import composite_bodies, frame_motion, newton_euler, torque_columns
 from dalembert.multibody.trees.frames import (
@@ -311,5 +311,5 @@ def _filled(
         kernels[is_complex](frames, *given, np.zeros(entries, dtype), answer)
     else:
         # Behind the workspace of one sample: positions, velocities and accelerations, and what is filled of a sample.
-        kernels[2](frames, *given, np.zeros((entries + 3 * count + max(count * count, 10), LANES)), answer)
+        kernels[2](frames, *given, lane_zeros(entries + 3 * count + max(count * count, 10)), answer)
     return answer

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.kernels.kernel import inlined, inner
-from dalembert.kernels.lanes import WIDTH, chosen, entry, lane_vector, larger, sizes
+from dalembert.kernels.lanes import WIDTH, chosen, entry, lane_vector, lane_zeros, larger, sizes
 from dalembert.kernels.words import Address, Integers, Reals2, Reals3
 from dalembert.multibody.integrators.generalized_alpha.newton import AGED, MOST_ITERATIONS, SLOW
 from dalembert.multibody.integrators.shared.convergence import BALANCED, NOISE, ROUNDING
@@ -71,15 +71,15 @@ def lanes_newton(
     """Workspace for the iteration."""
     layout, width = problem.reduced.layout, len(problem.scale)
     factors = storage(layout)
-    r, delta = np.zeros((2, layout.size + 1, WIDTH))
+    r, delta = lane_zeros(2, layout.size + 1)
     # The same array where no node makes them differ, as of one sample.
-    change = delta if problem.reduced.increments == problem.n else np.zeros((width, WIDTH))
+    change = delta if problem.reduced.increments == problem.n else lane_zeros(width)
     return LanesNewton(
         model, call, signals, reals, work, signals_alone, factors, resting(width), resting(width),
-        np.zeros((len(factors.matrix), WIDTH)), np.zeros(layout.size, np.int64), np.zeros(layout.size, np.int64),
+        lane_zeros(len(factors.matrix)), np.zeros(layout.size, np.int64), np.zeros(layout.size, np.int64),
         np.zeros(1, np.int64), r, delta, change,
-        np.zeros((layout.size + 3 * layout.reach, WIDTH)), np.zeros((width, WIDTH)), np.zeros((2, WIDTH)),
-        turns, np.zeros(WIDTH, np.int64), np.zeros((6, WIDTH)),
+        lane_zeros(layout.size + 3 * layout.reach), lane_zeros(width), lane_zeros(2),
+        turns, np.zeros(WIDTH, np.int64), lane_zeros(6),
     )  # fmt: skip
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from dalembert.kernels.kernel import inner, kernel
-from dalembert.kernels.lanes import WIDTH, lane_vector
+from dalembert.kernels.lanes import WIDTH, lane_vector, lane_zeros
 from dalembert.kernels.words import Integers, Reals, Reals4
 from dalembert.multibody.integrators.generalized_alpha.lanes_newton import (
     LanesNewton,
@@ -44,7 +44,7 @@ def run_in_lanes(
     newton = lanes_newton(
         problem, together.address, call.address, call.signals, addresses(models), work.address, work.signals, turns
     )
-    ends, out = np.zeros((2, 4, len(problem.scale), WIDTH)), resting(len(samples), *batch.shape)
+    ends, out = lane_zeros(2, 4, len(problem.scale)), resting(len(samples), *batch.shape)
     for lane, number in enumerate(filled):
         for part, values in enumerate(batch.states):
             ends[1, part, :, lane] = values[number]

@@ -12,7 +12,7 @@ import numpy as np
 
 from dalembert.kernels.duals import DIRECTIONS, ENTRIES, dual_vector, slopes_of, with_slopes
 from dalembert.kernels.kernel import inner, kernel
-from dalembert.kernels.lanes import lane_vector
+from dalembert.kernels.lanes import lane_vector, lane_zeros
 from dalembert.kernels.words import Address, Integers, Reals, Reals2, Reals3, Reals4
 from dalembert.multibody.integrators.shared.consistent import Consistency
 from dalembert.multibody.integrators.shared.problem import IntegrationProblem
@@ -69,13 +69,13 @@ def together(problem: IntegrationProblem, groups: Sequence[BlockModel], dual_wor
     """Workspace for derivatives along eight directions at once, by models in dual numbers, which the caller keeps."""
     layout, width = problem.reduced.exact_layout, len(problem.scale)
     lengths = (entry.size + 3 * entry.reach for entry in (layout, problem.exact_layout))
-    old, new = np.zeros((2, 4, len(groups), width, DIRECTIONS))
+    old, new = lane_zeros(2, 4, len(groups), width)
     state, (r, second) = np.zeros((3, width, ENTRIES)), np.zeros((2, width, ENTRIES))
-    right, answer = np.zeros((2, width, DIRECTIONS))
+    right, answer = lane_zeros(2, width)
     return Together(
         addresses(groups), differentiate_together.address if groups else 0,
         accelerate_together.address if groups else 0, dual_work, tangent_work, storage(layout), old, new, state, r,
-        second, right, answer, np.zeros((max(lengths), DIRECTIONS)), np.zeros(width), np.zeros(width),
+        second, right, answer, lane_zeros(max(lengths)), np.zeros(width), np.zeros(width),
     )  # fmt: skip
 
 

@@ -10,7 +10,7 @@ from dalembert.kernels.words import Complexes, Complexes2, Reals, Reals2
 from dalembert.multibody.components.spatial.vectors import at, combined, cross, dot, plus, times
 from dalembert.multibody.trees.frame_motion import SHIFT, inertia_times, out_of, place_frame
 from dalembert.multibody.trees.frames import AXIS, INERTIA, WIDTH, ComplexFrames, Frames
-from dalembert.multibody.trees.sample_lanes import gather, scatter
+from dalembert.multibody.trees.rows_in_lanes import gather, scatter
 
 WHOLE, ROOM = 12, 22
 """Row of the workspace: rotation and position in the parent; mass, mass x centre and inertia about the origin of all
@@ -97,8 +97,8 @@ def fill_masses_in_lanes(frames: Frames, q: Reals2, rows: Reals2, masses: Reals2
     """The same for eight samples at once; the workspace has rows of eight numbers, zero before."""
     count, work = len(frames.parents), lane_vector(rows)
     end = (count + 1) * ROOM
-    own_q, own_masses = work[end : end + count], work[end + count :]
+    positions, filled = work[end : end + count], work[end + count :]
     for s in range(0, len(q), LANES):
-        gather(q, s, own_q)
-        _fill_sample(frames, own_q, work, own_masses)
-        scatter(own_masses, s, masses)
+        gather(q, s, positions)
+        _fill_sample(frames, positions, work, filled)
+        scatter(filled, s, masses)

@@ -23,7 +23,7 @@ from dalembert.multibody.trees.frame_motion import (
     within,
 )  # fmt: skip
 from dalembert.multibody.trees.frames import AXIS, WIDTH, ComplexFrames, Frames
-from dalembert.multibody.trees.sample_lanes import gather, scatter
+from dalembert.multibody.trees.rows_in_lanes import gather, scatter
 
 TURNED, ORIGIN, DIRECTION, ROOM = 21, 30, 33, 36
 """Row of the workspace: that of the frame's motion up to its acceleration, then columns of the rotation to the base,
@@ -125,15 +125,20 @@ def fill_columns_in_lanes(
     """The same for eight samples at once; the workspace has (frames + 1) x ROOM + 3 frames + 10 rows of eight."""
     count, work = len(frames.parents), lane_vector(rows)
     end = (count + 1) * ROOM
-    own_q, own_v, own_a = work[end : end + count], work[end + count : end + 2 * count], work[end + 2 * count :]
+    positions, rates, accelerations = (
+        work[end : end + count],
+        work[end + count : end + 2 * count],
+        work[end + 2 * count :],
+    )
     y = work[end + 3 * count :]
     _start(gravity, work)
+    # Eight samples at a time; the last row fills the lanes that are left.
     for s in range(0, len(q), LANES):
-        gather(q, s, own_q)
-        gather(v, s, own_v)
-        gather(a, s, own_a)
+        gather(q, s, positions)
+        gather(v, s, rates)
+        gather(a, s, accelerations)
         for k in range(count):
-            _move(frames, k, own_q[k], own_v[k], own_a[k], work)
+            _move(frames, k, positions[k], rates[k], accelerations[k], work)
             j = k + 1
             while j > 0:
                 _columns_of(frames, k, j, work, y)

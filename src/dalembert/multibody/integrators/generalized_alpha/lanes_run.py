@@ -132,6 +132,7 @@ def integrate_lanes(
 @inner
 def _count(t, stack, scratch):
     """Count the turns of angles in all lanes at the end of a step."""
+    # Counters are those of one sample: they see each lane as a state.
     for lane in range(WIDTH):
         if scratch.turns[lane] != 0:
             take_lane(stack, lane, scratch.after)

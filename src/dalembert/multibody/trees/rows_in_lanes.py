@@ -7,6 +7,7 @@ from dalembert.kernels.lanes import WIDTH, entry, with_entry
 @inner
 def gather(array, first, columns):
     """Fill a vector of lanes with the rows from ``first`` on of an array (samples, columns); the last row repeats."""
+    # Numbers are gathered entry by entry, which costs less than another layout of the arrays.
     last = len(array) - 1
     for k in range(array.shape[1]):
         column = columns[k]

@@ -52,7 +52,7 @@ LANES = LanesType()
 
 
 class MaskType(types.Type):
-    """Numba's type of eight truth values. It has no truth value of its own, so that no branch can depend on it."""
+    """Numba's type of eight truth values. It has no truth value, so that no branch can depend on it."""
 
     def __init__(self) -> None:
         super().__init__("Mask")

@@ -121,7 +121,7 @@ STATES = {
 LOOKS = """
 .border, .border-t { border-color: rgba(118, 129, 143, 0.45) }
 .cm-line.wrong { background: rgba(224, 49, 49, 0.06) !important; box-shadow: inset 3px 0 #e03131 }
-.body--dark .cm-line.wrong { background: rgba(224, 49, 49, 0.28) !important }
+.body--dark .cm-line.wrong { background: rgba(224, 49, 49, 0.16) !important }
 .cm-line.chosen { background: rgba(57, 135, 229, 0.1) !important; box-shadow: inset 3px 0 #3987e5 }
 .disk-notice { background: rgba(240, 180, 41, 0.22) }
 .study-parts > .q-splitter__before { padding-right: 8px; overflow: hidden }

@@ -11,6 +11,9 @@ from dalembert.errors import ModelError
 from dalembert.multibody.kernels.charts import Chart, flat
 from dalembert.multibody.kernels.constraints import power_of, rates_of, residual_of
 
+SWITCHES = ("delay", "stribeck")
+"""Columns of the package's kinds that decide branches: whether they are zero."""
+
 
 @dataclass(frozen=True, eq=False)
 class Declaration:
@@ -106,6 +109,11 @@ class Declaration:
     def takes_lanes(self) -> bool:
         """Whether eight samples may run side by side."""
         return self.is_built_in if self.lanes is None else self.lanes
+
+    @cached_property
+    def switch_columns(self) -> list[int]:
+        """Positions of the numbers that may decide branches: any of those of a user's kind."""
+        return [place for place, name in enumerate(self.numbers) if not self.is_built_in or name in SWITCHES]
 
     @property
     def takes_duals(self) -> bool:

@@ -30,7 +30,7 @@ def prevents_lanes(sample: Lowered) -> str:
 def share_lanes(samples: Sequence[Lowered]) -> bool:
     """Return whether samples of one structure may run side by side, with the bits that each has alone.
 
-    The same numbers are zero, as branches of components ask for; loads jump at the same times.
+    Numbers that decide branches are zero in all or in none; loads jump at the same times.
     """
     first = samples[0]
     return (
@@ -38,9 +38,10 @@ def share_lanes(samples: Sequence[Lowered]) -> bool:
         and takes_lanes(first)
         and all(entry.jumps == first.jumps and entry.changes == first.changes for entry in samples)
         and all(
-            np.array_equal(entry.data[kind] == 0.0, data == 0.0)
+            np.array_equal(entry.data[kind][:, kind.switch_columns] == 0.0, data[:, kind.switch_columns] == 0.0)
             for entry in samples
             for kind, data in first.data.items()
+            if kind.switch_columns
         )
     )
 

@@ -280,9 +280,8 @@ class BuiltModel(MotionModel):
     def lowered_at(self, vector: np.ndarray, begin: float, *, closed: bool) -> Lowered:
         """Arrays of the mechanism at a parameter vector and a time of the signals; as placed if not ``closed``."""
         system = self.system(vector)
-        # In the structure of the first sample before its joints are closed: what follows from it is computed once.
-        placed = self._fit(lower(system, begin))
-        return self._closed(system, placed, begin) if closed else placed
+        placed = self._shared(lower(system, begin))
+        return self._fit(self._closed(system, placed, begin) if closed else placed)
 
     def _closed(self, system: BaseSystem, placed: Lowered, begin: float) -> Lowered:
         """The arrays with closed joints. Samples that differ in stiffnesses or masses start alike: that is kept."""
@@ -308,9 +307,9 @@ class BuiltModel(MotionModel):
 
     def _moved(self, system: BaseSystem, begin: float) -> Lowered:
         """The closed arrays of a perturbed system; as placed where no initial state moves with the perturbation."""
-        placed = self._fit(lower(system, begin))
+        placed = self._shared(lower(system, begin))
         moves = moves_start(system, placed)
-        return assembled(system, perturbed=True, placed=placed, begin=begin) if moves else placed
+        return self._fit(assembled(system, perturbed=True, placed=placed, begin=begin) if moves else placed)
 
     def perturbed_at(self, vector: np.ndarray, column: int, begin: float, *, closed: bool) -> Lowered:
         """The arrays of :meth:`lowered_at`, moved by a complex step of the scale of one parameter."""
@@ -323,6 +322,11 @@ class BuiltModel(MotionModel):
             if not isinstance(cause, TypeError | np.exceptions.ComplexWarning):
                 raise
             raise inexact(name, cause) from cause
+
+    def _shared(self, lowered: Lowered) -> Lowered:
+        """In the structure of the first sample, if it is the same: what follows from it is computed once."""
+        structure = self.shared.structure
+        return lowered.moved(structure=structure) if structure.same(lowered.structure) else lowered
 
     def _fit(self, lowered: Lowered) -> Lowered:
         if not self.shared.structure.same(lowered.structure):

@@ -14,11 +14,12 @@ from kind_scenes import HOMES
 TIME = 0.3
 #: Kinds whose kernels other tests need, too; the others are compiled for this test alone.
 COMMON = ("structural_beam", "rigid_body", "revolute", "spring")
+FORCELESS = ("relative_sensor", "inertial_sensor")
 KINDS = [
     pytest.param(kind, role, id=f"{kind.name}-{role}", marks=() if kind.name in COMMON else pytest.mark.slow)
     for kind in HOMES
     for role in ("residual",)
-    if kind.has(role) and kind.takes_lanes and not HOMES[kind]().callbacks
+    if kind.has(role) and kind.takes_lanes and kind.name not in FORCELESS
 ]
 
 

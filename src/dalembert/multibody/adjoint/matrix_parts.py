@@ -58,5 +58,5 @@ def _of_velocities(lowered: Lowered) -> Iterable[Kind]:
     """Kinds whose residuals may depend on velocities: all but those with columns of dissipation that are zero here."""
     for kind, data in lowered.data.items():
         declared = not isinstance(kind.dissipates, bool)
-        if kind.constraint is None and not kind.quadratic and (kind.dissipative(data) or not declared):
+        if kind.constraint is None and (kind.dissipative(data) or not declared):
             yield kind

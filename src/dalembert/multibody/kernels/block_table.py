@@ -60,14 +60,9 @@ class BlockModel:
     _evaluator: BlockKernel = field(init=False, repr=False)
     _words: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray] = field(init=False, repr=False)
     _kernels: list[Any] = field(default_factory=list, init=False, repr=False)  # kept alive
-    _real_numbers: dict[Kind, np.ndarray] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
         head, own = np.zeros(1, MODEL), self.reduction
-        for kind, numbers in self.blocks.numbers.items():
-            # Quadratic kinds take their tangents in real numbers, from other models too.
-            plain = np.real(numbers) if numbers.ndim == 2 else numbers[..., 0]
-            self._real_numbers[kind] = np.ascontiguousarray(plain)
         full = self._table(self.blocks.index, self.blocks.index)
         reduced = self._table(own.index, own.index) if own.nodes else full
         nodes = self._table(own.nodes, own.nodes)
@@ -97,7 +92,6 @@ class BlockModel:
             block["row_count"] = rows[kind].shape[1]
             block["integers"] = self.blocks.integers[kind].ctypes.data
             block["numbers"] = self.blocks.numbers[kind].ctypes.data
-            block["real_numbers"] = self._real_numbers[kind].ctypes.data
         return table
 
     def need(self, *roles: str) -> "BlockModel":

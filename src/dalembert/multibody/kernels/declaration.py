@@ -37,9 +37,6 @@ class Declaration:
     ``x`` behind the coordinates. A test compares it with the automatic ones.
     ``energy(x, v, p, m, inputs)`` returns the kinetic and the potential energy, J, and the power, W, of the forces
     without a potential, negative where they dissipate. Without it, all forces count as power.
-    ``quadratic``: whether the constraints are polynomials of degree two at most in the coordinates, or without
-    constraints the residual is linear in the accelerations and depends on no other unknowns; and signals do not matter.
-    The tangent is then computed in real numbers.
     ``observe(x, v, a, p, m, inputs, out)`` fills the ``outputs`` (name, unit); ``observes_inputs``: whether these
     depend on signals, which are evaluated only then.
     ``angles``: outputs that are angles which are known up to whole turns. (``angle`` is one where the integer ``wraps``
@@ -49,8 +46,8 @@ class Declaration:
     ``chart``: of a kind whose constraints are the internal ones of its coordinates: how increments change these.
     Integrators that support it solve for the increments, without these constraints and their multipliers. ``charts``:
     those of the coordinates, one after the other, `flat` ones between them; none if all are flat.
-    ``dissipates``: whether a force depends on velocities; or the columns of which any entry that is not zero says so.
-    Without it RadauIIA and the variational methods leave damping out of Newton's matrix, and converge more slowly or
+    ``dissipates``: whether a force depends on velocities; or the columns of which any entry that is not zero says so;
+    () if it never does. Without it RadauIIA and the variational methods leave damping out of Newton's matrix, and converge more slowly or
     not. ``varying_mass``, likewise: whether the masses that it adds change with the coordinates. Some integrators need
     masses that do not. ``rotor``: these masses as constant ones of one more coordinate: a constraint that ties it to
     those of the kind, and its inertia. Their numbers and integers are columns of the kind.
@@ -72,7 +69,6 @@ class Declaration:
     constraint: Callable[..., Any] | None = None
     forces: Callable[..., Any] | None = None
     energy: Callable[..., Any] | None = None
-    quadratic: bool = False
     outputs: tuple[tuple[str, str], ...] = ()
     observe: Callable[..., Any] | None = None
     angles: tuple[str, ...] = ()

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from dalembert.kernels.kernel import Compiled
-from dalembert.multibody.kernels import loops, nodes, pullbacks, real_tangents, tangents
+from dalembert.multibody.kernels import loops, nodes, pullbacks, tangents
 from dalembert.multibody.kernels.debugging import PLAIN, PlainKernel
 from dalembert.multibody.kernels.declaration import Declaration
 from dalembert.multibody.kernels.loops import BlockKernel
@@ -20,11 +20,8 @@ class Kind(Declaration):
 
     def kernel(self, role: str, dtype: type) -> Compiled:
         """The kernel of a role, such as residual, in real or in complex numbers."""
-        if role == "tangent" and self.quadratic:
-            dtype = float  # from complex models too
         if (role, dtype) not in self._kernels:
-            make = real_tangents.tangent if role == "tangent" and self.quadratic else _MAKERS[role]
-            self._kernels[role, dtype] = make(self, dtype)
+            self._kernels[role, dtype] = _MAKERS[role](self, dtype)
         kernel, errors = self._kernels[role, dtype], PLAIN.get().get(self)
         return kernel if errors is None else PlainKernel(kernel, errors)
 

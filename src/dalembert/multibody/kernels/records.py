@@ -37,8 +37,7 @@ CALL = _record(
 #: arithmetic of the model (``spread`` and ``change`` in real numbers, ``tangent`` in complex ones); 0 if there is none.
 #: ``joins``: whether the kind has constraints.
 BLOCK = _record(
-    "count index rows row_count integers numbers real_numbers residual tangent rates energy outputs joins "
-    "spread change restore"
+    "count index rows row_count integers numbers residual tangent rates energy outputs joins spread change restore"
 )
 #: A model: its blocks; those of the reduced system; the nodes as blocks, the row of each unknown, and kernels of all
 #: nodes; its signals, see :mod:`signals`. A model without nodes has one system: ``reduced`` are its blocks.

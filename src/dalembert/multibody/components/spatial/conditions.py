@@ -1,8 +1,7 @@
 """Conditions between two markers, of which joints consist, with their constraint forces J^T lambda.
 
 A joint is a row of conditions, as in the tables of textbooks: a revolute joint about e3 is ``meets``,
-``perpendicular(1, 3)`` and ``perpendicular(2, 3)``. Those that say ``quadratic=True`` are polynomials of degree two at
-most in the coordinates, so that central differences of them are exact; a screw's, with its angle, is not.
+``perpendicular(1, 3)`` and ``perpendicular(2, 3)``.
 """
 
 from collections.abc import Callable
@@ -19,14 +18,12 @@ class Condition(NamedTuple):
     """One condition or several.
 
     ``count``: rows; ``residual`` (x, p, m, row, g): fills ``g[row:row + count]``, which are zero where the condition
-    holds; ``forces`` (x, p, m, k, r): adds the forces of the multipliers ``x[k:k + count]``; ``quadratic``: whether
-    they are polynomials of degree two at most in the coordinates.
+    holds; ``forces`` (x, p, m, k, r): adds the forces of the multipliers ``x[k:k + count]``.
     """
 
     count: int
     residual: Function
     forces: Function
-    quadratic: bool = False
 
 
 @inlined
@@ -40,7 +37,7 @@ def _meets_forces(x, p, m, k, r):
 
 
 #: Both points coincide: Delta = 0.
-MEETS = Condition(3, _meets, _meets_forces, quadratic=True)
+MEETS = Condition(3, _meets, _meets_forces)
 
 
 def perpendicular(i: int, j: int) -> Condition:
@@ -56,7 +53,7 @@ def perpendicular(i: int, j: int) -> Condition:
         push_e(p, m, times(x[k], f(x, p, m)), r)
         push_f(p, m, times(x[k], e(x, p, m)), r)
 
-    return Condition(1, residual, forces, quadratic=True)
+    return Condition(1, residual, forces)
 
 
 def level(i: int) -> Condition:
@@ -72,7 +69,7 @@ def level(i: int) -> Condition:
         push_e(p, m, times(x[k], separation(x, p, m)), r)
         push_pair(p, m, times(x[k], e(x, p, m)), r)
 
-    return Condition(1, residual, forces, quadratic=True)
+    return Condition(1, residual, forces)
 
 
 def constraint_of(conditions: tuple[Condition, ...]) -> Function:

@@ -86,7 +86,6 @@ DIRECTORS = Kind(
     numbers=(),
     constraint=_constraint,
     forces=_forces,
-    quadratic=True,
     chart=CHART,
 )
 #: Charts of the coordinates of a body: origin and directors.

@@ -28,7 +28,7 @@ def _forces(x, p, m, k, r):
 KIND = joint_kind(
     "distance_in_space",
     __name__,
-    Condition(1, _residual, _forces, quadratic=True),
+    Condition(1, _residual, _forces),
     numbers=("length",),
     holds_frame=False,
 )

@@ -142,7 +142,6 @@ def joint_kind(
     settings = {
         "constraint": constraint_of(conditions),
         "forces": forces,
-        "quadratic": all(entry.quadratic for entry in conditions),
         "outputs": (*REACTIONS, *ANGLE * angle, *DISPLACEMENT * displacement),
         "angles": ("angle",) * angle,
         "turn": observe_turn,

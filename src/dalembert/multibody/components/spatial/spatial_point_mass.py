@@ -35,7 +35,7 @@ POINT_MASS = Kind(
     coordinates=3,
     numbers=("mass", "gravity_x", "gravity_y", "gravity_z"),
     residual=_residual,
-    quadratic=True,
+    dissipates=(),
     energy=_energy,
     gravity=("gravity_x", "gravity_y", "gravity_z"),
 )

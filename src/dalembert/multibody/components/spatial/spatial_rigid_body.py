@@ -64,7 +64,7 @@ RIGID = Kind(
         "second_33", "gravity_x", "gravity_y", "gravity_z",
     ),
     residual=_residual,
-    quadratic=True,
+    dissipates=(),
     energy=_energy,
     gravity=("gravity_x", "gravity_y", "gravity_z"),
     charts=POSE,

@@ -73,7 +73,7 @@ def _forces(x, p, m, k, r):
     _push_f1(p, m, times(-x[k], e2(x, p, m)), r)
 
 
-CONSTANT_VELOCITY = joint_kind("constant_velocity", __name__, MEETS, Condition(1, _residual, _forces, quadratic=True))
+CONSTANT_VELOCITY = joint_kind("constant_velocity", __name__, MEETS, Condition(1, _residual, _forces))
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from dalembert.multibody import in_python
-from dalembert.multibody.kernels import real_tangents, tangents
+from dalembert.multibody.kernels.block_table import c_function
 from dalembert.multibody.kernels.constraints import forces_of, rates_of
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.kind import Kind
@@ -118,15 +117,13 @@ def test_forces_do_what_energies_lose(scene: str) -> None:
         assert np.sum(terms) == pytest.approx(given, abs=1e-12 * np.sum(np.abs(terms)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("reduces", [False, True])
-@pytest.mark.parametrize("kind", [kind for kind in FOUND if kind.quadratic], ids=lambda kind: kind.name)
-def test_tangents_in_real_numbers_are_those_by_complex_steps(kind: Kind, reduces: bool) -> None:
-    """In plain Python, so that nothing is compiled."""
-    if reduces and kind.chart is not None:
-        return
+@pytest.mark.parametrize("kind", [kind for kind in FOUND if kind.has("tangent")], ids=lambda kind: kind.name)
+def test_tangents_by_duals_are_those_by_complex_steps(kind: Kind, reduces: bool) -> None:
     own = lowered(FOUND[kind])
-    with in_python(*own.data):
-        model = own.model(complex, "tangent")
+    if (reduces and kind.chart is not None) or own.callbacks:
+        return
     couplings, sizes = own.structure.full, (own.structure.n, own.structure.size)
     if reduces:
         couplings, sizes = own.structure.reduced, (own.structure.reduction.increments, own.structure.reduction.size)
@@ -134,11 +131,12 @@ def test_tangents_in_real_numbers_are_those_by_complex_steps(kind: Kind, reduces
     x, v, a = states(float, len(own.x))
     x[-1] = v[-1] = a[-1] = 0.0
     number, answers = list(couplings.index).index(kind), np.zeros((2, len(rows)))
-    block = model._words[2 if reduces else 1][number : number + 1].ctypes.data
-    kernels = real_tangents.tangent(kind, float), tangents.tangent(kind, complex)
-    for kernel, matrix in zip(kernels, answers, strict=True):
+    for model, matrix in zip((own.model(float), own.model(complex)), answers, strict=True):
+        block = model._words[2 if reduces else 1][number : number + 1].ctypes.data
         call = model.call().set(x=x, v=v, a=a, matrix=matrix, entries=len(matrix), slots=slots[number])
         call.set(by_x=0.7, by_v=1.3, by_a=0.4, motion=1.0, constraint=2.0, increments=sizes[0], last_row=sizes[1])
-        kernel.function(call.address, block)
-    np.testing.assert_allclose(answers[0], answers[1], rtol=0, atol=1e-14 * np.abs(answers[1]).max())
-    assert np.abs(answers[1]).max() > 0.01
+        model.evaluate(call, TIME, TIME)
+        c_function(kind.kernel("tangent", model.dtype).address)(call.address, block)
+    np.testing.assert_allclose(answers[0], answers[1], rtol=0, atol=1e-13 * np.abs(answers[1]).max())
+    if kind.name not in ("relative_sensor", "inertial_sensor"):  # which exert no forces
+        assert np.abs(answers[1]).max() > 0.01

@@ -291,16 +291,69 @@ def chosen(typingctx, mask, x):
     return LANES(mask, x), generate
 
 
+def _place(context: Any, builder: Any, kind: Any, array: Any, at: Any) -> Any:
+    """Generate the address of an entry, without a check of its number."""
+    data = cgutils.create_struct_proxy(kind)(context, builder, value=array).data
+    return builder.bitcast(builder.gep(data, [at]), VECTOR.as_pointer())
+
+
+def _add_columns(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    """Generate x[at + i] += factor a[begin + i] + weight a[other + i] for i < count, or without the second product.
+
+    Products are contracted where the processor can, as `vector.add_multiple` does for real numbers: one rounding each.
+    """
+    x = _place(context, builder, signature.args[0], arguments[0], arguments[1])
+    columns = [
+        (_place(context, builder, signature.args[2], arguments[2], arguments[k]), arguments[k + 1])
+        for k in range(3, len(arguments) - 1, 2)
+    ]
+    with cgutils.for_range(builder, arguments[-1]) as loop:
+        place = builder.gep(x, [loop.index])
+        total = builder.load(place, align=8)
+        for column, factor in columns:
+            entry = builder.load(builder.gep(column, [loop.index]), align=8)
+            total = builder.fadd(total, builder.fmul(factor, entry, flags=("contract",)), flags=("contract",))
+        builder.store(total, place, align=8)
+    return context.get_dummy_value()
+
+
 @intrinsic(without_python)
-def add_fused(typingctx, total, factor, x):
-    """Return total + factor x, contracted where the processor can: as `vector.add_multiple` does for real numbers."""
+def add_column(typingctx, x, at, a, begin, factor, count):
+    """Add ``factor`` times the ``count`` entries of ``a`` from ``begin`` on to those of ``x`` from ``at`` on."""
+    word = types.int64
+    return types.void(x, word, a, word, factor, word), _add_columns
+
+
+@intrinsic(without_python)
+def add_columns(typingctx, x, at, a, begin, factor, other, weight, count):
+    """The same for two parts of ``a``, from ``begin`` and from ``other``, by ``factor`` and by ``weight``."""
+    word = types.int64
+    return types.void(x, word, a, word, factor, word, weight, word), _add_columns
+
+
+@intrinsic(without_python)
+def sum_products(typingctx, row, given, count):
+    """Return the sum of row[j] given[j] for j below a multiple of four, by four products at a time.
+
+    Its loop has neither checks of indices nor room for another order of the sums.
+    """
 
     def generate(context, builder, signature, arguments):
-        # With this flag LLVM makes one instruction of both where the processor has it, with one rounding.
-        product = builder.fmul(arguments[1], arguments[2], flags=("contract",))
-        return builder.fadd(arguments[0], product, flags=("contract",))
+        word = arguments[2].type
+        starts = [_place(context, builder, signature.args[k], arguments[k], word(0)) for k in range(2)]
+        total = cgutils.alloca_once_value(builder, ir.Constant(VECTOR, [0.0] * WIDTH))
 
-    return LANES(total, factor, x), generate
+        def product(j):
+            return builder.fmul(*(builder.load(builder.gep(start, [j]), align=8) for start in starts))
+
+        with cgutils.for_range_slice(builder, word(0), arguments[2], word(4)) as (j, _):
+            first, second, third, fourth = (product(builder.add(j, word(k))) for k in range(4))
+            # ((first + second) + third) + fourth, as the product of one sample is compiled.
+            sums = builder.fadd(builder.fadd(builder.fadd(first, second), third), fourth)
+            builder.store(builder.fadd(builder.load(total), sums), total)
+        return builder.load(total)
+
+    return LANES(row, given, types.int64), generate
 
 
 @intrinsic(without_python)

@@ -47,10 +47,11 @@ class Declaration:
     Integrators that support it solve for the increments, without these constraints and their multipliers. ``charts``:
     those of the coordinates, one after the other, `flat` ones between them; none if all are flat.
     ``dissipates``: whether a force depends on velocities; or the columns of which any entry that is not zero says so;
-    () if it never does. Without it RadauIIA and the variational methods leave damping out of Newton's matrix, and converge more slowly or
-    not. ``varying_mass``, likewise: whether the masses that it adds change with the coordinates. Some integrators need
-    masses that do not. ``rotor``: these masses as constant ones of one more coordinate: a constraint that ties it to
-    those of the kind, and its inertia. Their numbers and integers are columns of the kind.
+    () if it never does. Without it RadauIIA and the variational methods leave damping out of Newton's matrix, and
+    converge more slowly or not. ``varying_mass``, likewise: whether the masses that it adds change with the
+    coordinates. Some integrators need masses that do not. ``rotor``: these masses as constant ones of one more
+    coordinate: a constraint that ties it to those of the kind, and its inertia. Their numbers and integers are columns
+    of the kind.
     ``driven``, ``loads``: whether a prescribed motion, or a load, may do work.
     ``holds``: whether a component on the ground keeps the mechanism from moving freely, as joints and springs do. It
     then has the columns ``a_kind b_kind`` (integers) and ``a_x a_y b_x b_y`` of two markers. ``holds_frame``: whether

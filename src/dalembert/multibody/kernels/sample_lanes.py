@@ -1,7 +1,7 @@
 """Solutions with the factorised matrices of eight samples side by side, each with the bits that it has alone."""
 
 from dalembert.kernels.kernel import inlined, kernel
-from dalembert.kernels.lanes import add_fused, lane_vector
+from dalembert.kernels.lanes import add_column, add_columns, lane_vector, sum_products
 from dalembert.kernels.words import Integers, Reals2
 from dalembert.multibody.kernels.linear import DENSE, Layout
 
@@ -27,13 +27,10 @@ def _multiply(matrix, size, given, answer):
     # sums stay in registers.
     whole = size // 4 * 4
     for i in range(size):
-        at = i * size
-        total = 0.0 * given[size]  # the entry behind the last one is zero
-        for j in range(0, whole, 4):
-            sums = matrix[at + j] * given[j] + matrix[at + j + 1] * given[j + 1]
-            total += sums + matrix[at + j + 2] * given[j + 2] + matrix[at + j + 3] * given[j + 3]
+        row = matrix[i * size : (i + 1) * size]
+        total = sum_products(row, given, whole)
         for j in range(whole, size):
-            total += matrix[at + j] * given[j]
+            total += row[j] * given[j]
         answer[i] = total
 
 
@@ -59,14 +56,10 @@ def _substitute(layout, a, pivots, tops, given, x, answer):
         # another order would have other bits.
         if k + 1 < size and pivots[k + 1] == 0:
             x[at + 1] -= x[at] * a[column + 1]
-            second = -x[at + 1]
-            for i in range(reach):
-                total = add_fused(x[at + 2 + i], first, a[column + 2 + i])
-                x[at + 2 + i] = add_fused(total, second, a[column + lead + 1 + i])
+            add_columns(x, at + 2, a, column + 2, first, column + lead + 1, -x[at + 1], reach)
             k += 2
         else:
-            for i in range(reach):
-                x[at + 1 + i] = add_fused(x[at + 1 + i], first, a[column + 1 + i])
+            add_column(x, at + 1, a, column + 1, first, reach)
             k += 1
     # Backward substitution in pairs of columns, over the rows that they reach.
     while k > 0:
@@ -75,10 +68,8 @@ def _substitute(layout, a, pivots, tops, given, x, answer):
         x[at] *= a[column]
         if k > 0:
             x[at - 1] = (x[at - 1] - x[at] * a[column - 1]) * a[column - lead]
-            count, first, second = k - 1 - min(tops[k], tops[k - 1]), -x[at], -x[at - 1]
-            for i in range(count):
-                total = add_fused(x[at - 1 - count + i], first, a[column - 1 - count + i])
-                x[at - 1 - count + i] = add_fused(total, second, a[column - lead - count + i])
+            count = k - 1 - min(tops[k], tops[k - 1])
+            add_columns(x, at - 1 - count, a, column - 1 - count, -x[at], column - lead - count, -x[at - 1], count)
             k -= 1
     for i in range(size):
         answer[i] = x[above + order[i]]

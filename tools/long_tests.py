@@ -4,30 +4,27 @@ A test that takes more than a second is on the list. Each file keeps its fastest
 are all in it.
 """
 
-import re
 import sys
 from collections import defaultdict
 from pathlib import Path
+
+from run_log import results, seconds
 
 LIST = Path(__file__).parents[1] / "tests" / "long_tests.txt"
 LONGEST = 1.0  # s, with set-up and the kernels that it is the first to compile
 ALWAYS = "tests/studies/"
 """Tests of example studies, which each change must pass."""
-_DURATION = re.compile(r"^([0-9.]+)s (?:call|setup|teardown) +(tests/\S.*)$", re.MULTILINE)
 
 
 def long_tests(log: str) -> list[str]:
     """Return the tests that take longer than `LONGEST`, but for the fastest of each file."""
-    seconds: defaultdict[str, float] = defaultdict(float)
-    for duration, test in _DURATION.findall(log):
-        seconds[test] += float(duration)
-    files = defaultdict(list)
-    for test in re.findall(r"(?:PASSED|SKIPPED) (tests/\S.*?) *$", log, re.MULTILINE):
+    durations, files = seconds(log), defaultdict(list)
+    for test in results(log):
         files[test.split("::")[0]].append(test)
-    kept = {min(tests, key=lambda test: seconds[test]) for tests in files.values()}
+    kept = {min(tests, key=lambda test: durations[test]) for tests in files.values()}
     return sorted(
-        test for test, duration in seconds.items()
-        if duration > LONGEST and test not in kept and not test.startswith(ALWAYS)
+        test for test, duration in durations.items()
+        if duration > LONGEST and test not in kept and test.startswith("tests/") and not test.startswith(ALWAYS)
     )  # fmt: skip
 
 

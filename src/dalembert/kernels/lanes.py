@@ -294,7 +294,14 @@ def chosen(typingctx, mask, x):
 def _place(context: Any, builder: Any, kind: Any, array: Any, at: Any) -> Any:
     """Generate the address of an entry, without a check of its number."""
     data = cgutils.create_struct_proxy(kind)(context, builder, value=array).data
-    return builder.bitcast(builder.gep(data, [at]), VECTOR.as_pointer())
+    place = builder.gep(data, [at])
+    return builder.bitcast(place, VECTOR.as_pointer()) if kind.dtype is LANES else place
+
+
+def _loaded(builder: Any, place: Any) -> Any:
+    """Generate the load of lanes, or of a real number that stands for eight equal ones."""
+    entry = builder.load(place, align=8)
+    return spread(builder, entry) if entry.type == REAL else entry
 
 
 def _add_columns(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -311,7 +318,7 @@ def _add_columns(context: Any, builder: Any, signature: Any, arguments: Any) -> 
         place = builder.gep(x, [loop.index])
         total = builder.load(place, align=8)
         for column, factor in columns:
-            entry = builder.load(builder.gep(column, [loop.index]), align=8)
+            entry = _loaded(builder, builder.gep(column, [loop.index]))
             total = builder.fadd(total, builder.fmul(factor, entry, flags=("contract",)), flags=("contract",))
         builder.store(total, place, align=8)
     return context.get_dummy_value()
@@ -319,7 +326,9 @@ def _add_columns(context: Any, builder: Any, signature: Any, arguments: Any) -> 
 
 @intrinsic(without_python)
 def add_column(typingctx, x, at, a, begin, factor, count):
-    """Add ``factor`` times the ``count`` entries of ``a`` from ``begin`` on to those of ``x`` from ``at`` on."""
+    """Add ``factor`` times the ``count`` entries of ``a`` from ``begin`` on, lanes or real numbers, to those of ``x`` from
+    ``at`` on.
+    """
     word = types.int64
     return types.void(x, word, a, word, factor, word), _add_columns
 

@@ -1,7 +1,7 @@
 """Solutions of one factorised system for eight right-hand sides at once, side by side as lanes."""
 
 from dalembert.kernels.kernel import inlined, kernel
-from dalembert.kernels.lanes import lane_vector
+from dalembert.kernels.lanes import add_column, lane_vector
 from dalembert.kernels.words import Reals2
 from dalembert.multibody.kernels.linear import DENSE, Factors, Layout
 
@@ -54,15 +54,13 @@ def _substitute(layout, factors, given, x, answer):
             x[k + p] = exchanged
         value = x[k]
         # L y = b: the factor has ones on its diagonal, so that no division is needed.
-        for i in range(1, min(reach, size - 1 - k) + 1):
-            x[k + i] -= a[diagonal + i] * value
+        add_column(x, k + 1, a, diagonal + 1, -value, min(reach, size - 1 - k))
     for k in range(size - 1, -1, -1):
         diagonal = k * lead + above
         # U x = y: the diagonal holds reciprocals, as the factorisation left them.
         value = x[k] * a[diagonal]
         x[k] = value
         # Above its first row a column of U is zero.
-        for i in range(tops[k], k):
-            x[i] -= a[diagonal + i - k] * value
+        add_column(x, tops[k], a, diagonal + tops[k] - k, -value, k - tops[k])
     for i in range(size):
         answer[i] = x[order[i]]

@@ -326,8 +326,9 @@ def _add_columns(context: Any, builder: Any, signature: Any, arguments: Any) -> 
 
 @intrinsic(without_python)
 def add_column(typingctx, x, at, a, begin, factor, count):
-    """Add ``factor`` times ``count`` entries of ``a`` from ``begin`` on to those of ``x`` from ``at`` on; those of ``a``
-    are lanes, or real numbers.
+    """Add ``factor`` times ``count`` entries of ``a`` from ``begin`` on to those of ``x`` from ``at`` on.
+
+    Entries of ``a`` are lanes, or real numbers.
     """
     word = types.int64
     return types.void(x, word, a, word, factor, word), _add_columns

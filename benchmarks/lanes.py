@@ -1,13 +1,13 @@
 """Batches of samples side by side, beside the same samples one by one: samples a second on one core."""
 
+from dataclasses import replace
 from unittest.mock import patch
 
 import numba
 import numpy as np
 
 import dalembert as da
-from benchmarks import ours, timing
-from benchmarks.cases import PENDULUM
+from benchmarks import cases, ours, timing
 from benchmarks.sensitivities import BEAM, CABLE
 from dalembert.multibody import Polynomial
 from dalembert.multibody.spatial import Inertia, Orientation, Pose, RigidBody, SpatialSystem, SphericalJoint
@@ -16,6 +16,7 @@ from dalembert.multibody.trees.dynamics import inverse_dynamics, mass_matrix, re
 from dalembert.multibody.trees.tree import Link, Tree, TreeJoint
 
 SAMPLES, MOTIONS = 32, 10_000
+CHAIN = cases.chain(100)
 
 
 def main() -> list[dict[str, object]]:
@@ -28,6 +29,9 @@ def main() -> list[dict[str, object]]:
             "slider-crank", slider_crank, {"mass": 2.0, "speed": 6.0, "length": 0.6}, ("slider.centre.x", "pin.force_y")
         ),
         _row("top on a ball joint", top, {"mass": 2.0, "spin": 60.0, "length": 0.4}, ("top.centre.x", "top.centre.y")),
+        _row(
+            "chain of 100 cables, 200 steps", rope, {"stiffness": 2e7, "angle": 1.0}, ("C.end.x", "C.end.y"), CHAIN[1]
+        ),
         *_dynamics(),
     ]
     timing.report("lanes", f"Batch of {SAMPLES}: eight samples side by side, and one by one (one core)", rows)
@@ -71,14 +75,22 @@ def top(mass: float, spin: float, length: float) -> SpatialSystem:
     return system
 
 
-def _row(name: str, builder, values: dict[str, float], channels: tuple[str, ...]) -> dict[str, object]:
+def rope(stiffness: float, angle: float) -> da.System:
+    """A slender cable that hangs on a pin."""
+    return ours.chain(replace(CHAIN[0], youngs_modulus=stiffness, angle=-angle))
+
+
+def _row(
+    name: str, builder, values: dict[str, float], channels: tuple[str, ...],
+    integration: cases.Integration = cases.PENDULUM.integration,
+) -> dict[str, object]:  # fmt: skip
     chosen = dict(list(values.items())[:4])
     model = da.TimeResponse(
         builder,
         parameters={key: (0.9 * value, 1.1 * value) for key, value in chosen.items()},
         channels=channels,
-        times=PENDULUM.integration.times,
-        solver=ours.solver(PENDULUM.integration),
+        times=integration.times,
+        solver=ours.solver(integration),
         workers=1,
     )
     chance = np.random.default_rng(0)

@@ -61,6 +61,7 @@ def _substitute(layout, factors, given, x, answer):
         value = x[k] * a[diagonal]
         x[k] = value
         # Above its first row a column of U is zero.
+        # One pass without checks of indices, eight directions at a time.
         add_column(x, tops[k], a, diagonal + tops[k] - k, -value, k - tops[k])
     for i in range(size):
         answer[i] = x[order[i]]

@@ -56,6 +56,7 @@ def _substitute(layout, a, pivots, tops, given, x, answer):
         # another order would have other bits.
         if k + 1 < size and pivots[k + 1] == 0:
             x[at + 1] -= x[at] * a[column + 1]
+            # Sums of both columns in one pass over the unknowns below, as for one sample.
             add_columns(x, at + 2, a, column + 2, first, column + lead + 1, -x[at + 1], reach)
             k += 2
         else:

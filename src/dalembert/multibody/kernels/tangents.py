@@ -66,6 +66,7 @@ def tangent(kind: Declaration, dtype: type) -> BlockKernel:
         for e in range(count):
             for i in range(width):
                 place[i] = x[index[e, i]]
+            # Eight columns from one residual: a body in space has six, a joint between two bodies fifteen or more.
             for first in range(0, narrow, at_once):
                 last = min(first + at_once, narrow)
                 for i in range(width):

@@ -98,6 +98,7 @@ def fill_masses_in_lanes(frames: Frames, q: Reals2, rows: Reals2, masses: Reals2
     count, work = len(frames.parents), lane_vector(rows)
     end = (count + 1) * ROOM
     positions, filled = work[end : end + count], work[end + count :]
+    # Eight samples at a time; the last row fills the lanes that are left.
     for s in range(0, len(q), LANES):
         gather(q, s, positions)
         _fill_sample(frames, positions, work, filled)

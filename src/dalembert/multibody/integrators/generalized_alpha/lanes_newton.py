@@ -150,6 +150,7 @@ def _renew(problem, c, t, within, stack, lane, scratch):
         for i in range(len(factors.matrix)):
             scratch.matrix[i, lane] = factors.matrix[i]
     else:
+        # Dense inverses by rows, as products in lanes read them.
         for i in range(size):
             for j in range(size):
                 scratch.matrix[i * size + j, lane] = factors.matrix[j * lead + i]

@@ -39,6 +39,7 @@ def run_in_lanes(
     models = [samples[number].real.need("rates").reduced() for number in filled]
     together = lane_model(samples).reduced()
     call, work = together.call(), models[0].call()
+    # Lanes that only fill the group count nothing.
     turns = np.zeros(WIDTH, np.int64)
     turns[: len(samples)] = batch.begin_counting()
     newton = lanes_newton(

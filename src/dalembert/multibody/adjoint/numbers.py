@@ -104,7 +104,7 @@ class NumberPulls:
         blocks = []
         for number, kind in enumerate(lowered.data):
             columns = np.ascontiguousarray(np.argwhere(gradient.active_kind(kind)))
-            reads = readers(lowered.structure.meta[kind], signals)
+            reads = readers(lowered.structure.meta[kind] if kind.integers else None, signals)
             if len(columns) + len(reads) and "pullback" in kind.roles:
                 own = np.zeros(len(columns))
                 self._parts[kind] = columns, own
@@ -139,9 +139,9 @@ class NumberPulls:
         self._gradient.signals[:] += self._signal_gradient
 
 
-def readers(integers: np.ndarray, signals: np.ndarray) -> np.ndarray:
+def readers(integers: np.ndarray | None, signals: np.ndarray) -> np.ndarray:
     """Components that may read one of the signals, with the signal, (-, 2): numbers of signals are among integers."""
-    if not len(signals):
+    if integers is None or not len(signals):
         return np.zeros((0, 2), np.int64)
     rows = [(e, s) for e, own in enumerate(integers) for s in np.intersect1d(own, signals)]
     return np.array(rows, np.int64).reshape(len(rows), 2)

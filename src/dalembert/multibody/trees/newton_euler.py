@@ -24,7 +24,7 @@ from dalembert.multibody.trees.frame_motion import (
     start_base,
 )  # fmt: skip
 from dalembert.multibody.trees.frames import AXIS, INERTIA, WIDTH, ComplexFrames, Frames
-from dalembert.multibody.trees.rows_in_lanes import gather, scatter
+from dalembert.multibody.trees.rows_in_lanes import gather_motion, scatter
 
 
 @inlined
@@ -93,17 +93,10 @@ def fill_torques_in_lanes(
     """The same for eight samples at once; the workspace has rows of eight numbers, (frames + 1) x ROOM + 4 frames."""
     count, work = len(frames.parents), lane_vector(rows)
     end = (count + 1) * ROOM
-    positions, rates, accelerations = (
-        work[end : end + count],
-        work[end + count : end + 2 * count],
-        work[end + 2 * count :],
-    )
     moments = work[end + 3 * count :]
     start_base(gravity, work)
     # Eight samples at a time; the last row fills the lanes that are left.
     for s in range(0, len(q), LANES):
-        gather(q, s, positions)
-        gather(v, s, rates)
-        gather(a, s, accelerations)
+        positions, rates, accelerations = gather_motion(q, v, a, s, work, end)
         _fill_sample(frames, positions, rates, accelerations, work, moments)
         scatter(moments, s, torques)

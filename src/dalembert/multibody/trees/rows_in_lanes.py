@@ -22,3 +22,15 @@ def scatter(columns, first, array):
     for lane in range(min(WIDTH, len(array) - first)):
         for k in range(array.shape[1]):
             array[first + lane, k] = entry(columns[k], lane)
+
+
+@inner
+def gather_motion(q, v, a, first, work, end):
+    """Gather positions, velocities and accelerations behind the entries of a workspace; return the three vectors."""
+    count = q.shape[1]
+    positions, rates = work[end : end + count], work[end + count : end + 2 * count]
+    accelerations = work[end + 2 * count : end + 3 * count]
+    gather(q, first, positions)
+    gather(v, first, rates)
+    gather(a, first, accelerations)
+    return positions, rates, accelerations

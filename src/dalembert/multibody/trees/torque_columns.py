@@ -23,7 +23,7 @@ from dalembert.multibody.trees.frame_motion import (
     within,
 )  # fmt: skip
 from dalembert.multibody.trees.frames import AXIS, WIDTH, ComplexFrames, Frames
-from dalembert.multibody.trees.rows_in_lanes import gather, scatter
+from dalembert.multibody.trees.rows_in_lanes import gather_motion, scatter
 
 TURNED, ORIGIN, DIRECTION, ROOM = 21, 30, 33, 36
 """Row of the workspace: that of the frame's motion up to its acceleration, then columns of the rotation to the base,
@@ -125,18 +125,11 @@ def fill_columns_in_lanes(
     """The same for eight samples at once; the workspace has (frames + 1) x ROOM + 3 frames + 10 rows of eight."""
     count, work = len(frames.parents), lane_vector(rows)
     end = (count + 1) * ROOM
-    positions, rates, accelerations = (
-        work[end : end + count],
-        work[end + count : end + 2 * count],
-        work[end + 2 * count :],
-    )
     y = work[end + 3 * count :]
     _start(gravity, work)
     # Eight samples at a time; the last row fills the lanes that are left.
     for s in range(0, len(q), LANES):
-        gather(q, s, positions)
-        gather(v, s, rates)
-        gather(a, s, accelerations)
+        positions, rates, accelerations = gather_motion(q, v, a, s, work, end)
         for k in range(count):
             _move(frames, k, positions[k], rates[k], accelerations[k], work)
             j = k + 1

@@ -49,9 +49,9 @@ def share_lanes(samples: Sequence[Lowered]) -> bool:
 def lane_kernels(sample: Lowered) -> list[Compiled]:
     """Return the kernels of components that samples side by side need."""
     reduction = sample.structure.reduction
-    own = [kind.kernel("residual", Lanes) for kind in reduction.index if "residual" in kind.roles]
+    residuals = [kind.kernel("residual", Lanes) for kind in reduction.index if "residual" in kind.roles]
     nodes = [kind.kernel(role, Lanes) for kind in reduction.nodes for role in ("change", "restore")]
-    return [*own, *nodes, *[CHANGE[Lanes], RESTORE[Lanes]] * bool(nodes)]
+    return [*residuals, *nodes, *[CHANGE[Lanes], RESTORE[Lanes]] * bool(nodes)]
 
 
 def lane_model(samples: Sequence[Lowered], *roles: str) -> BlockModel:

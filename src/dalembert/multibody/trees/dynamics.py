@@ -306,10 +306,10 @@ def _filled(
     if is_complex:
         frames = ComplexFrames(frames.parents, frames.turns, frames.numbers.astype(complex))
     answer, entries = np.zeros(shape, dtype), (count + 1) * scratch
-    given = tuple(np.ascontiguousarray(array, dtype) for array in given)
+    arrays = tuple(np.ascontiguousarray(array, dtype) for array in given)
     if is_complex or shape[0] < FEWEST_IN_LANES:
-        kernels[is_complex](frames, *given, np.zeros(entries, dtype), answer)
+        kernels[is_complex](frames, *arrays, np.zeros(entries, dtype), answer)
     else:
         # Behind the workspace of one sample: positions, velocities and accelerations, and what is filled of a sample.
-        kernels[2](frames, *given, lane_zeros(entries + 3 * count + max(count * count, 10)), answer)
+        kernels[2](frames, *arrays, lane_zeros(entries + 3 * count + max(count * count, 10)), answer)
     return answer

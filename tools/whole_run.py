@@ -40,6 +40,8 @@ def page(log: str) -> str:
             "",
             *_table(("tests of", "passed", "skipped", "failed", "errors"), rows),
             "",
+            *[f"Failed: `{test}`." for test, result in results(log).items() if result in ("FAILED", "ERROR")],
+            "",
             "The tests that take longest, with their set-up:",
             "",
             *_table(("test", "s"), longest),

@@ -87,6 +87,9 @@ class BlockModel:
         kinds = list(kinds)
         table = np.zeros(max(len(kinds), 1), BLOCK)
         for block, kind in zip(table, kinds, strict=False):
+            # Kernels see addresses only: columns that NumPy took by their numbers may stand one behind the other.
+            own = (self.blocks.index[kind], rows[kind], self.blocks.integers[kind], self.blocks.numbers[kind])
+            assert all(array.flags.c_contiguous for array in own), kind.name
             block["count"], block["joins"] = len(self.blocks.index[kind]), kind.multipliers > 0
             block["index"], block["rows"] = self.blocks.index[kind].ctypes.data, rows[kind].ctypes.data
             block["row_count"] = rows[kind].shape[1]

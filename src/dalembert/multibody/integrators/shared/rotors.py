@@ -82,5 +82,5 @@ def _moved(lowered: Lowered, structure: Structure, kept: np.ndarray) -> Lowered:
 
 
 def _behind(rows: dict[Kind, np.ndarray], kind: Kind, added: np.ndarray) -> np.ndarray:
-    """Rows of a kind, with more behind those that there are."""
-    return np.concatenate([rows[kind], added]) if kind in rows else added
+    """Rows of a kind, with more behind those that there are; kernels read them by rows."""
+    return np.ascontiguousarray(np.concatenate([rows[kind], added]) if kind in rows else added)

@@ -124,3 +124,24 @@ def test_masses_without_a_rotor_are_refused(monkeypatch):
     )
     with pytest.raises(ModelError, match=says(sentence)):
         da.simulate(arm(), 0.1, da.Variational(step=1e-2))
+
+
+def two_on_a_hinge(count: int) -> SpatialSystem:
+    """A pendulum whose hinge on the ground is driven by two motors, or by one of twice the constant."""
+    system = SpatialSystem(gravity=(0.0, 0.0, -9.81))
+    body = system.add(RigidBody("b", Inertia(2.0, (0.02, 0.03, 0.04), centre=(0.1, 0.0, 0.2))))
+    sides = system.ground, body.point("origin")
+    system.add(RevoluteJoint("hinge", *sides, axis=AXIS))
+    numbers = {"torque_constant": 0.1 / count, "back_emf": 0.1, "resistance": 1.0, "armature_inertia": 0.02 / count}
+    for number in range(count):
+        system.add(Motor(f"motor {number}", *sides, **numbers, voltage=2.0, axis=AXIS))
+    return system
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_two_motors_on_one_hinge_of_the_ground_are_one_of_twice_the_constant(method):
+    ends = [
+        da.simulate(two_on_a_hinge(count), 0.2, method(1e-3), [0.2]).channels(["b.centre.x", "hinge.rate"])
+        for count in (1, 2)
+    ]
+    np.testing.assert_allclose(ends[1], ends[0], rtol=1e-11)

@@ -9,7 +9,7 @@ import numpy as np
 import dalembert as da
 from benchmarks import cases, ours, timing
 from benchmarks.sensitivities import BEAM, CABLE
-from dalembert.multibody import Polynomial
+from dalembert.multibody import EnergyMomentum, Integrator, Polynomial, Variational
 from dalembert.multibody.spatial import Inertia, Orientation, Pose, RigidBody, SpatialSystem, SphericalJoint
 from dalembert.multibody.trees import dynamics
 from dalembert.multibody.trees.dynamics import inverse_dynamics, mass_matrix, regressor
@@ -17,6 +17,7 @@ from dalembert.multibody.trees.tree import Link, Tree, TreeJoint
 
 SAMPLES, MOTIONS = 32, 10_000
 CHAIN = cases.chain(100)
+ARM, TIP = {"first": 0.8, "second": 0.5, "mass": 2.0}, ("AB.end.x", "AB.end.y")
 
 
 def main() -> list[dict[str, object]]:
@@ -24,7 +25,9 @@ def main() -> list[dict[str, object]]:
     rows = [
         _row("flexible pendulum, 2 + 4 beams", ours.beam_pendulum, BEAM, ours.JOINT_AND_TIP),
         _row("flexible pendulum, 2 + 4 cables", ours.cable_pendulum, CABLE, ours.JOINT_AND_TIP),
-        _row("two-link arm of rigid bars", arm, {"first": 0.8, "second": 0.5, "mass": 2.0}, ("AB.end.x", "AB.end.y")),
+        _row("two-link arm of rigid bars", arm, ARM, TIP),
+        _row("the same by Variational", arm, ARM, TIP, solver=Variational(1e-3)),
+        _row("the same by EnergyMomentum", arm, ARM, TIP, solver=EnergyMomentum(1e-3)),
         _row(
             "slider-crank", slider_crank, {"mass": 2.0, "speed": 6.0, "length": 0.6}, ("slider.centre.x", "pin.force_y")
         ),
@@ -82,7 +85,7 @@ def rope(stiffness: float, angle: float) -> da.System:
 
 def _row(
     name: str, builder, values: dict[str, float], channels: tuple[str, ...],
-    integration: cases.Integration = cases.PENDULUM.integration,
+    integration: cases.Integration = cases.PENDULUM.integration, solver: Integrator | None = None,
 ) -> dict[str, object]:  # fmt: skip
     chosen = dict(list(values.items())[:4])
     model = da.TimeResponse(
@@ -90,7 +93,7 @@ def _row(
         parameters={key: (0.9 * value, 1.1 * value) for key, value in chosen.items()},
         channels=channels,
         times=integration.times,
-        solver=ours.solver(integration),
+        solver=solver or ours.solver(integration),
         workers=1,
     )
     chance = np.random.default_rng(0)

@@ -1,13 +1,15 @@
 """Models in lanes: eight samples of one structure, side by side."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
 from dalembert.kernels.kernel import Compiled
 from dalembert.kernels.lanes import WIDTH, Lanes, lane_zeros
 from dalembert.multibody.kernels.block_table import BlockModel
+from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.nodes import CHANGE, RESTORE
+from dalembert.multibody.kernels.reduction import Reduction
 from dalembert.multibody.model.lowered import Lowered
 
 FEWEST = 4
@@ -46,12 +48,15 @@ def share_lanes(samples: Sequence[Lowered]) -> bool:
     )
 
 
-def lane_kernels(sample: Lowered) -> list[Compiled]:
-    """Return the kernels of components that samples side by side need."""
-    reduction = sample.structure.reduction
-    residuals = [kind.kernel("residual", Lanes) for kind in reduction.index if "residual" in kind.roles]
+def lane_kernels(kinds: Iterable[Kind], *roles: str) -> list[Compiled]:
+    """Return the kernels of components in these roles that samples side by side need."""
+    return [kind.kernel(role, Lanes) for kind in kinds for role in roles if role in kind.roles]
+
+
+def lane_node_kernels(reduction: Reduction) -> list[Compiled]:
+    """Return the kernels by which nodes move in steps of samples side by side."""
     nodes = [kind.kernel(role, Lanes) for kind in reduction.nodes for role in ("change", "restore")]
-    return [*residuals, *nodes, *[CHANGE[Lanes], RESTORE[Lanes]] * bool(nodes)]
+    return [*nodes, *[CHANGE[Lanes], RESTORE[Lanes]] * bool(nodes)]
 
 
 def lane_model(samples: Sequence[Lowered], *roles: str) -> BlockModel:

@@ -23,7 +23,7 @@ from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.callbacks import in_complex_numbers
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.model.directions import are_many, dual_kernels
-from dalembert.multibody.model.lane_models import FEWEST, lane_kernels, takes_lanes
+from dalembert.multibody.model.lane_models import FEWEST, takes_lanes
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.lowering import lower
 from dalembert.multibody.model.observe import Observer, observer
@@ -218,7 +218,7 @@ class BuiltModel(MotionModel):
 
     @cached_property
     def _lanes(self) -> int:
-        prepare([*lane_kernels(self.shared), *self.solver.lane_kernels()])
+        prepare(self.solver.lane_kernels(self.shared))
         return WIDTH
 
     def check_derivatives(self, vector: np.ndarray) -> None:

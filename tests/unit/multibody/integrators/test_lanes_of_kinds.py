@@ -8,12 +8,18 @@ import pytest
 import dalembert.multibody as mb
 import mechanisms
 from dalembert.multibody.integrators.generalized_alpha import generalized_alpha
+from dalembert.multibody.integrators.midpoint import energy_momentum, variational
+from dalembert.multibody.integrators.shared.integrator import Integrator
 from dalembert.multibody.model.lowering import lower
 from dalembert.parameter import Parameter
 from spatial_scenes import SCENES, fields_of, numbers_of
 
 TIMES = np.array([0.0, 0.013, 0.05])
-STEPS = mb.GeneralizedAlpha(2e-3)
+METHODS = {
+    "GeneralizedAlpha": mb.GeneralizedAlpha(2e-3),
+    "Variational": mb.Variational(2e-3),
+    "EnergyMomentum": mb.EnergyMomentum(2e-3),
+}
 HELD = (
     "revolute", "fixed", "prismatic", "distance", "prescribed x", "prescribed y", "prescribed angle", "gear",
     "pin friction", "pin friction, Stribeck", "slide friction", "slide friction, Stribeck",
@@ -63,14 +69,14 @@ def falling(piece: str) -> Callable[[float, float], mb.System]:
     return build
 
 
-def planar(build: Callable[[float, float], mb.System]) -> mb.TimeResponse:
+def planar(build: Callable[[float, float], mb.System], method: Integrator) -> mb.TimeResponse:
     """A mechanism in the plane at different gravities."""
     bodies = build(0.7, 9.8).bodies
     channels = [f"{body.name}.{body.point_names[-1]}.{entry}" for body in bodies for entry in ("x", "ay")]
-    return mb.TimeResponse(build, {"across": (-2.0, 2.0), "down": (5.0, 20.0)}, channels, TIMES, STEPS, 1)
+    return mb.TimeResponse(build, {"across": (-2.0, 2.0), "down": (5.0, 20.0)}, channels, TIMES, method, 1)
 
 
-def spatial(scene: str) -> mb.TimeResponse:
+def spatial(scene: str, method: Integrator) -> mb.TimeResponse:
     """A mechanism in space as a function of all of its numbers, with an angle whose turns are counted."""
     build, fields = SCENES[scene]
     parameters = {
@@ -83,37 +89,44 @@ def spatial(scene: str) -> mb.TimeResponse:
         for body in bodies
         for entry in ("x", "ay", *(("wz", "rotation_z") if body.turns else ()))
     ]
-    return mb.TimeResponse(lambda **numbers: build(**fields_of(fields, numbers)), parameters, channels, TIMES, STEPS, 1)
+    return mb.TimeResponse(
+        lambda **numbers: build(**fields_of(fields, numbers)), parameters, channels, TIMES, method, 1
+    )
 
 
-MODELS: dict[str, Callable[[], mb.TimeResponse]] = {
-    "plane: joints": lambda: planar(joints),
+MODELS: dict[str, Callable[[Integrator], mb.TimeResponse]] = {
+    "plane: joints": lambda method: planar(joints, method),
     **{
-        f"plane: {piece}": lambda piece=piece: planar(falling(piece))
+        f"plane: {piece}": lambda method, piece=piece: planar(falling(piece), method)
         for piece in mechanisms.PIECES
         if piece not in HELD
     },
-    **{f"space: {scene}": lambda scene=scene: spatial(scene) for scene in SCENES},
+    **{f"space: {scene}": lambda method, scene=scene: spatial(scene, method) for scene in SCENES},
 }
-CASES = [pytest.param(name, marks=() if name in COMMON else pytest.mark.slow) for name in MODELS]
+CASES = [
+    pytest.param(name, method, marks=() if name in COMMON and method == "GeneralizedAlpha" else pytest.mark.slow)
+    for name in MODELS
+    for method in METHODS
+]
 
 
-@pytest.mark.parametrize("name", CASES)
-def test_a_sample_has_the_same_bits_in_any_group(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    model = MODELS[name]()
+@pytest.mark.parametrize(("name", "method"), CASES)
+def test_a_sample_has_the_same_bits_in_any_group(name: str, method: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    model = MODELS[name](METHODS[method])
     chance = np.random.default_rng(2)
     low, high = model.parameters.lower, model.parameters.upper
     batch = low + (high - low) * chance.uniform(size=(13, len(low)))
     alone = np.stack([model.evaluate(row).only()[0] for row in batch])
     lanes = []
-    run = generalized_alpha.run_in_lanes
+    module = {"GeneralizedAlpha": generalized_alpha, "Variational": variational, "EnergyMomentum": energy_momentum}
+    run = module[method].run_in_lanes
 
     def watched(part, *given):
         out, left = run(part, *given)
         lanes.append(1.0 - left.mean())
         return out, left
 
-    monkeypatch.setattr(generalized_alpha, "run_in_lanes", watched)
+    monkeypatch.setattr(module[method], "run_in_lanes", watched)
     for count in (5, 13):
         order = chance.permutation(len(batch))[:count]
         np.testing.assert_array_equal(model.evaluate(batch[order]).only(), alone[order])

@@ -7,6 +7,7 @@ import pytest
 
 import dalembert.multibody as mb
 from dalembert.multibody.integrators.generalized_alpha import generalized_alpha
+from dalembert.multibody.integrators.shared.integrator import Integrator
 from dalembert.multibody.model.lane_models import FEWEST, takes_lanes
 from dalembert.multibody.model.lowering import lower
 
@@ -47,8 +48,13 @@ MODELS = {
 }
 
 
-def response(builder: Callable, channels: tuple[str, ...], ranges: dict) -> mb.TimeResponse:
-    return mb.TimeResponse(builder, ranges, channels, TIMES, mb.GeneralizedAlpha(1e-3), 1)
+METHODS = (mb.GeneralizedAlpha, mb.Variational, mb.EnergyMomentum)
+
+
+def response(
+    builder: Callable, channels: tuple[str, ...], ranges: dict, method: type[Integrator] = mb.GeneralizedAlpha
+) -> mb.TimeResponse:
+    return mb.TimeResponse(builder, ranges, channels, TIMES, method(1e-3), 1)
 
 
 def vectors(ranges: dict, count: int) -> np.ndarray:
@@ -56,10 +62,11 @@ def vectors(ranges: dict, count: int) -> np.ndarray:
     return np.stack([chance.uniform(*limits, count) for limits in ranges.values()], axis=1)
 
 
+@pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("name", MODELS)
-def test_a_sample_has_the_same_bits_in_any_group(name: str) -> None:
+def test_a_sample_has_the_same_bits_in_any_group(name: str, method: type[Integrator]) -> None:
     builder, channels, ranges = MODELS[name]
-    model, batch = response(builder, channels, ranges), vectors(ranges, 19)
+    model, batch = response(builder, channels, ranges, method), vectors(ranges, 19)
     assert takes_lanes(lower(builder(*batch[0])))
     alone = np.stack([model.evaluate(row).only()[0] for row in batch])
     for seed, count in enumerate((FEWEST, 7, 8, 13, 19)):
@@ -82,12 +89,13 @@ def test_lanes_are_used(monkeypatch: pytest.MonkeyPatch) -> None:
     assert groups == [(8, 0), (8, 0), (5, 0)]
 
 
-def test_a_lane_that_fails_runs_alone_with_its_reason() -> None:
+@pytest.mark.parametrize("method", METHODS)
+def test_a_lane_that_fails_runs_alone_with_its_reason(method: type[Integrator]) -> None:
     """The spring of some samples pushes so hard that the step has to be halved, or that no step is short enough."""
     builder, channels, _ = MODELS["loop"]
     batch = vectors({"angle": (0.4, 0.6), "stiffness": (1e7, 1e9)}, 8)
     batch[[1, 6], 1] = -1e15, 3e13
-    model = response(builder, channels, {"angle": (0.3, 1.1), "stiffness": (-1e16, 1e16)})
+    model = response(builder, channels, {"angle": (0.3, 1.1), "stiffness": (-1e16, 1e16)}, method)
     together, alone = model.evaluate(batch), [model.evaluate(row) for row in batch]
     assert together.failures == tuple(entry.failures[0] for entry in alone)
     for values, entry in zip(together.values, alone, strict=True):

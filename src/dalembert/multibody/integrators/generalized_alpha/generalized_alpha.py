@@ -10,7 +10,6 @@ import numpy as np
 from dalembert.arguments import limited
 from dalembert.errors import require_known
 from dalembert.kernels.kernel import Compiled, inlined, inner, kernel
-from dalembert.kernels.lanes import WIDTH
 from dalembert.kernels.words import Address, Integers, Integers2, Reals2
 from dalembert.multibody.integrators.generalized_alpha.derivatives import (
     Differentiation,
@@ -32,6 +31,7 @@ from dalembert.multibody.integrators.shared.batch import Batch, restarts
 from dalembert.multibody.integrators.shared.consistent import Consistency, accelerate, accelerate_along, consistency
 from dalembert.multibody.integrators.shared.convergence import HALVINGS
 from dalembert.multibody.integrators.shared.integrator import Integrator
+from dalembert.multibody.integrators.shared.lane_groups import run_groups
 from dalembert.multibody.integrators.shared.problem import (
     DONE,
     NEWTON_FAILED,
@@ -59,7 +59,8 @@ from dalembert.multibody.kernels.states import (
     rows,
 )
 from dalembert.multibody.model.directions import are_many, dual_models
-from dalembert.multibody.model.lane_models import FEWEST, share_lanes
+from dalembert.multibody.model.lane_models import lane_kernels, lane_node_kernels
+from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.structure import Structure
 from dalembert.multibody.model.turns import STEP_END, count_turns
 
@@ -135,31 +136,25 @@ class GeneralizedAlpha(Integrator):
         along = [differentiate, accelerate_along] * derivatives
         return [integrate, *structure.full.linear_kernels, *structure.reduced_kernels(derivatives), *along]
 
-    def lane_kernels(self) -> list[Compiled]:
-        """The loop for samples side by side, and its solutions."""
-        return [integrate_lanes, solve_samples]
+    def lane_kernels(self, sample: Lowered) -> list[Compiled]:
+        """The loop for samples side by side, its solutions, and what components need."""
+        reduction = sample.structure.reduction
+        own = lane_kernels(reduction.index, "residual")
+        return [integrate_lanes, solve_samples, *own, *lane_node_kernels(reduction)]
 
     def run(self, batch: Batch) -> list[Run]:
         """Runs of samples in compiled loops that leave the interpreter's lock free: in lanes, or one after the other.
 
         A sample has the same bits in both.
         """
-        plain = not (batch.perturbed or batch.logged)
-        if not (self.takes_lanes and plain and share_lanes(batch.samples)):
+        if not self.takes_lanes:
             return self._one_by_one(batch)
-        runs: dict[int, Run] = {}
-        for first in range(0, len(batch.samples) - FEWEST + 1, WIDTH):
-            part = batch.part(range(first, min(first + WIDTH, len(batch.samples))))
-            out, alone = run_in_lanes(
-                part, self.step, self.spectral_radius, self.initial_acceleration == "consistent", self.newton_tolerance
-            )
-            dout, log = part.derivatives(), part.log(None)
-            for number in np.flatnonzero(~alone):
-                states = MotionState(*(values[number] for values in out))
-                runs[first + int(number)] = part.result(None, states, dout, log)
-        left = [number for number in range(len(batch.samples)) if number not in runs]
-        runs |= dict(zip(left, self._one_by_one(batch.part(left)) if left else [], strict=True))
-        return [runs[number] for number in range(len(batch.samples))]
+        consistent = self.initial_acceleration == "consistent"
+        return run_groups(
+            batch,
+            lambda part: run_in_lanes(part, self.step, self.spectral_radius, consistent, self.newton_tolerance),
+            self._one_by_one,
+        )
 
     def _one_by_one(self, batch: Batch) -> list[Run]:
         """Runs of samples one after the other."""

@@ -14,9 +14,17 @@ from dalembert.kernels.lanes import WIDTH, chosen, entry, lane_vector, lane_zero
 from dalembert.kernels.words import Address, Integers, Reals2, Reals3
 from dalembert.multibody.integrators.generalized_alpha.newton import AGED, MOST_ITERATIONS, SLOW
 from dalembert.multibody.integrators.shared.convergence import BALANCED, NOISE, ROUNDING
+from dalembert.multibody.integrators.shared.lane_states import (
+    LaneFactors,
+    LaneSignals,
+    keep_factors,
+    lane_factors,
+    set_lane_signals,
+    take_lane,
+)
 from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.kernels.assembly import displace, reduced_residual, reduced_tangent, restore, set_signals
-from dalembert.multibody.kernels.linear import BAND, Factors, factorise, storage
+from dalembert.multibody.kernels.linear import Factors, factorise, storage
 from dalembert.multibody.kernels.sample_lanes import solve_samples
 from dalembert.multibody.kernels.states import MotionState, advance, resting, shift
 
@@ -25,28 +33,21 @@ NORM, BEFORE, LEFT, FORCE, ITERATES, IS_FRESH = range(6)
 
 
 class LanesNewton(NamedTuple):
-    """Work of the iteration. ``model``, ``call``: in lanes, with its ``signals`` (signals, 3, 8); ``reals`` (8,): those
-    of the lanes in real numbers; ``work``: their call, with its signals (signals, 3). ``factors``, ``before``,
-    ``after``: a matrix and two states of one lane. ``matrix`` (entries, 8): factorised matrices; ``pivots``, ``tops``
-    (N,): of all lanes; ``has_pivots`` (1,): whether they are known. ``memory`` (2, 8): as of :class:`newton.Newton`.
-    ``turns`` (8,): what counts the turns of angles, 0 for none; ``alone`` (8,): lanes that are to run alone.
-    ``numbers`` (6, 8): size of the last correction, of the one before, bound of those to come, forces at the
-    prediction, whether the lane iterates, whether its matrix is of this step.
+    """Work of the iteration. ``model``, ``call``: in lanes, with its ``signals`` (signals, 3, 8), which come from
+    ``source``. ``factors``, ``before``, ``after``: a matrix and two states of one lane. ``kept``: factors of all lanes.
+    ``memory`` (2, 8): as of :class:`newton.Newton`. ``turns`` (8,): what counts the turns of angles, 0 for none;
+    ``alone`` (8,): lanes that are to run alone. ``numbers`` (6, 8): size of the last correction, of the one before,
+    bound of those to come, forces at the prediction, whether the lane iterates, whether its matrix is of this step.
     """
 
     model: Address
     call: Address
     signals: Reals3
-    reals: Integers
-    work: Address
-    signals_alone: Reals2
+    source: LaneSignals
     factors: Factors
     before: MotionState
     after: MotionState
-    matrix: Reals2
-    pivots: Integers
-    tops: Integers
-    has_pivots: Integers
+    kept: LaneFactors
     r: Reals2
     delta: Reals2
     change: Reals2
@@ -63,59 +64,20 @@ def lanes_newton(
     model: int,
     call: Address,
     signals: np.ndarray,
-    reals: np.ndarray,
-    work: int,
-    signals_alone: np.ndarray,
+    source: LaneSignals,
     turns: np.ndarray,
 ) -> LanesNewton:
     """Workspace for the iteration."""
     layout, width = problem.reduced.layout, len(problem.scale)
-    factors = storage(layout)
     r, delta = lane_zeros(2, layout.size + 1)
     # The same array where no node makes them differ, as of one sample.
     change = delta if problem.reduced.increments == problem.n else lane_zeros(width)
     return LanesNewton(
-        model, call, signals, reals, work, signals_alone, factors, resting(width), resting(width),
-        lane_zeros(len(factors.matrix)), np.zeros(layout.size, np.int64), np.zeros(layout.size, np.int64),
-        np.zeros(1, np.int64), r, delta, change,
+        model, call, signals, source, storage(layout), resting(width), resting(width), lane_factors(layout), r, delta,
+        change,
         lane_zeros(layout.size + 3 * layout.reach), lane_zeros(width), lane_zeros(2),
         turns, np.zeros(WIDTH, np.int64), lane_zeros(6),
     )  # fmt: skip
-
-
-@inner
-def take_lane(stack, lane, state):
-    """Fill a state with that of a lane of ``stack`` (4, N + 1, 8)."""
-    for i in range(stack.shape[1]):
-        state.x[i], state.v[i], state.a[i], state.w[i] = (
-            stack[0, i, lane],
-            stack[1, i, lane],
-            stack[2, i, lane],
-            stack[3, i, lane],
-        )
-
-
-@inner
-def put_lane(state, lane, stack):
-    """Fill a lane of ``stack`` with a state."""
-    for i in range(stack.shape[1]):
-        stack[0, i, lane], stack[1, i, lane], stack[2, i, lane], stack[3, i, lane] = (
-            state.x[i],
-            state.v[i],
-            state.a[i],
-            state.w[i],
-        )
-
-
-@inner
-def set_lane_signals(t, within, scratch):
-    """Evaluate the signals of each lane alone, which is cheap, into those of all lanes."""
-    # Signals have branches on time and on their tables: some nanoseconds for each lane in real numbers.
-    for lane in range(WIDTH):
-        set_signals(scratch.reals[lane], t, within, scratch.work)
-        for k in range(scratch.signals.shape[0]):
-            for rate in range(3):
-                scratch.signals[k, rate, lane] = scratch.signals_alone[k, rate]
 
 
 @inner
@@ -126,34 +88,19 @@ def _renew(problem, c, t, within, stack, lane, scratch):
     reduced, factors, state = problem.reduced, scratch.factors, scratch.after
     # The derivative of the residual along da, with dv = c.dv da and dq = c.dq da.
     take_lane(stack, lane, state)
-    set_signals(scratch.reals[lane], t, within, scratch.work)
+    model, work = scratch.source.models[lane], scratch.source.call
+    set_signals(model, t, within, work)
     reduced_tangent(
-        scratch.reals[lane], reduced.slots, reduced.increments, reduced.layout.size, state.x, state.v, state.a,
-        (c.dq, c.dv, 1.0), (1.0, 1.0 / c.dq), scratch.work, factors.matrix,
+        model, reduced.slots, reduced.increments, reduced.layout.size, state.x, state.v, state.a,
+        (c.dq, c.dv, 1.0), (1.0, 1.0 / c.dq), work, factors.matrix,
     )  # fmt: skip
     if not factorise(reduced.layout, factors):
         scratch.alone[lane] = 1
         return
     scratch.memory[0, lane] = c.step
-    if reduced.layout.kind == BAND:
-        # Rows are exchanged by value. One sequence of exchanges serves all lanes, so that a substitution has no branch.
-        for i in range(reduced.layout.size):
-            if scratch.has_pivots[0] == 0:
-                scratch.pivots[i], scratch.tops[i] = factors.pivots[i], factors.tops[i]
-            elif scratch.pivots[i] != factors.pivots[i] or scratch.tops[i] != factors.tops[i]:
-                scratch.alone[lane] = 1
-                return
-        scratch.has_pivots[0] = 1
     # The factors as one sample has them, so that no bit depends on the group; the other lanes keep theirs.
-    size, lead = reduced.layout.size, reduced.layout.lead
-    if reduced.layout.kind == BAND:
-        for i in range(len(factors.matrix)):
-            scratch.matrix[i, lane] = factors.matrix[i]
-    else:
-        # Dense inverses by rows, as products in lanes read them.
-        for i in range(size):
-            for j in range(size):
-                scratch.matrix[i * size + j, lane] = factors.matrix[j * lead + i]
+    if not keep_factors(reduced.layout, factors, lane, scratch.kept):
+        scratch.alone[lane] = 1
 
 
 @inlined
@@ -233,6 +180,7 @@ def converge_lanes(problem, c, t, within, tolerance, old_stack, new_stack, scrat
     new = MotionState(
         lane_vector(new_stack[0]), lane_vector(new_stack[1]), lane_vector(new_stack[2]), lane_vector(new_stack[3])
     )
+    kept = scratch.kept
     r, delta, numbers = lane_vector(scratch.r), lane_vector(scratch.delta), lane_vector(scratch.numbers)
     change = lane_vector(scratch.change)
     zero = 0.0 * old.x[len(old.x) - 1]
@@ -246,15 +194,13 @@ def converge_lanes(problem, c, t, within, tolerance, old_stack, new_stack, scrat
             _renew(problem, c, t, within, new_stack, lane, scratch)
             memory[1, lane], values[IS_FRESH, lane] = AGED, 1.0
         values[ITERATES, lane] = 1.0 - alone[lane]
-    set_lane_signals(t, within, scratch)
+    set_lane_signals(t, within, scratch.source, scratch.signals)
     for iteration in range(1, MOST_ITERATIONS + 1):
         reduced_residual(scratch.model, reduced.increments, new.x, new.v, new.a, scratch.call, 1.0 / c.dq, r)
         if iteration == 1:  # of the prediction, and of the constraints
             numbers[FORCE] = larger(_largest(r, 0, reduced.increments, zero), _largest(new.x, n, len(old.x) - 1, zero))
         # Increments by the kept matrices, then the step by its formulas, as for one sample.
-        solve_samples(
-            reduced.layout, scratch.matrix, scratch.pivots, scratch.tops, scratch.r, scratch.buffer, scratch.delta
-        )
+        solve_samples(reduced.layout, kept.matrix, kept.pivots, kept.tops, scratch.r, scratch.buffer, scratch.delta)
         displace(scratch.model, c.dq, new.x, delta, scratch.call, change)
         moved = _correct(n, c, problem.scale, numbers[ITERATES], change, old, new, zero)
         forces = _largest(r, 0, reduced.increments, zero) if iteration > 2 else zero

@@ -9,11 +9,10 @@ from dalembert.multibody.integrators.generalized_alpha.lanes_newton import (
     LanesNewton,
     converge_lanes,
     lanes_newton,
-    put_lane,
-    take_lane,
 )
 from dalembert.multibody.integrators.shared.batch import Batch, restarts
 from dalembert.multibody.integrators.shared.consistent import Consistency, accelerate, consistency
+from dalembert.multibody.integrators.shared.lane_states import LaneSignals, put_lane, take_lane
 from dalembert.multibody.integrators.shared.problem import IntegrationProblem, SampleModels
 from dalembert.multibody.kernels.block_table import addresses
 from dalembert.multibody.kernels.states import (
@@ -43,7 +42,12 @@ def run_in_lanes(
     turns = np.zeros(WIDTH, np.int64)
     turns[: len(samples)] = batch.begin_counting()
     newton = lanes_newton(
-        problem, together.address, call.address, call.signals, addresses(models), work.address, work.signals, turns
+        problem,
+        together.address,
+        call.address,
+        call.signals,
+        LaneSignals(addresses(models), work.address, work.signals),
+        turns,
     )
     ends, out = lane_zeros(2, 4, len(problem.scale)), resting(len(samples), *batch.shape)
     for lane, number in enumerate(filled):
@@ -84,7 +88,7 @@ def integrate_lanes(
         if fresh and (stretch > 0 or consistent):
             for lane in range(WIDTH):
                 take_lane(new, lane, state)
-                models = SampleModels(scratch.reals[lane], scratch.reals[lane], opens[:0], 0)
+                models = SampleModels(scratch.source.models[lane], scratch.source.models[lane], opens[:0], 0)
                 if not accelerate(problem, models, begin, within, state, none, start):
                     alone[lane] = 1
                 put_lane(state, lane, new)

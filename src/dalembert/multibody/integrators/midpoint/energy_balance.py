@@ -19,13 +19,13 @@ from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.integrators.shared.settling import weigh_along
 from dalembert.multibody.kernels.assembly import energies
 from dalembert.multibody.kernels.block_table import BlockModel
-from dalembert.multibody.kernels.elementary import STEP, reciprocal
+from dalembert.multibody.kernels.elementary import STEP, reciprocal, where
 from dalembert.multibody.kernels.states import MotionState
 from dalembert.multibody.model import evaluate
 from dalembert.multibody.model.lowered import Lowered
 
+MOST_STRENGTHS = 12  # that are tried
 _ROUNDING = 1e-15  # of the energies' sizes
-_MOST = 12  # strengths that are tried
 _STRONGEST = 0.5  # part of the velocities that the force may take or give in a step
 
 
@@ -111,29 +111,27 @@ def _remove(n, motions, weighed, force):
     for j in range(len(motions)):
         whole = _product(n, motions[j], weighed[j]).real
         for i in range(j):
-            own = _product(n, motions[i], weighed[i])
             # Gram and Schmidt with the masses as metric; in complex numbers the derivative of the motions is carried
-            # along.
-            if own.real > 0.0:
-                share = _product(n, motions[i], weighed[j]) * reciprocal(own)
-                for k in range(n):
-                    motions[j, k] -= share * motions[i, k]
-                    weighed[j, k] -= share * weighed[i, k]
-        own = _product(n, motions[j], weighed[j])
-        if own.real <= 1e-10 * whole:  # the same as those before: a point does not turn
+            # along. A motion that was removed has no mass.
+            own, shared = _product(n, motions[i], weighed[i]), _product(n, motions[i], weighed[j])
+            share = where(own.real > 0.0, shared * reciprocal(own), 0.0 * shared)
             for k in range(n):
-                motions[j, k], weighed[j, k] = 0.0, 0.0
-        else:
-            share = _product(n, motions[j], force) * reciprocal(own)
-            for k in range(n):
-                force[k] -= share * weighed[j, k]
+                motions[j, k] -= share * motions[i, k]
+                weighed[j, k] -= share * weighed[i, k]
+        own, shared = _product(n, motions[j], weighed[j]), _product(n, motions[j], force)
+        is_new = own.real > 1e-10 * whole  # not the same as those before: a point does not turn
+        share = where(is_new, shared * reciprocal(own), 0.0 * shared)
+        for k in range(n):
+            force[k] -= share * weighed[j, k]
+            motions[j, k] = where(is_new, motions[j, k], 0.0 * motions[j, k])
+            weighed[j, k] = where(is_new, weighed[j, k], 0.0 * weighed[j, k])
 
 
 @inner
-def _direct(n, matrices, s, e):
+def direct(n, matrices, s, e):
     """Fill the direction of the force; its power."""
     rigid, motions, weighed, force, mass = e.rigid, e.motions, e.weighed, e.force, matrices.mass
-    _fill_motions(n, rigid, rigid.shift, s[midpoint.XM], motions)
+    _fill_motions(n, rigid, rigid.shift, s.xm, motions)
     for i in range(n):
         force[i] = 0.0
         for j in range(len(weighed)):
@@ -141,18 +139,18 @@ def _direct(n, matrices, s, e):
     # M times each rigid motion, and M times the velocities of the middle: their momenta.
     for j in range(len(weighed)):
         add_product(n, matrices, mass, motions[j], 1.0, weighed[j])
-    add_product(n, matrices, mass, s[midpoint.VM], 1.0, force)
+    add_product(n, matrices, mass, s.vm, 1.0, force)
     _remove(n, motions, weighed, force)
-    return _product(n, s[midpoint.VM], force)
+    return _product(n, s.vm, force)
 
 
 @inner
-def _energy(model, h, at, middle, end, totals):
+def energy_of_step(model, h, at, middle, end, totals):
     """Energy at the end of a step, and the work of loads and losses in it; ``totals`` are those of the end."""
     # Work of loads and losses by the midpoint rule, as the step itself weighs them.
-    energies(model, at[midpoint.XM], at[midpoint.VM], middle, totals)
+    energies(model, at.xm, at.vm, middle, totals)
     gain = h * totals[2]
-    energies(model, at[midpoint.X1], at[midpoint.V1], end, totals)
+    energies(model, at.x1, at.v1, end, totals)
     return totals[0] + totals[1], gain
 
 
@@ -170,9 +168,9 @@ def converge(
     force, totals = balance.force, balance.totals
     strength, gain, before, iterations, rate, worst = 0.0, 0.0, 1e300, 0, 1.0, 0
     converged, free = False, False
-    for attempt in range(_MOST):
+    for attempt in range(MOST_STRENGTHS):
         # The direction is that of the last solution, so the balance is a fixed point over both.
-        power = _direct(n, matrices, s, balance)
+        power = direct(n, matrices, s, balance)
         for k in range(n):
             push[k] = strength * force[k]
         converged, more, contraction, worst = midpoint.converge(problem, matrices, model, h, step, tolerance, least)
@@ -180,27 +178,38 @@ def converge(
         rate = contraction if attempt == 0 else rate
         if not converged:
             break
-        energy, gain = _energy(model, h, s, middle, end, totals)
+        energy, gain = energy_of_step(model, h, s, middle, end, totals)
         excess = energy - (goal + gain)
-        near = abs(excess) <= _ROUNDING * (abs(totals[0]) + abs(totals[1]))
-        if free or near or power == 0.0 or (attempt > 3 and abs(excess) > 0.5 * before):
+        if free or is_balanced(attempt, excess, before, power, abs(totals[0]) + abs(totals[1])):
             break
         before = abs(excess)
-        # A force c M v' takes the energy h c v'^T M v' in the step, to first order: a secant in the strength.
-        strength += excess / (h * power)
-        if not abs(h * strength) < _STRONGEST:  # at a standstill; the next steps make up for it
-            strength, free = 0.0, True
+        strength, free = stronger(h, strength, excess, power)
     return converged, iterations, rate, worst, strength, gain
+
+
+@inner
+def is_balanced(attempt, excess, before, power, size):
+    """Whether the search for the strength ends: the energy is met, or no strength meets it better."""
+    return abs(excess) <= _ROUNDING * size or power == 0.0 or (attempt > 3 and abs(excess) > 0.5 * before)
+
+
+@inner
+def stronger(h, strength, excess, power):
+    """The next strength, and whether there is none: then the next steps make up for it."""
+    # A force c M v' takes the energy h c v'^T M v' in the step, to first order: a secant in the strength.
+    strength += excess / (h * power)
+    free = not abs(h * strength) < _STRONGEST  # at a standstill
+    return 0.0 if free else strength, free
 
 
 @inner
 def _direct_along(perturbed, n, shift, at, middle, buffers, e):
     """The direction of the force in complex numbers."""
     motions, weighed, force = e.complex_motions, e.complex_weighed, e.complex_force
-    _fill_motions(n, e.rigid, shift, at[midpoint.XM], motions)
+    _fill_motions(n, e.rigid, shift, at.xm, motions)
     for j in range(len(weighed)):
-        weigh_along(perturbed, n, at[midpoint.XM], motions[j], middle, buffers, weighed[j])
-    weigh_along(perturbed, n, at[midpoint.XM], at[midpoint.VM], middle, buffers, force)
+        weigh_along(perturbed, n, at.xm, motions[j], middle, buffers, weighed[j])
+    weigh_along(perturbed, n, at.xm, at.vm, middle, buffers, force)
     _remove(n, motions, weighed, force)
 
 
@@ -211,24 +220,24 @@ def converge_along(
     step: MidpointStep, along: Along, balance: Balance,
 ) -> float:  # fmt: skip
     """Derivative of the step along direction ``d``; the derivative of the work in it."""
-    n, s, ds, at, push = problem.n, step.rows, along.rows, along.complex_state, along.push
+    n, s, ds, at, push = problem.n, step.rows, along.rows, along.complex_rows, along.push
     middle, end, buffers = along.middle, along.end, along.vectors[4:]
     shift, force, totals = balance.rigid.shifts[d], balance.complex_force, balance.complex_totals
     slope, dgain, before = 0.0, 0.0, 1e300
-    for attempt in range(2 * _MOST):
+    for attempt in range(2 * MOST_STRENGTHS):
         power = 0.0
         if strength != 0.0:
             midpoint.perturb_step(s, ds, at)
             _direct_along(perturbed, n, shift, at, middle, buffers, balance)
             for k in range(n):
                 push[k] = (complex(strength, STEP * slope) * force[k]).imag / STEP
-                power += s[midpoint.VM, k] * force[k].real
+                power += s.vm[k] * force[k].real
         else:
             for k in range(n):
                 push[k] = 0.0
         midpoint.converge_along(problem, matrices, perturbed, h, step, along)
         midpoint.perturb_step(s, ds, at)
-        energy, gain = _energy(perturbed, h, at, middle, end, totals)
+        energy, gain = energy_of_step(perturbed, h, at, middle, end, totals)
         dgain = gain.imag / STEP
         excess = energy.imag / STEP - (dgoal + dgain)
         size = (abs(totals[0].imag) + abs(totals[1].imag)) / STEP + abs(dgoal)

@@ -15,10 +15,14 @@ from dalembert.multibody.integrators.midpoint.energy_balance import (
     converge_along,
     first_energies,
 )
+from dalembert.multibody.integrators.midpoint.lanes_balance import balance_lanes
+from dalembert.multibody.integrators.midpoint.lanes_loop import run_in_lanes
 from dalembert.multibody.integrators.midpoint.symmetries import rigid_motions
 from dalembert.multibody.integrators.midpoint.variational import Variational
+from dalembert.multibody.integrators.shared.batch import Batch
 from dalembert.multibody.kernels.histories import energy_history
-from dalembert.multibody.kernels.states import MotionState
+from dalembert.multibody.kernels.states import MotionState, resting, row
+from dalembert.multibody.model.lane_models import lane_kernels
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.structure import Structure
 
@@ -60,6 +64,21 @@ class EnergyMomentum(Variational):
         arithmetics = (float, complex) if derivatives else (float,)
         kinds = [kind for kind in structure.index if "energy" in kind.roles]
         return [*own, *(kind.kernel("energy", dtype) for dtype in arithmetics for kind in kinds)]
+
+    def lane_kernels(self, sample: Lowered) -> list[Compiled]:
+        """Those of `Variational`, of the balance, and of the components' energies."""
+        return [*super().lane_kernels(sample), balance_lanes, *lane_kernels(sample.data, "energy")]
+
+    def _run_in_lanes(self, part: Batch) -> tuple[MotionState, np.ndarray]:
+        """States of a group, and which samples have to run alone: all, if they do not share their rigid motions."""
+        balances = []
+        for number, lowered in enumerate(part.samples):
+            within = 0.5 * (part.problem.edges[number, 0] + part.problem.edges[number, 1])
+            energy, _, balance = self._balance(lowered, (), row(part.states, number), part.dstates, within)
+            balances.append((energy, balance.rigid))
+        if any(not np.array_equal(rigid.spin, balances[0][1].spin) for _, rigid in balances):
+            return resting(len(balances), *part.shape), np.ones(len(balances), dtype=bool)
+        return run_in_lanes(part, float(self.step), float(self.newton_tolerance), balances)
 
     def _balance(
         self, lowered: Lowered, perturbed: Sequence[Lowered], start: MotionState, dstarts: MotionState, within: float

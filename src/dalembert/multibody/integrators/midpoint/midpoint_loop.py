@@ -39,7 +39,7 @@ from dalembert.multibody.kernels.block_table import Call
 from dalembert.multibody.kernels.states import Histories, MotionState, MotionStates, clear, copy, resting, row
 from dalembert.multibody.model.turns import STEP_END, count_turns
 
-_AGED = 0.05  # contraction at which the next step begins with new matrices
+AGED = 0.05  # contraction at which the next step begins with new matrices
 _ENDS = 2  # of steps, between which outputs are interpolated
 
 
@@ -103,10 +103,10 @@ def workspace(
 @inner
 def _read(n, s, new):
     """State at the end of a step; accelerations and multipliers to start from."""
-    for k in range(s.shape[1]):
-        new.x[k] = s[midpoint.X1, k]
+    for k in range(len(s.x0)):
+        new.x[k] = s.x1[k]
         if k < n:
-            new.v[k], new.a[k] = s[midpoint.V1, k], s[midpoint.B, k]
+            new.v[k], new.a[k] = s.v1[k], s.b[k]
 
 
 @kernel
@@ -242,7 +242,7 @@ def integrate(
             # The energy that the next step must have: that of the start and the work since.
             energy += gain
             for k in range(n):
-                speed = max(speed, abs(s[midpoint.VM, k]) / scale[k])
+                speed = max(speed, abs(s.vm[k]) / scale[k])
             if len(models.directions) > 0:
                 _differentiate_at(
                     derivatives.differentiate, problem, matrices, models.directions, step, balance, strength, h, t,
@@ -251,5 +251,5 @@ def integrate(
             note_step(log, iterations, target)
             number += 1 if level == 0 else 0
             level -= 1 if level > 0 else 0
-            t, fresh, stale, arrived = target, False, rate > _AGED, True
+            t, fresh, stale, arrived = target, False, rate > AGED, True
     return DONE, edges[-1], 0

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.kernels.kernel import inner, kernel
-from dalembert.kernels.words import Address, Complexes2, Reals, Reals2
+from dalembert.kernels.words import Address, Complexes, Complexes2, Reals, Reals2
 from dalembert.multibody.integrators.shared.convergence import (
     BALANCED,
     CLOSED,
@@ -32,10 +32,34 @@ from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import solve
 from dalembert.multibody.kernels.states import clear
 
-# Rows of a step (8, N + 1): unknowns at its start, in its middle and at its end, velocities there, both accelerations.
-X0, XM, X1, V0, VM, V1, A, B = range(8)
-ROWS = 8
-_MOST_ITERATIONS = 20
+MOST_ITERATIONS = 20
+ITERATING, CONVERGED, DIVERGED = range(3)
+
+
+class StepRows(NamedTuple):
+    """Unknowns (N + 1,) at the start of a step, in its middle and at its end, velocities there, both accelerations."""
+
+    x0: Reals
+    xm: Reals
+    x1: Reals
+    v0: Reals
+    vm: Reals
+    v1: Reals
+    a: Reals
+    b: Reals
+
+
+class ComplexRows(NamedTuple):
+    """The same in complex numbers."""
+
+    x0: Complexes
+    xm: Complexes
+    x1: Complexes
+    v0: Complexes
+    vm: Complexes
+    v1: Complexes
+    a: Complexes
+    b: Complexes
 
 
 class MidpointStep(NamedTuple):
@@ -43,7 +67,7 @@ class MidpointStep(NamedTuple):
 
     middle: Address
     end: Address
-    rows: Reals2
+    rows: StepRows
     push: Reals
     vectors: Reals2
 
@@ -53,21 +77,25 @@ class Along(NamedTuple):
 
     middle: Address
     end: Address
-    rows: Reals2
+    rows: StepRows
     push: Reals
-    complex_state: Complexes2
+    complex_rows: ComplexRows
     vectors: Complexes2
 
 
 def step_workspace(width: int, middle: int, end: int) -> MidpointStep:
     """Workspace for a step of N + 1 = ``width`` unknowns; the calls are those of real numbers."""
-    return MidpointStep(middle, end, np.zeros((ROWS, width)), np.zeros(width), np.zeros((7, width)))
+    return MidpointStep(middle, end, _rows(width), np.zeros(width), np.zeros((7, width)))
 
 
 def along_workspace(width: int, middle: int, end: int) -> Along:
     """Workspace for the derivative of a step; the calls are those of complex numbers."""
-    complex_state, vectors = np.zeros((ROWS, width), complex), np.zeros((7, width), complex)
-    return Along(middle, end, np.zeros((ROWS, width)), np.zeros(width), complex_state, vectors)
+    complex_rows, vectors = ComplexRows(*np.zeros((8, width), complex)), np.zeros((7, width), complex)
+    return Along(middle, end, _rows(width), np.zeros(width), complex_rows, vectors)
+
+
+def _rows(width: int) -> StepRows:
+    return StepRows(*np.zeros((8, width)))
 
 
 @inner
@@ -79,27 +107,27 @@ def place(n, h, s):
     for k in range(n):
         # Coordinates move with the velocity of the middle for the whole step: the rule is symmetric, so its order is
         # two.
-        way = h * (s[V0, k] + 0.5 * h * s[A, k])
-        s[VM, k] = s[V0, k] + 0.5 * h * s[A, k]
-        s[V1, k] = s[V0, k] + 0.5 * h * (s[A, k] + s[B, k])
-        s[XM, k] = s[X0, k] + 0.5 * way
-        s[X1, k] = s[X0, k] + way
-    for k in range(n, s.shape[1]):
-        s[XM, k] = 0.5 * (s[X0, k] + s[X1, k])
+        way = h * (s.v0[k] + 0.5 * h * s.a[k])
+        s.vm[k] = s.v0[k] + 0.5 * h * s.a[k]
+        s.v1[k] = s.v0[k] + 0.5 * h * (s.a[k] + s.b[k])
+        s.xm[k] = s.x0[k] + 0.5 * way
+        s.x1[k] = s.x0[k] + way
+    for k in range(n, len(s.x0)):
+        s.xm[k] = 0.5 * (s.x0[k] + s.x1[k])
 
 
 @inner
 def begin(n, h, start, slope, s):
     """A step ahead of a state, by its accelerations and multipliers and what they missed in the step before."""
     for k in range(len(start.x)):
-        s[X0, k] = start.x[k]
+        s.x0[k] = start.x[k]
         if k < n:
-            s[V0, k] = start.v[k]
-            s[A, k], s[B, k] = start.a[k] + slope[0, k], start.a[k] + slope[1, k]
+            s.v0[k] = start.v[k]
+            s.a[k], s.b[k] = start.a[k] + slope[0, k], start.a[k] + slope[1, k]
         else:
             # Multipliers of both ends are unknowns of the step: those of its start are not those of the end of the step
             # before.
-            s[X0, k], s[X1, k] = start.x[k] + slope[0, k], start.x[k] + slope[1, k]
+            s.x0[k], s.x1[k] = start.x[k] + slope[0, k], start.x[k] + slope[1, k]
     place(n, h, s)
 
 
@@ -108,35 +136,35 @@ def keep_missed(n, start, s, slope):
     """What accelerations and multipliers of a start missed in its step."""
     for k in range(len(start.x)):
         if k < n:
-            slope[0, k], slope[1, k] = s[A, k] - start.a[k], s[B, k] - start.a[k]
+            slope[0, k], slope[1, k] = s.a[k] - start.a[k], s.b[k] - start.a[k]
         else:
-            slope[0, k], slope[1, k] = s[X0, k] - start.x[k], s[X1, k] - start.x[k]
+            slope[0, k], slope[1, k] = s.x0[k] - start.x[k], s.x1[k] - start.x[k]
 
 
 @inner
-def _balance(model, n, at, middle, end, f, gap, rate, second):
-    """Fill the residuals of a step, in real or in complex numbers; the signals of both calls hold the time. ``f``:
+def step_residuals(model, n, at, middle, end, f, gap, rate, second):
+    """Fill the residuals of a step, in numbers of any kind; the signals of both calls hold the time. ``f``:
     M a + F + J^T l at the start. ``gap``: J^T l at the end less that at the start, constraints at the end. ``rate``:
     their rates.
     """
     # M a + F(q_m, v_m) + J(q_m)^T l_m from one call of the kernels, less its constraint forces: what is left is M a +
     # F.
-    residual(model, n, at[XM], at[VM], at[A], middle, 1.0, f)
+    residual(model, n, at.xm, at.vm, at.a, middle, 1.0, f)
     clear(gap)
-    constraint_forces(model, at[XM], at[VM], at[A], middle, gap)
+    constraint_forces(model, at.xm, at.vm, at.a, middle, gap)
     for k in range(n):
         f[k] -= gap[k]
     clear(gap)
     # Constraint forces of the start, then of the end; the constraints of the end come with the latter.
-    constraint_forces(model, at[X0], at[V0], at[A], middle, gap)
+    constraint_forces(model, at.x0, at.v0, at.a, middle, gap)
     for k in range(len(gap)):
         if k < n:
             f[k] += gap[k]
             gap[k] = -gap[k]
         else:
             gap[k] = 0.0
-    constraint_forces(model, at[X1], at[V1], at[B], end, gap)
-    constraint_rates(model, n, at[X1], at[V1], at[A], end, rate, second)
+    constraint_forces(model, at.x1, at.v1, at.b, end, gap)
+    constraint_rates(model, n, at.x1, at.v1, at.a, end, rate, second)
 
 
 @inner
@@ -145,22 +173,33 @@ def _correct(n, size, matrices, h, f, gap, rate, first, other, s):
     systems: [M + h/2 C + h^2/4 K, J^T; J, 0] for ``A``, and the same without C and K for ``B`` - ``A``: in the
     difference of both equations the forces cancel.
     """
-    # Constraints at the end change by h^2/2 J a, their rates by h/2 J (a + b): scaled to accelerations.
+    scale_constraints(n, size, h, f, gap, rate)
+    # First the implicit midpoint rule, then the projection of the velocities with the masses alone.
+    solve(matrices.pattern.layout, matrices.real, f, first)
+    solve(matrices.pattern.layout, matrices.rigid, gap, other)
+    take_off(n, size, h, first, other, f, gap, s)
+
+
+@inner
+def scale_constraints(n, size, h, f, gap, rate):
+    """Scale residuals of constraints to accelerations: h^2/2 J a at the end, and h/2 J (a + b) of the rates."""
     square = 2.0 / (h * h)
     for k in range(n, size):
         f[k] = square * gap[k]
         gap[k] = 2.0 / h * rate[k] - 2.0 * f[k]
-    # First the implicit midpoint rule, then the projection of the velocities with the masses alone.
-    solve(matrices.pattern.layout, matrices.real, f, first)
-    solve(matrices.pattern.layout, matrices.rigid, gap, other)
+
+
+@inner
+def take_off(n, size, h, first, other, f, gap, s):
+    """Take the solutions of both systems off a step; ``f`` and ``gap`` become what accelerations moved."""
     for k in range(size):
         f[k], gap[k] = first[k], first[k] + other[k]
         if k < n:
-            s[A, k] -= f[k]
-            s[B, k] -= gap[k]
+            s.a[k] -= f[k]
+            s.b[k] -= gap[k]
         else:
-            s[X0, k] -= f[k]
-            s[X1, k] -= gap[k]
+            s.x0[k] -= f[k]
+            s.x1[k] -= gap[k]
     place(n, h, s)
 
 
@@ -171,7 +210,7 @@ def _sizes(n, h, scale, f, gap, s):
     for k in range(n):
         # What a correction of both accelerations moves a coordinate at most.
         moved = 0.25 * h * h * (abs(f[k]) + abs(gap[k])) / scale[k]
-        way = max(way, h * abs(s[VM, k]) / scale[k])
+        way = max(way, h * abs(s.vm[k]) / scale[k])
         if norm == norm and not moved <= norm:  # the first that is not a number stays
             norm, worst = moved, k
     return norm, way, worst
@@ -192,23 +231,23 @@ def converge(
     least ``least``, in parts of their scales.
     """
     s, b, push, middle, end = step.rows, step.vectors, step.push, step.middle, step.end
-    n, size, scale, mass = problem.n, s.shape[1] - 1, problem.scale, matrices.mass
+    n, size, scale, mass = problem.n, len(s.x0) - 1, problem.scale, matrices.mass
     f, gap, rate, second, first, other = b[0], b[1], b[2], b[3], b[4], b[5]
     before, norm, contraction, worst = 0.0, 1.0, 1.0, 0
     closed, force, remaining = 0.0, 0.0, 0.0
     for k in range(n):
         closed = max(closed, CLOSED * scale[k])
-    for iteration in range(1, _MOST_ITERATIONS + 1):
-        _balance(model, n, s, middle, end, f, gap, rate, second)
+    for iteration in range(1, MOST_ITERATIONS + 1):
+        step_residuals(model, n, s, middle, end, f, gap, rate, second)
         for k in range(n):
             f[k] += push[k]
-            first[k] = s[B, k] - s[A, k]
+            first[k] = s.b[k] - s.a[k]
         for k in range(n, size):  # rounding would come back as velocities, 1/h times as large
             if abs(gap[k]) <= closed:
                 gap[k] = 0.0
         remaining = largest_entry(f, 0, n)
         if iteration == 1:  # of the prediction, and of the constraints
-            force = max(remaining, largest_entry(s[A], n, size))
+            force = max(remaining, largest_entry(s.a, n, size))
         # The difference of both equations: M (b - a) + (J(q_1)^T l_1 - J(q_0)^T l_0) = 0.
         add_product(n, matrices, mass, first, 1.0, gap)
         _correct(n, size, matrices, h, f, gap, rate, first, other, s)
@@ -216,24 +255,41 @@ def converge(
         way = max(least, way)
         if iteration > 1 and norm > NOISE * way:
             contraction = norm / before
-        if not norm < 1e100 or (iteration > 2 and contraction > 2.0 and norm > 1e-9):
+        progress = judge(iteration, tolerance * way, norm, before, contraction, remaining, force)
+        if progress == CONVERGED:
+            return True, iteration, contraction, worst
+        if progress == DIVERGED:
             break
-        # The sum of the corrections to come, by the contraction seen.
-        left = norm * contraction / (1.0 - contraction) if contraction < 1.0 else norm
-        if min(norm, left) <= tolerance * way:
-            return True, iteration, contraction, worst
-        if iteration > 2 and norm <= ROUNDING and norm > 0.5 * before and remaining <= BALANCED * force:
-            return True, iteration, contraction, worst
         before = norm
-    return norm <= MAGNIFIED and remaining <= BALANCED * force, iteration, contraction, worst
+    return passes(norm, remaining, force), iteration, contraction, worst
+
+
+@inner
+def judge(iteration, allowed, norm, before, contraction, remaining, force):
+    """Whether Newton's iteration has converged, goes on or diverged; corrections end below ``allowed``."""
+    if not norm < 1e100 or (iteration > 2 and contraction > 2.0 and norm > 1e-9):
+        return DIVERGED
+    # The sum of the corrections to come, by the contraction seen.
+    left = norm * contraction / (1.0 - contraction) if contraction < 1.0 else norm
+    if min(norm, left) <= allowed:
+        return CONVERGED
+    if iteration > 2 and norm <= ROUNDING and norm > 0.5 * before and remaining <= BALANCED * force:
+        return CONVERGED
+    return ITERATING
+
+
+@inner
+def passes(norm, remaining, force):
+    """Whether an iteration that ended without convergence leaves rounding that a nearly singular position magnifies."""
+    return norm <= MAGNIFIED and remaining <= BALANCED * force
 
 
 @inner
 def perturb_step(s, ds, at):
     """The step plus the imaginary step along a direction."""
-    for i in range(ROWS):
-        for k in range(s.shape[1]):
-            at[i, k] = complex(s[i, k], STEP * ds[i, k])
+    for i in range(8):
+        for k in range(len(s.x0)):
+            at[i][k] = complex(s[i][k], STEP * ds[i][k])
 
 
 @kernel
@@ -241,34 +297,34 @@ def converge_along(
     problem: IntegrationProblem, matrices: Matrices, perturbed: Address, h: float, step: MidpointStep, along: Along
 ) -> None:
     """Derivative of a converged step along a direction, by the same iteration on imaginary parts."""
-    s, b, ds, at, vectors, push = step.rows, step.vectors, along.rows, along.complex_state, along.vectors, along.push
-    n, size, scale, mass, middle, end = problem.n, s.shape[1] - 1, problem.scale, matrices.mass, along.middle, along.end
+    s, b, ds, at, vectors, push = step.rows, step.vectors, along.rows, along.complex_rows, along.vectors, along.push
+    n, size, scale, mass, middle, end = problem.n, len(s.x0) - 1, problem.scale, matrices.mass, along.middle, along.end
     f, gap, rate, first, other, heavier = b[0], b[1], b[2], b[4], b[5], b[6]
     r, c, u, w = vectors[0], vectors[1], vectors[2], vectors[3]
     # What changes of the masses do to the difference of both accelerations, once.
     for k in range(size + 1):
-        at[0, k] = s[XM, k]
-        u[k] = s[B, k] - s[A, k] if k < n else 0.0
-    weigh_along(perturbed, n, at[0], u, middle, vectors[4:], w)
+        at.x0[k] = s.xm[k]
+        u[k] = s.b[k] - s.a[k] if k < n else 0.0
+    weigh_along(perturbed, n, at.x0, u, middle, vectors[4:], w)
     for k in range(n):
         heavier[k] = w[k].imag / STEP
     before = 0.0
-    for _ in range(4 * _MOST_ITERATIONS):
+    for _ in range(4 * MOST_ITERATIONS):
         perturb_step(s, ds, at)
-        _balance(perturbed, n, at, middle, end, r, c, u, w)
+        step_residuals(perturbed, n, at, middle, end, r, c, u, w)
         for k in range(size + 1):
             f[k], gap[k], rate[k] = r[k].imag / STEP, c[k].imag / STEP, u[k].imag / STEP
             if k < n:
                 f[k] += push[k]
                 gap[k] += heavier[k]
-                first[k] = ds[B, k] - ds[A, k]
+                first[k] = ds.b[k] - ds.a[k]
         add_product(n, matrices, mass, first, 1.0, gap)
         _correct(n, size, matrices, h, f, gap, rate, first, other, ds)
         # Against the derivatives of the end, which may grow from step to step.
         norm = _sizes(n, h, scale, f, gap, ds)[0]
         length = 0.0
         for k in range(n):
-            length = max(length, (abs(ds[X1, k]) + h * abs(ds[V1, k])) / scale[k])
+            length = max(length, (abs(ds.x1[k]) + h * abs(ds.v1[k])) / scale[k])
         if norm <= 1e-15 * length or not norm < 1e100 or (norm <= 1e-10 * length and norm > 0.5 * before):
             break
         before = norm

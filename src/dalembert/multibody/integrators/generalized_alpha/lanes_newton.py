@@ -148,6 +148,7 @@ def _stops(lane, iteration, tolerance, size, forces, scratch):
     """Return whether a lane stops to iterate, and whether it needs a new matrix: the rules of `newton.converge`."""
     values, memory = scratch.numbers, scratch.memory
     values[NORM, lane] = size
+    # A lane that lost its numbers stops too, and then runs alone.
     if not size < 1e100 or size <= tolerance:
         return True, False
     # Of a linear contraction rate, norm rate / (1 - rate) bounds the sum of all corrections to come.

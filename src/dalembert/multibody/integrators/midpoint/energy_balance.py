@@ -118,6 +118,7 @@ def _remove(n, motions, weighed, force):
             for k in range(n):
                 motions[j, k] -= share * motions[i, k]
                 weighed[j, k] -= share * weighed[i, k]
+        # What is left of the motion, and its share of the momentum.
         own, shared = _product(n, motions[j], weighed[j]), _product(n, motions[j], force)
         is_new = own.real > 1e-10 * whole  # not the same as those before: a point does not turn
         share = where(is_new, shared * reciprocal(own), 0.0 * shared)

@@ -29,7 +29,7 @@ from dalembert.multibody.integrators.shared.lane_states import lane_masses
 from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.kernels.elementary import where
 
-ENERGY, GAIN, STRENGTH, EXCESS, SEARCHES, IS_FREE, WANTED, FIRST_RATE = range(8)
+ENERGY, GAIN, STRENGTH, EXCESS, SEARCHES, IS_FREE, WANTED, HAS_ARRIVED, FIRST_RATE = range(9)
 """Rows of the numbers of lanes: see :class:`LanesBalance`."""
 
 
@@ -52,10 +52,10 @@ class LaneDirection(NamedTuple):
 
 
 class LanesBalance(NamedTuple):
-    """Work of the balance. ``totals`` (3, 8): energies. ``numbers`` (8, 8): the energy that the next step must have,
+    """Work of the balance. ``totals`` (3, 8): energies. ``numbers`` (9, 8): the energy that the next step must have,
     the work in a step, strength of the force, excess of energy before, whether a lane searches, whether no strength
-    serves, whether its step is to be done, contraction without the force. ``converge``: address of the kernel, 0 if
-    the energy is not balanced.
+    serves, whether its step is to be done, whether all its iterations converged, contraction without the force.
+    ``converge``: address of the kernel, 0 if the energy is not balanced.
     """
 
     direction: LaneDirection
@@ -66,12 +66,13 @@ class LanesBalance(NamedTuple):
 
 def lanes_balance(width: int, motions: Sequence[FreeRigidMotions], energies: Sequence[float]) -> LanesBalance:
     """Workspace for the balance of eight samples, by their rigid motions and energies at the start, in J; of none."""
+    # Without balance the kernel of the balance is not even compiled.
     if not motions:
         none, stack = lane_zeros(0), lane_zeros(0, width)
         rigid = LaneMotions(np.zeros(0, np.int64), np.zeros(0), np.zeros(0), stack)
-        return LanesBalance(LaneDirection(rigid, stack, stack, none), none, lane_zeros(8), 0)
+        return LanesBalance(LaneDirection(rigid, stack, stack, none), none, lane_zeros(9), 0)
     first, count = motions[0], len(motions[0].spin)
-    shift, numbers = lane_zeros(count, width), lane_zeros(8)
+    shift, numbers = lane_zeros(count, width), lane_zeros(9)
     numbers[ENERGY] = energies
     for lane, own in enumerate(motions):
         shift[:, : len(first.partner), lane] = own.shift
@@ -95,14 +96,17 @@ def balance_lanes(
         rigid, lanes2(address_of(own.motions), count, width), lanes2(address_of(own.weighed), count, width),
         lane_vector(own.force),
     )  # fmt: skip
+    # All lanes begin without the force, and search a strength for themselves.
     for lane in range(WIDTH):
-        values[WANTED, lane] = values[SEARCHES, lane] = step.numbers[PENDING, lane]
+        wanted = step.numbers[PENDING, lane]
+        values[WANTED, lane] = values[SEARCHES, lane] = values[HAS_ARRIVED, lane] = wanted
         values[GAIN, lane], values[STRENGTH, lane], values[EXCESS, lane], values[IS_FREE, lane] = 0.0, 0.0, 1e300, 0.0
     for attempt in range(MOST_STRENGTHS):
         # The directions are those of the last solutions, so the balance is a fixed point over both.
         power = direct(n, lane_masses(step.masses), s, direction)
         for k in range(n):
             push[k] = numbers[STRENGTH] * direction.force[k]
+        # Only lanes that search take the step again: the others keep their solution.
         for lane in range(WIDTH):
             step.numbers[PENDING, lane] = values[SEARCHES, lane]
         converge_lanes(problem, h, tolerance, least, s, step)
@@ -113,11 +117,13 @@ def balance_lanes(
         for lane in range(WIDTH):
             if values[SEARCHES, lane] == 0.0:
                 continue
+            # The contraction without the force says how old the matrices are.
             if attempt == 0:
                 values[FIRST_RATE, lane] = step.numbers[RATE, lane]
             if step.numbers[ARRIVED, lane] == 0.0:
-                values[SEARCHES, lane], values[WANTED, lane] = 0.0, 0.0
+                values[SEARCHES, lane], values[HAS_ARRIVED, lane] = 0.0, 0.0
                 continue
+            # Energy at the end less that of the start and the work of loads and losses since.
             excess = entry(energy, lane) - (values[ENERGY, lane] + values[GAIN, lane])
             size = abs(balance.totals[0, lane]) + abs(balance.totals[1, lane])
             if values[IS_FREE, lane] == 1.0 or is_balanced(
@@ -132,5 +138,5 @@ def balance_lanes(
         if not running:
             break
     for lane in range(WIDTH):
-        # A lane that was to be done, and whose iterations all converged, has arrived.
-        step.numbers[ARRIVED, lane], step.numbers[RATE, lane] = values[WANTED, lane], values[FIRST_RATE, lane]
+        step.numbers[PENDING, lane], step.numbers[ARRIVED, lane] = values[WANTED, lane], values[HAS_ARRIVED, lane]
+        step.numbers[RATE, lane] = values[FIRST_RATE, lane]

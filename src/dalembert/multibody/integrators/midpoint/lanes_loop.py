@@ -121,13 +121,16 @@ def run_in_lanes(
     middle, end, call = together.call(), together.call(), models[0].call()
     pattern, width = pattern_of(samples[0].structure), len(problem.scale)
     own = lanes_step(problem, pattern, together.address, middle.address, end.address)
+    # Lanes that only fill the group count nothing.
     turns = np.zeros(WIDTH, np.int64)
     turns[: len(samples)] = batch.begin_counting()
     one, entries = scratch(pattern, 0), len(pattern.rows)
     damped = np.array([samples[number].dissipates for number in filled], dtype=np.int64)
     flags = np.zeros((2, WIDTH), np.int64)
+    # Factors are kept side by side in the step; one workspace serves to make those of each lane.
+    mass, damping, stiffness = np.zeros((3, WIDTH, entries))
     matrices = LaneMatrices(
-        *np.zeros((3, WIDTH, entries)), np.zeros(WIDTH), np.zeros((WIDTH, entries + 1), np.int64), one.rigid, one.real,
+        mass, damping, stiffness, np.zeros(WIDTH), np.zeros((WIDTH, entries + 1), np.int64), one.rigid, one.real,
         one.doubles, damped, flags[0], flags[1],
     )  # fmt: skip
     work = LanesRun(
@@ -136,6 +139,7 @@ def run_in_lanes(
         ends(2, resting(0, width)), np.zeros((4, 2, 3)), resting(width), turns,
     )  # fmt: skip
     out = resting(len(samples), *batch.shape)
+    # Lanes that only fill the group run the first sample.
     for lane, number in enumerate(filled):
         for part, values in enumerate(batch.states):
             work.stacks[1, part, :, lane] = values[number]
@@ -177,6 +181,7 @@ def _begin_lanes(problem, pattern, t, within, is_start, none, consistent, work):
         ):
             step.alone[lane] = 1
         put_lane(state, lane, new)
+        # The masses are constant, so they are weighed once.
         if is_start:
             own = _matrices(pattern, work.matrices, lane)
             set_signals(model, t, within, work.source.call)
@@ -211,7 +216,9 @@ def _renew_lane(problem, pattern, t, within, h, lane, work):
             return False
         if not keep_factors(pattern.layout, own.rigid, lane, step.rigid):
             return False
+        # The matrix of the midpoint rule is made of the same masses, damping and stiffness.
         stack.is_stale[lane], stack.is_fresh[lane], stack.made[lane] = 0, 1, 0.0
+    # Steps of one stretch differ by the rounding of their ends, which grows with the time.
     if not abs(h - stack.made[lane]) <= 1e-10 * h:
         stack.made[lane] = h
         if not factorise_real(problem.n, own, 2.0 / h):
@@ -237,6 +244,7 @@ def _record(problem, is_end, within, out, due, work):
             lanes2(at, 8, width)[3::4],
         )  # fmt: skip
         interpolate_ends(problem.n, 0, work.weights, both, state)
+        # On the constraints, with its accelerations, by the matrices of the step.
         set_lane_signals(t, within, work.source, work.end)
         for lane in range(WIDTH):
             work.least[lane] = 1.0 - step.alone[lane]
@@ -262,6 +270,7 @@ def _advance(problem, pattern, t, target, within, tolerance, balance, work):
     values, s = step.numbers, lane_rows(step.rows)
     start, tried, numbers = _stack(work.stacks[1]), _stack(work.stacks[2]), lane_vector(step.numbers)
     missed, zero = lanes2(address_of(work.slope), 2, len(s.x0)), 0.0 * s.v0[len(s.x0) - 1]
+    # The start of the step stays where it is for lanes that try again, and for outputs within the step.
     before = _stack(work.stacks[0])
     for i in range(len(s.x0)):
         before.x[i], before.v[i], before.a[i] = start.x[i], start.v[i], start.a[i]
@@ -273,6 +282,7 @@ def _advance(problem, pattern, t, target, within, tolerance, balance, work):
         for lane in range(WIDTH):
             if values[PENDING, lane] == 1.0 and not _renew_lane(problem, pattern, t, within, h, lane, work):
                 step.alone[lane], values[PENDING, lane] = 1, 0.0
+            # The way of the fastest step so far bounds what a correction may leave.
             work.least[lane] = h * values[SPEED, lane]
         # Forces are those of the middle, prescribed motions and their rates those of the end.
         set_lane_signals(t + 0.5 * h, within, work.source, work.middle)
@@ -297,16 +307,19 @@ def _advance(problem, pattern, t, target, within, tolerance, balance, work):
         for lane in range(WIDTH):
             values[ARRIVED, lane] = work.least[lane] - work.settled[FAILED, lane]
             failed = values[PENDING, lane] == 1.0 and values[ARRIVED, lane] == 0.0
+            # With matrices of this place only a shorter step helps, which the other lanes do not take.
             if failed and stack.is_fresh[lane] == 1:
                 step.alone[lane], failed = 1, False
             values[PENDING, lane] = 1.0 if failed else 0.0
             again = again or failed
+            # A slow contraction asks for new matrices at the next step.
             if values[ARRIVED, lane] == 1.0:
                 stack.is_stale[lane] = 1 if values[RATE, lane] > AGED else 0
             elif failed:
                 stack.is_stale[lane] = 1
         # Lanes that have arrived keep their state and what the step missed; those that try again forget this.
         arrived, pending = numbers[ARRIVED] != 0.0, numbers[PENDING] != 0.0
+        # The energy that the next step must have: that of the start and the work since.
         energies = lane_vector(balance.numbers)
         energies[ENERGY] = where(arrived, energies[ENERGY] + energies[GAIN], energies[ENERGY])
         for i in range(n):
@@ -346,6 +359,7 @@ def integrate_lanes(
             _list_masses(problem.n, own.masses)
         steps = max(1, int(np.ceil((end - t) / step - 1e-6)))
         opening, nominal = t, (end - t) / steps
+        # Behind a jump nothing that was kept is of this place.
         for lane in range(WIDTH):
             work.matrices.is_stale[lane] = 1
         for i in range(width):
@@ -370,6 +384,7 @@ def integrate_lanes(
             _advance(problem, pattern, t, target, within, tolerance, balance, work)
             work.last.times[0], work.last.times[1] = t, target
             t = target
+            # Nothing is left to do where all lanes run alone.
             running = False
             for lane in range(WIDTH):
                 running = running or own.alone[lane] == 0

@@ -106,11 +106,13 @@ def converge_lanes(problem, h, tolerance, least, s, scratch):
     zero, closed = 0.0 * s.v0[size], 0.0
     for k in range(n):
         closed = max(closed, CLOSED * scale[k])
+    # Lanes that run alone, or whose step is done, take part in the arithmetic, but their numbers do not change.
     for lane in range(WIDTH):
         values[ITERATES, lane], values[ARRIVED, lane] = values[PENDING, lane], 0.0
         values[BEFORE, lane], values[RATE, lane] = 0.0, 1.0
     for iteration in range(1, MOST_ITERATIONS + 1):
         step_residuals(scratch.model, n, s, scratch.middle, scratch.end, f, gap, rate, second)
+        # The force that balances the energy; zero in the variational method.
         for k in range(n):
             f[k] += push[k]
             first[k] = s.b[k] - s.a[k]
@@ -129,6 +131,7 @@ def converge_lanes(problem, h, tolerance, least, s, scratch):
             first[k], other[k] = chosen(numbers[ITERATES], first[k]), chosen(numbers[ITERATES], other[k])
         take_off(n, size, h, first, other, f, gap, s)
         norm, way = _sizes(n, h, scale, f, gap, s, zero)
+        # From here on scalars: each lane decides by its numbers, as one sample does.
         running = False
         for lane in range(WIDTH):
             if values[ITERATES, lane] == 1.0:
@@ -139,6 +142,7 @@ def converge_lanes(problem, h, tolerance, least, s, scratch):
                     iteration, tolerance * reached, moved, values[BEFORE, lane], values[RATE, lane],
                     values[REMAINING, lane], values[FORCE, lane],
                 )  # fmt: skip
+                # The last iteration may still leave rounding that a nearly singular position magnifies.
                 is_last = progress == DIVERGED or iteration == MOST_ITERATIONS
                 if progress == CONVERGED or (is_last and passes(moved, values[REMAINING, lane], values[FORCE, lane])):
                     values[ARRIVED, lane] = 1.0

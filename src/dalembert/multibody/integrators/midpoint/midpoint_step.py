@@ -183,6 +183,7 @@ def _correct(n, size, matrices, h, f, gap, rate, first, other, s):
 @inner
 def scale_constraints(n, size, h, f, gap, rate):
     """Scale residuals of constraints to accelerations: h^2/2 J a at the end, and h/2 J (a + b) of the rates."""
+    # So scaled, both systems have one unit in their rows, whatever the step is.
     square = 2.0 / (h * h)
     for k in range(n, size):
         f[k] = square * gap[k]
@@ -192,6 +193,7 @@ def scale_constraints(n, size, h, f, gap, rate):
 @inner
 def take_off(n, size, h, first, other, f, gap, s):
     """Take the solutions of both systems off a step; ``f`` and ``gap`` become what accelerations moved."""
+    # The second system gives the difference of both accelerations, so the end moves by the sum.
     for k in range(size):
         f[k], gap[k] = first[k], first[k] + other[k]
         if k < n:
@@ -287,9 +289,16 @@ def passes(norm, remaining, force):
 @inner
 def perturb_step(s, ds, at):
     """The step plus the imaginary step along a direction."""
-    for i in range(8):
-        for k in range(len(s.x0)):
-            at[i][k] = complex(s[i][k], STEP * ds[i][k])
+    # Numbers, not arrays, are joined: the complex step has its memory, and nothing is allocated.
+    for k in range(len(s.x0)):
+        at.x0[k] = complex(s.x0[k], STEP * ds.x0[k])
+        at.xm[k] = complex(s.xm[k], STEP * ds.xm[k])
+        at.x1[k] = complex(s.x1[k], STEP * ds.x1[k])
+        at.v0[k] = complex(s.v0[k], STEP * ds.v0[k])
+        at.vm[k] = complex(s.vm[k], STEP * ds.vm[k])
+        at.v1[k] = complex(s.v1[k], STEP * ds.v1[k])
+        at.a[k] = complex(s.a[k], STEP * ds.a[k])
+        at.b[k] = complex(s.b[k], STEP * ds.b[k])
 
 
 @kernel

@@ -85,6 +85,7 @@ def set_lane_signals(t, within, source, signals):
 @inner
 def keep_factors(layout, factors, lane, stack):
     """Keep the factors of one lane, as one sample has them; False if it exchanges other rows than the lanes before."""
+    # The other lanes keep their factors: each is as old as it would be alone.
     if layout.kind == BAND:
         # Rows are exchanged by value. One sequence of exchanges serves all lanes, so that a substitution has no branch.
         for i in range(layout.size):
@@ -112,6 +113,7 @@ def lane_masses(masses):
 @inner
 def largest_lanes(values, begin, end, zero):
     """Largest absolute value from begin to end, in each lane; a value that is no number stays."""
+    # A value that is no number shows in the largest one, so that its lane fails.
     largest = zero
     for k in range(begin, end):
         largest = larger(largest, sizes(values[k]))

@@ -39,6 +39,7 @@ def settle_lanes(problem, masses, factors, model, state, vectors, buffer, work, 
         moved[0, i] = moved[1, i] = zero
     for lane in range(WIDTH):
         values[FAILED, lane] = 0.0
+    # Level by level as for one sample: coordinates, velocities, then accelerations with the multipliers.
     for level in range(first if last > n else ACCELERATION, 3):
         for lane in range(WIDTH):
             values[ITERATES, lane], values[BEFORE, lane] = wanted[lane], 0.0
@@ -52,6 +53,7 @@ def settle_lanes(problem, masses, factors, model, state, vectors, buffer, work, 
                 for i in range(n, last):
                     f[i] = rate[i] if level == VELOCITY else second[i]
             solve_samples(layout, factors.matrix, factors.pivots, factors.tops, vectors[2], buffer, vectors[5])
+            # A lane that has ended takes off zero, which keeps its bits.
             for i in range(last):
                 answer[i] = chosen(iterates[ITERATES], answer[i])
             move(n, level, answer, state, moved)
@@ -60,6 +62,7 @@ def settle_lanes(problem, masses, factors, model, state, vectors, buffer, work, 
             for lane in range(WIDTH):
                 if values[ITERATES, lane] == 1.0:
                     moves, extent, before = entry(norm, lane), entry(size, lane), values[BEFORE, lane]
+                    # Each lane ends by its contraction, or where it has lost its numbers.
                     is_done = finished(iteration, moves, before, extent)
                     is_last = is_done or not moves < 1e100
                     if not is_last:

@@ -193,7 +193,7 @@ class PlaneEventSums(EventSums):
         return self.shape.normal, *self._waves
 
     def _workspace(self, dtype: type) -> tuple[np.ndarray, ...]:
-        """Workspace for the signals, tables of waves, values and stages, gradients of the slider alone, and vectors."""
+        """Workspace for the signals, waves, values and stages, gradients of the slider alone, and vectors."""
         return *self._signals(dtype), np.empty((ROWS, 3), dtype), np.empty((4, 11), dtype), np.empty(11, complex)
 
     def _room_for_slopes(self, columns: int, unknowns: int) -> tuple[np.ndarray, ...]:
@@ -203,8 +203,11 @@ class PlaneEventSums(EventSums):
         return *signals, np.empty((ROWS, width + 1)), few, vectors, seeds, *map(np.empty, shapes)
 
     def _signals(self, dtype: type) -> tuple[np.ndarray, ...]:
-        count = self.series.count
-        return tuple(np.empty(shape, dtype) for shape in ((3, count), (4, 5, count), (7, 5, 3), (7, 3)))
+        count, samples = self.series.count, self.series.samples
+        # Behind those of one step: waves and values at the stages of all intervals, values at samples, what is known.
+        own = (3, count), (4, 5, count), (7, 5, 3), (9, 3)
+        shapes = *own, (3 * samples, 3, count), (3 * samples, 3, 3), (samples, 3, 3)
+        return *(np.empty(shape, dtype) for shape in shapes), np.zeros((2, samples), np.int64)
 
 
 ContactSums = PlainSums | EventSums

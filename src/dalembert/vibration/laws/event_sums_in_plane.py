@@ -10,13 +10,13 @@ import numpy as np
 from dalembert.kernels.arithmetic import Numbers2, Numbers3, kernels
 from dalembert.kernels.blas import product
 from dalembert.kernels.kernel import inner, kernel
-from dalembert.kernels.words import Address, Bytes2, Complexes, Integers, Reals2, Reals3, Reals4
+from dalembert.kernels.words import Address, Bytes2, Complexes, Integers, Integers2, Reals2, Reals3, Reals4
 from dalembert.vibration.laws.friction_law import FRICTION, SEPARATED, SLIPPING, STUCK, TANGENTIAL
 from dalembert.vibration.laws.friction_period import NEUTRAL, SWEEPS
 from dalembert.vibration.laws.friction_period import SETTLED as PERIODIC
 from dalembert.vibration.laws.march_in_plane import PlanarMarchWorkspace, Sums, march
 from dalembert.vibration.laws.signal_zeros import LEAST, PRESSED, at, signals_of
-from dalembert.vibration.laws.slip_in_plane import MOVE, OPENED, PLACE, direction
+from dalembert.vibration.laws.slip_in_plane import MOVE, OPENED, PLACE, StageMemory, direction, sample
 
 
 @inner
@@ -94,16 +94,17 @@ def settle(direct, numbers, normal, wanted, waving, signals, y, before, sums, sc
 
 def _sums(
     displacements: Numbers3, numbers: Numbers2, normal: bool, orders: Integers, mean: int, waving: Reals3,
-    rows: Numbers2, tables: Numbers3, small: Numbers3, radau: Numbers2, grads: Numbers2, vectors: Numbers2,
-    seeds: Complexes, forces: Numbers3, states: Bytes2, result: Numbers3,
+    rows: Numbers2, tables: Numbers3, small: Numbers3, radau: Numbers2, stage_tables: Numbers3, stage_values: Numbers3,
+    grid: Numbers3, known: Integers2, grads: Numbers2, vectors: Numbers2, seeds: Complexes, forces: Numbers3,
+    states: Bytes2, result: Numbers3,
 ) -> None:  # fmt: skip
-    scratch, y, before = (
-        PlanarMarchWorkspace(tables, small, radau, vectors[0], vectors[1], seeds),
-        vectors[2],
-        vectors[3],
-    )
+    memory, y, before = StageMemory(stage_tables, stage_values, grid, known), vectors[2], vectors[3]
+    scratch = PlanarMarchWorkspace(tables, small, radau, vectors[0], vectors[1], seeds, memory)
+    known[0] = 0
     for c in range(len(displacements)):
+        known[1] = 0
         signals = signals_of(displacements[c], numbers[c], 2, normal, orders, mean, rows, small[0, 0])
+        sample(signals, waving, grid)
         sums = Sums(forces[c], states[c], result[c], tables, tables)
         y[0], y[1] = 0.0, 0.0
         for direct in (True, False):
@@ -118,18 +119,19 @@ sums_real, sums_complex = kernels(_sums)
 @kernel
 def sums_and_slopes(
     numbers: Reals2, normal: bool, orders: Integers, mean: int, waving: Reals3, analysis: Reals2, gemm: Address,
-    displacements: Reals3, rows: Reals2, tables: Reals3, small: Reals3, radau: Reals2, grads: Reals2, few: Reals2,
+    displacements: Reals3, rows: Reals2, tables: Reals3, small: Reals3, radau: Reals2, stage_tables: Reals3,
+    stage_values: Reals3, grid: Reals3, known: Integers2, grads: Reals2, few: Reals2,
     vectors: Reals2, seeds: Complexes, sampled: Reals3, slopes: Reals3, local: Reals2, forces: Reals3, states: Bytes2,
     result: Reals3, jacobians: Reals4,
 ) -> None:  # fmt: skip
-    scratch, y, before = (
-        PlanarMarchWorkspace(tables, small, radau, vectors[0], vectors[1], seeds),
-        vectors[2],
-        vectors[3],
-    )
+    memory, y, before = StageMemory(stage_tables, stage_values, grid, known), vectors[2], vectors[3]
+    scratch = PlanarMarchWorkspace(tables, small, radau, vectors[0], vectors[1], seeds, memory)
+    known[0] = 0
     count, unknowns = analysis.shape[0], jacobians.shape[3]
     for c in range(len(displacements)):
+        known[1] = 0
         signals = signals_of(displacements[c], numbers[c], 2, normal, orders, mean, rows, small[0, 0])
+        sample(signals, waving, grid)
         sums = Sums(forces[c], states[c], result[c], sampled, slopes)
         y[0], y[1] = 0.0, 0.0
         state, forgets = settle(True, numbers[c], normal, False, waving, signals, y, before, sums, scratch, few)

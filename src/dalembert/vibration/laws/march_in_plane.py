@@ -17,7 +17,6 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.kernels.kernel import inner
-from dalembert.vibration.dense import dot
 from dalembert.vibration.laws.event_jumps import add_slip, add_trial, correct, smooth_terms
 from dalembert.vibration.laws.event_sums import MOST
 from dalembert.vibration.laws.friction_law import FRICTION, LOAD, NORMAL, SEPARATED, SLIPPING, STUCK, TANGENTIAL
@@ -28,11 +27,14 @@ from dalembert.vibration.laws.slip_in_plane import (
     NODES,
     OPENED,
     PLACE,
+    StageMemory,
     add_signal,
     carry,
     direction,
     first_slip,
     pull,
+    recall_stages,
+    set_stages,
     slides,
     step,
     stop_slip,
@@ -62,7 +64,7 @@ class Sums(NamedTuple):
 class PlanarMarchWorkspace(NamedTuple):
     """Workspace: tables of waves (4, 5, coefficients), signals' values (7, 5, 3), stages of a step (7, 3), jumps (9,).
 
-    ``x`` and ``seeds`` (11,): arguments of the derivatives of a slipping force.
+    ``x`` and ``seeds`` (11,): arguments of the derivatives of a slipping force; ``memory``: stages of whole intervals.
     """
 
     tables: np.ndarray
@@ -71,6 +73,7 @@ class PlanarMarchWorkspace(NamedTuple):
     jumps: np.ndarray
     x: np.ndarray
     seeds: np.ndarray
+    memory: StageMemory
 
 
 @inner
@@ -80,32 +83,28 @@ def march(numbers, normal, wanted, waving, signals, state, y, sums, scratch, gra
     ``grads`` holds the gradients of y. Derivatives are written if wanted.
     """
     forces, states, result, sampled, slopes = sums
-    tables, small, radau, jumps, x, seeds = scratch
+    tables, small, radau, jumps, x, seeds, memory = scratch
     steps, count, friction = forces.shape[1], waving.shape[2], numbers[FRICTION]
     unknowns, h, table, values = grads.shape[1] - 3, 2.0 * np.pi / forces.shape[1], tables[3], small[1]
-    here, there, stages, tau = small[2], small[3], small[4:], grads[MOVE]
+    here, stages, tau, grid = small[2], small[4:], grads[MOVE], memory.grid
     phi, zx, zy, nothing = y[0], y[0], y[1], 0.0 * y[0]
     result[:] = 0.0
     if wanted:
         slopes[:] = 0.0
         sampled[:] = 0.0
-    # Signals at samples come from a table of waves by dot products; angles of events need their own waves.
-    at(0.0, signals, table, there)
+    follows = False  # a whole interval of slip is behind, whose stages predict those of the next one
     for t in range(steps):
         end, begin, opened, after = (t + 1) * h, t * h, t * h + nothing, (t + 1) % steps
         grads[OPENED] = 0.0
-        keep(here, there)
-        for order in range(3):
-            for row in range(3):
-                there[order, row] = dot(signals.rows[row], waving[order, after])
-        for row in range(3):
-            there[0, row] += signals.constants[row]
+        keep(here, grid[t])
+        there = grid[after]
         states[t] = state
-        limit, c, s = friction * here[0, PRESSED], np.cos(phi), np.sin(phi)
+        limit, c, s = friction * here[0, PRESSED], nothing, nothing
         forces[0, t], forces[1, t] = nothing, nothing
         if state == STUCK:
             forces[0, t], forces[1, t] = here[0, 0] - zx, here[0, 1] - zy
         elif state == SLIPPING:
+            c, s = np.cos(phi), np.sin(phi)
             forces[0, t], forces[1, t] = limit * c, limit * s
         if normal:
             forces[2, t] = here[0, PRESSED] - numbers[LOAD] if state != SEPARATED else -numbers[LOAD]
@@ -143,7 +142,9 @@ def march(numbers, normal, wanted, waving, signals, state, y, sums, scratch, gra
             before, event = state, changes
             if state == STUCK:
                 # |f|² = L² rather than |f| = L: a polynomial of the signals, without a root that is singular at f = 0.
-                found = first_slip(begin, stop, zx, zy, friction, signals, table, values)
+                # Signals where the contact opens or closes, else at the next sample.
+                last = values if changes else there
+                found = first_slip(begin, stop, here, last, zx, zy, friction, signals, table, small[3])
                 if found >= 0.0:
                     at(found, signals, table, values)
                     size, rate = pull(values, zx, zy, friction)
@@ -156,40 +157,52 @@ def march(numbers, normal, wanted, waving, signals, state, y, sums, scratch, gra
                 grads[PLACE, unknowns + 2] = 0.0
                 while (exact - opened).real > 0.0:
                     goal, whole = exact, True
-                    change, known = step(opened, goal, phi, friction, signals, tables, stages, radau)
+                    within = opened.real == t * h and goal.real == end and opened.imag == 0.0 and goal.imag == 0.0
+                    if within:
+                        recall_stages(t, opened, goal, signals, memory, tables, stages)
+                    else:
+                        set_stages(opened, goal, signals, tables, stages)
+                    change, known = step(opened, goal, phi, friction, stages, radau, within and follows)
+                    if within and follows and not known:
+                        change, known = step(opened, goal, phi, friction, stages, radau, False)
                     # Radau's stages find only one branch of φ if it turns by less than about a radian in a step; halves
                     # of the step do, down to 1/64.
                     while not known or abs(change.real) > TURN:
                         if (goal - opened).real < PARTS * h:
                             break
                         goal, whole = nothing + 0.5 * (goal.real + opened.real), False
-                        change, known = step(opened, goal, phi, friction, signals, tables, stages, radau)
+                        set_stages(opened, goal, signals, tables, stages)
+                        change, known = step(opened, goal, phi, friction, stages, radau, False)
                     # a'·e < L': the slider would go backwards at the end of the step, so it has stopped before. Both
                     # inner stages are looked at too, since it may stop and start again between.
-                    late = slides(stages[2], phi + change, friction).real < 0.0
+                    late = slides(stages, radau, 2, friction) < 0.0
                     for j in range(2):
-                        if not late and slides(stages[j], radau[1, j], friction).real < 0.0:
+                        if not late and slides(stages, radau, j, friction) < 0.0:
                             early = nothing + opened.real + NODES[j] * (goal - opened).real
-                            change, known = step(opened, early, phi, friction, signals, tables, stages, radau)
-                            late = slides(stages[2], phi + change, friction).real < 0.0
+                            set_stages(opened, early, signals, tables, stages)
+                            change, known = step(opened, early, phi, friction, stages, radau, False)
+                            late = slides(stages, radau, 2, friction) < 0.0
                             if late:
                                 goal = early
                             else:
-                                change, known = step(opened, goal, phi, friction, signals, tables, stages, radau)
+                                set_stages(opened, goal, signals, tables, stages)
+                                change, known = step(opened, goal, phi, friction, stages, radau, False)
                     if late:
                         # The end of slip is a zero of a'·e - L' along the numerical solution: the step is taken again
                         # with each trial of its length, so that the end is that of the step, and its derivative exact.
                         goal = opened + stop_slip(opened, goal, phi, friction, signals, tables, stages, radau)
                         stopped = True
-                        change, known = step(opened, goal, phi, friction, signals, tables, stages, radau)
+                        set_stages(opened, goal, signals, tables, stages)
+                        change, known = step(opened, goal, phi, friction, stages, radau, False)
                     carry(opened, goal, numbers, normal, wanted, tables, stages, radau, grads)
-                    phi, opened = phi + change, goal
+                    phi, opened, follows = phi + change, goal, within and whole and not late
                     if whole or stopped:
                         break
                 if stopped:
                     stop, exact, event, changes = opened.real, opened, True, False
             if not event:
                 break
+            follows = False
             at(exact, signals, table, values)
             c, s = np.cos(phi), np.sin(phi)
             limit, rise = friction * values[0, PRESSED], friction * values[1, PRESSED]

@@ -12,11 +12,14 @@ is by the angle at which a step ends.
 Source: E. Hairer and G. Wanner, Solving Ordinary Differential Equations II, Springer 1996, section IV.5.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from dalembert.kernels.kernel import inner
+from dalembert.vibration.dense import dot
 from dalembert.vibration.laws.friction_law import FRICTION, NORMAL, TANGENTIAL
-from dalembert.vibration.laws.signal_zeros import LEAST, PRESSED, REFINEMENTS, SETTLED, at, between
+from dalembert.vibration.laws.signal_zeros import LEAST, PRESSED, REFINEMENTS, SETTLED, at, between, evaluate, waves
 
 ROOT = 6.0**0.5
 NODES = ((4.0 - ROOT) / 10.0, (4.0 + ROOT) / 10.0, 1.0)
@@ -26,13 +29,70 @@ WEIGHTS = (
     ((16.0 - ROOT) / 36.0, (16.0 + ROOT) / 36.0, 1.0 / 9.0),
 )
 """Radau IIA of order five: nodes and weights of its stages, of which the last is the end of the step."""
+AHEAD = tuple(
+    tuple(float(np.prod([(1.0 + end - other) / (node - other) for other in NODES if other != node])) for node in NODES)
+    for end in NODES
+)
+"""From what the stages of a step have to those of the next one of the same length: Lagrange's polynomials."""
 ITERATIONS = 12
 """Of Newton's method for the stages of a step; a step that needs more is halved."""
 FAR = 100.0
 """Change of a stage in an iteration from which the method does not return; the imaginary parts would overflow."""
 
+#: Rows of a step.
+COSINE, SINE = 7, 8
 #: Rows of gradients.
 PLACE, OPENED, MOVE, STAGES, JUMPS, ROWS = 0, 2, 3, 4, 7, 16
+
+
+class StageMemory(NamedTuple):
+    """Waves at the stages of whole intervals, ``tables`` (3 samples, 3, coefficients), and the signals of one contact
+    there, ``values`` (3 samples, 3, 3). ``grid`` (samples, 3, 3): signals at samples. ``known`` (2, samples): whether
+    the first two are filled.
+    """
+
+    tables: np.ndarray
+    values: np.ndarray
+    grid: np.ndarray
+    known: np.ndarray
+
+
+@inner
+def sample(signals, waving, grid):
+    """Set the signals, with their first two derivatives, at samples (samples, 3, 3)."""
+    for t in range(len(grid)):
+        for order in range(3):
+            for row in range(3):
+                grid[t, order, row] = dot(signals.rows[row], waving[order, t])
+        for row in range(3):
+            grid[t, 0, row] += signals.constants[row]
+
+
+@inner
+def set_stages(begin, end, signals, tables, stages):
+    """Set waves and signals, with their first two derivatives, at the stages of a step."""
+    for j in range(3):
+        waves(begin + NODES[j] * (end - begin), signals.orders, signals.mean, tables[j], 3)
+        evaluate(signals, tables[j], stages[j, :3])
+
+
+@inner
+def recall_stages(t, begin, end, signals, memory, tables, stages):
+    """Set the same for the whole interval ``t``, which all contacts share, and all periods of one contact."""
+    for j in range(3):
+        own, values = memory.tables[3 * t + j], memory.values[3 * t + j]
+        if memory.known[0, t] == 0:
+            waves(begin + NODES[j] * (end - begin), signals.orders, signals.mean, own, 3)
+        if memory.known[1, t] == 0:
+            evaluate(signals, own, values)
+        # Gradients need the waves and their first derivatives alone.
+        for row in range(2):
+            for q in range(own.shape[1]):
+                tables[j, row, q] = own[row, q]
+        for order in range(3):
+            for row in range(3):
+                stages[j, order, row] = values[order, row]
+    memory.known[0, t] = memory.known[1, t] = 1
 
 
 @inner
@@ -45,9 +105,10 @@ def direction(x, y):
 
 
 @inner
-def slides(values, phi, friction):
-    """Velocity of a slipping slider along the force, times k_t: a'·e - L'."""
-    return values[1, 0] * np.cos(phi) + values[1, 1] * np.sin(phi) - friction * values[1, PRESSED]
+def slides(stages, radau, j, friction):
+    """Velocity of a slipping slider along the force at a stage, times k_t: a'·e - L'."""
+    along = stages[j, 1, 0] * radau[COSINE, j] + stages[j, 1, 1] * radau[SINE, j]
+    return (along - friction * stages[j, 1, PRESSED]).real
 
 
 @inner
@@ -63,15 +124,16 @@ def solved(radau, j):
 
 
 @inner
-def step(begin, end, phi, friction, signals, tables, stages, radau):
-    """One step of φ: its change, and whether it was found. ``radau`` (7, 3) keeps the changes κ of the stages, their φ,
-    and the inverse of their matrix (rows 2 to 4); the derivative of the stages by the end of the step (row 5).
+def step(begin, end, phi, friction, stages, radau, follows):
+    """One step of φ: its change, and whether it was found. ``radau`` (9, 3) keeps the changes κ of the stages, their φ,
+    and the inverse of their matrix (rows 2 to 4); the derivative of the stages by the end of the step (row 5); cosines
+    and sines of φ. It begins with the polynomial of the step before if it ``follows`` one of the same length.
     """
     # Stages κ_j with φ_j = φ + Σ a_ji κ_i and L_j κ_j = h a'_j · n(φ_j): multiplied by L, so that L = 0 is regular.
     size, found, done = end - begin, False, False
+    a, b, c = radau[0, 0], radau[0, 1], radau[0, 2]
     for j in range(3):
-        at(begin + NODES[j] * size, signals, tables[j], stages[j])
-        radau[0, j] = 0.0 * phi
+        radau[0, j] = AHEAD[j][0] * a + AHEAD[j][1] * b + AHEAD[j][2] * c if follows else 0.0 * phi
     for _ in range(ITERATIONS):
         moved = 0.0
         for j in range(3):
@@ -79,6 +141,7 @@ def step(begin, end, phi, friction, signals, tables, stages, radau):
             for i in range(3):
                 angle += WEIGHTS[j][i] * radau[0, i]
             c, s, limit = np.cos(angle), np.sin(angle), friction * stages[j, 0, PRESSED]
+            radau[COSINE, j], radau[SINE, j] = c, s
             across, along = c * stages[j, 1, 1] - s * stages[j, 1, 0], c * stages[j, 1, 0] + s * stages[j, 1, 1]
             radau[1, j], radau[6, j] = angle, size * across - limit * radau[0, j]
             for i in range(3):
@@ -102,8 +165,7 @@ def step(begin, end, phi, friction, signals, tables, stages, radau):
             break
         done = moved <= SETTLED
     for j in range(3):
-        angle = radau[1, j]
-        c, s = np.cos(angle), np.sin(angle)
+        c, s = radau[COSINE, j], radau[SINE, j]
         across, bent = c * stages[j, 1, 1] - s * stages[j, 1, 0], c * stages[j, 2, 1] - s * stages[j, 2, 0]
         # Derivative of the stages by the end of the step: the size of h, and the waves at stages that move with it.
         push = size * bent - radau[0, j] * friction * stages[j, 1, PRESSED]
@@ -123,11 +185,13 @@ def invert(radau):
     determinant = a * first + b * second + c * third
     if determinant.real == 0.0:
         return False
-    radau[2, 0], radau[3, 0], radau[4, 0] = first / determinant, second / determinant, third / determinant
-    radau[2, 1], radau[3, 1] = (c * h - b * i) / determinant, (a * i - c * g) / determinant
-    radau[4, 1] = (b * g - a * h) / determinant
-    radau[2, 2], radau[3, 2] = (b * f - c * e) / determinant, (c * d - a * f) / determinant
-    radau[4, 2] = (a * e - b * d) / determinant
+    # One division: nine of them took as long as all products of an iteration.
+    inverse = 1.0 / determinant
+    radau[2, 0], radau[3, 0], radau[4, 0] = first * inverse, second * inverse, third * inverse
+    radau[2, 1], radau[3, 1] = (c * h - b * i) * inverse, (a * i - c * g) * inverse
+    radau[4, 1] = (b * g - a * h) * inverse
+    radau[2, 2], radau[3, 2] = (b * f - c * e) * inverse, (c * d - a * f) * inverse
+    radau[4, 2] = (a * e - b * d) * inverse
     return True
 
 
@@ -149,7 +213,7 @@ def carry(begin, end, numbers, normal, wanted, tables, stages, radau, grads):
     size, count, friction = end - begin, tables.shape[2], numbers[FRICTION]
     unknowns, own = grads.shape[1] - 3, numbers[FRICTION] * numbers[NORMAL]
     for j in range(3):
-        c, s, kappa = np.cos(radau[1, j]), np.sin(radau[1, j]), radau[0, j]
+        c, s, kappa = radau[COSINE, j], radau[SINE, j], radau[0, j]
         along, across = c * stages[j, 1, 0] + s * stages[j, 1, 1], c * stages[j, 1, 1] - s * stages[j, 1, 0]
         bent = c * stages[j, 2, 1] - s * stages[j, 2, 0]
         # The beginning of the step may be an event, which moves with the displacements by `OPENED`: the stages move by
@@ -179,10 +243,11 @@ def stop_slip(begin, end, phi, friction, signals, tables, stages, radau):
     place = 0.5 * high
     length, close = place + 0.0 * phi, False
     for _ in range(REFINEMENTS):
-        change, found = step(begin, begin + length, phi, friction, signals, tables, stages, radau)
+        set_stages(begin, begin + length, signals, tables, stages)
+        change, found = step(begin, begin + length, phi, friction, stages, radau, False)
         angle = phi + change
-        size = slides(stages[2], angle, friction)
         c, s = np.cos(angle), np.sin(angle)
+        size = stages[2, 1, 0] * c + stages[2, 1, 1] * s - friction * stages[2, 1, PRESSED]
         rate = stages[2, 2, 0] * c + stages[2, 2, 1] * s - friction * stages[2, 2, PRESSED]
         rate += (c * stages[2, 1, 1] - s * stages[2, 1, 0]) * speed(radau)
         if close and found:  # the last step carries directions of differentiation
@@ -217,21 +282,20 @@ def pull(values, zx, zy, friction):
 
 
 @inner
-def first_slip(begin, end, zx, zy, friction, signals, table, values):
-    """The first angle between two at which a stuck contact begins to slip, or a negative number.
+def first_slip(begin, end, here, there, zx, zy, friction, signals, table, values):
+    """The first angle between two at which a stuck contact begins to slip, or a negative number. ``here`` and ``there``
+    are the signals at both ends.
 
     Of two such changes between them the first is found by the largest force that they enclose.
     """
     least = signals.least * signals.least / LEAST
-    at(end, signals, table, values)
-    size, rate = pull(values, zx, zy, friction)
+    size, rate = pull(there, zx, zy, friction)
     low, high = begin, end
     if size.real <= least:
         if rate.real >= 0.0:
             # No zero if |f|² - L² does not fall towards the end: it has no maximum inside.
             return -1.0
-        at(begin, signals, table, values)
-        _, rate = pull(values, zx, zy, friction)
+        _, rate = pull(here, zx, zy, friction)
         if rate.real <= 0.0:
             return -1.0
         for _ in range(REFINEMENTS):

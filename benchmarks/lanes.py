@@ -8,6 +8,7 @@ import numpy as np
 
 import dalembert as da
 from benchmarks import cases, ours, timing
+from benchmarks.peers import exudyn_models as peers
 from benchmarks.sensitivities import BEAM, CABLE
 from dalembert.multibody import EnergyMomentum, Integrator, Polynomial, Variational
 from dalembert.multibody.spatial import Inertia, Orientation, Pose, RigidBody, SpatialSystem, SphericalJoint
@@ -24,7 +25,13 @@ def main() -> list[dict[str, object]]:
     numba.set_num_threads(1)
     rows = [
         _row("flexible pendulum, 2 + 4 beams", ours.beam_pendulum, BEAM, ours.JOINT_AND_TIP),
-        _row("flexible pendulum, 2 + 4 cables", ours.cable_pendulum, CABLE, ours.JOINT_AND_TIP),
+        _row(
+            "flexible pendulum, 2 + 4 cables",
+            ours.cable_pendulum,
+            CABLE,
+            ours.JOINT_AND_TIP,
+            peer=peers.flexible_pendulum(cases.PENDULUM),
+        ),
         _row("two-link arm of rigid bars", arm, ARM, TIP),
         _row("the same by Variational", arm, ARM, TIP, solver=Variational(1e-3)),
         _row("the same by EnergyMomentum", arm, ARM, TIP, solver=EnergyMomentum(1e-3)),
@@ -86,6 +93,7 @@ def rope(stiffness: float, angle: float) -> da.System:
 def _row(
     name: str, builder, values: dict[str, float], channels: tuple[str, ...],
     integration: cases.Integration = cases.PENDULUM.integration, solver: Integrator | None = None,
+    peer: peers.Peer | None = None,
 ) -> dict[str, object]:  # fmt: skip
     chosen = dict(list(values.items())[:4])
     model = da.TimeResponse(
@@ -102,7 +110,7 @@ def _row(
         lambda: model.evaluate(batch).only(),
         lambda: np.stack([model.evaluate(vector).only()[0] for vector in batch]),
     )
-    return _compared(name, SAMPLES, together, alone)
+    return _compared(name, SAMPLES, together, alone, peer)
 
 
 def _dynamics() -> list[dict[str, object]]:
@@ -127,14 +135,16 @@ def _both(function, tree: Tree, motion: np.ndarray):
     return lambda: function(tree, *motion), alone
 
 
-def _compared(name: str, samples: int, together, alone) -> dict[str, object]:
-    times = timing.interleaved({"together": together, "alone": alone}, repeats=7)
+def _compared(name: str, samples: int, together, alone, peer: peers.Peer | None = None) -> dict[str, object]:
+    runs = {"together": together, "alone": alone} | ({"peer": peer.run} if peer else {})
+    times = timing.interleaved(runs, repeats=7)
     return {
         "model": name,
         "samples a second, side by side": samples / times["together"],
         "one by one": samples / times["alone"],
         "times faster": times["alone"] / times["together"],
         "same bits": np.array_equal(together(), alone()),
+        "times Exudyn, which takes one sample": samples * times["peer"] / times["together"] if peer else "",
     }
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.kernels.lanes import WIDTH, chosen, entry, lane_vector, lane_zeros, larger, sizes
-from dalembert.kernels.words import Address, Integers, Reals2, Reals3
+from dalembert.kernels.words import Address, Integers, Reals, Reals2, Reals3
 from dalembert.multibody.integrators.generalized_alpha.newton import AGED, MOST_ITERATIONS, SLOW
 from dalembert.multibody.integrators.shared.convergence import BALANCED, NOISE, ROUNDING
 from dalembert.multibody.integrators.shared.lane_states import (
@@ -19,6 +19,7 @@ from dalembert.multibody.integrators.shared.lane_states import (
     LaneSignals,
     keep_factors,
     lane_factors,
+    lane_state,
     set_lane_signals,
     take_lane,
 )
@@ -35,7 +36,7 @@ NORM, BEFORE, LEFT, FORCE, ITERATES, IS_FRESH = range(6)
 class LanesNewton(NamedTuple):
     """Work of the iteration. ``model``, ``call``: in lanes, with its ``signals`` (signals, 3, 8), which come from
     ``source``. ``factors``, ``before``, ``after``: a matrix and two states of one lane. ``kept``: factors of all lanes.
-    ``memory`` (2, 8): as of :class:`newton.Newton`. ``turns`` (8,): what counts the turns of angles, 0 for none;
+    ``weights``, ``memory`` (2, 8): as of :class:`newton.Newton`. ``turns`` (8,): counters of turns, 0 for none;
     ``alone`` (8,): lanes that are to run alone. ``numbers`` (6, 8): size of the last correction, of the one before,
     bound of those to come, forces at the prediction, whether the lane iterates, whether its matrix is of this step.
     """
@@ -53,6 +54,7 @@ class LanesNewton(NamedTuple):
     change: Reals2
     buffer: Reals2
     slope: Reals2
+    weights: Reals
     memory: Reals2
     turns: Integers
     alone: Integers
@@ -75,7 +77,7 @@ def lanes_newton(
     return LanesNewton(
         model, call, signals, source, storage(layout), resting(width), resting(width), lane_factors(layout), r, delta,
         change,
-        lane_zeros(layout.size + 3 * layout.reach), lane_zeros(width), lane_zeros(2),
+        lane_zeros(layout.size + 3 * layout.reach), lane_zeros(width), 1.0 / problem.scale, lane_zeros(2),
         turns, np.zeros(WIDTH, np.int64), lane_zeros(6),
     )  # fmt: skip
 
@@ -129,14 +131,14 @@ def _predict(n, c, old, new, scratch):
 
 
 @inner
-def _correct(n, c, scale, mask, corrections, old, new, zero):
+def _correct(n, c, weights, mask, corrections, old, new, zero):
     """Apply the corrections of lanes that iterate; return their sizes against the scales."""
     size = zero
     for i in range(n):
         # A frozen lane takes off zero, which keeps its bits.
         change = chosen(mask, corrections[i])
         new.a[i] -= change
-        size = larger(size, c.dq * sizes(change) / scale[i])
+        size = larger(size, c.dq * weights[i] * sizes(change))
     for i in range(n, len(old.x) - 1):
         new.x[i] -= chosen(mask, corrections[i])
     advance(n, c, old, new)
@@ -175,12 +177,7 @@ def converge_lanes(problem, c, t, within, tolerance, old_stack, new_stack, scrat
     ``old_stack``, ``new_stack`` (4, N + 1, 8): x, v, a and w of the lanes. A lane that does not converge is marked.
     """
     n, reduced, memory, alone, values = problem.n, problem.reduced, scratch.memory, scratch.alone, scratch.numbers
-    old = MotionState(
-        lane_vector(old_stack[0]), lane_vector(old_stack[1]), lane_vector(old_stack[2]), lane_vector(old_stack[3])
-    )
-    new = MotionState(
-        lane_vector(new_stack[0]), lane_vector(new_stack[1]), lane_vector(new_stack[2]), lane_vector(new_stack[3])
-    )
+    old, new = lane_state(old_stack), lane_state(new_stack)
     kept = scratch.kept
     r, delta, numbers = lane_vector(scratch.r), lane_vector(scratch.delta), lane_vector(scratch.numbers)
     change = lane_vector(scratch.change)
@@ -203,7 +200,7 @@ def converge_lanes(problem, c, t, within, tolerance, old_stack, new_stack, scrat
         # Increments by the kept matrices, then the step by its formulas, as for one sample.
         solve_samples(reduced.layout, kept.matrix, kept.pivots, kept.tops, scratch.r, scratch.buffer, scratch.delta)
         displace(scratch.model, c.dq, new.x, delta, scratch.call, change)
-        moved = _correct(n, c, problem.scale, numbers[ITERATES], change, old, new, zero)
+        moved = _correct(n, c, scratch.weights, numbers[ITERATES], change, old, new, zero)
         forces = _largest(r, 0, reduced.increments, zero) if iteration > 2 else zero
         running = False
         for lane in range(WIDTH):

@@ -10,9 +10,10 @@ from dalembert.multibody.integrators.generalized_alpha.lanes_newton import (
     converge_lanes,
     lanes_newton,
 )
+from dalembert.multibody.integrators.generalized_alpha.newton import keep_slope
 from dalembert.multibody.integrators.shared.batch import Batch, restarts
 from dalembert.multibody.integrators.shared.consistent import Consistency, accelerate, consistency
-from dalembert.multibody.integrators.shared.lane_states import LaneSignals, put_lane, take_lane
+from dalembert.multibody.integrators.shared.lane_states import LaneSignals, lane_state, put_lane, take_lane
 from dalembert.multibody.integrators.shared.problem import IntegrationProblem, SampleModels
 from dalembert.multibody.kernels.block_table import addresses
 from dalembert.multibody.kernels.states import (
@@ -20,6 +21,7 @@ from dalembert.multibody.kernels.states import (
     MotionState,
     MotionStates,
     coefficients,
+    copy,
     interpolate,
     resting,
     row,
@@ -104,21 +106,13 @@ def integrate_lanes(
         c = coefficients(length, radius)
         for number in range(1, steps + 1):
             target = end if number == steps else begin + length * (1.0 * number)
-            for part in range(4):
-                source, copy = lane_vector(new[part]), lane_vector(old[part])
-                for i in range(len(source)):
-                    copy[i] = source[i]
             # A step begins with the state at the end of the one before, in all lanes.
+            copy(lane_state(new), lane_state(old))
             # The signals of a step that ends at a jump are those before the jump.
             side = within if last or target < end else end
             converge_lanes(problem, c, target, side, tolerance, old, new, scratch)
             # Rates of accelerations and multipliers over the step, for the next prediction.
-            after, before = lane_vector(new[2]), lane_vector(old[2])
-            for i in range(n):
-                slope[i] = (after[i] - before[i]) / c.step
-            after, before = lane_vector(new[0]), lane_vector(old[0])
-            for i in range(n, len(slope) - 1):
-                slope[i] = (after[i] - before[i]) / c.step
+            keep_slope(n, c, lane_state(old), lane_state(new), slope)
             while due < len(problem.times) and problem.times[due] <= target + 1e-9 * length:
                 _record(n, length, min(1.0, (problem.times[due] - t) / length), old, new, out, due, scratch)
                 for lane in range(out.x.shape[0]):

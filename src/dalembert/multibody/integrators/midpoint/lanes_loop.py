@@ -35,6 +35,7 @@ from dalembert.multibody.integrators.shared.ends import Ends, ends, interpolate_
 from dalembert.multibody.integrators.shared.lane_states import (
     LaneSignals,
     keep_factors,
+    lane_state,
     put_lane,
     set_lane_signals,
     take_lane,
@@ -155,12 +156,6 @@ _balance_at = balance_lanes.at
 
 
 @inlined
-def _stack(array):
-    """The states of lanes in a stack (4, N + 1, 8)."""
-    return MotionState(lane_vector(array[0]), lane_vector(array[1]), lane_vector(array[2]), lane_vector(array[3]))
-
-
-@inlined
 def _matrices(pattern, stack, lane):
     """The matrices of one lane."""
     return Matrices(
@@ -231,7 +226,7 @@ def _renew_lane(problem, pattern, t, within, h, lane, work):
 def _record(problem, is_end, within, out, due, work):
     """Write the states of all lanes at an output time: `outputs.record`."""
     t, step, width, e = problem.times[due], work.step, work.stacks.shape[2], work.last
-    state, newest = _stack(work.stacks[2]), _stack(work.stacks[1])
+    state, newest = lane_state(work.stacks[2]), lane_state(work.stacks[1])
     if is_end:
         for i in range(width):
             state.x[i], state.v[i], state.a[i] = newest.x[i], newest.v[i], newest.a[i]
@@ -268,10 +263,10 @@ def _advance(problem, pattern, t, target, within, tolerance, balance, work):
     """Take the step of all lanes that do not run alone; those whose step would have to be halved are marked."""
     n, step, stack, h = problem.n, work.step, work.matrices, target - t
     values, s = step.numbers, lane_rows(step.rows)
-    start, tried, numbers = _stack(work.stacks[1]), _stack(work.stacks[2]), lane_vector(step.numbers)
+    start, tried, numbers = lane_state(work.stacks[1]), lane_state(work.stacks[2]), lane_vector(step.numbers)
     missed, zero = lanes2(address_of(work.slope), 2, len(s.x0)), 0.0 * s.v0[len(s.x0) - 1]
     # The start of the step stays where it is for lanes that try again, and for outputs within the step.
-    before = _stack(work.stacks[0])
+    before = lane_state(work.stacks[0])
     for i in range(len(s.x0)):
         before.x[i], before.v[i], before.a[i] = start.x[i], start.v[i], start.a[i]
     for lane in range(WIDTH):

@@ -10,6 +10,7 @@ from dalembert.kernels.words import Address, Integers, Reals2
 from dalembert.multibody.integrators.shared.matrices import Pattern
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.linear import BAND, Layout
+from dalembert.multibody.kernels.states import MotionState
 
 
 class LaneSignals(NamedTuple):
@@ -45,6 +46,12 @@ def lane_factors(layout: Layout) -> LaneFactors:
     """Room for the factors of eight samples."""
     pivots, tops = np.zeros((2, layout.size), np.int64)
     return LaneFactors(lane_zeros(layout.lead * layout.size), pivots, tops, np.zeros(1, np.int64))
+
+
+@inlined
+def lane_state(stack):
+    """The states of all lanes in ``stack`` (4, N + 1, 8), as one state of lanes."""
+    return MotionState(lane_vector(stack[0]), lane_vector(stack[1]), lane_vector(stack[2]), lane_vector(stack[3]))
 
 
 @inner

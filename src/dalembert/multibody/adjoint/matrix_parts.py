@@ -14,7 +14,6 @@ from dalembert.multibody.integrators.generalized_alpha.adjoint_sweep import (
     fixed_masses,
     sweep_workspace,
 )
-from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.states import MotionState
 from dalembert.multibody.model.couplings import Couplings
@@ -29,7 +28,7 @@ class Matrices:
     couplings: tuple[Couplings, ...]
 
 
-def matrices_of(lowered: Lowered, model: BlockModel, work: int, state: MotionState) -> Matrices:
+def matrices_of(lowered: Lowered, work: int, tangent_work: int, state: MotionState) -> Matrices:
     """Return the workspace for a sweep, with the masses that do not change, filled at a state."""
     structure, kept = lowered.structure, []
 
@@ -49,8 +48,8 @@ def matrices_of(lowered: Lowered, model: BlockModel, work: int, state: MotionSta
     varying = {kind for kind, data in lowered.data.items() if kind.varies(data)}
     fixed = part(lambda kind: kind not in varying and kind.constraint is None)
     parts = part(lambda kind: True), part(lambda kind: kind in rates), part(lambda kind: kind in varying)
-    scratch = sweep_workspace(structure.full.fresh[1], structure.size + 1, work, parts)
-    fixed_masses(model.address, structure.n, state.x, state.v, state.a, fixed, scratch)
+    scratch = sweep_workspace(structure.full.fresh[1], structure.size + 1, work, tangent_work, parts)
+    fixed_masses(lowered.tangents.address, structure.n, state.x, state.v, state.a, fixed, scratch)
     return Matrices(scratch, tuple(kept))
 
 

@@ -9,6 +9,7 @@ from dalembert.errors import InputError, ModelError
 from dalembert.forward.adjoint import Pull
 from dalembert.forward.differences import COMPLEX_STEP
 from dalembert.forward.sparse_steps import sparse_jacobian
+from dalembert.kernels.duals import DIRECTIONS
 from dalembert.multibody.adjoint.numbers import numbers_of
 from dalembert.multibody.adjoint.pullback import MotionPullback, refuse
 from dalembert.multibody.integrators.generalized_alpha.generalized_alpha import GeneralizedAlpha
@@ -19,19 +20,21 @@ if TYPE_CHECKING:
     from dalembert.multibody.motion.motion_model import BuiltModel
 
 
-FROM = 6
-"""Parameters from which an adjoint is cheaper than a Jacobian, see the benchmark ``adjoint``."""
+FEWEST = 6
+"""Parameters from which an adjoint is cheaper than directions one by one, see the benchmark ``adjoint``. Eight at once
+cost less than an adjoint.
+"""
 
 
 def adjoint_from(model: "BuiltModel") -> int | None:
     """Number of parameters from which the adjoint of a model is cheaper than its Jacobian; None without an adjoint."""
-    if model.derivative != COMPLEX_STEP or len(model.parameters) < FROM:
+    if model.derivative != COMPLEX_STEP or len(model.parameters) < FEWEST:
         return None
     try:
-        _refused(model)
+        solver = _refused(model)
     except InputError:
         return None
-    return FROM
+    return DIRECTIONS + 1 if solver.takes_duals and model.shared.in_duals else FEWEST
 
 
 def _refused(model: "BuiltModel") -> GeneralizedAlpha:

@@ -97,13 +97,13 @@ class MotionPullback:
         ``cotangent`` (samples, channels); ``active`` (numbers,).
         """
         prepare(adjoint_kernels(self.lowered, self.observer))
-        lowered, motion, model = self.lowered, self.motion, self.lowered.model(complex, "tangent")
+        lowered, motion, model = self.lowered, self.motion, self.lowered.model(complex, "residual")
         gradient = NumberGradient(lowered, self.observer, active)
         pulls = NumberPulls(gradient, model)
         bars = np.zeros((len(self.times), len(lowered.structure.signals), 3))
         given = pull_readings(gradient, model, motion.samples, self.times, cotangent, bars)
-        call, bar = model.call(), resting(lowered.structure.size + 1)
-        matrices = matrices_of(lowered, model, call.address, motion.starts[0])
+        call, tangent_call, bar = model.call(), lowered.tangents.call(), resting(lowered.structure.size + 1)
+        matrices = matrices_of(lowered, call.address, tangent_call.address, motion.starts[0])
         scratch = matrices.scratch
         alone, still = pulls.pulls._replace(blocks=np.zeros((0, 3), np.int64)), np.zeros_like(bar.x)
         for sample in np.flatnonzero(bars.any(axis=(1, 2))):  # signals that channels read
@@ -136,7 +136,17 @@ class MotionPullback:
         steps = Steps(*(part[own] for part in motion.steps))
         radius = self.solver.spectral_radius
         status = sweep(
-            motion.problem, model.address, radius, steps, own.start, path, samples, pulls.pulls, bar, scratch
+            motion.problem,
+            model.address,
+            self.lowered.tangents.address,
+            radius,
+            steps,
+            own.start,
+            path,
+            samples,
+            pulls.pulls,
+            bar,
+            scratch,
         )
         if status >= 0:
             raise explain(self.lowered, SINGULAR, float(steps.ends[status]), 0, cut_down(self.solver.step))

@@ -72,12 +72,14 @@ class ResidualDerivatives(NamedTuple):
 
 
 class SweepWorkspace(NamedTuple):
-    """Work of the sweep: a call in complex numbers, the matrix with its transposed solution, parts of it, vectors.
+    """Work of the sweep: a call for gradients by numbers, which are complex steps, and one for tangents, the matrix
+    with its transposed solution, parts of it, vectors.
     ``masses`` are those that do not change, in the places of the matrix. ``by_x``, ``by_v`` and ``by_a`` are the parts
     along coordinates, velocities (of blocks that depend on them), and accelerations (of blocks whose masses vary).
     """
 
     work: Address
+    tangent_work: Address
     factors: Factors
     solve: Address
     masses: Reals
@@ -92,23 +94,24 @@ class SweepWorkspace(NamedTuple):
 
 
 def sweep_workspace(
-    layout: Layout, width: int, work: int, parts: tuple[ResidualDerivatives, ResidualDerivatives, ResidualDerivatives]
-) -> SweepWorkspace:
-    """Workspace for a sweep over vectors of ``width``; its masses are zero, and filled before the sweep. ``work``:
-    address of a call; ``parts``: derivatives of the residual by q, v and a.
+    layout: Layout, width: int, work: int, tangent_work: int,
+    parts: tuple[ResidualDerivatives, ResidualDerivatives, ResidualDerivatives],
+) -> SweepWorkspace:  # fmt: skip
+    """Workspace for a sweep over vectors of ``width``; its masses are zero, and filled before the sweep. ``work``,
+    ``tangent_work``: addresses of calls; ``parts``: derivatives of the residual by q, v and a.
     """
     right, mu, of_q, of_v, *past = np.zeros((8, width))
     factors = storage(layout)
     return SweepWorkspace(
-        work, factors, transposed(layout).address, np.zeros(len(factors.matrix)), *parts, right, mu, of_q, of_v,
-        MotionState(*past),
+        work, tangent_work, factors, transposed(layout).address, np.zeros(len(factors.matrix)), *parts, right, mu,
+        of_q, of_v, MotionState(*past),
     )  # fmt: skip
 
 
 @inlined
 def _fill(model, n, x, v, a, by, scratch, part):
     """Fill the values of a part with the derivative along ``by[0] dq + by[1] dv + by[2] da``, and the multipliers."""
-    own, values = call_at(scratch.work), part.values
+    own, values = call_at(scratch.tangent_work), part.values
     for k in range(len(values)):
         values[k] = 0.0
     own.x, own.v, own.a = address_of(x), address_of(v), address_of(a)
@@ -119,7 +122,7 @@ def _fill(model, n, x, v, a, by, scratch, part):
     for k in range(len(part.blocks)):
         block = model_at(model).blocks + part.blocks[k] * BLOCK_SIZE
         own.slots = part.slots[k]
-        call(block_at(block).tangent, scratch.work, block)
+        call(block_at(block).tangent, scratch.tangent_work, block)
 
 
 @inlined
@@ -152,12 +155,12 @@ def _fill_matrix(model, n, c, x, v, a, scratch):
 
 @kernel
 def fixed_masses(
-    model: Address, n: int, x: Reals, v: Reals, a: Reals, part: ResidualDerivatives, scratch: SweepWorkspace
+    tangent_model: Address, n: int, x: Reals, v: Reals, a: Reals, part: ResidualDerivatives, scratch: SweepWorkspace
 ) -> None:
     """Fill the masses of the blocks of a part, which do not change, in the places of the matrix."""
     clear(scratch.masses)
     if len(part.blocks) > 0:
-        _fill(model, n, x, v, a, (0.0, 0.0, 1.0), scratch, part)
+        _fill(tangent_model, n, x, v, a, (0.0, 0.0, 1.0), scratch, part)
         _add(n, part, 1.0, scratch.masses)
 
 
@@ -221,16 +224,17 @@ def _step_back(n, c, bar, past):
 
 @kernel
 def sweep(
-    problem: IntegrationProblem, model: Address, radius: float, steps: Steps, first: int, path: StateHistory,
-    given: Cotangents,
+    problem: IntegrationProblem, model: Address, tangent_model: Address, radius: float, steps: Steps, first: int,
+    path: StateHistory, given: Cotangents,
     pulls: Pulls, bar: MotionState, scratch: SweepWorkspace,
 ) -> int:  # fmt: skip
     """Run the adjoint over steps in reverse order; return -1, or the number of a step whose matrix is singular.
 
-    ``model``: in complex numbers without imaginary parts, with the kernels of tangents; ``radius``: spectral radius of
-    the method; ``first``: number of the first of these steps in the whole motion, as the cotangents count; ``path``:
-    states at the ends of the steps, (steps, N + 1); ``given``: in the order of time; those of these steps; ``bar``:
-    adjoint of the last state; overwritten with that of the state before the first step.
+    ``model``: in complex numbers without imaginary parts, for gradients by its numbers; ``tangent_model``: with the
+    kernels of tangents; ``radius``: spectral radius of the method; ``first``: number of the first of these steps in the
+    whole motion, as the cotangents count; ``path``: states at the ends of the steps, (steps, N + 1); ``given``: in the
+    order of time; those of these steps; ``bar``: adjoint of the last state; overwritten with that of the state before
+    the first step.
     """
     n, size, layout, past, mu = problem.n, len(bar.x) - 1, problem.exact_layout, scratch.past, scratch.mu
     left = len(given.steps)
@@ -244,8 +248,8 @@ def sweep(
         clear(past.v)
         clear(past.a)
         left = _take_samples(n, c.step, first + k, given, left, bar, past)
-        set_signals(model, steps.ends[k], steps.sides[k], scratch.work)
-        _fill_matrix(model, n, c, x, v, a, scratch)
+        set_signals(tangent_model, steps.ends[k], steps.sides[k], scratch.tangent_work)
+        _fill_matrix(tangent_model, n, c, x, v, a, scratch)
         if not factorise(layout, scratch.factors):
             return k
         # All adjoints of the new state by the accelerations, through the formulas of the step: the right side of (M +
@@ -265,7 +269,10 @@ def sweep(
             _multiply_transposed(scratch.by_v, mu, scratch.of_v)
             for i in range(n):
                 bar.v[i] -= scratch.of_v[i]
-        # Gradients by numbers before the state is left, while the call has its x, v and a.
+        # Gradients by numbers before the state is left.
+        set_signals(model, steps.ends[k], steps.sides[k], scratch.work)
+        own = call_at(scratch.work)
+        own.x, own.v, own.a = address_of(x), address_of(v), address_of(a)
         pull(model, pulls, scratch.mu, scratch.work)
         _step_back(n, c, bar, past)
     return -1

@@ -14,29 +14,34 @@ from dalembert.kernels.packaged import FAMILIES, source_digest
 _HOMES = ("dalembert.multibody", "dalembert.vibration", "dalembert.surrogate")
 
 
-def package_kernels() -> list[Compiled]:
-    """Every kernel of the package by its symbol, those of each kind of component in all roles."""
+def package_kernels(vectors: bool = False) -> list[Compiled]:
+    """Every kernel of the package by its symbol, those of each kind of component in all roles.
+
+    ``vectors``: also those of kinds in dual numbers and in lanes.
+    """
     found: dict[str, Compiled] = {}
     for home in _HOMES:
         package = import_module(home)
         for entry in walk_packages(package.__path__, f"{home}."):
-            for kernel in _kernels_of(import_module(entry.name)):
+            for kernel in _kernels_of(import_module(entry.name), vectors):
                 found.setdefault(kernel.symbol, kernel)
     return [found[symbol] for symbol in sorted(found)]
 
 
-def _kernels_of(module: object) -> Iterator[Compiled]:
+def _kernels_of(module: object, vectors: bool) -> Iterator[Compiled]:
     for value in vars(module).values():
         if isinstance(value, Compiled):
             yield value
         elif hasattr(value, "all_kernels") and not isinstance(value, type):  # a kind of component
             yield from value.all_kernels()
+            if vectors and hasattr(value, "vector_kernels"):  # laws in frequency have none
+                yield from value.vector_kernels()
 
 
 def build(folder: Path, progress: Callable[[int, int, str], None] = lambda *_: None) -> list[Path]:
     """Write the object of all kernels and what is to be known of it: ``kernels.o`` and ``kernels.json``."""
     own = FAMILIES[platform.machine()]
-    kernels, whole = package_kernels(), None
+    kernels, whole = package_kernels(vectors=True), None
     for count, kernel in enumerate(kernels, 1):
         module = optimised(*kernel.entry, cpu=own.cpu)
         if whole is None:

@@ -17,12 +17,24 @@ from installed_wheel import install_wheel
 
 MOVE = """
 import hashlib
-from flexible_pendulum import tip
+import dalembert as da
+from flexible_pendulum import CHANNELS, pendulum, tip
+
+def falling(gravity, **numbers):
+    system = pendulum(**numbers)
+    system.gravity = (0.0, -gravity)
+    return system
 
 model = tip({"theta1": (0.6, 1.0), "theta2": (0.4, 0.65)}, end=0.5)
 values, jacobian = model.linearise([0.7, 0.5])
 print(hashlib.sha256(model.evaluate([[0.7, 0.5], [0.9, 0.6]]).values.tobytes()).hexdigest())
 print(hashlib.sha256(values.tobytes() + jacobian.tobytes()).hexdigest())
+# Eight samples in lanes, and four directions in dual numbers.
+print(hashlib.sha256(model.evaluate([[0.7 + k / 50, 0.5] for k in range(8)]).values.tobytes()).hexdigest())
+ranges = {"theta1": (0.6, 1.0), "theta2": (0.4, 0.65), "youngs_ab": (1e7, 3e7), "gravity": (5.0, 20.0)}
+other = da.TimeResponse(falling, ranges, CHANNELS, [0.0, 0.1], da.GeneralizedAlpha(5e-4))
+values, jacobian = other.linearise([0.7, 0.5, 2e7, 9.81])
+print(hashlib.sha256(jacobian.tobytes()).hexdigest())
 """
 
 

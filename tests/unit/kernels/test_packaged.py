@@ -18,7 +18,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
         pytest.skip("no object is made for this processor")
     folder = tmp_path_factory.mktemp("object")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(everything, "package_kernels", lambda: [weighted, both])
+        patch.setattr(everything, "package_kernels", lambda **_: [weighted, both])
         everything.build(folder)
     return folder
 

@@ -2,7 +2,9 @@
 
 from dataclasses import dataclass, field
 
+from dalembert.kernels.duals import Dual
 from dalembert.kernels.kernel import Compiled
+from dalembert.kernels.lanes import Lanes
 from dalembert.multibody.kernels import loops, nodes, pullbacks, tangents
 from dalembert.multibody.kernels.debugging import PLAIN, PlainKernel
 from dalembert.multibody.kernels.declaration import Declaration
@@ -25,8 +27,14 @@ class Kind(Declaration):
         kernel, errors = self._kernels[role, dtype], PLAIN.get().get(self)
         return kernel if errors is None else PlainKernel(kernel, errors)
 
+    def vector_kernels(self) -> list[Compiled]:
+        """The kernels in dual numbers and in lanes: a wheel has them, elsewhere they are compiled when needed."""
+        taken = {Dual: ("residual", "rates", "restore"), Lanes: ("residual", "rates", "energy", "change", "restore")}
+        known = [dtype for dtype, takes in ((Dual, self.takes_duals), (Lanes, self.takes_lanes)) if takes]
+        return [self.kernel(role, dtype) for dtype in known for role in taken[dtype] if role in self.roles]
+
     def all_kernels(self) -> list[Compiled]:
-        """The kernels of all roles that the kind has; those in dual numbers are compiled when they are needed."""
+        """The kernels of all roles that the kind has, in real and in complex numbers."""
         roles = [
             (role, dtype)
             for role in _MAKERS

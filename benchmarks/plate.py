@@ -11,7 +11,7 @@ import numpy as np
 
 from benchmarks import timing
 from dalembert import HarmonicBalance, frequency_response
-from dalembert.threads import one_thread
+from dalembert.threads import single_thread
 from dalembert.vibration.balance.equations import equations
 
 STUDY = Path(__file__).parents[1] / "studies" / "patched-plate" / "plate.py"
@@ -19,7 +19,7 @@ PRELOAD, POINTS, ENDS = 75.0, 700, (394.0, 407.0)
 METHOD = HarmonicBalance(harmonics=5, sampling=1e-3)
 PARTS = {
     "condensation": ("condensation.py", ("at",)),
-    "law of friction": (("friction_period.py", "friction_tangent.py"), ("tangent", "forces")),
+    "law of friction": ("contact_sums.py", ("with_slopes", "forces")),
     "linear systems": ("block_tangent.py", ("solve",)),
 }
 """Files and functions whose time is a part of the curve's."""
@@ -54,12 +54,12 @@ def main() -> list[dict[str, object]]:
 def _jacobians(unknowns: np.ndarray, frequency: float, system: object) -> tuple[float, float]:
     """Seconds for a residual with its exact Jacobian, and for as many residuals as one by differences takes."""
     problem = equations(system, METHOD)  # type: ignore[arg-type]
-    with one_thread():
+    with single_thread():
         balance, point = problem.balance(128), problem.condensation.at(2 * np.pi * frequency)
         times = timing.interleaved(
             {
                 "exact": lambda: balance.linearised(point, unknowns),
-                "residual": lambda: balance.residual(balance.linear(point.stiffness, point.force, unknowns), unknowns),
+                "residual": lambda: balance.at(point, unknowns),
             }
         )
     return times["exact"], times["residual"] * (unknowns.size + 1)

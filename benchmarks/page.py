@@ -29,7 +29,7 @@ def section(kept: dict) -> str:
     names = list(rows[0])
     lines = [names, ["---"] * len(names), *([timing.text(row.get(name, "")) for name in names] for row in rows)]
     packages = ", ".join(f"{name} {version}" for name, version in machine["packages"].items() if version != "absent")
-    where = f"*{machine['processor']}, {machine['cores']} cores, Python {machine['python']}, {packages}.*"
+    where = f"*{machine['processor']}, {machine['cores']} cores, Python {machine['python']}. Packages: {packages}.*"
     table = "\n".join(f"| {' | '.join(line)} |" for line in lines)
     figure = f"![{kept['title']}](pictures/{kept['figure']})\n\n" if "figure" in kept else ""
     return f"## {kept['title']}\n\n{figure}{table}\n\n{where}\n"

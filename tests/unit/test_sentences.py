@@ -8,7 +8,7 @@ from sentences import long_share, pages, sentences
 
 MOST = {
     ".": 0.20,
-    "docs": 0.22,
+    "docs": 0.18,
     "docs/gallery": 0.0,
     "docs/how-to": 0.01,
     "docs/notebooks": 0.40,

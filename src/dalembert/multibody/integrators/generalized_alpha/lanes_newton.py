@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.kernels.kernel import inlined, inner
+from dalembert.kernels.kernel import inner
 from dalembert.kernels.lanes import WIDTH, chosen, entry, lane_vector, lane_zeros, larger, sizes
 from dalembert.kernels.words import Address, Integers, Reals, Reals2, Reals3
 from dalembert.multibody.integrators.generalized_alpha.newton import AGED, MOST_ITERATIONS, SLOW
@@ -20,6 +20,7 @@ from dalembert.multibody.integrators.shared.lane_states import (
     keep_factors,
     lane_factors,
     lane_state,
+    largest_lanes,
     set_lane_signals,
     take_lane,
 )
@@ -105,15 +106,6 @@ def _renew(problem, c, t, within, stack, lane, scratch):
         scratch.alone[lane] = 1
 
 
-@inlined
-def _largest(values, begin, end, zero):
-    """Largest absolute value from begin to end, in each lane."""
-    largest = zero
-    for k in range(begin, end):
-        largest = larger(largest, sizes(values[k]))
-    return largest
-
-
 @inner
 def _predict(n, c, old, new, scratch):
     """Fill the new states with linear extrapolations of accelerations and multipliers, as for one sample."""
@@ -196,12 +188,14 @@ def converge_lanes(problem, c, t, within, tolerance, old_stack, new_stack, scrat
     for iteration in range(1, MOST_ITERATIONS + 1):
         reduced_residual(scratch.model, reduced.increments, new.x, new.v, new.a, scratch.call, 1.0 / c.dq, r)
         if iteration == 1:  # of the prediction, and of the constraints
-            numbers[FORCE] = larger(_largest(r, 0, reduced.increments, zero), _largest(new.x, n, len(old.x) - 1, zero))
+            numbers[FORCE] = larger(
+                largest_lanes(r, 0, reduced.increments, zero), largest_lanes(new.x, n, len(old.x) - 1, zero)
+            )
         # Increments by the kept matrices, then the step by its formulas, as for one sample.
         solve_samples(reduced.layout, kept.matrix, kept.pivots, kept.tops, scratch.r, scratch.buffer, scratch.delta)
         displace(scratch.model, c.dq, new.x, delta, scratch.call, change)
         moved = _correct(n, c, scratch.weights, numbers[ITERATES], change, old, new, zero)
-        forces = _largest(r, 0, reduced.increments, zero) if iteration > 2 else zero
+        forces = largest_lanes(r, 0, reduced.increments, zero) if iteration > 2 else zero
         running = False
         for lane in range(WIDTH):
             if values[ITERATES, lane] == 1.0:

@@ -1,6 +1,7 @@
 """Samples side by side: the bits of each alone, in any group; a lane that leaves the common path runs alone."""
 
 from collections.abc import Callable
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -90,13 +91,24 @@ def test_lanes_are_used(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_a_lane_that_fails_runs_alone_with_its_reason(method: type[Integrator]) -> None:
+def test_a_lane_that_fails_runs_alone_with_its_reason(
+    method: type[Integrator], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The spring of some samples pushes so hard that the step has to be halved, or that no step is short enough."""
     builder, channels, _ = MODELS["loop"]
     batch = vectors({"angle": (0.4, 0.6), "stiffness": (1e7, 1e9)}, 8)
     batch[[1, 6], 1] = -1e15, 3e13
+    module, groups = import_module(method.__module__), []
+    run = module.run_in_lanes
+
+    def watched(part, *given):
+        groups.append(run(part, *given))
+        return groups[-1]
+
+    monkeypatch.setattr(module, "run_in_lanes", watched)
     model = response(builder, channels, {"angle": (0.3, 1.1), "stiffness": (-1e16, 1e16)}, method)
     together, alone = model.evaluate(batch), [model.evaluate(row) for row in batch]
+    assert [list(np.flatnonzero(left)) for _, left in groups] == [[1, 6]]
     assert together.failures == tuple(entry.failures[0] for entry in alone)
     for values, entry in zip(together.values, alone, strict=True):
         np.testing.assert_array_equal(values, entry.values[0])

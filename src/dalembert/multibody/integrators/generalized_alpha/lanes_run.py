@@ -12,9 +12,16 @@ from dalembert.multibody.integrators.generalized_alpha.lanes_newton import (
 )
 from dalembert.multibody.integrators.generalized_alpha.newton import keep_slope
 from dalembert.multibody.integrators.shared.batch import Batch, restarts
-from dalembert.multibody.integrators.shared.consistent import Consistency, accelerate, consistency
-from dalembert.multibody.integrators.shared.lane_states import LaneSignals, lane_state, put_lane, take_lane
-from dalembert.multibody.integrators.shared.problem import IntegrationProblem, SampleModels
+from dalembert.multibody.integrators.shared.consistent import Consistency, consistency
+from dalembert.multibody.integrators.shared.lane_states import (
+    LaneSignals,
+    accelerate_lanes,
+    all_alone,
+    count_lanes,
+    lane_state,
+    take_lane,
+)
+from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.kernels.block_table import addresses
 from dalembert.multibody.kernels.states import (
     Histories,
@@ -28,7 +35,7 @@ from dalembert.multibody.kernels.states import (
     rows,
 )
 from dalembert.multibody.model.lane_models import lane_model
-from dalembert.multibody.model.turns import STEP_END, count_turns
+from dalembert.multibody.model.turns import count_turns
 
 
 def run_in_lanes(
@@ -86,16 +93,11 @@ def integrate_lanes(
         if fresh:
             for i in range(len(slope)):
                 slope[i] = 0.0
-        # Accelerations at the start and behind jumps: some solutions a stretch, so one sample after the other.
+        # Accelerations at the start and behind jumps.
         if fresh and (stretch > 0 or consistent):
-            for lane in range(WIDTH):
-                take_lane(new, lane, state)
-                models = SampleModels(scratch.source.models[lane], scratch.source.models[lane], opens[:0], 0)
-                if not accelerate(problem, models, begin, within, state, none, start):
-                    alone[lane] = 1
-                put_lane(state, lane, new)
+            accelerate_lanes(problem, begin, within, scratch.source, new, none, start, state, alone)
         if stretch == 0:
-            _count(begin, new, scratch)
+            count_lanes(begin, new, scratch.turns, state)
             while due < len(problem.times) and problem.times[due] <= begin:
                 _record(n, 1.0, 1.0, new, new, out, due, scratch)
                 due += 1
@@ -118,24 +120,10 @@ def integrate_lanes(
                 for lane in range(out.x.shape[0]):
                     count_turns(scratch.turns[lane], problem.times[due], row(rows(out, lane), due), due)
                 due += 1
-            _count(target, new, scratch)
+            count_lanes(target, new, scratch.turns, state)
             t = target
-        # Nothing is left to do where all lanes run alone.
-        running = False
-        for lane in range(WIDTH):
-            running = running or alone[lane] == 0
-        if not running:
+        if all_alone(alone):
             return
-
-
-@inner
-def _count(t, stack, scratch):
-    """Count the turns of angles in all lanes at the end of a step."""
-    # Counters are those of one sample: they see each lane as a state.
-    for lane in range(WIDTH):
-        if scratch.turns[lane] != 0:
-            take_lane(stack, lane, scratch.after)
-            count_turns(scratch.turns[lane], t, scratch.after, STEP_END)
 
 
 @inner

@@ -30,13 +30,15 @@ from dalembert.multibody.integrators.midpoint.lanes_step import (
 from dalembert.multibody.integrators.midpoint.midpoint_loop import AGED
 from dalembert.multibody.integrators.midpoint.midpoint_step import begin
 from dalembert.multibody.integrators.shared.batch import Batch
-from dalembert.multibody.integrators.shared.consistent import Consistency, accelerate, consistency
+from dalembert.multibody.integrators.shared.consistent import Consistency, consistency
 from dalembert.multibody.integrators.shared.ends import Ends, ends, interpolate_ends, weigh_ends
 from dalembert.multibody.integrators.shared.lane_states import (
     LaneSignals,
+    accelerate_lanes,
+    all_alone,
+    count_lanes,
     keep_factors,
     lane_state,
-    put_lane,
     set_lane_signals,
     take_lane,
 )
@@ -49,7 +51,7 @@ from dalembert.multibody.integrators.shared.matrices import (
     scratch,
     weigh_masses,
 )
-from dalembert.multibody.integrators.shared.problem import POSITION, VELOCITY, IntegrationProblem, SampleModels
+from dalembert.multibody.integrators.shared.problem import POSITION, VELOCITY, IntegrationProblem
 from dalembert.multibody.integrators.shared.settling_lanes import FAILED, settle_lanes
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.block_table import addresses
@@ -57,7 +59,7 @@ from dalembert.multibody.kernels.elementary import where
 from dalembert.multibody.kernels.linear import Factors
 from dalembert.multibody.kernels.states import Histories, MotionState, MotionStates, resting, row, rows
 from dalembert.multibody.model.lane_models import lane_model
-from dalembert.multibody.model.turns import STEP_END, count_turns
+from dalembert.multibody.model.turns import count_turns
 
 Balanced = tuple[float, FreeRigidMotions]
 """Energy of a sample at the start, in J, and the rigid motions that are free."""
@@ -165,30 +167,17 @@ def _matrices(pattern, stack, lane):
 
 
 @inner
-def _begin_lanes(problem, pattern, t, within, is_start, none, consistent, work):
-    """Consistent accelerations of each lane; at the start its masses, too."""
-    n, new, state, step = problem.n, work.stacks[1], work.alone, work.step
+def _weigh_lanes(n, pattern, t, within, work):
+    """Weigh the masses of each lane, which are constant, and list the entries with a mass in any of them."""
+    masses, state, count = work.step.masses, work.alone, 0
     for lane in range(WIDTH):
-        model = work.source.models[lane]
-        take_lane(new, lane, state)
-        if not accelerate(
-            problem, SampleModels(model, model, pattern.slots[:0], 0), t, within, state, none, consistent
-        ):
-            step.alone[lane] = 1
-        put_lane(state, lane, new)
-        # The masses are constant, so they are weighed once.
-        if is_start:
-            own = _matrices(pattern, work.matrices, lane)
-            set_signals(model, t, within, work.source.call)
-            weigh_masses(own, model, n, state, work.source.call)
-            for e in range(len(own.mass)):
-                step.masses.mass[e, lane] = own.mass[e]
-
-
-@inner
-def _list_masses(n, masses):
-    """List the entries with a mass in any lane: the others add zeros, which change no bit."""
-    count = 0
+        lane_matrices, model = _matrices(pattern, work.matrices, lane), work.source.models[lane]
+        take_lane(work.stacks[1], lane, state)
+        set_signals(model, t, within, work.source.call)
+        weigh_masses(lane_matrices, model, n, state, work.source.call)
+        for e in range(len(lane_matrices.mass)):
+            masses.mass[e, lane] = lane_matrices.mass[e]
+    # Entries without a mass would add zeros, which change no bit.
     for e in range(len(masses.mass)):
         is_heavy = False
         for lane in range(WIDTH):
@@ -349,9 +338,9 @@ def integrate_lanes(
     for stretch in range(len(edges) - 1):
         t, end = edges[stretch], edges[stretch + 1]
         within = 0.5 * (t + end)
-        _begin_lanes(problem, pattern, t, within, stretch == 0, none, consistent, work)
+        accelerate_lanes(problem, t, within, work.source, work.stacks[1], none, consistent, work.alone, own.alone)
         if stretch == 0:
-            _list_masses(problem.n, own.masses)
+            _weigh_lanes(problem.n, pattern, t, within, work)
         steps = max(1, int(np.ceil((end - t) / step - 1e-6)))
         opening, nominal = t, (end - t) / steps
         # Behind a jump nothing that was kept is of this place.
@@ -361,10 +350,7 @@ def integrate_lanes(
             slope[0, i] = slope[1, i] = 0.0
         work.last.times[1], h = t, 0.0
         for number in range(steps + 1):
-            for lane in range(WIDTH):
-                if work.turns[lane] != 0:
-                    take_lane(work.stacks[1], lane, work.alone)
-                    count_turns(work.turns[lane], t, work.alone, STEP_END)
+            count_lanes(t, work.stacks[1], work.turns, work.alone)
             while due < len(times) and times[due] <= t + 1e-9 * h:
                 # Behind a jump nothing is known before the stretch.
                 share = 1.0
@@ -379,9 +365,5 @@ def integrate_lanes(
             _advance(problem, pattern, t, target, within, tolerance, balance, work)
             work.last.times[0], work.last.times[1] = t, target
             t = target
-            # Nothing is left to do where all lanes run alone.
-            running = False
-            for lane in range(WIDTH):
-                running = running or own.alone[lane] == 0
-            if not running:
+            if all_alone(own.alone):
                 return

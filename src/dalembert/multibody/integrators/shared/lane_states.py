@@ -7,10 +7,13 @@ import numpy as np
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.kernels.lanes import WIDTH, lane_vector, lane_zeros, larger, sizes
 from dalembert.kernels.words import Address, Integers, Reals2
+from dalembert.multibody.integrators.shared.consistent import accelerate
 from dalembert.multibody.integrators.shared.matrices import Pattern
+from dalembert.multibody.integrators.shared.problem import SampleModels
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.linear import BAND, Layout
 from dalembert.multibody.kernels.states import MotionState
+from dalembert.multibody.model.turns import STEP_END, count_turns
 
 
 class LaneSignals(NamedTuple):
@@ -90,6 +93,37 @@ def set_lane_signals(t, within, source, signals):
 
 
 @inner
+def accelerate_lanes(problem, t, within, source, stack, none, start, state, alone):
+    """Solve for consistent accelerations of each lane, and mark the lanes in which that fails."""
+    # Some solutions a stretch: one lane after the other takes no time.
+    for lane in range(WIDTH):
+        models = SampleModels(source.models[lane], source.models[lane], alone[:0], 0)
+        take_lane(stack, lane, state)
+        if not accelerate(problem, models, t, within, state, none, start):
+            alone[lane] = 1
+        put_lane(state, lane, stack)
+
+
+@inner
+def count_lanes(t, stack, turns, state):
+    """Count the turns of angles in all lanes at the end of a step; ``turns`` (8,): counters, 0 for none."""
+    # Counters are those of one sample: they see each lane as a state.
+    for lane in range(WIDTH):
+        if turns[lane] != 0:
+            take_lane(stack, lane, state)
+            count_turns(turns[lane], t, state, STEP_END)
+
+
+@inner
+def all_alone(alone):
+    """Whether all lanes run alone, so that nothing is left to do."""
+    for lane in range(WIDTH):
+        if alone[lane] == 0:
+            return False
+    return True
+
+
+@inner
 def keep_factors(layout, factors, lane, stack):
     """Keep the factors of one lane, as one sample has them; False if it exchanges other rows than the lanes before."""
     # The other lanes keep their factors: each is as old as it would be alone.
@@ -119,8 +153,7 @@ def lane_masses(masses):
 
 @inner
 def largest_lanes(values, begin, end, zero):
-    """Largest absolute value from begin to end, in each lane; a value that is no number stays."""
-    # A value that is no number shows in the largest one, so that its lane fails.
+    """Largest absolute value from begin to end, in each lane; a NaN stays, so that its lane fails."""
     largest = zero
     for k in range(begin, end):
         largest = larger(largest, sizes(values[k]))

@@ -108,8 +108,9 @@ def test_a_figure_in_space_is_saved(chromium, tmp_path):
         _saved(page, _button(page, "deformation", kind).click, f"deformation.{kind.lower()}") for kind in ("SVG", "PNG")
     )
     root = ElementTree.fromstring(svg)
-    pictures = [image.get("{http://www.w3.org/1999/xlink}href", "") for image in root.iter(f"{SVG}image")]
-    assert any(picture.startswith("data:image/png") for picture in pictures)
+    assert next(root.iter(f"{SVG}image")).get("href", "").startswith("data:image/png")
+    words = {text.text for text in root.iter(f"{SVG}text")}
+    assert {"largest displacement (m)", "0", "2"} <= words  # the bar of the colours
     assert _size(png)[0] >= 1999
 
 

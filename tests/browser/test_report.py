@@ -266,7 +266,8 @@ def test_reports_on_intervals_fit_a_phone(chromium, tmp_path, make):
     assert page.evaluate("[innerWidth, document.documentElement.scrollWidth]") == [400, 400]
 
 
-def test_a_film_of_a_period_goes_on_without_end(chromium, tmp_path):
+@pytest.fixture(scope="module")
+def shape_page(tmp_path_factory):
     phases = np.arange(64)
     states = np.where(phases < 32, 1, 2).astype(np.uint8)[None]
     shape = stand_in(
@@ -280,7 +281,11 @@ def test_a_film_of_a_period_goes_on_without_end(chromium, tmp_path):
         energies=np.array([1.0]),
         motion=lambda phases: np.cos(phases)[:, None, None] * np.array([[0, 0, 0], [0, 0, 1], [0, 0, 2], [0, 0, 1]]),
     )
-    page = chromium.open(report(shape, tmp_path / "a.html"))
+    return report(shape, tmp_path_factory.mktemp("shape") / "a.html")
+
+
+def test_a_film_of_a_period_goes_on_without_end(chromium, shape_page):
+    page = chromium.open(shape_page)
     fill = "document.querySelector('#figure-interface-map .scatterlayer .trace:last-child .point').style.fill"
     assert page.evaluate(fill) == _colour(LIGHT.series[0])
     page.evaluate("document.querySelector('.player[data-for=figure-interface-map] button').click()")
@@ -288,3 +293,23 @@ def test_a_film_of_a_period_goes_on_without_end(chromium, tmp_path):
     wait_until(page, f"{fill} === '{_colour(LIGHT.series[0])}'")
     pressed = "document.querySelector('.player[data-for=figure-interface-map] button').getAttribute('aria-pressed')"
     assert page.evaluate(pressed) == "true"
+
+
+def test_a_deformed_shape_repeats_its_period_and_shows_values(chromium, shape_page):
+    page = chromium.open(shape_page)
+    words = "document.querySelector('#figure-deformation output').textContent"
+    assert page.evaluate(words) == "phase 0 °"
+    page.locator("#figure-deformation .player button").click()
+    for _ in range(2):  # once more after the last frame
+        wait_until(page, f"{words} === 'phase 345 °' || {words} === 'phase 330 °'")
+        wait_until(page, f"{words} === 'phase 0 °' || {words} === 'phase 15 °'")
+    page.locator("#figure-deformation .player button").click()
+    bar = page.locator("#figure-deformation .player-bar text").all_text_contents()
+    assert bar == ["0", "0.5", "1", "1.5", "2", "largest displacement (m)"]
+    box = page.locator("#figure-deformation canvas").bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    hint = "[...document.querySelectorAll('#figure-deformation span')].at(-1).textContent"
+    wait_until(page, f"/^x [\\d.]+, y [\\d.]+, z -?[\\d.]+ m: [\\d.]+$/.test({hint})")
+    x, y, _, value = map(float, re.findall(r"-?\d[\d.]*", page.evaluate(hint)))
+    assert value == pytest.approx(x + y, abs=0.02)  # the shape is linear
+    assert chromium.complaints == []

@@ -87,11 +87,12 @@ def figures(result: object, *supplements: object, **options: Any) -> dict[str, g
     dict of str to plotly.graph_objects.Figure or Animation
         For a fit ``"parameters"``, ``"responses-1"``, ``"convergence"``, ``"correlation"`` …, from response
         sensitivity ``"l-curve"`` and ``"steps"``, from multiple shooting ``"gaps"`` too, for a trajectory
-        ``"mechanism"``, an :class:`Animation`, ``"energies"``, ``"violations"``, ``"newton"``, for bounds
+        ``"mechanism"``, ``"energies"``, ``"violations"``, ``"newton"``, for bounds
         ``"bands-1"`` …, for methods compared ``"methods"`` and ``"differences"`` too, for intervals from bands
         ``"intervals"``, ``"residual-bands-1"`` …, for a set ``"paving-1"`` …, for a sweep ``"sweep-1"`` …, for profiles
         ``"profile-1"`` …, for a prediction ``"prediction-1"`` …, for designs ``"ranking"`` and ``"horizons"``, for a
         response over frequency ``"frequency-curve"``, ``"hysteresis"``, ``"contact-states"``, ``"harmonic-content"`` ….
+        ``"mechanism"``, ``"deformation"`` and ``"mode-shapes"`` are each an :class:`Animation`.
 
     Raises
     ------

@@ -1,5 +1,7 @@
 """Figures and tables of responses over frequency show the numbers of the curve."""
 
+import xml.etree.ElementTree as ET
+from base64 import b64decode
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +13,8 @@ from dalembert.forward import Coordinate
 from dalembert.inverse import identify
 from dalembert.report import charts, figures, report
 from dalembert.report.charts.frequency.contacts import COLOURS, STATES
+from dalembert.report.pictures.colour_bar import graded, ticks
+from dalembert.report.player.film import encoded
 from dalembert.structure import Campbell, ReductionErrors, eigenmodes, mode_shapes
 from dalembert.tables import prefixed
 from dalembert.uncertainty import Vertex, propagate
@@ -231,20 +235,48 @@ def shape():
 
 
 def test_the_deformed_shape_goes_through_its_period(shape):
-    figure = charts.deformation(shape)
-    outline, body = figure.data
-    assert len(figure.frames) == 24
-    labels = figure.layout.meta["labels"]
+    scene = charts.deformation(shape).scene
+    rest, body = scene.primitives
+    assert (rest.kind, rest.role, body.kind) == ("edges", "outline", "mesh")
+    assert len(scene.times) == len(body.points) == len(scene.film.labels) == 24
     deflections = np.abs(shape.motion(2 * np.pi * np.arange(24) / 24)).max(axis=(1, 2))
-    assert labels[0] == f"{15 * deflections.argmax()}"  # it begins with the largest deflection
-    motion = shape.motion(np.array([np.deg2rad(float(labels[12]))]))[0]
+    assert scene.film.labels[0] == f"{15 * deflections.argmax()}"  # it begins with the largest deflection
+    motion = shape.motion(np.array([np.deg2rad(float(scene.film.labels[12]))]))[0]
     largest = np.linalg.norm(shape.motion(2 * np.pi * np.arange(24) / 24), axis=2).max(axis=0)
     factor = 0.1 * np.linalg.norm(np.ptp(shape.places, axis=0)) / largest.max()
-    np.testing.assert_allclose(figure.frames[12].data[0].z, shape.places[:, 2] + factor * motion[:, 2], atol=1e-6)
-    assert len(body.i) == 2 * len(shape.faces)
-    np.testing.assert_allclose(np.max(body.intensity), prefixed(largest.max(), "m")[0] * largest.max(), rtol=1e-6)
-    assert np.isnan(outline.x[2::3]).all()
-    assert figure.layout.meta["endless"]
+    np.testing.assert_allclose(body.points[12], shape.places + factor * motion, atol=1e-12)
+    np.testing.assert_array_equal(body.faces, shape.faces)
+    np.testing.assert_allclose(body.values[0], prefixed(largest.max(), "m")[0] * largest, rtol=1e-12)
+    assert scene.bar.highest == body.values.max()
+    assert scene.film.endless
+
+
+def test_a_shape_is_printed_in_the_colours_of_its_bar(shape):
+    animation = charts.deformation(shape)
+    picture = ET.fromstring(animation.svg)
+    fills = {part.get("fill") for part in picture.iter("{http://www.w3.org/2000/svg}path")}
+    body = animation.scene.primitives[1]
+    mean = body.values[0][body.faces].mean(axis=1) / animation.scene.bar.highest
+    assert set(graded(mean)) <= fills
+    words = [text.text for text in picture.iter("{http://www.w3.org/2000/svg}text")]
+    assert words == [text for _, text in ticks(animation.scene.bar)] + [animation.scene.bar.title]
+
+
+def test_a_browser_gets_colours_and_labels_of_a_shape(shape):
+    scene = charts.deformation(shape).scene
+    film = encoded(scene, complete=True)
+    assert film["frames"][0] == f"phase {scene.film.labels[0]} °"
+    assert (film["quantity"], film["endless"], film["seconds"]) == ("phase", True, 2.0)
+    numbers = np.frombuffer(b64decode(film["positions"]), "<f4")
+    np.testing.assert_array_equal(numbers[-len(shape.places) :], scene.primitives[1].values[0].astype("f4"))
+    assert [item.get("values") for item in film["shapes"]] == [None, 1]
+
+
+def test_nodes_without_faces_are_coloured_points(shape):
+    scene = charts.deformation(replace(shape, faces=np.zeros((0, 3), dtype=int))).scene
+    (points,) = scene.primitives
+    assert points.kind == "points"
+    assert points.values.shape == (1, len(shape.places))
 
 
 def test_the_interface_map_shows_the_state_of_each_phase(shape):
@@ -277,10 +309,11 @@ def test_a_campbell_diagram_has_modes_rotation_and_critical_speeds():
 def test_modes_are_drawn_one_after_another():
     structure = strip().structure
     modes = mode_shapes(structure, eigenmodes(structure, 3))
-    figure = charts.mode_shapes(modes)
-    assert [frame.name for frame in figure.frames] == ["0", "1", "2"]
-    assert figure.layout.meta["labels"][0] == f"1: {modes.frequencies[0]:.6g} Hz"
-    np.testing.assert_allclose(figure.frames[1].data[0].intensity, np.linalg.norm(modes.shapes[1], axis=1), rtol=1e-6)
+    scene = charts.mode_shapes(modes).scene
+    assert len(scene.times) == 3
+    assert scene.film.labels[0] == f"1: {modes.frequencies[0]:.6g} Hz"
+    assert not scene.film.endless
+    np.testing.assert_allclose(scene.primitives[1].values[1], np.linalg.norm(modes.shapes[1], axis=1), rtol=1e-12)
 
 
 def test_a_fit_over_frequency_has_its_labels(tmp_path):

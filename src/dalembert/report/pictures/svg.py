@@ -1,11 +1,13 @@
 """The SVG picture of a scene."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import groupby
 
 import numpy as np
 
 from dalembert.report.pictures.canvas import COLOURS, FAINT, INK, SIZE, Canvas, between, moved
+from dalembert.report.pictures.colour_bar import ROOM, draw_bar, graded
 from dalembert.report.pictures.labels import draw_labels
 from dalembert.report.pictures.projection import Projection
 from dalembert.report.pictures.row import row_picture
@@ -39,16 +41,28 @@ def scene_picture(
         return row_picture(scene, label, size, choosable)
     view = Projection.of(scene.dimensions)
     corners = view(scene.positions) if box is None else box
+    if scene.bar is not None:
+        beside = corners.max(axis=0) + np.array([ROOM * float(np.ptp(corners[:, 0])), 0.0])
+        corners = np.vstack([corners, beside])
     canvas = Canvas.around(corners, size, choosable)
     if view.flat and len(scene.times) > 1:
         canvas.axes()
-    shapes = _from_far_to_near(scene.start, view)
+    start = scene.start
+    if scene.bar is not None:  # values as shares of the bar
+        graded_shapes = (
+            shape if shape.values is None else replace(shape, values=shape.values / scene.bar.highest)
+            for shape in start.primitives
+        )
+        start = replace(start, primitives=tuple(graded_shapes))
+    shapes = _from_far_to_near(start, view)
     for (role, name), part in groupby(shapes, lambda shape: (shape.role, shape.name)):
         with canvas.part(name, role):
             for shape in part:
                 DRAW[shape.kind](canvas, view, shape)
     if scene.gravity is not None:
         _gravity(canvas, view, scene)
+    if scene.bar is not None:
+        draw_bar(canvas, scene.bar)
     if labels:
         draw_labels(canvas, view, scene)
     return canvas.svg(label)
@@ -83,7 +97,7 @@ def _line(canvas: Canvas, view: Projection, shape: Primitive) -> None:
 
 
 def _faces(canvas: Canvas, view: Projection, shape: Primitive) -> None:
-    """Faces from the farthest to the nearest; those of one brightness that follow each other in one path."""
+    """Faces from the farthest to the nearest; those of one colour that follow each other in one path."""
     assert shape.faces is not None
     points, faces, colour = shape.points[0], shape.faces, _colour(shape)
     is_mesh = shape.kind == "mesh"
@@ -93,8 +107,11 @@ def _faces(canvas: Canvas, view: Projection, shape: Primitive) -> None:
     bright = (0.3 + 0.35 * bright).round(2) if is_mesh else (0.55 * bright).round(2)
     ordered = np.argsort(view.depth(points)[faces].mean(axis=1), kind="stable")
     corners = [_one_way(pixels[face]) for face in faces]
-    for run in np.split(ordered, np.flatnonzero(np.diff(bright[ordered])) + 1):
-        shade = between(colour, "#ffffff", float(bright[run[0]]))
+    if shape.values is None:
+        shades = [between(colour, "#ffffff", float(share)) for share in bright]
+    else:
+        shades, has_sides = graded(shape.values[0][faces].mean(axis=1)), False
+    for shade, run in groupby(ordered, lambda face: shades[face]):
         shapes = [corners[face].round() if is_mesh and not has_sides else corners[face] for face in run]
         canvas.polygons(shapes, shade, colour if has_sides else shade, 0.25 if has_sides else 0.6)
 
@@ -124,8 +141,10 @@ def _crosses(canvas: Canvas, view: Projection, shape: Primitive) -> None:
 
 
 def _points(canvas: Canvas, view: Projection, shape: Primitive) -> None:
-    for pixel in canvas.at(view(shape.points[0])):
-        canvas.circle(pixel, 1.5, _colour(shape))
+    points = shape.points[0]
+    colours = [_colour(shape)] * len(points) if shape.values is None else graded(shape.values[0])
+    for pixel, colour in zip(canvas.at(view(points)), colours, strict=True):
+        canvas.circle(pixel, 1.5 if shape.values is None else 3, colour)
 
 
 def _arrow(canvas: Canvas, view: Projection, shape: Primitive) -> None:

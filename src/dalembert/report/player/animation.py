@@ -75,7 +75,8 @@ class Animation:
     @property
     def pace(self) -> str:
         """The speed of the player, in words."""
-        return Playback.of(self.scene.times).pace
+        film = self.scene.film
+        return Playback.of(self.scene.times).pace if film is None else f"played {film.pace}"
 
     @property
     def size(self) -> tuple[int, int]:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dalembert.report.pictures.colour_bar import STEPS, graded, ticks
 from dalembert.report.player.playback import Playback
 from dalembert.report.scene.motion import motion_scene
 from dalembert.report.scene.scene import Scene
@@ -34,8 +35,9 @@ def film_of(drawing: "Drawing", measured: Mapping[str, np.ndarray], rows: np.nda
 
 def encoded(scene: Scene, *, complete: bool = False) -> dict[str, Any]:
     """Return a scene as ``space.js`` and ``plane.js`` take it. ``positions``: single precision in base64, of each shape
-    in turn (frames or 1, count, 2 or 3), m, and of one with poses (frames, 4, 3). Bodies with a surface have no lines.
-    ``complete``: with outlines of poses and axes of bodies, as in reports.
+    in turn (frames or 1, count, 2 or 3), m, of one with poses (frames, 4, 3), and of one with ``values`` these (values,
+    count). Bodies with a surface have no lines. ``frames`` (texts) and ``quantity`` are those of a film that
+    is not over time. ``complete``: with outlines of poses and axes of bodies, as in reports.
     """
     surfaces = {shape.part for shape in scene.primitives if shape.kind == "surface"}
     drawn = [
@@ -50,13 +52,21 @@ def encoded(scene: Scene, *, complete: bool = False) -> dict[str, Any]:
         item |= {} if shape.poses is None else {"posed": True}
         item |= {} if shape.faces is None else {"faces": shape.faces.tolist()}
         item |= {} if shape.along is None else {"along": shape.along.tolist()}
+        item |= {} if shape.values is None else {"values": len(shape.values)}
         shapes.append(item)
-    numbers = [part for shape in drawn for part in (shape.points, shape.poses) if part is not None]
+    numbers = [part for shape in drawn for part in (shape.points, shape.poses, shape.values) if part is not None]
     positions = np.concatenate([part.astype("<f4").ravel() for part in numbers])
-    return {
+    film, bar = scene.film, scene.bar
+    known: dict[str, Any] = {}
+    if film is not None:
+        labels = [f"{film.name} {label} {film.unit}".rstrip() for label in film.labels]
+        known |= {"frames": labels, "quantity": film.name, "endless": film.endless}
+    if bar is not None:
+        known["bar"] = {**vars(bar), "colours": graded(np.linspace(0.0, 1.0, STEPS + 1)), "ticks": ticks(bar)}
+    return known | {
         "dimensions": scene.dimensions,
         "times": [round(time, 9) for time in scene.times.tolist()],
-        "seconds": Playback.of(scene.times).seconds,
+        "seconds": Playback.of(scene.times).seconds if film is None else film.seconds,
         "shapes": shapes,
         "labels": [{**vars(label), "at": label.at.tolist()} for label in scene.labels],
         "gravity": None if scene.gravity is None else scene.gravity.tolist(),

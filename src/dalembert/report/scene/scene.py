@@ -1,6 +1,6 @@
 """A scene: primitives of the parts of a model, their names, and the direction of gravity."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -21,7 +21,8 @@ class Primitive:
     ``points`` (frames, points, 2 or 3): m, one frame if it does not move, or has poses; ``colour``: number in the
     series of a palette, or ``INK``; ``faces`` (faces, 3 or 4): corners of the faces among the points; ``along``
     (2 or 3,): direction of an arrow; ``poses`` (frames, 4, 3): origin, m, and axes of a rigid body over time. The
-    points, of one frame, are then in these axes.
+    points, of one frame, are then in these axes. ``values`` (frames or 1, points): what colours ``mesh`` and ``points``
+    by the scene's colour bar, in its unit.
     """
 
     kind: str
@@ -32,6 +33,7 @@ class Primitive:
     faces: np.ndarray | None = None
     along: np.ndarray | None = None
     poses: np.ndarray | None = None
+    values: np.ndarray | None = None
 
     @property
     def positions(self) -> np.ndarray:
@@ -60,6 +62,29 @@ class Label:
         return f"{self.role} {self.name}"
 
 
+@dataclass(frozen=True)
+class ColourBar:
+    """Colours of values from zero to ``highest``; ``title``: their quantity and unit."""
+
+    title: str
+    highest: float
+
+
+@dataclass(frozen=True)
+class Film:
+    """Frames that are not times of a motion. ``labels``: text of each frame; ``seconds``: duration of one pass
+    through all frames, s; ``name``, ``unit``: of the quantity that the labels give, such as phase and °; ``pace``: the
+    speed in words, such as "10 times slower"; ``endless``: whether the first frame follows the last, as in a period.
+    """
+
+    labels: Sequence[str]
+    seconds: float
+    name: str
+    unit: str
+    pace: str = ""
+    endless: bool = False
+
+
 MOST_LABELS = 24
 FIRST_ROLES = ("channel", "force", "joint", "load", "body")
 """Roles whose labels are shown first where there are too many."""
@@ -68,8 +93,8 @@ FIRST_ROLES = ("channel", "force", "joint", "load", "body")
 @dataclass(frozen=True, eq=False)
 class Scene:
     """The picture of a model, at rest or over time. ``primitives``: those of one part follow each other; ``gravity``
-    (2 or 3,): its direction, of length 1; ``times`` (frames,): s; ``to_scale``: False for a row of masses whose
-    positions are not known: x has their numbers.
+    (2 or 3,): its direction, of length 1; ``times`` (frames,): s, or numbers of the frames of a ``film``; ``to_scale``:
+    False for a row of masses whose positions are not known: x has their numbers; ``bar``: of the values of primitives.
     """
 
     primitives: tuple[Primitive, ...]
@@ -77,6 +102,8 @@ class Scene:
     gravity: np.ndarray | None = None
     times: np.ndarray = field(default_factory=lambda: np.zeros(1))
     to_scale: bool = True
+    film: Film | None = None
+    bar: ColourBar | None = None
 
     @property
     def dimensions(self) -> int:
@@ -92,7 +119,12 @@ class Scene:
     @property
     def start(self) -> "Scene":
         """The scene as it is in its first frame."""
-        still = (replace(shape, points=shape.positions[:1], poses=None) for shape in self.primitives)
+        still = (
+            replace(
+                shape, points=shape.positions[:1], poses=None, values=None if shape.values is None else shape.values[:1]
+            )
+            for shape in self.primitives
+        )
         return replace(self, primitives=tuple(still), times=self.times[:1])
 
     @property

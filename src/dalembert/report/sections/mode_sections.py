@@ -3,11 +3,11 @@
 import numpy as np
 
 from dalembert.report import charts
-from dalembert.report.charts.frequency.shapes import MOST
 from dalembert.report.headline import headline_of
 from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Plot, Section
+from dalembert.report.scene.shape import MOST
+from dalembert.report.section import Motion, Plot, Section
 from dalembert.structure import Campbell, ModeShapes, ReductionErrors
 from dalembert.tables import percent, shown
 
@@ -15,10 +15,10 @@ from dalembert.tables import percent, shown
 @sections_of(ModeShapes)
 def mode_shapes(modes: ModeShapes, options: ReportOptions) -> list[Section]:
     """The modes."""
-    how = "The slider goes through the modes; thin lines: at rest; dark: nodal lines."
+    how = "The slider goes through the modes; thin lines: at rest; dark: nodal lines. Drag to turn the view."
     how += f" Drawn are the first {MOST}." if len(modes.frequencies) > MOST else ""
-    plot = Plot("mode-shapes", charts.mode_shapes(modes), how)
-    return [headline_of(modes), Section("Mode shapes", (plot, *modes.tables()))]
+    film = Motion("mode-shapes", charts.mode_shapes(modes), how)
+    return [headline_of(modes), Section("Mode shapes", (film, *modes.tables()))]
 
 
 @sections_of(Campbell)

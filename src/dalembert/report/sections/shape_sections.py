@@ -3,11 +3,11 @@
 import numpy as np
 
 from dalembert.report import charts
-from dalembert.report.charts.frequency.shapes import magnified
 from dalembert.report.headline import headline_of
 from dalembert.report.options import ReportOptions
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Block, Plot, Row, Section
+from dalembert.report.scene.shape import magnified
+from dalembert.report.section import Block, Motion, Plot, Row, Section
 from dalembert.tables import percent, shown
 from dalembert.units import unit_of
 from dalembert.vibration import Backbone, Deformation, FrequencyCurve, PeriodicMotion, TimeComparison
@@ -59,14 +59,15 @@ def deformation(shape: Deformation, options: ReportOptions) -> list[Section]:
 
 def deformed(shape: Deformation) -> Section:
     """The deformed shape as a film, and a map of the interface where there are contacts."""
-    how = f"Displacements drawn {shown(magnified(shape), digits=2)} times as large as they are; thin lines: at rest."
-    blocks: list[Block] = []
+    film, blocks = charts.deformation(shape), list[Block]()
+    how = f"Displacements drawn {shown(magnified(shape), digits=2)} times as large as they are; thin lines: at rest. "
+    how += f"The film is {film.pace}. Drag to turn the view."
     energies = np.asarray(shape.energies, dtype=float)
     if len(energies) > 1 and energies.max() > 0:
         most = int(energies.argmax())
         part = percent(energies[most] / energies.sum())
         blocks.append(f"Of all the energy that friction takes, {shape.contacts[most]} takes most, {part}.")
-    blocks.append(Plot("deformation", charts.deformation(shape), how))
+    blocks.append(Motion("deformation", film, how))
     if shape.contacts:
         over = "Filled: the state at the phase shown; ring: the state held for longest; larger contacts take more "
         over += "energy from the motion."

@@ -24,18 +24,14 @@
     if (narrow) {
       Object.assign(layout.margin, { l: 44, r: 8 });
       layout.template.layout.font.size = 11;
-      const eye = layout.scene?.camera.eye;
-      for (const axis in eye) eye[axis] *= 1.35;
     }
-    if (layout.scene) place.style.height = `${Math.round(Math.min(520, Math.max(320, place.clientWidth)))}px`;
-    else if (layout.meta?.labels) { // equal axes: no higher than the motion needs
+    if (layout.meta?.labels) { // equal axes: no higher than the motion needs
       const [width, height] = ["xaxis", "yaxis"].map((name) => layout[name].range[1] - layout[name].range[0]);
       const needed = (place.clientWidth - 60) * height / width + 150;
       place.style.height = `${Math.round(Math.min(520, Math.max(300, needed)))}px`;
     }
     if (coarse) { // a finger on a figure scrolls the page
       layout.dragmode = false;
-      if (layout.scene) layout.scene.dragmode = false;
       for (const name of Object.keys(layout)) if (/^[xy]axis/.test(name)) layout[name].fixedrange = true;
     }
     const config = {

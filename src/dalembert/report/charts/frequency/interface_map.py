@@ -4,10 +4,11 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.report.charts.frequency.contacts import COLOURS
-from dalembert.report.charts.frequency.film_controls import Film
-from dalembert.report.charts.frequency.shapes import SECONDS
+from dalembert.report.charts.frequency.film_controls import controls
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.player.playback import slowness
+from dalembert.report.scene.scene import Film
+from dalembert.report.scene.shape import SECONDS
 from dalembert.report.scene.structure import edges
 from dalembert.tables import prefixed
 from dalembert.vibration import Deformation
@@ -72,7 +73,7 @@ def interface_map(shape: Deformation, *, title: str | None = None) -> go.Figure:
     labels = [f"{360 * number / FRAMES:.0f}" for number in range(FRAMES)]
     film = Film(labels, SECONDS, "phase", "°", slowness(SECONDS * shape.frequency), endless=True)
     title = title or "Contact states over the interface"
-    return themed(figure, title, 480, x=across, y=up, showlegend=True, **film.controls())
+    return themed(figure, title, 480, x=across, y=up, showlegend=True, **controls(film))
 
 
 def _structure(shape: Deformation, wide: np.ndarray) -> go.Scatter:

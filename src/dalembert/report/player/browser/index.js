@@ -95,6 +95,11 @@ export class Player {
     return this.scene.film.times.length - 1;
   }
 
+  // Steps of one pass: of a period one more, to its first frame.
+  get steps() {
+    return this.last + (this.scene.film.endless ? 1 : 0);
+  }
+
   seek(frame) {
     this.scene.frame = Math.max(0, Math.min(frame, this.last));
     this.scene.draw();
@@ -103,13 +108,14 @@ export class Player {
 
   play() {
     if (!this.scene?.film) return;
-    if (this.scene.frame >= this.last) this.scene.frame = 0;
-    const passed = this.scene.frame / Math.max(this.last, 1), began = performance.now() - 1000 * passed * this.scene.film.seconds;
+    if (this.scene.frame >= this.last && !this.scene.film.endless) this.scene.frame = 0;
+    const steps = this.steps, passed = this.scene.frame / Math.max(steps, 1), began = performance.now() - 1000 * passed * this.scene.film.seconds;
     this.playing = true;
     const step = (now) => {
       if (!this.playing) return;
-      const frame = Math.floor(((now - began) / 1000 / this.scene.film.seconds) * this.last);
-      if (frame >= this.last) this.playing = false;
+      const { endless, seconds, times } = this.scene.film, since = Math.max(0, Math.floor(((now - began) / 1000 / seconds) * this.steps));
+      const frame = endless ? since % times.length : since;
+      if (!endless && frame >= this.last) this.playing = false;
       if (frame !== this.scene.frame || !this.playing) this.seek(frame);
       if (this.playing) this.waiting = requestAnimationFrame(step);
     };
@@ -135,12 +141,12 @@ export class Player {
       this.sign.setAttribute("d", this.playing ? "M3 2h4v12h-4zM9 2h4v12h-4z" : "M4 2l10 6l-10 6z");
     }
     if (!this.scene?.film) return;
-    const { times } = this.scene.film, frame = this.scene.frame;
+    const { times, frames, quantity = "Time" } = this.scene.film, frame = this.scene.frame;
     const decimals = Math.max(0, 2 - Math.floor(Math.log10(Math.max(times.at(-1), 1e-12))));
     const time = times[frame].toFixed(decimals);
-    this.time.value = frame;
-    this.time.setAttribute("aria-valuetext", `${time} seconds`);
-    this.clock.textContent = `t = ${time} s`;
+    Object.assign(this.time, { value: frame, ariaLabel: quantity });
+    this.time.setAttribute("aria-valuetext", frames?.[frame] ?? `${time} seconds`);
+    this.clock.textContent = frames?.[frame] ?? `t = ${time} s`;
     this.onFrame(frame / Math.max(this.last, 1));
   }
 }

@@ -153,6 +153,7 @@ export class Plane {
   path({ kind, faces }, points) {
     if (kind === "crosses") return points.map(([x, y]) => `M${x - 3} ${y - 3}l6 6m0 -6l-6 6`).join("");
     const at = points.map(([x, y]) => (Number.isNaN(x) ? "" : `${x.toFixed(1)} ${y.toFixed(1)}`));
+    if (kind === "edges") return at.map((one, k) => `${k % 2 ? "L" : "M"}${one}`).join("");
     if (faces) return faces.map((face) => `M${face.map((corner) => at[corner]).join("L")}Z`).join("");
     return at.map((one, k) => one && (k && at[k - 1] ? "L" : "M") + one).join("");
   }

@@ -22,8 +22,10 @@ export function decoded(scene) {
   const taken = (size) => numbers.subarray(next, (next += size));
   return scene.shapes.map((shape) => {
     const size = shape.count * scene.dimensions, all = taken(shape.moves ? count * size : size), poses = shape.posed ? taken(12 * count) : null;
+    const values = shape.values ? taken(shape.values * shape.count) : null;
+    const valuesAt = values && ((frame) => (shape.values > 1 ? values.subarray(frame * shape.count, (frame + 1) * shape.count) : values));
     const at = (frame) => (poses ? posed(all, poses.subarray(12 * frame, 12 * frame + 12)) : shape.moves ? all.subarray(frame * size, (frame + 1) * size) : all);
-    return { ...shape, part: `${shape.role} ${shape.name}`.trim(), at, frames: poses || shape.moves ? count : 1 };
+    return { ...shape, part: `${shape.role} ${shape.name}`.trim(), at, valuesAt, frames: poses || shape.moves ? count : 1 };
   });
 }
 
@@ -48,4 +50,14 @@ export function boxOf(shapes, dimensions, old) {
   if (old) [old.low, old.high].forEach(measure);
   const grown = !old || low.some((value, k) => value < old.low[k]) || high.some((value, k) => value > old.high[k]);
   return { low, high, grown };
+}
+
+// The bar of a scene's colours, as a group of SVG that is BAR wide and so high.
+export const BAR = 76;
+export function barOf({ title, colours, ticks }, look, height) {
+  const group = svgElement(null, "g", { class: "player-bar" }), words = { fill: look.ink, "font-size": 12 }, step = height / colours.length;
+  colours.forEach((colour, k) => svgElement(group, "rect", { y: height - (k + 1) * step, width: 12, height: step + 0.5, fill: colour }));
+  for (const [share, text] of ticks) svgElement(group, "text", { ...words, x: 17, y: 4 + (1 - share) * height }, text);
+  svgElement(group, "text", { ...words, "text-anchor": "middle", transform: `translate(${BAR - 14} ${height / 2}) rotate(90)` }, title);
+  return group;
 }

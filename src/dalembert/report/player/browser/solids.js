@@ -15,17 +15,36 @@ export function rgb(colour) {
 }
 
 export class Solids {
-  // size: of the scene in m; symbols are parts of it; crosses: whether measured positions are crosses, and not dots.
-  constructor(size, crosses = false) {
-    Object.assign(this, { size, crosses, unit: 0.009 * size, triangles: [], lines: [], colour: NEUTRAL, part: -1 });
+  // size: of the scene in m; symbols are parts of it; crosses: whether measured positions are crosses, and not dots; bar:
+  // colours of values. The corners of triangles have values then, which are not numbers where there are none.
+  constructor(size, crosses = false, bar = null) {
+    Object.assign(this, { size, crosses, bar, unit: 0.009 * size, triangles: [], lines: [], values: [] });
+    Object.assign(this, { colour: NEUTRAL, part: -1, value: NaN, colours: bar?.colours.map(rgb) });
+  }
+
+  // Colour of a value, between those of the bar.
+  shade(value) {
+    const last = this.colours.length - 1, at = last * Math.max(0, Math.min(1, value / this.bar.highest)), k = Math.min(Math.floor(at), last - 1);
+    return this.colours[k].map((one, place) => one + (at - k) * (this.colours[k + 1][place] - one));
   }
 
   corner(list, point) {
     list.push(point[0], point[1], point[2], ...this.colour, this.part);
+    if (this.bar && list === this.triangles) this.values.push(this.value);
   }
 
   face(...points) {
     for (let k = 2; k < points.length; k++) for (const point of [points[0], points[k - 1], points[k]]) this.corner(this.triangles, point);
+  }
+
+  // A face whose corners have values and their colours.
+  shadedFace(points, values, colours) {
+    for (let k = 2; k < points.length; k++)
+      for (const corner of [0, k - 1, k]) {
+        Object.assign(this, { colour: colours[corner], value: values[corner] });
+        this.corner(this.triangles, points[corner]);
+      }
+    this.value = NaN;
   }
 
   segment(a, b) {
@@ -89,12 +108,14 @@ export class Solids {
   add(shape, frame, colour, number) {
     Object.assign(this, { colour, part: number });
     const numbers = shape.at(frame), at = (k) => [numbers[3 * k], numbers[3 * k + 1], numbers[3 * k + 2]];
-    const first = at(0), radius = this.unit;
+    const first = at(0), radius = this.unit, values = shape.valuesAt?.(frame), shades = values && Array.from(values, (value) => this.shade(value));
     switch (shape.kind) {
       case "surface":
       case "mesh":
-        for (const face of shape.faces) this.face(...face.map(at));
-        if (shape.kind === "mesh" && shape.faces.length <= MOST_FACES) {
+        for (const face of shape.faces)
+          if (values) this.shadedFace(face.map(at), face.map((k) => values[k]), face.map((k) => shades[k]));
+          else this.face(...face.map(at));
+        if (shape.kind === "mesh" && !values && shape.faces.length <= MOST_FACES) {
           this.colour = SIDES;
           for (const face of shape.faces) face.forEach((corner, k) => this.segment(at(corner), at(face[(k + 1) % face.length])));
         }
@@ -122,7 +143,11 @@ export class Solids {
         }
       // falls through
       case "points":
-        for (let k = 0; k < shape.count; k++) this.ball(at(k), 0.35 * radius, 5);
+        for (let k = 0; k < shape.count; k++) {
+          if (values) Object.assign(this, { colour: shades[k], value: values[k] });
+          this.ball(at(k), (values ? 0.8 : 0.35) * radius, 5);
+        }
+        this.value = NaN;
         break;
       case "spring":
         this.spring(first, at(1));

@@ -1,5 +1,5 @@
 // A scene in space, drawn with WebGL: turned, moved and enlarged by pointer and keys, with labels above it.
-import { boxOf, colourOf, decoded, svgElement } from "./shapes.js";
+import { BAR, barOf, boxOf, colourOf, decoded, svgElement } from "./shapes.js";
 import { Solids, dot, plus, rgb } from "./solids.js";
 
 const EYE = [0.5586, 0.3785], FIELD = (35 * Math.PI) / 360; // azimuth and height of the eye; half of the field of view
@@ -50,7 +50,10 @@ export class Space {
     this.program = program(gl);
     this.buffers = [gl.createBuffer(), gl.createBuffer()];
     this.listen(zooms);
-    if (complete) canvas.addEventListener("pointermove", (event) => event.buttons || !this.triangles || (canvas.title = this.pick(event) ?? ""));
+    if (complete) {
+      canvas.addEventListener("pointermove", (event) => event.buttons || !this.triangles || this.say(event));
+      canvas.addEventListener("pointerleave", () => this.hint?.remove());
+    }
     this.sizes = new ResizeObserver(() => this.render());
     this.sizes.observe(root);
   }
@@ -61,6 +64,7 @@ export class Space {
     this.gl.getExtension("WEBGL_lose_context")?.loseContext();
     this.canvas.remove();
     this.words.remove();
+    this.overlay?.remove();
   }
 
   listen(zooms) {
@@ -108,6 +112,7 @@ export class Space {
     this.size = Math.max(Math.hypot(...plus(high, low, -1)), 1e-6);
     this.parts = [...new Set([...this.shapes.map((shape) => shape.part), "gravity gravity"])];
     this.name(moves);
+    this.showBar();
     if (!this.target || (moves && grown)) this.fit();
     this.draw();
   }
@@ -115,7 +120,33 @@ export class Space {
   recolour(look) {
     this.look = look;
     this.name(this.film.times.length > 1);
+    this.showBar();
     this.draw();
+  }
+
+  // The bar of the colours, beside the scene.
+  showBar() {
+    this.overlay?.remove();
+    if (!this.film.bar) return;
+    const height = Math.max(80, 0.66 * (this.root.clientHeight || 300));
+    this.overlay = svgElement(this.root, "svg", { width: BAR, height: height + 20, viewBox: `0 -10 ${BAR} ${height + 20}`, "aria-hidden": true });
+    Object.assign(this.overlay.style, { position: "absolute", right: 0, top: "12%", pointerEvents: "none" });
+    this.overlay.append(barOf(this.film.bar, this.look, height));
+  }
+
+  // Name of the part below the pointer, or position and value there.
+  say(event) {
+    const part = this.pick(event), box = this.root.getBoundingClientRect(), { met } = this;
+    const value = met ? met.weights.reduce((sum, weight, k) => sum + weight * this.solids.values[met.k + k], 0) : NaN;
+    this.hint?.remove();
+    this.canvas.title = Number.isNaN(value) ? (part ?? "") : "";
+    if (Number.isNaN(value)) return;
+    const place = [0, 1, 2].map((axis) => met.weights.reduce((sum, weight, k) => sum + weight * this.triangles[7 * (met.k + k) + axis], 0));
+    const [x, y, z, size] = [...place, value].map((one) => +one.toPrecision(4));
+    this.hint = this.element({ text: `x ${x}, y ${y}, z ${z} m: ${size}`, colour: this.look.ink });
+    Object.assign(this.hint.style, { background: this.look.paper, border: `1px solid ${this.look.faint}`, borderRadius: "3px" });
+    const left = Math.min(event.clientX - box.left + 14, box.width - this.hint.offsetWidth - 4);
+    this.hint.style.transform = `translate(${left}px, ${Math.max(0, event.clientY - box.top - 24)}px)`;
   }
 
   // The picture as it is seen, with so many pixels a pixel.
@@ -124,6 +155,10 @@ export class Space {
     this.paint(ratio);
     svgElement(svg, "image", { width, height, href: this.canvas.toDataURL() });
     this.paint();
+    if (this.film.bar) {
+      const bar = svgElement(svg, "g", { transform: `translate(${width - BAR} ${0.15 * height})`, "font-family": "system-ui, sans-serif" });
+      bar.append(barOf(this.film.bar, this.look, 0.66 * height));
+    }
     const words = { "font-size": 12, "font-family": "system-ui, sans-serif" };
     for (const { element } of this.labels) {
       const [x, y] = element.style.transform.match(/-?[\d.]+/g) ?? [];
@@ -182,7 +217,7 @@ export class Space {
   // Make triangles and lines of the frame.
   draw() {
     if (!this.shapes) return;
-    const solids = new Solids(this.size, this.complete), number = (part) => this.parts.indexOf(part);
+    const solids = new Solids(this.size, this.complete, this.film.bar), number = (part) => this.parts.indexOf(part);
     for (const shape of this.shapes) {
       const mark = this.wrong.includes(shape.part) ? "wrong" : this.chosen.includes(shape.part) ? "chosen" : null;
       solids.add(shape, this.frame, mark ? MARKS[mark] : rgb(colourOf(shape, this.look)), number(shape.part));
@@ -255,7 +290,7 @@ export class Space {
   // Labels of a scene at rest, or names of bodies that move with them; and those of axes, floor and gravity.
   name(moves) {
     const ink = this.look.ink, colour = (number) => (number < 0 ? ink : this.look.series[number]);
-    const bodies = this.shapes.filter((shape) => moves && shape.role === "body");
+    const bodies = this.shapes.filter((shape) => moves && shape.role === "body" && shape.name);
     const own = this.film.labels.map(({ role, name, at, text, colour: number }) => ({ part: `${role} ${name}`, at: () => at, text, colour: colour(number) }));
     const moving = bodies.map((shape) => ({ at: (frame) => this.middle(shape, frame), text: shape.name, colour: ink }));
     this.own = [...own, ...moving];
@@ -309,13 +344,16 @@ export class Space {
   pick(event) {
     const box = this.canvas.getBoundingClientRect(), [x, y] = [event.clientX - box.left, event.clientY - box.top], view = this.matrix();
     let nearest = Infinity, found = null;
+    this.met = null; // the first corner of the nearest triangle, and shares of its corners at the pointer
     const corner = (list, k) => this.pixel(view, list.subarray(7 * k, 7 * k + 3));
     const side = (a, b) => (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]);
     for (let k = 0; k < this.triangles.length / 7; k += 3) {
       const [a, b, c] = [0, 1, 2].map((one) => corner(this.triangles, k + one)), signs = [side(a, b), side(b, c), side(c, a)];
       const depth = (a[2] + b[2] + c[2]) / 3, part = this.triangles[7 * k + 6];
       const inside = signs.some((one) => one) && (signs.every((one) => one >= 0) || signs.every((one) => one <= 0));
-      if (part >= 0 && depth < nearest && inside) [nearest, found] = [depth, part];
+      if (part < 0 || depth >= nearest || !inside) continue;
+      const sum = signs[0] + signs[1] + signs[2];
+      [nearest, found, this.met] = [depth, part, { k, weights: [signs[1] / sum, signs[2] / sum, signs[0] / sum] }];
     }
     let closest = REACH;
     for (let k = 0; found === null && k < this.lines.length / 7; k += 2) {

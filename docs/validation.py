@@ -26,6 +26,7 @@ AREAS = {
         "Motion, frequencies and equilibria of rigid and flexible mechanisms.",
         (
             "Beams",
+            "Beams in space",
             "Beams without locking",
             "Flexible mechanisms",
             "Gears and bushings",

@@ -238,6 +238,23 @@ def seen(place, angles) -> sp.SpatialSystem:
     return system
 
 
+def beam(degree: int = 2) -> Callable[..., sp.SpatialSystem]:
+    """A soft beam that swings from a ball joint; its section has a full stiffness matrix."""
+
+    def build(mass, moment_y, moment_z, product, centre_y, centre_z, length, angles, **fields) -> sp.SpatialSystem:
+        system, entries = sp.SpatialSystem(), [entry for k in range(7) for entry in fields.pop(f"stiffness_{k}")]
+        matrix = np.zeros((6, 6), np.result_type(*entries))
+        matrix[np.triu_indices(6)] = entries
+        matrix = matrix + matrix.T - np.diag(np.diagonal(matrix))
+        section = sp.Section(matrix, mass, (moment_y, moment_z), product, (centre_y, centre_z))
+        fields |= {"orientation": by_angles(angles), "prestrain": (*fields.pop("strain"), *fields.pop("bend"))}
+        own = system.add(sp.Beam("part", section, length, 1, degree, **fields))
+        system.add(sp.SphericalJoint("hold", system.ground.point((0.1, 0.2, 0.3)), own.start))
+        return system
+
+    return build
+
+
 def mass(**fields) -> sp.SpatialSystem:
     """A point mass on a spring."""
     system = sp.SpatialSystem()
@@ -274,7 +291,32 @@ DRIVE = {
 }  # fmt: skip
 AXIAL = (sp.PrismaticJoint, sp.CylindricalJoint, sp.PlanarJoint, sp.PointOnLineJoint, sp.ConstantVelocityJoint)
 
+BEAM = {
+    "stiffness_0": (60.0, 3.0, -2.0),
+    "stiffness_1": (1.0, 0.5, -0.4),
+    "stiffness_2": (40.0, 1.5, -0.6),
+    "stiffness_3": (0.3, 0.2, 35.0),
+    "stiffness_4": (0.4, -0.2, 0.3),
+    "stiffness_5": (1.5, 0.1, -0.1),
+    "stiffness_6": (2.0, 0.2, 1.2),
+    "mass": 5.0,
+    "moment_y": 0.2,
+    "moment_z": 0.3,
+    "product": 0.05,
+    "centre_y": 0.02,
+    "centre_z": -0.03,
+    "length": 0.8,
+    "angles": (0.3, 0.5, -0.2),
+    "curvature": (0.4, -0.3, 0.6),
+    "strain": (0.01, 0.02, -0.01),
+    "bend": (0.1, -0.2, 0.15),
+    "angular_velocity": (0.8, -0.5, 0.6),
+    "damping": 0.01,
+    "mass_damping": 0.1,
+}
+
 SCENES: dict[str, Scene] = {
+    "beam": (beam(), BEAM),
     "rigid body": (
         body,
         {

@@ -76,6 +76,7 @@ KINDS = {
 SPATIAL_HOMES = {
     "AngleLimit": "components.spatial.joint_limit",
     "Armature": "components.spatial.armature",
+    "Beam": "components.spatial.beam",
     "Body": "components.spatial.spatial_body",
     "Bushing": "components.spatial.spatial_bushing",
     "ConstantVelocityJoint": "components.spatial.universal_joint",
@@ -94,6 +95,7 @@ SPATIAL_HOMES = {
     "Joint": "components.spatial.spatial_joint",
     "Load": "components.spatial.spatial_load",
     "Motor": "components.spatial.spatial_motor",
+    "NodePoint": "components.spatial.beam",
     "Orientation": "components.spatial.orientation",
     "PlanarJoint": "components.spatial.planar_joint",
     "PointMass": "components.spatial.spatial_point_mass",
@@ -106,6 +108,7 @@ SPATIAL_HOMES = {
     "RevoluteJoint": "components.spatial.spatial_revolute_joint",
     "RigidBody": "components.spatial.spatial_rigid_body",
     "ScrewJoint": "components.spatial.screw_joint",
+    "Section": "components.spatial.section",
     "Shape": "components.spatial.shapes",
     "SphericalJoint": "components.spatial.spherical_joint",
     "Spring": "components.spatial.spatial_spring",
@@ -118,7 +121,7 @@ SPATIAL_HOMES = {
 """Module in ``dalembert.multibody`` of each public name of ``dalembert.multibody.spatial``."""
 
 SPATIAL_KINDS = {
-    "Body": ("PointMass", "RigidBody"),
+    "Body": ("Beam", "PointMass", "RigidBody"),
     "Joint": (
         "ConstantVelocityJoint",
         "CouplingJoint",

@@ -12,7 +12,7 @@ PAGE = (Path(__file__).parents[3] / "docs/how-to/study-files.md").read_text(enco
 SPACE = "Components in space"
 PLANAR, _, IN_SPACE = PAGE.partition(f"## {SPACE}\n")
 IN_SPACE, _, REST = IN_SPACE.partition("\n## ")
-INERTIAS = IN_SPACE.partition("| inertia |")[2]
+SECTIONS, _, INERTIAS = IN_SPACE.partition("| section |")[2].partition("| inertia |")
 OTHERS = {
     f"{'Spatial' * space}{kind.__name__}"
     for space in (False, True)
@@ -33,6 +33,7 @@ TABLES = {
     "Orientation": [SPACE],
     "Pose": [SPACE],
     "GroundPoint": [SPACE],
+    "NodePoint": [SPACE],
     "Friction": [SPACE],
     "SlidingFriction": [SPACE],
     "GeneralizedAlpha": ["solver"],
@@ -94,7 +95,7 @@ TABLES = {
 }
 """Where the page tells of a table that is not one kind of several."""
 
-BODIES = {"AncfBeam", "AncfCable", "RigidBar", "RigidBarBetween", "RigidBody", "PointMass"}
+BODIES = {"AncfBeam", "AncfCable", "Beam", "RigidBar", "RigidBarBetween", "RigidBody", "PointMass"}
 JOINTS = {name.removeprefix("Spatial") for name in DEFINITIONS if name.endswith(("Joint", "PrescribedMotion"))}
 LOADS = {
     "Force",
@@ -136,10 +137,12 @@ def _place(name, table):
     """What the page says of a table: its row where it is one kind of several, else the entry or section of its own."""
     if name in TABLES:
         return "\n".join(_entry(title) for title in TABLES[name])
-    kind = table["properties"]["kind"]["const"]
+    kind, text = table["properties"]["kind"]["const"], PLANAR + REST + INERTIAS
+    if name.startswith(("Spatial", "Section")):
+        text = IN_SPACE if name.startswith("Spatial") else SECTIONS
     (row,) = [
         line
-        for line in (IN_SPACE if name.startswith("Spatial") else PLANAR + REST + INERTIAS).splitlines()
+        for line in text.splitlines()
         if "|" in line and re.search(f'`{kind}`|kind = "{kind}"', line.strip(" |").partition(" |")[0])
     ]
     return row

@@ -52,6 +52,9 @@ class Declaration:
     coordinates. Some integrators need masses that do not. ``rotor``: these masses as constant ones of one more
     coordinate: a constraint that ties it to those of the kind, and its inertia. Their numbers and integers are columns
     of the kind.
+    ``strains(x, length)``: in Python, strains (count, -) of components with local coordinates ``x`` (count,
+    coordinates), in real and in complex numbers; ``references``: the columns of their values without stress. With both,
+    statics takes stresses as unknowns of their own, and needs far fewer iterations.
     ``driven``, ``loads``: whether a prescribed motion, or a load, may do work.
     ``holds``: whether a component on the ground keeps the mechanism from moving freely, as joints and springs do. It
     then has the columns ``a_kind b_kind`` (integers) and ``a_x a_y b_x b_y`` of two markers. ``holds_frame``: whether
@@ -83,6 +86,8 @@ class Declaration:
     dissipates: bool | str | tuple[str, ...] = False
     varying_mass: bool | str | tuple[str, ...] = False
     rotor: Any = None
+    strains: Callable[..., Any] | None = None
+    references: tuple[str, ...] = ()
     driven: bool = False
     loads: bool = False
     holds: bool = False

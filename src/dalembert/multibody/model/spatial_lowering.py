@@ -58,7 +58,7 @@ class SpatialLowering(MechanismLowering):
             return np.array(side.position), side.orientation.matrix
         if marker is None:
             return np.zeros(3), np.eye(3)
-        own = self._coordinates[side.body.name]
+        own = self._coordinates[side.body.name][marker.slots[0] or 0 :]
         if marker.kind == markers.MASS:
             return own[:3], np.eye(3)
         directors = own[3:12].reshape(3, 3).T

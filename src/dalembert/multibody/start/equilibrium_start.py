@@ -10,6 +10,7 @@ from scipy.sparse.linalg import lsqr, splu
 from dalembert.errors import ModelError, SolveError
 from dalembert.multibody.model.evaluate import residual, tangent
 from dalembert.multibody.model.lowered import Lowered, scales
+from dalembert.multibody.start.mixed_points import MixedPoints
 
 _MOST_ITERATIONS = 30
 _LAST_ITERATIONS = 300  # where loads in steps lead nowhere, as a torque that rolls a beam up
@@ -104,15 +105,17 @@ def _newton(
 ) -> tuple[np.ndarray | None, int]:
     """Newton's method on coordinates and multipliers; None where it does not converge."""
     n, still, scale = lowered.structure.n, np.zeros_like(x), scales(lowered)[:-1]
-    x = x.copy()
+    x, mixed = x.copy(), MixedPoints(lowered)
     for iteration in range(1, most + 1):
-        step = _solution(tangent(lowered, x, still, (1.0, 0.0, 0.0)), forces(x))
+        step = _solution(tangent(mixed.lowered, x, still, (1.0, 0.0, 0.0)), forces(x))
         if step is None:
             return None, iteration
         size = np.max(np.abs(step[:n]) / scale[:n])
         if not np.isfinite(size) or size > 1e3:
             return None, iteration
-        x[:-1] -= step * (0.5 / max(size, 0.5))  # at most half the scale at a time
+        change = -step * (0.5 / max(size, 0.5))  # at most half the scale at a time
+        mixed.step(x, change)
+        x[:-1] += change
         if size < 1e-11:
             return x, iteration
     return None, most

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import cast
 
 import numpy as np
-from scipy.linalg import eig, eigh, null_space
+from scipy.linalg import eig, eigh, eigvalsh, null_space
 
 from dalembert.arguments import takes_checked
 from dalembert.errors import InputError, require_known
@@ -21,6 +21,8 @@ from dalembert.multibody.steady.steady_motion import FIXED, FRAMES, ROTATING, mo
 
 _FREE = 3e-8
 """Frequency, as part of the largest one, that rounding of squares gives a motion without stiffness."""
+_DEFINITE = 1e-12
+"""Eigenvalue of a scaled stiffness, as part of the largest one, above which it is not rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,10 +130,12 @@ def modes(state: BaseSystem | Equilibrium, count: int | None = None, *, frame: s
     mass = tangent(lowered, x, still, (0.0, 0.0, 1.0)).toarray()[:n, :n]
     free = null_space(stiffness[n:, :n] / scales(lowered)[n:-1, None]) if lowered.structure.size > n else np.eye(n)
     k, c, m = (free.T @ matrix @ free for matrix in (stiffness[:n, :n], damping, mass))
+    least = _FREE
     if not c.any() and np.allclose(k, k.T, 0, 1e-9 * abs(k).max()):
         # M x'' + K x = 0 with symmetric matrices: many times faster than the general problem.
-        squares, vectors = eigh((k + k.T) / 2, (m + m.T) / 2)
+        squares, vectors = _squares((k + k.T) / 2, (m + m.T) / 2)
         roots = np.emath.sqrt(-squares)
+        least = 0.0 if squares.min(initial=1.0) > 0.0 and _is_definite(k) else least
     else:
         # M x'' + C x' + K x = 0.
         state_matrix = np.block([[np.zeros(m.shape), np.eye(len(m))], [-np.linalg.solve(m, np.hstack([k, c]))]])
@@ -139,13 +143,36 @@ def modes(state: BaseSystem | Equilibrium, count: int | None = None, *, frame: s
         vectors = vectors[: len(m)]
     largest = np.abs(roots).max(initial=0.0)
     growth = float(np.real(roots).max(initial=0.0))
-    kept = np.flatnonzero(np.imag(roots) > _FREE * largest)
+    kept = np.flatnonzero(np.imag(roots) > least * largest)
     kept = kept[np.argsort(np.imag(roots[kept]))][:count]
     shapes = np.zeros((len(x), len(kept)), dtype=complex)
     shapes[:n] = free @ vectors[:, kept]
     shapes /= shapes[np.argmax(np.abs(shapes), axis=0), np.arange(len(kept))]
     growth = growth if growth > _FREE * largest else 0.0
     return _modes(roots[kept], shapes, growth, 0.0, FIXED, 0.0, np.zeros(len(kept)))
+
+
+def _squares(stiffness: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Squares of the frequencies in ascending order, and shapes. K x = s M x has errors in proportion to the largest
+    square, which of a slender beam is 1e13 times the smallest; M x = K x / s has them in proportion to the smallest.
+    """
+    squares, vectors = eigh(stiffness, mass)
+    if not len(squares) or not _is_definite(stiffness):
+        return squares, vectors
+    inverse, shapes = eigh(mass, stiffness)
+    low = squares < np.sqrt(np.abs(squares[-1] / inverse[-1]))  # below the mean of the smallest and the largest
+    squares[low] = 1.0 / inverse[::-1][low]
+    vectors[:, low] = shapes[:, ::-1][:, low] * np.sqrt(squares[low])  # as long by the mass as the others
+    return squares, vectors
+
+
+def _is_definite(stiffness: np.ndarray) -> bool:
+    """Whether a stiffness is positive definite beyond rounding: no motion is free of it."""
+    scale = np.sqrt(np.abs(np.diagonal(stiffness)))
+    if not scale.all():
+        return False
+    values = eigvalsh((stiffness + stiffness.T) / 2 / np.outer(scale, scale))
+    return bool(values[0] > _DEFINITE * values[-1])
 
 
 def _about_rotation(lowered: Lowered, count: int | None, frame: str | None) -> Modes:

@@ -10,27 +10,34 @@ from functools import cache
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import PlainValidator, ValidationInfo, WithJsonSchema
+from pydantic import Field, PlainValidator, ValidationInfo, WithJsonSchema
 
 from dalembert.arguments import Checked
 from dalembert.errors import InputError
 from dalembert.multibody.components.fields import Number, number
+from dalembert.multibody.components.spatial.beam import NodePoint
 from dalembert.multibody.components.spatial.friction import ALONG, Friction
 from dalembert.multibody.components.spatial.ground_points import GroundPoint
 from dalembert.multibody.components.spatial.inertia import Inertia
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose, Vector
+from dalembert.multibody.components.spatial.section import Section
 from dalembert.study.tables.dataclass_tables import KindTable, Written, any_of, table_of
+from dalembert.study.tables.section_parts import PROFILES
+from dalembert.study.text.functions import FunctionName
+from dalembert.study.text.numbers import number as number_key
 from dalembert.study.text.numbers import read_number
 from dalembert.study.text.places import place
 from dalembert.study.text.table import Context, alternative, checked
 
 _USUAL = "moments"  # the kind of an inertia where none is given
+_CONSTANTS = "constants"  # the kind of a section where none is given
 _BLOCKS = {
     "BushingStiffness": ("N/m", "N", "N*m/rad"),
     "BushingDamping": ("N*s/m", "N*s", "N*m*s/rad"),
     "SensorGain": ("",),
+    "SectionStiffness": ("N", "N*m", "N*m**2"),
 }
-"""Units of matrices. Of bushings: forces by displacements, the coupling, torques by rotations."""
+"""Units of matrices. Of bushings and sections: forces by displacements, the coupling, torques by rotations."""
 
 
 @dataclass(frozen=True)
@@ -188,7 +195,16 @@ def spatial_part(name: str) -> Any:
                 table_of(kind, kind.__name__.lower(), part=spatial_part) for kind in (Box, Cylinder, Tube, Sphere)
             ]
             return any_of([table_of(Inertia, _USUAL, default=True), *shapes], _USUAL)
-        case "BushingStiffness" | "BushingDamping" | "SensorGain":
+        case "Section":
+            profiles = [table_of(profile, profile.SHAPE, prefix="Section") for profile in PROFILES]
+            constants = table_of(Section, _CONSTANTS, default=True, part=spatial_part, prefix="Section")
+            return any_of([constants, *profiles], _CONSTANTS)
+        case "NodePoint":
+            return table_of(NodePoint, default=True, part=spatial_part)
+        case "Curvature":
+            constant = Annotated[list[number_key("1/m")], Field(min_length=3, max_length=3)]
+            return alternative(lambda value: isinstance(value, list), constant, FunctionName)
+        case "BushingStiffness" | "BushingDamping" | "SensorGain" | "SectionStiffness":
             return _matrix(_BLOCKS[name])
     return None
 

@@ -69,9 +69,10 @@ class Body(BaseBody):
 
     def point_rates(self, marker: Marker, coordinates: np.ndarray, modes: np.ndarray) -> np.ndarray:
         """Derivative of the position of a marker by the frame, (3, 6)."""
-        rates = modes[:3]
+        k = marker.slots[0] or 0
+        rates = modes[k : k + 3]
         if marker.kind == markers.BODY:
-            rates = rates + np.tensordot(marker.position, modes[3:12].reshape(3, 3, -1), 1)
+            rates = rates + np.tensordot(marker.position, modes[k + 3 : k + 12].reshape(3, 3, -1), 1)
         return rates
 
     def point_index(self, point: str, first: int, absent: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
@@ -83,3 +84,14 @@ class Body(BaseBody):
     def point_numbers(self, point: str) -> list[Number]:
         """Numbers of the sensor at a point."""
         return self.marker(point).numbers
+
+
+def pose_modes(coordinates: np.ndarray, frame: np.ndarray) -> np.ndarray:
+    """Derivatives of poses (12 coordinates each) by displacements and rotations about the placed point, (size, 6)."""
+    vectors = coordinates.reshape(-1, 4, 3).copy()
+    modes = np.zeros((*vectors.shape, 6), np.result_type(coordinates, frame))
+    modes[:, 0, :, :3] = np.eye(3)
+    vectors[:, 0] -= frame[:3]
+    for axis in range(3):
+        modes[..., 3 + axis] = np.cross(np.eye(3)[axis], vectors)
+    return modes.reshape(-1, 6)

@@ -17,7 +17,7 @@ from dalembert.multibody.components.spatial.ground_points import Place
 from dalembert.multibody.components.spatial.inertia import Inertia
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose, Vector
 from dalembert.multibody.components.spatial.shapes import Shape, Surface, surface_of
-from dalembert.multibody.components.spatial.spatial_body import DIRECTOR, Body, Marker
+from dalembert.multibody.components.spatial.spatial_body import DIRECTOR, Body, Marker, pose_modes
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.vectors import add_at, at, dot, minus, plus, times
 from dalembert.multibody.kernels.kind import Kind
@@ -148,13 +148,7 @@ class RigidBody(Body):
         return np.concatenate([frame[:3] - np.array(self.pose(self.anchor).position) @ directors, frame[3:]])
 
     def rigid_modes(self, coordinates: np.ndarray, frame: np.ndarray) -> np.ndarray:
-        modes = np.zeros((12, 6), np.result_type(coordinates, frame))
-        modes[:3, :3] = np.eye(3)
-        vectors = coordinates.reshape(4, 3).copy()
-        vectors[0] -= frame[:3]
-        for axis in range(3):
-            modes[:, 3 + axis] = np.cross(np.eye(3)[axis], vectors).ravel()
-        return modes
+        return pose_modes(coordinates, frame)
 
     def marker(self, point: str) -> Marker:
         pose = self.pose(point)

@@ -20,7 +20,7 @@ TIME = 0.3
 #: Their energies and powers are those of aligned axes, and of points on the axis.
 ALIGNED = {"prismatic, rubbing", "motor", "motor to ground"}
 #: Their torques are those of rotations: they do what energies lose where directors are orthonormal.
-RIGID = {"bushing", "bushing to ground", "rigid body"}
+RIGID = {"bushing", "bushing to ground", "rigid body", "beam"}
 
 
 @cache
@@ -101,9 +101,10 @@ def test_forces_do_what_energies_lose(scene: str) -> None:
         if scene in RIGID:
             for name, first in own.structure.first.items():
                 if own.bodies[name].turns:
-                    turned = Rotation.from_rotvec(noise[0, first : first + 3]).as_matrix()
-                    x[first + 3 : first + 12] = turned.T.ravel()
-                    v[first + 3 : first + 12] = np.cross(noise[1, first : first + 3], turned.T).ravel()
+                    for node in range(first, first + own.bodies[name].size, 12):
+                        turned = Rotation.from_rotvec(0.5 * noise[0, node : node + 3]).as_matrix()
+                        x[node + 3 : node + 12] = turned.T.ravel()
+                        v[node + 3 : node + 12] = np.cross(noise[1, node : node + 3], turned.T).ravel()
         x[n:], v[n:], a[n:] = 20 * noise[0, n:], 0.0, 0.0
         x[-1] = 0.0
         moved = x + 0j

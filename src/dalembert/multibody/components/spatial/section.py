@@ -46,8 +46,8 @@ class Section(Checked):
     Examples
     --------
     >>> steel = Section.rectangle(0.02, 0.01, youngs_modulus=2.1e11, poisson_ratio=0.3, density=7850.0)
-    >>> round(steel.matrix[0, 0] / 1e6, 9), round(steel.mass, 9)
-    (42.0, 1.57)
+    >>> float(steel.matrix[0, 0].round(3)), round(steel.mass, 9)
+    (42000000.0, 1.57)
     """
 
     stiffness: Any = field(metadata={"table": "SectionStiffness"})

@@ -250,6 +250,7 @@ def beam(degree: int = 2) -> Callable[..., sp.SpatialSystem]:
         fields |= {"orientation": by_angles(angles), "prestrain": (*fields.pop("strain"), *fields.pop("bend"))}
         own = system.add(sp.Beam("part", section, length, 1, degree, **fields))
         system.add(sp.SphericalJoint("hold", system.ground.point((0.1, 0.2, 0.3)), own.start))
+        system.add(sp.BeamSensor("gauge", own.start))
         return system
 
     return build

@@ -77,6 +77,7 @@ SPATIAL_HOMES = {
     "AngleLimit": "components.spatial.joint_limit",
     "Armature": "components.spatial.armature",
     "Beam": "components.spatial.beam",
+    "BeamSensor": "components.spatial.beam_sensor",
     "Body": "components.spatial.spatial_body",
     "Bushing": "components.spatial.spatial_bushing",
     "ConstantVelocityJoint": "components.spatial.universal_joint",
@@ -142,6 +143,7 @@ SPATIAL_KINDS = {
     "Load": (
         "AngleLimit",
         "Armature",
+        "BeamSensor",
         "Bushing",
         "DisplacementLimit",
         "Force",

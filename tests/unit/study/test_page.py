@@ -109,6 +109,7 @@ LOADS = {
     "Armature",
     "InertialSensor",
     "RelativeSensor",
+    "BeamSensor",
 }
 EVERYWHERE = {kind: {"name"} for kind in BODIES | LOADS} | {kind: {"name", "a", "b"} for kind in JOINTS}
 """Keys that the page gives once for all kinds."""

@@ -14,7 +14,7 @@ from kind_scenes import HOMES
 TIME = 0.3
 #: Kinds whose kernels other tests need, too; the others are compiled for this test alone.
 COMMON = ("structural_beam", "rigid_body", "revolute", "spring")
-FORCELESS = ("relative_sensor", "inertial_sensor")
+FORCELESS = ("relative_sensor", "inertial_sensor", "beam_sensor_2")
 KINDS = [
     pytest.param(kind, role, id=f"{kind.name}-{role}", marks=() if kind.name in COMMON else pytest.mark.slow)
     for kind in HOMES

@@ -5,6 +5,7 @@ __all__ = ["Beam", "NodePoint"]
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -218,6 +219,7 @@ class Beam(Body):
         # The middle node of an odd degree is half an interval before the middle of the element.
         return float(max(sizes) * np.real(h) * (1 - self.degree // 2 / self.degree))
 
+    @cached_property
     def _references(self) -> np.ndarray:
         """Strains without stress at the points of each element, (elements, degree, 6)."""
         places, h = rule(self.degree, self.degree).places, self.length / self.elements
@@ -242,29 +244,38 @@ class Beam(Body):
     def rigid_modes(self, coordinates: np.ndarray, frame: np.ndarray) -> np.ndarray:
         return pose_modes(coordinates, frame)
 
+    def node_number(self, point: str) -> int:
+        """Number of the node of a point, from 0 at the start to ``elements`` x ``degree`` at the end."""
+        name = self.points[point].at if point in self.points else point
+        ends = {"start": 0, "end": self.elements * self.degree}
+        return ends[name] if name in ends else int(name.removeprefix("node"))
+
     def marker(self, point: str) -> Marker:
-        place, ends = self.points.get(point) or NodePoint(point), {"start": 0, "end": self.elements * self.degree}
-        k = markers.SLOTS * (ends[place.at] if place.at in ends else int(place.at.removeprefix("node")))
+        k, place = markers.SLOTS * self.node_number(point), self.points.get(point) or NodePoint()
         slots = tuple(range(k, k + markers.SLOTS))
         return Marker(markers.BODY, slots, np.array(place.position), place.orientation.matrix)
 
+    def element_numbers(self, element: int, gravity: tuple[Number, Number, Number]) -> list[Number]:
+        """Numbers of an element for its kernels."""
+        h = self.length / self.elements
+        numbers = [h]
+        for share, reference in zip(rule(self.degree, self.degree).places, self._references[element], strict=True):
+            stiffness = self.section_at((element + share) * h).matrix
+            numbers += [*stiffness[np.triu_indices(6)].tolist(), *reference.tolist()]
+        for share in rule(self.degree, self.degree + 1).places:
+            numbers += self.section_at((element + share) * h).pseudo_inertia[np.triu_indices(3)].tolist()
+        return [*numbers, self.damping, self.mass_damping, *gravity]
+
     def lower(self, lowering: SpatialRows, first: int) -> None:
-        kind, h, references = BEAMS[self.degree - 1], self.length / self.elements, self._references()
-        strained, heavy = (rule(self.degree, points).places for points in (self.degree, self.degree + 1))
-        common = [self.damping, self.mass_damping, *lowering.gravity]
         width = markers.SLOTS * (self.degree + 1)
-        for e in range(self.elements):
-            numbers = [h]
-            for at, reference in zip(strained, references[e], strict=True):
-                numbers += [*self._section_at((e + at) * h).matrix[np.triu_indices(6)].tolist(), *reference.tolist()]
-            for at in heavy:
-                numbers += self._section_at((e + at) * h).pseudo_inertia[np.triu_indices(3)].tolist()
-            begin = first + markers.SLOTS * self.degree * e
-            lowering.add(kind, list(range(begin, begin + width)), [*numbers, *common])
+        for element in range(self.elements):
+            begin = first + markers.SLOTS * self.degree * element
+            numbers = self.element_numbers(element, lowering.gravity)
+            lowering.add(BEAMS[self.degree - 1], list(range(begin, begin + width)), numbers)
         for node in range(first, first + self.size, markers.SLOTS):
             lowering.add(DIRECTORS, list(range(node + 3, node + 12)) + lowering.multipliers(self.name, 6), [])
 
-    def _section_at(self, place: Any) -> Any:
+    def section_at(self, place: Any) -> Any:
         """Stiffness and inertia at a place, m from the start."""
         if isinstance(self.section, Section):
             return self.section

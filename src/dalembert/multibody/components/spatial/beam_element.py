@@ -109,7 +109,7 @@ def _strain_rates(rho, p0, p, q0, q, drho, dp0, dp, dq0, dq, inverse, turned, ka
 
 
 @inlined
-def _product(c, u, v):
+def full_product(c, u, v):
     """Both halves of C (u, v), with the upper triangle of C by rows."""
     return (
         (
@@ -216,7 +216,7 @@ def _strained(degree: int) -> Part:
             dq0, dq = across * dq0, times(across, dq)
             drho = _tangent(x, times(across, _line(slopes, v, 0)), middle)
             du, dw = _strain_rates(rho, p0, p, q0, q, drho, dp0, dp, dq0, dq, inverse, turned, kappa)
-        n, m = _product(c, plus(u, times(delay, du)), plus(w, times(delay, dw)))
+        n, m = full_product(c, plus(u, times(delay, du)), plus(w, times(delay, dw)))
         return p0, p, q0, q, line, rho, inverse, gamma, kappa, times(size, n), times(size, m), u, w, du, dw
 
     @inner
@@ -253,7 +253,7 @@ def _strained(degree: int) -> Part:
         _, _, _, _, _, _, _, _, _, _, _, u, w, du, dw = stresses(
             x, v, quaternions, rates, delay, length, c, values, slopes, weight
         )
-        (n, m), (dn, dm), size = _product(c, u, w), _product(c, du, dw), weight * length
+        (n, m), (dn, dm), size = full_product(c, u, w), full_product(c, du, dw), weight * length
         stored = 0.5 * size * (dot(n, u) + dot(m, w))
         return 0.0 * stored, stored, -delay * size * (dot(dn, du) + dot(dm, dw))
 

@@ -48,6 +48,7 @@ COMPONENTS = {
     sp.DisplacementLimit: {"joint": SLIDE, "stiffness": 1.0, "upper_limit": 1.0},
     sp.InertialSensor: {"at": BODY.point("origin")},
     sp.RelativeSensor: SIDES,
+    sp.BeamSensor: {"at": sp.Beam("beam", SECTION, 1.0).end},
     sp.Inertia: {"mass": 1.0, "moments": (1.0, 1.0, 1.0)},
     sp.Pose: {},
     sp.Friction: {"coulomb": 1.0},

@@ -95,9 +95,9 @@ def test_shapes_without_stress():
     np.testing.assert_allclose(shape[-1, 0], [0.0, 2.0, 0.0], atol=2e-3)  # half a circle of radius one
     poses = [sp.Pose(tuple(node[0]), sp.Orientation.of(node[1:].T)) for node in shape]
     placed = sp.Beam("arc", ROD, np.pi, 4, 2, nodes=poses)
-    np.testing.assert_allclose(placed._references(), circle._references(), atol=1e-10)
+    np.testing.assert_allclose(placed._references, circle._references, atol=1e-10)
     changing = sp.Beam("spring", ROD, 1.0, 2, 3, curvature=lambda s: (s, 0.0, 1.0))
-    assert changing._references()[1, 2, 3] == pytest.approx(0.5 + 0.5 * rule(3, 3).places[2])
+    assert changing._references[1, 2, 3] == pytest.approx(0.5 + 0.5 * rule(3, 3).places[2])
     still = lower(_clamped(circle))
     np.testing.assert_allclose(
         residual(still, still.real, still.x, 0 * still.x, 0 * still.x)[: still.structure.n], 0.0, atol=1e-4
@@ -123,8 +123,8 @@ def test_a_section_that_changes_is_interpolated():
     taper = sp.Beam("taper", [(0.0, thick), (0.4, ROD), (1.0, ROD)], 1.0, 1, 1)
     at = rule(1, 1).places[0]
     assert at == 0.5
-    np.testing.assert_allclose(taper._section_at(0.5).matrix, ROD.matrix)
-    np.testing.assert_allclose(taper._section_at(0.1).matrix, 0.75 * thick.matrix + 0.25 * ROD.matrix)
+    np.testing.assert_allclose(taper.section_at(0.5).matrix, ROD.matrix)
+    np.testing.assert_allclose(taper.section_at(0.1).matrix, 0.75 * thick.matrix + 0.25 * ROD.matrix)
     mass = lower(_clamped(taper)).data[BEAMS[0]][0, BEAMS[0].columns(("mass_1",))[0]]
     assert thick.mass > mass > ROD.mass
 
@@ -148,6 +148,30 @@ def test_a_bent_beam_is_drawn_along_its_line():
     np.testing.assert_allclose(np.linalg.norm(drawn - [0.0, 1.0, 0.0], axis=1), 1.0, atol=1e-3)
     nodes = own.reshape(-1, 4, 3)
     np.testing.assert_allclose(lines(nodes[:4], Places.at(3, np.array([0.0, 1.0]))), nodes[[0, 3], 0], atol=1e-14)
+
+
+def test_section_forces_are_those_of_the_clamp():
+    whip = sp.Beam("whip", sp.Section.rectangle(0.02, 0.01, **STEEL), 1.0, 2, 3, curvature=(0.1, 0.5, 1.0))
+    system = sp.SpatialSystem()
+    system.add(whip)
+    system.add(sp.FixedJoint("clamp", system.ground, whip.start))
+    system.add(sp.Force("pull", whip.end, 30.0, -20.0, 10.0))
+    for name, point in (("first", whip.start), ("middle", whip.node(3)), ("last", whip.end)):
+        system.add(sp.BeamSensor(name, point))
+    axes = [f"{what}_{k}" for what in ("force", "torque") for k in (1, 2, 3)]
+    outputs = [f"{what}_{k}" for what in ("force", "moment") for k in (1, 2, 3)]
+    motion = mb.simulate(system, 0.05, mb.GeneralizedAlpha(step=1e-3))
+    clamp = motion.channels([f"clamp.{name}" for name in axes])
+    section = motion.channels([f"first.{name}" for name in outputs])
+    np.testing.assert_allclose(section, -clamp, atol=1e-9 * np.abs(clamp).max())
+    rest = mb.equilibrium(system)
+    last = rest.channels([f"last.{name}" for name in outputs])
+    turn = rest.channels(["whip.end.q0", "whip.end.q1", "whip.end.q2", "whip.end.q3"])
+    pulled = Rotation.from_quat(np.roll(turn, -1)).inv().apply([30.0, -20.0, 10.0])
+    np.testing.assert_allclose(last, [*pulled, 0.0, 0.0, 0.0], atol=1e-8)
+    strains = rest.channels([f"middle.{name}" for name in ("stretch", "bend_y", "bend_z")])
+    forces = rest.channels([f"middle.{name}" for name in ("force_1", "moment_2", "moment_3")])
+    np.testing.assert_allclose(strains, forces / np.diagonal(whip.section.matrix)[[0, 4, 5]], rtol=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -242,7 +242,8 @@ def beam(degree: int = 2) -> Callable[..., sp.SpatialSystem]:
     """A soft beam that swings from a ball joint; its section has a full stiffness matrix."""
 
     def build(mass, moment_y, moment_z, product, centre_y, centre_z, length, angles, **fields) -> sp.SpatialSystem:
-        system, entries = sp.SpatialSystem(), [entry for k in range(7) for entry in fields.pop(f"stiffness_{k}")]
+        system, wind, push = sp.SpatialSystem(), fields.pop("wind"), fields.pop("push")
+        entries = [entry for k in range(7) for entry in fields.pop(f"stiffness_{k}")]
         matrix = np.zeros((6, 6), np.result_type(*entries))
         matrix[np.triu_indices(6)] = entries
         matrix = matrix + matrix.T - np.diag(np.diagonal(matrix))
@@ -251,6 +252,8 @@ def beam(degree: int = 2) -> Callable[..., sp.SpatialSystem]:
         own = system.add(sp.Beam("part", section, length, 1, degree, **fields))
         system.add(sp.SphericalJoint("hold", system.ground.point((0.1, 0.2, 0.3)), own.start))
         system.add(sp.BeamSensor("gauge", own.start))
+        system.add(sp.LineForce("wind", own.end, *wind, follower=True))
+        system.add(sp.LineForce("push", own.start, *push))
         return system
 
     return build
@@ -314,6 +317,8 @@ BEAM = {
     "angular_velocity": (0.8, -0.5, 0.6),
     "damping": 0.01,
     "mass_damping": 0.1,
+    "wind": (0.5, -0.4, 0.8),
+    "push": (-0.3, 0.6, 0.2),
 }
 
 SCENES: dict[str, Scene] = {

@@ -15,6 +15,7 @@ from dalembert.multibody.components.spatial.inertia import Inertia as Inertia
 from dalembert.multibody.components.spatial.inertial_sensor import InertialSensor as InertialSensor
 from dalembert.multibody.components.spatial.joint_limit import AngleLimit as AngleLimit
 from dalembert.multibody.components.spatial.joint_limit import DisplacementLimit as DisplacementLimit
+from dalembert.multibody.components.spatial.line_force import LineForce as LineForce
 from dalembert.multibody.components.spatial.orientation import Orientation as Orientation
 from dalembert.multibody.components.spatial.orientation import Pose as Pose
 from dalembert.multibody.components.spatial.planar_joint import PlanarJoint as PlanarJoint

@@ -110,6 +110,7 @@ LOADS = {
     "InertialSensor",
     "RelativeSensor",
     "BeamSensor",
+    "LineForce",
 }
 EVERYWHERE = {kind: {"name"} for kind in BODIES | LOADS} | {kind: {"name", "a", "b"} for kind in JOINTS}
 """Keys that the page gives once for all kinds."""

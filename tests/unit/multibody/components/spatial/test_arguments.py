@@ -49,6 +49,7 @@ COMPONENTS = {
     sp.InertialSensor: {"at": BODY.point("origin")},
     sp.RelativeSensor: SIDES,
     sp.BeamSensor: {"at": sp.Beam("beam", SECTION, 1.0).end},
+    sp.LineForce: {"on": sp.Beam("beam", SECTION, 1.0).end},
     sp.Inertia: {"mass": 1.0, "moments": (1.0, 1.0, 1.0)},
     sp.Pose: {},
     sp.Friction: {"coulomb": 1.0},

@@ -174,6 +174,17 @@ def test_section_forces_are_those_of_the_clamp():
     np.testing.assert_allclose(strains, forces / np.diagonal(whip.section.matrix)[[0, 4, 5]], rtol=1e-12)
 
 
+def test_forces_along_a_line_are_its_weight_and_turn_with_it():
+    system = sp.SpatialSystem(gravity=(0.0, 0.0, 0.0))
+    whip = system.add(sp.Beam("whip", ROD, 0.2, 2, 2, orientation=sp.Orientation.by_angles("y", 0.5)))
+    system.add(sp.FixedJoint("clamp", system.ground.point((0.0, 0.0, 0.0), whip.orientation), whip.start))
+    system.add(sp.LineForce("push", whip.end, 1.0, 2.0, 3.0))
+    system.add(sp.LineForce("wind", whip.end, z=5.0, follower=True))
+    held = mb.equilibrium(system).channels([f"clamp.force_{axis}" for axis in "xyz"])
+    turned = whip.orientation.matrix @ [0.0, 0.0, 5.0]
+    np.testing.assert_allclose(held, -0.2 * (np.array([1.0, 2.0, 3.0]) + turned), rtol=1e-4)
+
+
 @pytest.mark.parametrize(
     ("make", "message"),
     [

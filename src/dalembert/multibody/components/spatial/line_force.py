@@ -1,0 +1,138 @@
+"""Forces along beams in space, per length: dead, or turning with the sections."""
+
+__all__ = ["LineForce"]
+
+from dataclasses import dataclass
+from typing import Any
+
+from dalembert.errors import InputError
+from dalembert.kernels.kernel import inlined, inner
+from dalembert.multibody.components.fields import number
+from dalembert.multibody.components.points import Point
+from dalembert.multibody.components.signals import Course
+from dalembert.multibody.components.spatial.beam import Beam
+from dalembert.multibody.components.spatial.beam_element import MOST_DEGREE
+from dalembert.multibody.components.spatial.beam_shapes import rule
+from dalembert.multibody.components.spatial.directors import POSE
+from dalembert.multibody.components.spatial.spatial_load import Load
+from dalembert.multibody.components.spatial.spatial_markers import SLOTS
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
+from dalembert.multibody.components.spatial.vectors import add_at, at, combined, dot, plus, times
+from dalembert.multibody.kernels.kind import Kind
+
+
+def _kind(degree: int) -> Kind:
+    """The kind of forces on elements of a degree."""
+    nodes, points, (_, values, _, weights) = degree + 1, degree + 1, rule(degree, degree + 1)
+
+    @inlined
+    def force(x, m, inputs, g):
+        """Force per length at a point: that of the nodes, interpolated as the line is."""
+        c = (inputs.signals[m.along_x, 0], inputs.signals[m.along_y, 0], inputs.signals[m.along_z, 0])
+        if m.follower == 0:
+            return combined(c, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+        total = times(values[g][0], combined(c, at(x, 3), at(x, 6), at(x, 9)))
+        for i in range(1, nodes):
+            k = SLOTS * i
+            total = plus(total, times(values[g][i], combined(c, at(x, k + 3), at(x, k + 6), at(x, k + 9))))
+        return total
+
+    @inner
+    def residual(x, v, a, p, m, inputs, r):
+        """Take the work-equivalent forces off the left side: the integral of N_i f."""
+        for g in range(points):
+            f = times(weights[g] * p.length, force(x, m, inputs, g))
+            for i in range(nodes):
+                add_at(r, SLOTS * i, times(-values[g][i], f))
+
+    @inner
+    def energy(x, v, p, m, inputs):
+        power = 0.0 * p.length * x[0]
+        for g in range(points):
+            f = times(weights[g] * p.length, force(x, m, inputs, g))
+            for i in range(nodes):
+                power += values[g][i] * dot(f, at(v, SLOTS * i))
+        return 0.0 * power, 0.0 * power, power
+
+    return Kind(
+        f"line_force_{degree}",
+        coordinates=SLOTS * nodes,
+        numbers=("length",),
+        integers=("follower", "along_x", "along_y", "along_z"),
+        residual=residual,
+        energy=energy,
+        charts=POSE * nodes,
+        loads=True,
+        home=__name__,
+    )
+
+
+LINEAR, QUADRATIC, CUBIC, QUARTIC = FORCES = tuple(map(_kind, range(1, MOST_DEGREE + 1)))
+"""Kinds of forces by the degree of the beam, less one."""
+
+
+@dataclass(frozen=True)
+class LineForce(Load):
+    """A force per length along a whole beam.
+
+    Parameters
+    ----------
+    name : str
+    on : Point
+        Any point of the beam.
+    x, y, z : float or Signal
+        Components along the fixed axes, or along those of the sections for a follower force, N/m.
+    follower : bool
+        Whether the force turns with the sections.
+
+    Raises
+    ------
+    InputError
+        For a point of another body than a beam.
+
+    Examples
+    --------
+    >>> from dalembert.multibody import equilibrium
+    >>> from dalembert.multibody.spatial import Beam, FixedJoint, Section, SpatialSystem
+    >>> system = SpatialSystem(gravity=(0.0, 0.0, 0.0))
+    >>> rod = Section.circle(0.01, youngs_modulus=2.1e11, poisson_ratio=0.3, density=7850.0)
+    >>> arm = system.add(Beam("arm", rod, length=1.0, elements=2))
+    >>> for part in (FixedJoint("clamp", system.ground, arm.start), LineForce("wind", arm.end, y=8.0)):
+    ...     _ = system.add(part)
+    >>> deflection = equilibrium(system).channels(["arm.end.y"])[0]
+    >>> round(deflection / (8.0 / (8 * rod.matrix[5, 5])), 3).item()  # q L^4 / (8 E I), and a little shear
+    1.0
+    """
+
+    on: Point
+    x: Course = number("N/m", 0.0)
+    y: Course = number("N/m", 0.0)
+    z: Course = number("N/m", 0.0)
+    follower: bool = False
+
+    @property
+    def kind(self) -> Kind:  # type: ignore[override]
+        """Of the degree of the beam."""
+        return FORCES[self._beam.degree - 1]
+
+    @property
+    def _beam(self) -> Beam:
+        body: Any = self.on.body
+        if not isinstance(body, Beam):
+            raise InputError(
+                f"LineForce {self.name!r}: on is {self.on}, which is no point of a beam; expected a point of a Beam"
+            )
+        return body
+
+    def __post_init__(self) -> None:
+        _ = self._beam
+
+    def lower(self, lowering: SpatialRows) -> None:
+        beam, width = self._beam, SLOTS * (self._beam.degree + 1)
+        (begin, *_) = lowering.pair(self.on, None, self.name).slots
+        assert begin is not None
+        first = begin - SLOTS * beam.node_number(self.on.name)
+        signals = [lowering.signal(course) for course in (self.x, self.y, self.z)]
+        for element in range(beam.elements):
+            index = list(range(first + SLOTS * beam.degree * element, first + SLOTS * beam.degree * element + width))
+            lowering.add(self.kind, index, [beam.length / beam.elements], [int(self.follower), *signals])

@@ -25,6 +25,7 @@ NAMES = (
     "events",
     "bolted",
     "plate",
+    "flexible",
     "spatial",
     "robots",
     "startup",

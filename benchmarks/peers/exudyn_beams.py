@@ -1,0 +1,83 @@
+"""Beams in space written for Exudyn: a cantilever that falls under its weight."""
+
+from collections.abc import Callable
+from itertools import pairwise
+from typing import Any
+
+import exudyn as exu
+import numpy as np
+from exudyn import itemInterface as items
+
+EXACT, EXACT_LIE, CABLE = "geometrically exact, Euler parameters", "geometrically exact, rotation vectors", "ANCF cable"
+
+
+def cantilever(
+    kind: str, elements: int, stiffness: np.ndarray, inertia: tuple[float, float], length: float,
+    gravity: tuple[float, float, float], end: float, step: float, radius: float, dense: bool,
+) -> Callable[[], np.ndarray]:  # fmt: skip
+    """A function that simulates, and returns the tip's position at the end, m; ``inertia``: mass and its second moment
+    per length. A new system is assembled before the clock starts.
+    """
+    mass, second = inertia
+
+    container = exu.SystemContainer()
+
+    def build() -> tuple[Any, int]:
+        system = container.AddSystem()
+        h, count = length / elements, elements + 1
+        if kind == CABLE:
+            place = [[i * h, 0, 0, 1, 0, 0] for i in range(count)]
+            nodes = [system.AddNode(items.NodePointSlope1(referenceCoordinates=x)) for x in place]
+            bodies = [
+                items.ObjectANCFCable(
+                    nodeNumbers=[a, b], length=h, massPerLength=mass, bendingStiffness=stiffness[4],
+                    axialStiffness=stiffness[0], useReducedOrderIntegration=1,
+                )
+                for a, b in pairwise(nodes)
+            ]  # fmt: skip
+            for k in range(6):
+                fixed = system.AddMarker(
+                    items.MarkerNodeCoordinate(nodeNumber=system.AddNode(items.NodePointGround()), coordinate=0)
+                )
+                held = system.AddMarker(items.MarkerNodeCoordinate(nodeNumber=nodes[0], coordinate=k))
+                system.AddObject(items.CoordinateConstraint(markerNumbers=[fixed, held]))
+        else:
+            section = exu.BeamSection()
+            section.stiffnessMatrix, section.massPerLength = np.diag(stiffness), mass
+            section.inertia = np.diag([2 * second, second, second])
+            node: Any = items.NodeRigidBodyEP if kind == EXACT else items.NodeRigidBodyRotVecLG
+            turn = [1, 0, 0, 0] if kind == EXACT else [0, 0, 0]
+            nodes = [system.AddNode(node(referenceCoordinates=[i * h, 0, 0, *turn])) for i in range(count)]
+            bodies = [
+                items.ObjectBeamGeometricallyExact(nodeNumbers=[a, b], length=h, sectionData=section)
+                for a, b in pairwise(nodes)
+            ]
+            ground = system.AddMarker(items.MarkerNodeRigid(nodeNumber=system.AddNode(items.NodePointGround())))
+            clamp = system.AddMarker(items.MarkerNodeRigid(nodeNumber=nodes[0]))
+            system.AddObject(items.ObjectJointGeneric(markerNumbers=[ground, clamp]))
+        for body in bodies:
+            marker = system.AddMarker(items.MarkerBodyMass(bodyNumber=system.AddObject(body)))
+            system.AddLoad(items.LoadMassProportional(markerNumber=marker, loadVector=list(gravity)))
+        system.Assemble()
+        return system, nodes[-1]
+
+    settings = exu.SimulationSettings()
+    steps = settings.timeIntegration
+    steps.newton.useModifiedNewton = True
+    steps.newton.relativeTolerance = steps.newton.absoluteTolerance = 1e-8
+    steps.numberOfSteps, steps.endTime = round(end / step), end
+    steps.generalizedAlpha.spectralRadius = radius
+    steps.verboseMode = 0
+    settings.linearSolver.solverType = exu.LinearSolverType.EXUdense if dense else exu.LinearSolverType.EigenSparse
+    settings.solution.file.write = False
+    settings.displayStatistics = False
+    settings.parallel.numberOfThreads = 1
+
+    system, tip = build()
+
+    def run() -> np.ndarray:
+        if not system.SolveDynamic(settings, exu.DynamicSolverType.GeneralizedAlpha):
+            raise RuntimeError("Exudyn could not integrate the model")
+        return np.array(system.GetNodeOutput(tip, exu.OutputVariableType.Position))
+
+    return run

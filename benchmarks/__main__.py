@@ -33,7 +33,7 @@ NAMES = (
     "studio",
 )
 
-PAGES = (*NAMES[:-6], "vibration-cost", *NAMES[-6:-4], "spatial-sensitivities", *NAMES[-4:])
+PAGES = (*NAMES[:-7], "vibration-cost", *NAMES[-7:-4], "spatial-sensitivities", *NAMES[-4:])
 """Results that the page shows, in its order."""
 
 

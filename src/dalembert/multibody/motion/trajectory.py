@@ -26,6 +26,7 @@ from dalembert.multibody.model.observe import beside, channel_names, observer
 from dalembert.multibody.model.system import BaseSystem
 from dalembert.multibody.model.turns import CountedAngle, counted_angles
 from dalembert.multibody.motion.beam_strains import strain_findings
+from dalembert.multibody.motion.beam_turns import turn_findings
 from dalembert.multibody.motion.bushing_rotations import half_turns, turning_bushings
 from dalembert.multibody.motion.skipped_samples import skipped_samples
 from dalembert.multibody.motion.slip_rates import rubbing, slip_findings
@@ -82,7 +83,7 @@ class Trajectory(Summarised):
     def findings(self) -> tuple[Finding, ...]:
         """Those of the system and of its motion.
 
-        Skipped samples, redundant constraints, no freedom, stretched beams, unsuited friction, and bushings that pass
+        Skipped samples, redundant constraints, no freedom, stretched or folded beams, unsuited friction, bushings that pass
         half a turn.
         """
         joints = rubbing(self.system)
@@ -94,7 +95,8 @@ class Trajectory(Summarised):
         bushings = turning_bushings(self.system)
         x = self.run.states.x
         started = start_findings(self.system, self.lowered, x[0])
-        of_motion = (*started, *skipped, *held, *strain_findings(self.system, self.lowered, self.run.times, x))
+        moved = self.system, self.lowered, self.run.times, x
+        of_motion = (*started, *skipped, *held, *strain_findings(*moved), *turn_findings(*moved))
         if not (joints or bushings):
             return (*self.system.findings, *of_motion)
         names = [f"{name}.{own.channel}" for name, own in joints.items()]

@@ -12,7 +12,6 @@ import numpy as np
 
 from dalembert.arguments import Checked, is_number
 from dalembert.errors import InputError, require_known, shown
-from dalembert.findings import Finding
 from dalembert.multibody.components.base_body import POSITION, with_points
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.points import Point
@@ -181,15 +180,6 @@ class Beam(Body):
         """Node 0 (the start) to node ``elements`` x ``degree`` (the end)."""
         return self.point(f"node{number}")
 
-    @property
-    def findings(self) -> tuple[Finding, ...]:
-        angle = float(np.degrees(self._turn))
-        if angle <= 90.0:
-            return ()
-        values = {"body": self.name, "angle": angle, "elements": self.elements}
-        message = f"Beam {self.name!r} turns by {angle:.3g} degrees between the middle and the end of an element."
-        return (Finding("beam-turn", "warning", values, message, "Use more elements."),)
-
     # -- the line without stress ----------------------------------------------------------------------------------
 
     def _curvature_at(self, place: Any) -> np.ndarray:
@@ -201,8 +191,8 @@ class Beam(Body):
             return np.array([[node.position, *node.orientation.matrix.T] for node in self.nodes])
         return placed_nodes(self.degree, self.elements, self.length, self.curvature)
 
-    def _by_element(self, nodes: np.ndarray) -> np.ndarray:
-        """Nodes (..., nodes, 4, 3) by elements, (..., elements, degree + 1, 4, 3)."""
+    def by_element(self, nodes: np.ndarray) -> np.ndarray:
+        """Return nodes (..., nodes, 4, 3) by elements, (..., elements, degree + 1, 4, 3)."""
         numbers = self.degree * np.arange(self.elements)[:, None] + np.arange(self.degree + 1)
         return nodes[..., numbers, :, :]
 
@@ -210,7 +200,7 @@ class Beam(Body):
     def _turn(self) -> float:
         """Largest angle of a node against the middle of its element without stress, rad."""
         if self.nodes is not None:
-            cosines = np.real(node_traces(self._by_element(self._shape())))
+            cosines = np.real(node_traces(self.by_element(self._shape())))
             return float(np.arccos(np.clip(np.min(cosines), -1.0, 1.0)))
         h, places = self.length / self.elements, rule(self.degree, self.degree).places
         sizes = [
@@ -225,7 +215,7 @@ class Beam(Body):
         places, h = rule(self.degree, self.degree).places, self.length / self.elements
         if self.nodes is not None:
             references = strains(
-                self._by_element(self._shape()), Places.at(self.degree, np.array(places)), np.full(1, h)
+                self.by_element(self._shape()), Places.at(self.degree, np.array(places)), np.full(1, h)
             )
         else:
             curvatures = [[self._curvature_at((e + at) * h) for at in places] for e in range(self.elements)]
@@ -286,7 +276,7 @@ class Beam(Body):
         return _Mixed(*((1 - share) * a + share * b for a, b in zip(_parts(first), _parts(second), strict=True)))
 
     def outline(self, coordinates: np.ndarray, points: int) -> np.ndarray:
-        nodes = self._by_element(coordinates.reshape(len(coordinates), -1, 4, 3))
+        nodes = self.by_element(coordinates.reshape(len(coordinates), -1, 4, 3))
         line = lines(nodes, Places.at(self.degree, np.linspace(0.0, 1.0, points + 1)))
         inner = line[:, :, :-1].reshape(len(coordinates), -1, 3)
         return np.concatenate([inner, line[:, -1, -1:]], axis=1)

@@ -83,8 +83,8 @@ class Trajectory(Summarised):
     def findings(self) -> tuple[Finding, ...]:
         """Those of the system and of its motion.
 
-        Skipped samples, redundant constraints, no freedom, stretched or folded beams, unsuited friction, bushings that pass
-        half a turn.
+        Skipped samples, redundant constraints, no freedom, stretched or folded beams, unsuited friction, bushings that
+        pass half a turn.
         """
         joints = rubbing(self.system)
         begin = float(np.real(self.lowered.signal_data[0]))

@@ -101,6 +101,12 @@ class BaseBody(Checked):
         """Origin and axes over time, (frames, 4, 3), of a body in space that has them; None for others."""
         return None
 
+    def skin(self, coordinates: np.ndarray) -> Any:
+        """The surface over time, with corners (frames, corners, 3) in the fixed axes, of a body that deforms and has
+        one; None for others.
+        """
+        return None
+
     @property
     def surface(self) -> Any:
         """Corners (corners, 3) in the axes of the body and triangles to draw; None where there are none."""

@@ -25,7 +25,8 @@ class Drawing:
     axes : mapping of body to array (frames, 4, 3)
         Origin in m and axes of bodies in space.
     surfaces : mapping of body to Surface
-        In the axes of bodies that have shapes.
+        In the axes of bodies that have shapes; of beams with the section's outline in the fixed axes, with corners
+        (frames, corners, 3).
     ground : Surface, optional
         Of the ground, in the fixed axes.
     """
@@ -39,8 +40,11 @@ class Drawing:
 
     def corners(self, body: str) -> np.ndarray:
         """Corners of the surface of a body in the fixed axes, (frames, corners, 3), m."""
+        corners = self.surfaces[body].corners
+        if corners.ndim == 3:
+            return corners
         own = self.axes[body]
-        return own[:, :1] + self.surfaces[body].corners @ own[:, 1:]
+        return own[:, :1] + corners @ own[:, 1:]
 
 
 def draw(system: BaseSystem, lowered: Lowered, times: np.ndarray, x: np.ndarray, points: int) -> Drawing:
@@ -51,6 +55,8 @@ def draw(system: BaseSystem, lowered: Lowered, times: np.ndarray, x: np.ndarray,
         own = x[:, first : first + body.size]
         lines[body.name] = body.outline(own, points)
         moving, surface = body.moving_axes(own), body.surface
+        if (skin := body.skin(own)) is not None:
+            surfaces[body.name] = skin
         if moving is not None:
             axes[body.name] = moving
             if surface is not None:

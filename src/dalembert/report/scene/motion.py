@@ -55,7 +55,9 @@ def motion_scene(drawing: Drawing, frames: np.ndarray, *, paths: Lines, measured
         drawn = {f"{len(drawn)} bodies": joined(drawn)}
     shapes += [Primitive("line", "body", name, line, numbers.get(name, 0)) for name, line in drawn.items()]
     for name, surface in surfaces.items():
-        corners, poses = surface.corners[None], drawing.axes[name][frames]
+        deforms = surface.corners.ndim == 3
+        corners = surface.corners[frames] if deforms else surface.corners[None]
+        poses = None if deforms else drawing.axes[name][frames]
         shapes.append(Primitive("surface", "body", name, corners, numbers[name], surface.triangles, poses=poses))
     size = max(float(np.ptp(Scene(tuple(shapes)).positions, axis=0).max()), 1e-9)
     for name, at in joints.items():
@@ -106,12 +108,12 @@ def joined(lines: Lines) -> np.ndarray:
 def _surfaces(drawing: Drawing) -> dict[str, Surface]:
     """Surfaces of bodies, simplified; none where there are too many corners."""
     surfaces = dict(drawing.surfaces)
-    if sum(len(surface.corners) for surface in surfaces.values()) > CORNERS_A_FRAME:
+    if sum(surface.corners.shape[-2] for surface in surfaces.values()) > CORNERS_A_FRAME:
         most = CORNERS_A_FRAME // len(surfaces)
         if most < FEWEST:
             return {}
         for name, surface in surfaces.items():
-            if len(surface.corners) > most:
+            if surface.corners.ndim == 2 and len(surface.corners) > most:
                 surfaces[name] = Surface(*simplified(surface.corners, surface.triangles, most))
     return surfaces
 

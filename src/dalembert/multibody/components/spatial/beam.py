@@ -17,17 +17,20 @@ from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.points import Point
 from dalembert.multibody.components.spatial import spatial_markers as markers
 from dalembert.multibody.components.spatial.beam_element import BEAMS, MOST_DEGREE
-from dalembert.multibody.components.spatial.beam_kinematics import lines, node_traces, strains
+from dalembert.multibody.components.spatial.beam_kinematics import frames, lines, node_traces, strains
 from dalembert.multibody.components.spatial.beam_reference import placed_nodes
 from dalembert.multibody.components.spatial.beam_shapes import Places, rule
 from dalembert.multibody.components.spatial.directors import DIRECTORS
 from dalembert.multibody.components.spatial.ground_points import Place
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose, Vector
 from dalembert.multibody.components.spatial.section import Section
+from dalembert.multibody.components.spatial.shapes import Surface
 from dalembert.multibody.components.spatial.spatial_body import DIRECTOR, Body, Marker, pose_modes
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 
 MOST_ELEMENTS = 100_000
+_RINGS = 16
+"""Outlines of the section along a beam of few elements, for drawings."""
 
 
 @dataclass(frozen=True)
@@ -277,9 +280,30 @@ class Beam(Body):
 
     def outline(self, coordinates: np.ndarray, points: int) -> np.ndarray:
         nodes = self.by_element(coordinates.reshape(len(coordinates), -1, 4, 3))
-        line = lines(nodes, Places.at(self.degree, np.linspace(0.0, 1.0, points + 1)))
-        inner = line[:, :, :-1].reshape(len(coordinates), -1, 3)
-        return np.concatenate([inner, line[:, -1, -1:]], axis=1)
+        return self._along(lines(nodes, Places.at(self.degree, np.linspace(0.0, 1.0, points + 1))))
+
+    def skin(self, coordinates: np.ndarray) -> Surface | None:
+        """The outline of the section along the line, and its ends."""
+        sections = [self.section] if isinstance(self.section, Section) else [section for _, section in self.section]
+        outlines = [np.real(np.array(section.outline, dtype=complex)) for section in sections]
+        if not all(len(outline) == len(outlines[0]) > 2 for outline in outlines):
+            return None
+        nodes = self.by_element(coordinates.reshape(len(coordinates), -1, 4, 3))
+        places = Places.at(self.degree, np.linspace(0.0, 1.0, max(1, _RINGS // self.elements) + 1))
+        line, axes = (self._along(part(nodes, places)) for part in (lines, frames))
+        at, corners = np.linspace(0.0, float(np.real(self.length)), line.shape[1]), np.stack(outlines)
+        known = np.zeros(1)
+        if not isinstance(self.section, Section):
+            known = np.array([float(np.real(place)) for place, _ in self.section])
+        rings = np.stack([[np.interp(at, known, corners[:, k, c]) for c in (0, 1)] for k in range(corners.shape[1])])
+        # Position of a corner: the line, y times d2 and z times d3; rings (corners, 2, rings).
+        surface = line[:, :, None] + np.einsum("kcr,frcx->frkx", rings, axes[:, :, 1:])
+        return Surface(surface.reshape(len(surface), -1, 3), _tube(len(at), corners.shape[1]))
+
+    def _along(self, values: np.ndarray) -> np.ndarray:
+        """Values at points of all elements (frames, elements, points, ...) along the beam, ends of elements once."""
+        inner = values[:, :, :-1].reshape(len(values), -1, *values.shape[3:])
+        return np.concatenate([inner, values[:, -1, -1:]], axis=1)
 
 
 @dataclass(frozen=True)
@@ -292,6 +316,16 @@ class _Mixed:
 
 def _parts(section: Section) -> tuple[np.ndarray, np.ndarray]:
     return section.matrix, section.pseudo_inertia
+
+
+def _tube(rings: int, corners: int) -> np.ndarray:
+    """Triangles between rings of corners, and of both ends as fans."""
+    k, following = np.arange(corners), (np.arange(corners) + 1) % corners
+    first = corners * np.arange(rings - 1)[:, None]
+    a, b = first + k, first + following
+    sides = np.stack([a, b, b + corners, a, b + corners, a + corners], axis=-1).reshape(-1, 3)
+    fan = np.column_stack([np.zeros(corners - 2, dtype=int), k[1:-1], k[2:]])
+    return np.concatenate([sides, fan, fan + corners * (rings - 1)])
 
 
 def _is_vector(value: Any) -> bool:

@@ -14,6 +14,8 @@ from dalembert.multibody.components.fields import Number, number
 
 NAMES = ("stretch", "shear along y", "shear along z", "twist", "bending about y", "bending about z")
 _ROUNDING = 1e-12
+_AROUND = 10
+"""Corners of the outline of a circle."""
 
 
 @dataclass(frozen=True)
@@ -37,6 +39,8 @@ class Section(Checked):
         Centre of mass, m.
     shear_centre, centroid : (float, float)
         Where a shear force causes no twist, and an axial force no bending, m. The stiffness is that about these points.
+    outline : sequence of (float, float)
+        Corners (y, z) of the section for drawings, m; beams without them are drawn as lines.
 
     Raises
     ------
@@ -57,6 +61,7 @@ class Section(Checked):
     centre: tuple[Number, Number] = number("m", (0.0, 0.0))
     shear_centre: tuple[Number, Number] = number("m", (0.0, 0.0))
     centroid: tuple[Number, Number] = number("m", (0.0, 0.0))
+    outline: Any = field(default=(), metadata={"key": False})
 
     IN_WORDS = "a Section such as Section.circle(0.01, youngs_modulus=2.1e11, poisson_ratio=0.3, density=7850.0)"
 
@@ -79,6 +84,10 @@ class Section(Checked):
             raise InputError(
                 f"Section: the stiffness matrix is not positive definite. No energy is stored by {shares}. Check the "
                 "entries beside the diagonal"
+            )
+        if not _is_outline(self.outline):
+            raise InputError(
+                f"Section: outline is {shown(self.outline)}; expected three or more corners (y, z) in m, or none"
             )
         (yy, zz), yz = np.real(self.moments), np.real(self.product)
         if not yy * zz > yz * yz:
@@ -148,7 +157,7 @@ class Section(Checked):
         youngs_modulus, poisson_ratio, density : float
             Pa, 1, kg/m^3. The shear modulus is E / (2 (1 + nu)).
         **offsets
-            ``centre``, ``shear_centre``, ``centroid`` of :class:`Section`, m.
+            ``centre``, ``shear_centre``, ``centroid`` and ``outline`` of :class:`Section`, m.
         """
         e, g = youngs_modulus, youngs_modulus / (2.0 * (1.0 + poisson_ratio))
         stiffness = (
@@ -173,9 +182,9 @@ class Section(Checked):
         nu = material.get("poisson_ratio", 0.0)
         factor = 10.0 * (1.0 + nu) / (12.0 + 11.0 * nu)
         moments = (width * height**3 / 12.0, height * width**3 / 12.0)
-        return cls.of_material(
-            width * height, moments, torsion_of_rectangle(width, height), (factor, factor), **material
-        )
+        constants = width * height, moments, torsion_of_rectangle(width, height), (factor, factor)
+        material.setdefault("outline", _box(width, height))
+        return cls.of_material(*constants, **material)
 
     @classmethod
     def circle(cls, radius: Number, **material: Any) -> "Section":
@@ -183,7 +192,9 @@ class Section(Checked):
         _require("circle", radius=radius)
         nu = material.get("poisson_ratio", 0.0)
         factor, moment = 6.0 * (1.0 + nu) / (7.0 + 6.0 * nu), np.pi * radius**4 / 4.0
-        return cls.of_material(np.pi * radius**2, (moment, moment), 2.0 * moment, (factor, factor), **material)
+        constants = np.pi * radius**2, (moment, moment), 2.0 * moment, (factor, factor)
+        material.setdefault("outline", _circle(radius))
+        return cls.of_material(*constants, **material)
 
     @classmethod
     def tube(cls, radius: Number, inner: Number, **material: Any) -> "Section":
@@ -202,7 +213,9 @@ class Section(Checked):
         factor = 6.0 * (1.0 + nu) * square / ((7.0 + 6.0 * nu) * square + (20.0 + 12.0 * nu) * share)
         moment = np.pi * (radius**4 - inner**4) / 4.0
         area = np.pi * (radius**2 - inner**2)
-        return cls.of_material(area, (moment, moment), 2.0 * moment, (factor, factor), **material)
+        constants = area, (moment, moment), 2.0 * moment, (factor, factor)
+        material.setdefault("outline", _circle(radius))
+        return cls.of_material(*constants, **material)
 
     @classmethod
     def box(cls, width: Number, height: Number, wall: Number, **material: Any) -> "Section":
@@ -222,6 +235,7 @@ class Section(Checked):
         middle_b, middle_c = width - wall, height - wall
         torsion = 2.0 * wall * (middle_b * middle_c) ** 2 / (middle_b + middle_c)
         factors = (2.0 * wall * width / area, 2.0 * wall * height / area)
+        material.setdefault("outline", _box(width, height))
         return cls.of_material(area, moments, torsion, factors, **material)
 
     @classmethod
@@ -256,7 +270,34 @@ class Section(Checked):
         )
         torsion = (2.0 * width * flange**3 + (height - flange) * web**3) / 3.0
         factors = (5.0 / 6.0 * 2.0 * width * flange / area, web * height / area)
+        y, z, thin, low = width / 2.0, height / 2.0, web / 2.0, height / 2.0 - flange
+        quarter = np.array([(thin, low), (y, low), (y, z)])
+        left = quarter[::-1] * (-1, 1)
+        outline = np.concatenate([quarter, left, -quarter, -left])
+        material.setdefault("outline", outline)
         return cls.of_material(area, moments, torsion, factors, **material)
+
+
+def _is_outline(outline: Any) -> bool:
+    """Whether something is no corner, or three or more."""
+    try:
+        corners = np.array(outline)
+    except ValueError:
+        return False
+    usable = corners.ndim == 2 and corners.shape[1] == 2 and corners.dtype.kind in "ifc" and np.isfinite(corners).all()
+    return bool(usable and len(corners) > 2) or corners.shape == (0,)
+
+
+def _box(width: Number, height: Number) -> tuple[tuple[Number, Number], ...]:
+    """Corners of a rectangle."""
+    y, z = width / 2.0, height / 2.0
+    return (y, z), (-y, z), (-y, -z), (y, -z)
+
+
+def _circle(radius: Number) -> tuple[tuple[Number, Number], ...]:
+    """Corners on a circle."""
+    angles = np.linspace(0.0, 2.0 * np.pi, _AROUND, endpoint=False)
+    return tuple((radius * np.cos(angle), radius * np.sin(angle)) for angle in angles)
 
 
 def torsion_of_rectangle(width: Number, height: Number) -> Number:

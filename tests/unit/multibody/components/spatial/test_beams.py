@@ -13,6 +13,7 @@ from dalembert.multibody.components.spatial.beam_shapes import Places, rule
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.model.evaluate import energies, residual
 from dalembert.multibody.model.lowering import lower
+from dalembert.report import Animation
 from spatial_scenes import BEAM, beam
 from support import says
 
@@ -148,6 +149,25 @@ def test_a_bent_beam_is_drawn_along_its_line():
     np.testing.assert_allclose(np.linalg.norm(drawn - [0.0, 1.0, 0.0], axis=1), 1.0, atol=1e-3)
     nodes = own.reshape(-1, 4, 3)
     np.testing.assert_allclose(lines(nodes[:4], Places.at(3, np.array([0.0, 1.0]))), nodes[[0, 3], 0], atol=1e-14)
+
+
+def test_a_beam_is_drawn_by_the_outline_of_its_section():
+    strip = sp.Beam("strip", sp.Section.rectangle(0.2, 0.1, **STEEL), 1.0, 2, 2)
+    at = strip.placed(strip.frame((0.0, 0.0, 0.0)))
+    skin = strip.skin(at[None])
+    corners = skin.corners[0].reshape(-1, 4, 3)
+    np.testing.assert_allclose(
+        corners[:, :, 1:], np.tile([[0.1, 0.05], [-0.1, 0.05], [-0.1, -0.05], [0.1, -0.05]], (17, 1, 1))
+    )
+    np.testing.assert_allclose(corners[:, 0, 0], np.linspace(0.0, 1.0, 17), atol=1e-14)
+    assert len(skin.triangles) == 16 * 4 * 2 + 2 * 2
+    assert sp.Beam("bare", sp.Section((1.0,) * 6, 1.0, (1.0, 1.0)), 1.0).skin(at[None]) is None
+    wide, thin = (sp.Section.circle(radius, **STEEL) for radius in (0.1, 0.05))
+    taper = sp.Beam("taper", [(0.0, wide), (1.0, thin)], 1.0, 2, 2).skin(at[None]).corners[0].reshape(-1, 10, 3)
+    np.testing.assert_allclose(np.linalg.norm(taper[:, :, 1:], axis=2)[:, 0], np.linspace(0.1, 0.05, 17))
+    motion = mb.simulate(_clamped(strip), 0.01, mb.GeneralizedAlpha(step=1e-3))
+    (shape,) = (entry for entry in Animation.of(motion.drawing()).scene.primitives if entry.kind == "surface")
+    assert shape.points.shape[1:] == (68, 3)
 
 
 def test_section_forces_are_those_of_the_clamp():

@@ -17,7 +17,7 @@ _HOMES = ("dalembert.multibody", "dalembert.vibration", "dalembert.surrogate")
 def package_kernels(vectors: bool = False) -> list[Compiled]:
     """Every kernel of the package by its symbol, those of each kind of component in all roles.
 
-    ``vectors``: also those of kinds in dual numbers and in lanes.
+    ``vectors``: also those of kinds in dual numbers and in lanes, and of kinds that are not usual.
     """
     found: dict[str, Compiled] = {}
     for home in _HOMES:
@@ -33,7 +33,8 @@ def _kernels_of(module: object, vectors: bool) -> Iterator[Compiled]:
         if isinstance(value, Compiled):
             yield value
         elif hasattr(value, "all_kernels") and not isinstance(value, type):  # a kind of component
-            yield from value.all_kernels()
+            if vectors or getattr(value, "is_usual", True):
+                yield from value.all_kernels()
             if vectors and hasattr(value, "vector_kernels"):  # laws in frequency have none
                 yield from value.vector_kernels()
 

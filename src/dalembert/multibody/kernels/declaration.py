@@ -52,6 +52,7 @@ class Declaration:
     coordinates. Some integrators need masses that do not. ``rotor``: these masses as constant ones of one more
     coordinate: a constraint that ties it to those of the kind, and its inertia. Their numbers and integers are columns
     of the kind.
+    ``is_usual``: whether its kernels are compiled ahead by `dalembert compile`; else where a model first needs them.
     ``strains(x, length)``: in Python, strains (count, -) of components with local coordinates ``x`` (count,
     coordinates), in real and in complex numbers; ``references``: the columns of their values without stress. With both,
     statics takes stresses as unknowns of their own, and needs far fewer iterations.
@@ -86,6 +87,7 @@ class Declaration:
     dissipates: bool | str | tuple[str, ...] = False
     varying_mass: bool | str | tuple[str, ...] = False
     rotor: Any = None
+    is_usual: bool = True
     strains: Callable[..., Any] | None = None
     references: tuple[str, ...] = ()
     driven: bool = False

@@ -29,6 +29,8 @@ from dalembert.multibody.kernels.elementary import is_zero, reciprocal, root
 from dalembert.multibody.kernels.kind import Kind
 
 MOST_DEGREE = 4
+USUAL = (2, 3)
+"""Degrees whose kernels are compiled ahead."""
 
 
 @inlined
@@ -379,6 +381,7 @@ def _kind(degree: int) -> Kind:
         charts=POSE * (degree + 1),
         strains=partial(element_strains, degree),
         references=reference_columns(degree),
+        is_usual=degree in USUAL,
         home=__name__,
     )
 

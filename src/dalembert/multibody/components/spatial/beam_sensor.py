@@ -84,6 +84,7 @@ def _kind(degree: int) -> Kind:
         observe=observe,
         charts=element.charts,
         home=__name__,
+        is_usual=False,
     )
 
 

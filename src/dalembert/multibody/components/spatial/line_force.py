@@ -64,6 +64,7 @@ def _kind(degree: int) -> Kind:
         charts=POSE * nodes,
         loads=True,
         home=__name__,
+        is_usual=False,
     )
 
 

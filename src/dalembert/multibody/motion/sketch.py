@@ -16,7 +16,7 @@ from dalembert.multibody.model.observe import observer
 from dalembert.multibody.model.system import BaseSystem
 from dalembert.multibody.start.assemble import assembled
 
-SIDES = ("a", "b", "at", "joint")
+SIDES = ("a", "b", "at", "on", "joint")
 """Fields of joints and loads that hold on to a point, or act on a joint."""
 FORCES = ("force", "force_in_space")
 """Kinds of loads that push along a known direction."""

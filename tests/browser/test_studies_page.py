@@ -13,7 +13,7 @@ from dalembert.study.template import begin
 
 pytestmark = pytest.mark.slow
 STUDIES = Path(__file__).parents[2] / "studies"
-DRAWN = """(images => images.length === 11 && images.every(image => image.complete && image.naturalWidth > 0))(
+DRAWN = """(images => images.length === 12 && images.every(image => image.complete && image.naturalWidth > 0))(
     [...document.querySelectorAll('img')])"""
 
 
@@ -45,7 +45,7 @@ def test_cards_have_pictures_titles_and_states(chromium, address, tmp_path):
     wait_until(page, DRAWN)
     own, templates, examples = (page.get_by_role("list").nth(place) for place in range(3))
     assert own.get_by_role("listitem").count() == 1
-    assert templates.get_by_role("listitem").count() == 7
+    assert templates.get_by_role("listitem").count() == 8
     assert examples.get_by_role("listitem").count() == 3
     assert "finished" in own.inner_text()
     assert "Duffing oscillator: past the folds" in examples.inner_text()

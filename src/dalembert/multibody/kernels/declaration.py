@@ -55,7 +55,7 @@ class Declaration:
     ``is_usual``: whether its kernels are compiled ahead by `dalembert compile`; else where a model first needs them.
     ``strains(x, length)``: in Python, strains (count, -) of components with local coordinates ``x`` (count,
     coordinates), in real and in complex numbers; ``references``: the columns of their values without stress. With both,
-    statics takes stresses as unknowns of their own, and needs far fewer iterations.
+    statics takes stresses as separate unknowns, and needs far fewer iterations.
     ``driven``, ``loads``: whether a prescribed motion, or a load, may do work.
     ``holds``: whether a component on the ground keeps the mechanism from moving freely, as joints and springs do. It
     then has the columns ``a_kind b_kind`` (integers) and ``a_x a_y b_x b_y`` of two markers. ``holds_frame``: whether

@@ -1,4 +1,4 @@
-"""Newton's method with mixed points: stresses are unknowns of their own, which only its matrix knows.
+"""Newton's method with mixed points: stresses are separate unknowns, in its matrix alone.
 
 A slender beam that bends by a large step of Newton's method is stretched by the linear step, and its axial stiffness,
 much larger than that of bending, dominates all that follows. With the stresses f as unknowns beside the coordinates,
@@ -17,7 +17,7 @@ from dalembert.multibody.model.lowered import Lowered
 
 
 class MixedPoints:
-    """The reference strains by which the matrix of Newton's method has stresses of its own."""
+    """The reference strains by which the matrix of Newton's method has separate stresses."""
 
     def __init__(self, lowered: Lowered) -> None:
         self.lowered = lowered

@@ -13,7 +13,7 @@ from dalembert.units import unit_of
 from dalembert.vibration import Backbone, Deformation, FrequencyCurve, PeriodicMotion, TimeComparison
 
 STEADY = 1e-3
-"""Change of the frequency, as part of it, below which there is none to tell."""
+"""Change of the frequency, as part of it, below which none is stated."""
 
 
 @sections_of(Backbone)

@@ -13,7 +13,7 @@ MASSES = ("mass", "first_2", "first_3", "second_22", "second_23", "second_33")
 
 
 def columns(points: int) -> tuple[str, ...]:
-    """Return the names of the columns of an element with so many points of the strains, and one more of the inertia.
+    """Return the names of the columns of an element with ``points`` of the strains, and one more of the inertia.
     >>> len(columns(2))
     72
     """

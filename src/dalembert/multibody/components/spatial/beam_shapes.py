@@ -18,7 +18,7 @@ class Rule(NamedTuple):
 
 
 def rule(degree: int, points: int) -> Rule:
-    """Return the shape functions of a degree at so many Gauss points.
+    """Return the shape functions of a degree at this number of Gauss points.
 
     >>> rule(1, 1).values, rule(1, 1).weights
     (((0.5, 0.5),), (1.0,))

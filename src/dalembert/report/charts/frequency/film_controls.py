@@ -7,7 +7,7 @@ from dalembert.report.scene.scene import Film
 
 
 def controls(film: Film) -> dict[str, Any]:
-    """Layout of the play button and the slider, and in ``meta`` what a page with controls of its own needs."""
+    """Layout of the play button and the slider, and in ``meta`` what a page with its controls needs."""
     still = {"mode": "immediate", "frame": {"duration": 0, "redraw": True}, "transition": {"duration": 0}}
     duration = 1000 * film.seconds / len(film.labels)
     play = {"frame": {"duration": duration, "redraw": True}, "transition": {"duration": 0}}

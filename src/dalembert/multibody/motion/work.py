@@ -16,7 +16,8 @@ def works_of_steps(lowered: Lowered, times: np.ndarray, states: MotionState) -> 
     Multipliers are linear. The points lie inside of the intervals, where no load jumps.
 
     Strong dampers leave accelerations behind that no step resolves: the cubic then is not the motion. Where its work
-    differs from that at the mean velocity by more than the work of the interval and its neighbours, that at the mean velocity counts.
+    differs from that at the mean velocity by more than the work of the interval and its neighbours, the work at the
+    mean velocity counts.
     """
     x, v, a = (np.asarray(own) for own in (states.x, states.v, states.a))
     n, h = lowered.structure.n, np.diff(times)[:, None]

@@ -133,9 +133,10 @@ def modes(state: BaseSystem | Equilibrium, count: int | None = None, *, frame: s
     least = _FREE
     if not c.any() and np.allclose(k, k.T, 0, 1e-9 * abs(k).max()):
         # M x'' + K x = 0 with symmetric matrices: many times faster than the general problem.
-        squares, vectors = _squares((k + k.T) / 2, (m + m.T) / 2)
+        is_held = _is_definite(k)
+        squares, vectors = _squares((k + k.T) / 2, (m + m.T) / 2, is_held)
         roots = np.emath.sqrt(-squares)
-        least = 0.0 if squares.min(initial=1.0) > 0.0 and _is_definite(k) else least
+        least = 0.0 if is_held else least
     else:
         # M x'' + C x' + K x = 0.
         state_matrix = np.block([[np.zeros(m.shape), np.eye(len(m))], [-np.linalg.solve(m, np.hstack([k, c]))]])
@@ -152,12 +153,13 @@ def modes(state: BaseSystem | Equilibrium, count: int | None = None, *, frame: s
     return _modes(roots[kept], shapes, growth, 0.0, FIXED, 0.0, np.zeros(len(kept)))
 
 
-def _squares(stiffness: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _squares(stiffness: np.ndarray, mass: np.ndarray, is_held: bool) -> tuple[np.ndarray, np.ndarray]:
     """Squares of the frequencies in ascending order, and shapes. K x = s M x has errors in proportion to the largest
     square, which of a slender beam is 1e13 times the smallest; M x = K x / s has them in proportion to the smallest.
+    The second problem needs a definite K (``is_held``).
     """
     squares, vectors = eigh(stiffness, mass)
-    if not len(squares) or not _is_definite(stiffness):
+    if not is_held:
         return squares, vectors
     inverse, shapes = eigh(mass, stiffness)
     low = squares < np.sqrt(np.abs(squares[-1] / inverse[-1]))  # below the mean of the smallest and the largest
@@ -169,7 +171,7 @@ def _squares(stiffness: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.nd
 def _is_definite(stiffness: np.ndarray) -> bool:
     """Whether a stiffness is positive definite beyond rounding: no motion is free of it."""
     scale = np.sqrt(np.abs(np.diagonal(stiffness)))
-    if not scale.all():
+    if not len(scale) or not scale.all():
         return False
     values = eigvalsh((stiffness + stiffness.T) / 2 / np.outer(scale, scale))
     return bool(values[0] > _DEFINITE * values[-1])

@@ -154,7 +154,7 @@ class Beam(Body):
             if len(self.nodes) != count or not all(isinstance(node, Pose) for node in self.nodes):
                 raise InputError(
                     f"{owner}: {len(self.nodes)} nodes were given; expected a Pose for each of its {count} nodes, "
-                    f"elements x degree + 1"
+                    "elements x degree + 1"
                 )
             if callable(self.curvature) or any(self.curvature):
                 raise InputError(f"{owner}: nodes and a curvature were given; leave out one of them")
@@ -304,6 +304,13 @@ class Beam(Body):
         """Values at points of all elements (frames, elements, points, ...) along the beam, ends of elements once."""
         inner = values[:, :, :-1].reshape(len(values), -1, *values.shape[3:])
         return np.concatenate([inner, values[:, -1, -1:]], axis=1)
+
+
+def beam_of(owner: str, point: Point) -> Beam:
+    """Return the beam of a point; refuse points of other bodies."""
+    if not isinstance(point.body, Beam):
+        raise InputError(f"{owner}: {point} belongs to another body than a beam. Give a point of a Beam")
+    return point.body
 
 
 @dataclass(frozen=True)

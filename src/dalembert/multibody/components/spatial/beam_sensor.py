@@ -14,9 +14,10 @@ from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.kernels.views import stack
 from dalembert.multibody.components.points import Point
-from dalembert.multibody.components.spatial.beam import Beam
+from dalembert.multibody.components.spatial.beam import Beam, beam_of
 from dalembert.multibody.components.spatial.beam_columns import ENTRIES
 from dalembert.multibody.components.spatial.beam_element import BEAMS, full_product
+from dalembert.multibody.components.spatial.kinds import no_energy, no_residual
 from dalembert.multibody.components.spatial.spatial_load import Load
 from dalembert.multibody.components.spatial.spatial_markers import SLOTS
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
@@ -27,16 +28,6 @@ OUTPUTS = (
     ("force_1", "N"), ("force_2", "N"), ("force_3", "N"), ("moment_1", "N*m"), ("moment_2", "N*m"), ("moment_3", "N*m"),
     ("stretch", ""), ("shear_y", ""), ("shear_z", ""), ("twist", "1/m"), ("bend_y", "1/m"), ("bend_z", "1/m"),
 )  # fmt: skip
-
-
-@inlined
-def _no_residual(x, v, a, p, m, inputs, r):
-    """No force."""
-
-
-@inlined
-def _no_energy(x, v, p, m, inputs):
-    return 0.0 * x[0], 0.0 * x[0], 0.0 * x[0]
 
 
 @inlined
@@ -78,8 +69,8 @@ def _kind(degree: int) -> Kind:
         coordinates=width,
         numbers=(*element.numbers, *(f"s{entry[1:]}" for entry in ENTRIES)),
         integers=("node",),
-        residual=_no_residual,
-        energy=_no_energy,
+        residual=no_residual,
+        energy=no_energy,
         outputs=OUTPUTS,
         observe=observe,
         charts=element.charts,
@@ -138,12 +129,7 @@ class BeamSensor(Load):
 
     @property
     def _beam(self) -> Beam:
-        beam = self.at.body
-        if not isinstance(beam, Beam):
-            raise InputError(
-                f"BeamSensor {self.name!r}: at is {self.at}, which is no point of a beam; expected a node of a Beam"
-            )
-        return beam
+        return beam_of(f"BeamSensor {self.name!r}", self.at)
 
     def __post_init__(self) -> None:
         beam = self._beam

@@ -30,14 +30,14 @@ def sensor_kind(name: str, home: str, **properties: Any) -> Kind:
 
     ``home``: module that holds it.
     """
-    return pair_kind(name, home, residual=_no_residual, energy=_no_energy, **properties)
+    return pair_kind(name, home, residual=no_residual, energy=no_energy, **properties)
 
 
 @inlined
-def _no_residual(x, v, a, p, m, inputs, r):
+def no_residual(x, v, a, p, m, inputs, r):
     """No force."""
 
 
 @inlined
-def _no_energy(x, v, p, m, inputs):
+def no_energy(x, v, p, m, inputs):
     return 0.0 * x[0], 0.0 * x[0], 0.0 * x[0]

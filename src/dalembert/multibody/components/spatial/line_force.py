@@ -3,14 +3,12 @@
 __all__ = ["LineForce"]
 
 from dataclasses import dataclass
-from typing import Any
 
-from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.multibody.components.fields import number
 from dalembert.multibody.components.points import Point
 from dalembert.multibody.components.signals import Course
-from dalembert.multibody.components.spatial.beam import Beam
+from dalembert.multibody.components.spatial.beam import Beam, beam_of
 from dalembert.multibody.components.spatial.beam_element import MOST_DEGREE
 from dalembert.multibody.components.spatial.beam_shapes import rule
 from dalembert.multibody.components.spatial.directors import POSE
@@ -118,12 +116,7 @@ class LineForce(Load):
 
     @property
     def _beam(self) -> Beam:
-        body: Any = self.on.body
-        if not isinstance(body, Beam):
-            raise InputError(
-                f"LineForce {self.name!r}: on is {self.on}, which is no point of a beam; expected a point of a Beam"
-            )
-        return body
+        return beam_of(f"LineForce {self.name!r}", self.on)
 
     def __post_init__(self) -> None:
         _ = self._beam

@@ -4,6 +4,7 @@ __all__ = ["Section"]
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -110,7 +111,7 @@ class Section(Checked):
             )
         return np.diag(matrix) if matrix.ndim == 1 else matrix
 
-    @property
+    @cached_property
     def matrix(self) -> np.ndarray:
         """Stiffness C about the beam's line, (6, 6): stretch, shear y, shear z, twist, curvature y, curvature z."""
         # Strains at the points where they do not couple, by those at the line: stretch + z K_y - y K_z, and shears
@@ -120,7 +121,7 @@ class Section(Checked):
         moved[0, 4], moved[0, 5], moved[1, 3], moved[2, 3] = z, -y, -zs, ys
         return moved.T @ self._centred @ moved
 
-    @property
+    @cached_property
     def pseudo_inertia(self) -> np.ndarray:
         """Integral of rho [1, y, z]^T [1, y, z] over the section, (3, 3), in kg/m, kg and kg m."""
         # Moments are about y and z: that about y is the integral of z^2.
@@ -273,13 +274,13 @@ class Section(Checked):
         y, z, thin, low = width / 2.0, height / 2.0, web / 2.0, height / 2.0 - flange
         quarter = np.array([(thin, low), (y, low), (y, z)])
         left = quarter[::-1] * (-1, 1)
-        outline = np.concatenate([quarter, left, -quarter, -left])
+        outline = tuple(map(tuple, np.concatenate([quarter, left, -quarter, -left]).tolist()))
         material.setdefault("outline", outline)
         return cls.of_material(area, moments, torsion, factors, **material)
 
 
 def _is_outline(outline: Any) -> bool:
-    """Whether something is no corner, or three or more."""
+    """Whether something is empty, or three or more corners (y, z)."""
     try:
         corners = np.array(outline)
     except ValueError:
@@ -312,7 +313,7 @@ def torsion_of_rectangle(width: Number, height: Number) -> Number:
 
 
 def _require(shape: str, **sizes: Any) -> None:
-    """Refuse what is no positive length."""
+    """Refuse sizes that are not positive numbers."""
     for name, size in sizes.items():
         if not (is_number(size) and np.real(size) > 0):
             raise InputError(f"Section.{shape}: {name} is {shown(size)}; expected a positive number in m")

@@ -273,6 +273,22 @@ def test_forces_along_a_line_are_its_weight_and_turn_with_it():
             lambda: sp.Beam("b", ROD, 1.0, points={"p": sp.NodePoint("node7")}),
             "beam 'b', point 'p': unknown node 'node7'; did you mean 'node2' or 'node1'?",
         ),
+        (
+            lambda: sp.BeamSensor("g", sp.Beam("b", ROD, 1.0, 2).node(1)),
+            "BeamSensor 'g': b.node1 is inside an element; expected an end of an element: node0, node2, node4, …",
+        ),
+        (
+            lambda: sp.BeamSensor("g", sp.PointMass("m", 1.0).point("centre")),
+            "BeamSensor 'g': m.centre belongs to another body than a beam. Give a point of a Beam",
+        ),
+        (
+            lambda: sp.LineForce("w", sp.PointMass("m", 1.0).point("centre")),
+            "LineForce 'w': m.centre belongs to another body than a beam. Give a point of a Beam",
+        ),
+        (
+            lambda: sp.Section((1.0,) * 6, 1.0, (1.0, 1.0), outline=[(0.0, 1.0)]),
+            "Section: outline is [(0.0, 1.0)]; expected three or more corners (y, z) in m, or none",
+        ),
     ],
 )
 def test_what_cannot_work_is_refused(make, message):

@@ -55,7 +55,7 @@ def root(workspace, kept):
     inputs = folder / "runs" / "pendulum" / "inputs.json"
     inputs.write_text(inputs.read_text().replace(str(kept), str(folder)))
     finding = {"code": "correlated-residuals", "severity": "warning", "message": "The residuals <b>are</b> correlated."}
-    made = {"doubtful": {"findings": [finding]}, "stopped": {"state": "interrupted", "best": {}, "seconds": 1.0}}
+    made = {"doubtful": {"findings": [finding]}, "stopped": {"state": "interrupted", "best": {}, "seconds": 0.01}}
     for name, differs in made.items():
         (folder / "runs" / name).mkdir()
         (folder / "runs" / name / "state.json").write_text(json.dumps(STATE | differs))

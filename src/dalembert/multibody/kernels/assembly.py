@@ -99,6 +99,8 @@ def constraint_rates(model, n, x, v, a, work, rate, second):
     """Fill ``rate`` and ``second`` (N + 1,) with the first and second time derivatives of the constraints."""
     own, table = _place(work, x, v, a), model_at(model)
     own.rate, own.second = address_of(rate), address_of(second)
+    for i in range(n, len(rate)):
+        rate[i], second[i] = 0.0, 0.0
     for k in range(table.block_count):
         block = table.blocks + k * BLOCK_SIZE
         if block_at(block).rates != 0:

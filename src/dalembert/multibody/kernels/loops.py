@@ -134,7 +134,7 @@ def residual(kind: Declaration, dtype: type) -> BlockKernel:
 
 
 def rates(kind: Declaration, dtype: type) -> BlockKernel:
-    """Fill the first and second time derivatives of the constraints."""
+    """Add the first and second time derivatives of the constraints."""
     function, width, coordinates, multipliers = kind.rates_function, kind.width, kind.coordinates, kind.multipliers
     view, _ = VIEWS[dtype]
     local_rate, local_second = (local(dtype, max(multipliers, 1)) for _ in range(2))
@@ -146,8 +146,9 @@ def rates(kind: Declaration, dtype: type) -> BlockKernel:
         function(x, v, a, p, m, inputs, own_rate, own_second)
         for i in range(multipliers):
             row = index[e, coordinates + i]
-            # A constraint belongs to one component, so that its rates are written, not added.
-            rate[row], second[row] = own_rate[i], own_second[i]
+            # A constraint may be the sum of several components: modes of a body at its interface nodes.
+            rate[row] += own_rate[i]
+            second[row] += own_second[i]
 
     return _each(kind, "rates", dtype, step)
 

@@ -30,6 +30,8 @@ class BaseBody(Checked):
     FRAME: ClassVar[tuple[str, ...]]
     dimension: ClassVar[int]
     """Number of coordinates of a position."""
+    has_motion_findings: ClassVar[bool] = False
+    """Whether a motion may have findings on the body."""
     turns: ClassVar[bool] = True
     """Whether the body has a direction."""
     sensor: ClassVar[Kind]
@@ -115,6 +117,10 @@ class BaseBody(Checked):
     @property
     def findings(self) -> tuple[Finding, ...]:
         """What there is to say about the choice of this body, such as that its elements lock."""
+        return ()
+
+    def motion_findings(self, times: np.ndarray, states: np.ndarray, rates: np.ndarray) -> tuple[Finding, ...]:
+        """What there is to say about a motion: coordinates of the body and their velocities, (samples, size)."""
         return ()
 
     @property

@@ -18,7 +18,6 @@ from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES
 from dalembert.multibody.integrators.shared.integrator import Integrator
 from dalembert.multibody.model.fingerprint import fingerprint
 from dalembert.multibody.model.system import BaseSystem
-from dalembert.multibody.motion.beam_strains import stretching
 from dalembert.multibody.motion.bushing_rotations import turning_bushings
 from dalembert.multibody.motion.long_runs import check_steps
 from dalembert.multibody.motion.motion_model import BuiltModel
@@ -267,11 +266,13 @@ class TimeResponse(BuiltModel):
     def findings(self, vector: np.ndarray) -> tuple[Finding, ...]:
         """Findings on the mechanism at a parameter vector (parameters,), and on its motion.
 
-        The motion is simulated once if it has Coulomb friction, bushings in space with torques, or beams that stretch.
+        The motion is simulated once if it has Coulomb friction, bushings in space with torques, or flexible bodies that
+        may leave the range of their theory.
         """
         system, late = self.system(vector), late_samples(self.times)
         try:
-            if not (rubbing(system) or turning_bushings(system) or stretching(system)):
+            watched = any(body.has_motion_findings for body in system.bodies)
+            if not (watched or rubbing(system) or turning_bushings(system)):
                 step, end = self.solver.fixed_step, float(self.times[-1])
                 skipped = skipped_samples(system, step, self.begin, end)
                 return (*system.findings, *self._start_findings(system), *late, *skipped)

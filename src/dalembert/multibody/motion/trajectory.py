@@ -25,8 +25,6 @@ from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.observe import beside, channel_names, observer
 from dalembert.multibody.model.system import BaseSystem
 from dalembert.multibody.model.turns import CountedAngle, counted_angles
-from dalembert.multibody.motion.beam_strains import strain_findings
-from dalembert.multibody.motion.beam_turns import turn_findings
 from dalembert.multibody.motion.bushing_rotations import half_turns, turning_bushings
 from dalembert.multibody.motion.skipped_samples import skipped_samples
 from dalembert.multibody.motion.slip_rates import rubbing, slip_findings
@@ -93,10 +91,12 @@ class Trajectory(Summarised):
         if self.solver.takes_redundancy and not held:
             held = redundant_constraints(self.lowered)
         bushings = turning_bushings(self.system)
-        x = self.run.states.x
-        started = start_findings(self.system, self.lowered, x[0])
-        moved = self.system, self.lowered, self.run.times, x
-        of_motion = (*started, *skipped, *held, *strain_findings(*moved), *turn_findings(*moved))
+        states, first = self.run.states, self.lowered.structure.first
+        of_motion = [*start_findings(self.system, self.lowered, states.x[0]), *skipped, *held]
+        for body in self.system.bodies:
+            if body.has_motion_findings:
+                own = slice(first[body.name], first[body.name] + body.size)
+                of_motion += body.motion_findings(self.run.times, states.x[:, own], states.v[:, own])
         if not (joints or bushings):
             return (*self.system.findings, *of_motion)
         names = [f"{name}.{own.channel}" for name, own in joints.items()]

@@ -12,6 +12,7 @@ from dalembert.multibody.components.base_body import with_points
 from dalembert.multibody.components.fields import Number, number, pair
 from dalembert.multibody.components.planar import markers
 from dalembert.multibody.components.planar.ancf import Ancf
+from dalembert.multibody.components.planar.beam_strains import strain_findings
 from dalembert.multibody.components.planar.body import Marker
 from dalembert.multibody.components.planar.continuum_beam import CONTINUUM
 from dalembert.multibody.components.planar.slenderness import continuum_findings
@@ -71,7 +72,7 @@ class AncfBeam(Ancf):
     (18, 'bar.end')
     """
 
-    vectors = 3
+    vectors, has_motion_findings = 3, True
     poisson_ratio: Number = number("", above=-1, below=0.5)
     density: Number = number("kg/m**3", above=0)
     height: Number = number("m", above=0)
@@ -108,6 +109,9 @@ class AncfBeam(Ancf):
         k = 6 * self._node(point)
         # The direction of a section is that of r_y, a quarter turn ahead of the axis.
         return Marker(markers.NODE, (k, k + 1, k + 4, k + 5), (0.0, 0.0, -np.pi / 2))
+
+    def motion_findings(self, times: np.ndarray, states: np.ndarray, rates: np.ndarray) -> tuple[Finding, ...]:
+        return strain_findings(self, times, states)
 
     @property
     def findings(self) -> tuple[Finding, ...]:

@@ -1,8 +1,7 @@
 """The beam in space: bending in two directions, torsion, shear and stretch at large rotations."""
 
-__all__ = ["Beam", "NodePoint"]
+__all__ = ["Beam"]
 
-import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -10,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from dalembert.arguments import Checked, is_number
+from dalembert.arguments import is_number
 from dalembert.errors import InputError, require_known, shown
+from dalembert.findings import Finding
 from dalembert.multibody.components.base_body import POSITION, with_points
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.points import Point
@@ -20,8 +20,10 @@ from dalembert.multibody.components.spatial.beam_element import BEAMS, MOST_DEGR
 from dalembert.multibody.components.spatial.beam_kinematics import frames, lines, node_traces, strains
 from dalembert.multibody.components.spatial.beam_reference import placed_nodes
 from dalembert.multibody.components.spatial.beam_shapes import Places, rule
+from dalembert.multibody.components.spatial.beam_turns import turn_findings
 from dalembert.multibody.components.spatial.directors import DIRECTORS
 from dalembert.multibody.components.spatial.ground_points import Place
+from dalembert.multibody.components.spatial.node_point import NodePoint
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose, Vector
 from dalembert.multibody.components.spatial.section import Section
 from dalembert.multibody.components.spatial.shapes import Surface
@@ -31,31 +33,6 @@ from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 MOST_ELEMENTS = 100_000
 _RINGS = 16
 """Outlines of the section along a beam of few elements, for drawings."""
-
-
-@dataclass(frozen=True)
-class NodePoint(Checked):
-    """A marker of a beam, fixed to the section of a node.
-
-    Parameters
-    ----------
-    at : str
-        The node: ``"start"``, ``"end"``, or ``"node0"`` and so on.
-    position : (float, float, float)
-        In the axes of the section, m: along the beam's line, y and z.
-    orientation : Orientation
-        Relative to the axes of the section.
-    """
-
-    at: str = "end"
-    position: Vector = number("m", (0.0, 0.0, 0.0))
-    orientation: Orientation = Orientation()
-
-    IN_WORDS = "a NodePoint such as NodePoint('end', (0.0, 0.01, 0.0))"
-
-    def __post_init__(self) -> None:
-        if not re.fullmatch(r"start|end|node\d+", self.at):
-            raise InputError(f"NodePoint: at is {shown(self.at)}; expected 'start', 'end', or a node such as 'node2'")
 
 
 @with_points("start", "end")
@@ -116,6 +93,7 @@ class Beam(Body):
     (108, 'whip.end', ('start', 'end', 'node0'))
     """
 
+    has_motion_findings = True
     section: Any = field(metadata={"table": "Section"})
     length: Number = number("m", above=0)
     elements: int = 1
@@ -277,6 +255,9 @@ class Beam(Body):
         (low, first), (high, second) = self.section[k], self.section[k + 1]
         share = (place - low) / (high - low)
         return _Mixed(*((1 - share) * a + share * b for a, b in zip(_parts(first), _parts(second), strict=True)))
+
+    def motion_findings(self, times: np.ndarray, states: np.ndarray, rates: np.ndarray) -> tuple[Finding, ...]:
+        return turn_findings(self, times, states)
 
     def outline(self, coordinates: np.ndarray, points: int) -> np.ndarray:
         nodes = self.by_element(coordinates.reshape(len(coordinates), -1, 4, 3))

@@ -1,5 +1,6 @@
 """Shape functions of beam elements in space: Lagrange's polynomials at Gauss' points, and anywhere."""
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +18,7 @@ class Rule(NamedTuple):
     weights: tuple[float, ...]
 
 
+@cache
 def rule(degree: int, points: int) -> Rule:
     """Return the shape functions of a degree at this number of Gauss points.
 

@@ -5,6 +5,8 @@ from dalembert.structure.craig_bampton import ReducedStructure, ReductionErrors,
 from dalembert.structure.damping import Modal, Rayleigh
 from dalembert.structure.dofs import Dofs
 from dalembert.structure.eigenmodes import EigenModes, eigenmodes, similarity
+from dalembert.structure.free_body_modes import FreeBodyModes, free_body_modes, strain_between
+from dalembert.structure.interface_nodes import InterfaceNode
 from dalembert.structure.joining import combine, pairs, tie
 from dalembert.structure.material import Material
 from dalembert.structure.mode_shapes import ModeShapes, mode_shapes, node_motion
@@ -20,6 +22,8 @@ __all__ = [
     "Campbell",
     "Dofs",
     "EigenModes",
+    "FreeBodyModes",
+    "InterfaceNode",
     "Material",
     "Modal",
     "ModeShapes",
@@ -34,6 +38,7 @@ __all__ = [
     "craig_bampton",
     "eigenmodes",
     "foot_pairs",
+    "free_body_modes",
     "lumped",
     "mode_shapes",
     "node_motion",
@@ -43,6 +48,7 @@ __all__ = [
     "read_structure",
     "similarity",
     "solid",
+    "strain_between",
     "tie",
     "write_structure",
 ]

@@ -52,6 +52,12 @@ class CachedBases:
 _cached: ContextVar[CachedBases | None] = ContextVar("held", default=None)
 
 
+def kept_basis(make: Callable[[], np.ndarray]) -> np.ndarray:
+    """The basis that ``make`` returns, or that of the first call of a builder whose bases are kept."""
+    bases = _cached.get()
+    return bases.basis(make) if bases else make()
+
+
 @dataclass(frozen=True, eq=False)
 class ReductionErrors(Summarised):
     """Errors of the lowest modes of a reduced structure relative to those of the full one.
@@ -213,12 +219,7 @@ def craig_bampton(structure: Structure, masters: str | Sequence[str], modes: int
     master_rows = np.array(structure.rows(masters), dtype=int)
     inner = np.setdiff1d(np.arange(structure.size), master_rows)
     count = min(modes, len(inner))
-    bases = _cached.get()
-    basis = (
-        bases.basis(lambda: _basis(structure, master_rows, inner, count))
-        if bases
-        else _basis(structure, master_rows, inner, count)
-    )
+    basis = kept_basis(lambda: _basis(structure, master_rows, inner, count))
 
     def reduced(matrix: Matrix) -> np.ndarray:
         small = basis.T @ (matrix @ basis)

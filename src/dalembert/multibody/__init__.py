@@ -15,6 +15,7 @@ _NAMES = {
     "kernels.kind": "Kind",
     "motion.simulation": "simulate",
     "steady.small_vibrations": "Modes modes",
+    "start.equilibrium_path": "CriticalPoint EquilibriumPath equilibrium_path",
     "start.statics": "Equilibrium equilibrium",
     "model.system": "System",
     "motion.time_response": "TimeResponse",

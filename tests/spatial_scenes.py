@@ -7,6 +7,7 @@ import numpy as np
 
 import dalembert.multibody as mb
 import dalembert.multibody.spatial as sp
+from dalembert.structure import FreeBodyModes
 
 AXIS = (0.3, 0.2, 1.0)
 Scene = tuple[Callable[..., sp.SpatialSystem], dict]
@@ -259,6 +260,39 @@ def beam(degree: int = 2) -> Callable[..., sp.SpatialSystem]:
     return build
 
 
+def reduced(near, far, stiffness, coupling, damping, friction, angles, corner, **fields) -> sp.SpatialSystem:
+    """A reduced body of six masses with three modes, which swings from a ball joint and has a corner."""
+    rng = np.random.default_rng(5)
+    places, shapes = rng.uniform(-0.3, 0.3, (6, 3)), rng.uniform(-0.5, 0.5, (6, 3, 3))
+    m, z = np.array([*near, *far]), np.c_[np.ones(6), places]
+    second = np.einsum("p,pia,pjb->ijab", m, shapes, shapes)
+    entries = [[0, 3, 4], [3, 1, 5], [4, 5, 2]]
+    modes = FreeBodyModes(
+        pseudo_inertia=np.einsum("p,pi,pj->ij", m, z, z),
+        first=np.einsum("p,pi,pja->ija", m, z, shapes),
+        second=second,
+        mass=np.einsum("iiab->ab", second),
+        stiffness=np.array([*stiffness, *coupling])[entries],
+        damping=np.array([*damping, *friction])[entries],
+        names=("foot", "tip"),
+        interface_places=places[:2],
+        interface_shapes=np.concatenate([shapes[:2], rng.uniform(-1.0, 1.0, (2, 3, 3))], axis=1),
+        centre=np.zeros(3),
+        places=places,
+        shapes=shapes,
+        faces=np.zeros((0, 3), dtype=int),
+        recovery={"strain": np.array([0.5, -1.2, 0.8])},
+    )
+    points = {"corner": sp.NodePoint("tip", corner, by_angles([0.3, -0.2, 0.1]))}
+    fields |= {"orientation": by_angles(angles), "anchor": "foot", "points": points}
+    system = sp.SpatialSystem()
+    body = system.add(sp.ReducedBody("part", modes, **fields))
+    system.add(sp.SphericalJoint("hold", system.ground.point((0.1, 0.2, 0.3)), body.point("foot")))
+    system.add(sp.Force("push", body.point("corner"), 1.0, -2.0, 0.5, follower=True))
+    system.add(sp.RecoverySensor("gauge", body.point("tip"), "strain"))
+    return system
+
+
 def mass(**fields) -> sp.SpatialSystem:
     """A point mass on a spring."""
     system = sp.SpatialSystem()
@@ -323,6 +357,21 @@ BEAM = {
 
 SCENES: dict[str, Scene] = {
     "beam": (beam(), BEAM),
+    "reduced body": (
+        reduced,
+        {
+            "near": (0.1, 0.15, 0.2),
+            "far": (0.25, 0.3, 0.35),
+            "stiffness": (90.0, 150.0, 220.0),
+            "coupling": (3.0, -5.0, 8.0),
+            "damping": (0.2, 0.3, 0.4),
+            "friction": (0.05, -0.03, 0.02),
+            "angles": (0.3, 0.2, -0.1),
+            "corner": (0.1, -0.05, 0.2),
+            "angular_velocity": (0.8, -0.5, 0.6),
+            "damping_ratio": 0.02,
+        },
+    ),
     "rigid body": (
         body,
         {

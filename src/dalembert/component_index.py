@@ -97,7 +97,7 @@ SPATIAL_HOMES = {
     "LineForce": "components.spatial.line_force",
     "Load": "components.spatial.spatial_load",
     "Motor": "components.spatial.spatial_motor",
-    "NodePoint": "components.spatial.beam",
+    "NodePoint": "components.spatial.node_point",
     "Orientation": "components.spatial.orientation",
     "PlanarJoint": "components.spatial.planar_joint",
     "PointMass": "components.spatial.spatial_point_mass",
@@ -106,6 +106,8 @@ SPATIAL_HOMES = {
     "PrescribedMotion": "components.spatial.spatial_prescribed_motion",
     "PrismaticJoint": "components.spatial.spatial_prismatic_joint",
     "RackJoint": "components.spatial.coupling_joint",
+    "RecoverySensor": "components.spatial.recovery_sensor",
+    "ReducedBody": "components.spatial.reduced_body",
     "RelativeSensor": "components.spatial.relative_sensor",
     "RevoluteJoint": "components.spatial.spatial_revolute_joint",
     "RigidBody": "components.spatial.spatial_rigid_body",
@@ -123,7 +125,7 @@ SPATIAL_HOMES = {
 """Module in ``dalembert.multibody`` of each public name of ``dalembert.multibody.spatial``."""
 
 SPATIAL_KINDS = {
-    "Body": ("Beam", "PointMass", "RigidBody"),
+    "Body": ("Beam", "PointMass", "ReducedBody", "RigidBody"),
     "Joint": (
         "ConstantVelocityJoint",
         "CouplingJoint",
@@ -151,6 +153,7 @@ SPATIAL_KINDS = {
         "InertialSensor",
         "LineForce",
         "Motor",
+        "RecoverySensor",
         "RelativeSensor",
         "Spring",
         "Torque",

@@ -2,7 +2,6 @@
 from dalembert.multibody.components.points import Point as Point
 from dalembert.multibody.components.spatial.armature import Armature as Armature
 from dalembert.multibody.components.spatial.beam import Beam as Beam
-from dalembert.multibody.components.spatial.beam import NodePoint as NodePoint
 from dalembert.multibody.components.spatial.beam_sensor import BeamSensor as BeamSensor
 from dalembert.multibody.components.spatial.coupling_joint import CouplingJoint as CouplingJoint
 from dalembert.multibody.components.spatial.coupling_joint import GearJoint as GearJoint
@@ -16,10 +15,13 @@ from dalembert.multibody.components.spatial.inertial_sensor import InertialSenso
 from dalembert.multibody.components.spatial.joint_limit import AngleLimit as AngleLimit
 from dalembert.multibody.components.spatial.joint_limit import DisplacementLimit as DisplacementLimit
 from dalembert.multibody.components.spatial.line_force import LineForce as LineForce
+from dalembert.multibody.components.spatial.node_point import NodePoint as NodePoint
 from dalembert.multibody.components.spatial.orientation import Orientation as Orientation
 from dalembert.multibody.components.spatial.orientation import Pose as Pose
 from dalembert.multibody.components.spatial.planar_joint import PlanarJoint as PlanarJoint
 from dalembert.multibody.components.spatial.point_on_line_joint import PointOnLineJoint as PointOnLineJoint
+from dalembert.multibody.components.spatial.recovery_sensor import RecoverySensor as RecoverySensor
+from dalembert.multibody.components.spatial.reduced_body import ReducedBody as ReducedBody
 from dalembert.multibody.components.spatial.relative_sensor import RelativeSensor as RelativeSensor
 from dalembert.multibody.components.spatial.screw_joint import ScrewJoint as ScrewJoint
 from dalembert.multibody.components.spatial.section import Section as Section

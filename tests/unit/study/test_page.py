@@ -12,6 +12,7 @@ PAGE = (Path(__file__).parents[3] / "docs/how-to/study-files.md").read_text(enco
 SPACE = "Components in space"
 PLANAR, _, IN_SPACE = PAGE.partition(f"## {SPACE}\n")
 IN_SPACE, _, REST = IN_SPACE.partition("\n## ")
+FREE_BODIES = IN_SPACE.partition("| modes |")[2].partition("| `[[model.joint]]`")[0]
 SECTIONS, _, INERTIAS = IN_SPACE.partition("| section |")[2].partition("| inertia |")
 OTHERS = {
     f"{'Spatial' * space}{kind.__name__}"
@@ -95,7 +96,7 @@ TABLES = {
 }
 """Where the page tells of a table that is not one kind of several."""
 
-BODIES = {"AncfBeam", "AncfCable", "Beam", "RigidBar", "RigidBarBetween", "RigidBody", "PointMass"}
+BODIES = {"AncfBeam", "AncfCable", "Beam", "ReducedBody", "RigidBar", "RigidBarBetween", "RigidBody", "PointMass"}
 JOINTS = {name.removeprefix("Spatial") for name in DEFINITIONS if name.endswith(("Joint", "PrescribedMotion"))}
 LOADS = {
     "Force",
@@ -110,6 +111,7 @@ LOADS = {
     "InertialSensor",
     "RelativeSensor",
     "BeamSensor",
+    "RecoverySensor",
     "LineForce",
 }
 EVERYWHERE = {kind: {"name"} for kind in BODIES | LOADS} | {kind: {"name", "a", "b"} for kind in JOINTS}
@@ -140,8 +142,8 @@ def _place(name, table):
     if name in TABLES:
         return "\n".join(_entry(title) for title in TABLES[name])
     kind, text = table["properties"]["kind"]["const"], PLANAR + REST + INERTIAS
-    if name.startswith(("Spatial", "Section")):
-        text = IN_SPACE if name.startswith("Spatial") else SECTIONS
+    texts = {"Spatial": IN_SPACE, "Section": SECTIONS, "FreeBody": FREE_BODIES}
+    text = next((own for prefix, own in texts.items() if name.startswith(prefix)), text)
     (row,) = [
         line
         for line in text.splitlines()

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import expm
 
-from dalembert.multibody.components.base_body import ANGLE, POSITION
+from dalembert.multibody.components.base_body import ANGLE, DISPLACEMENT, POSITION
 from dalembert.multibody.model.lowered import Lowered
 
 _STILL = 1e-9
@@ -218,7 +218,7 @@ def nodes_of(lowered: Lowered) -> list[SteadyNode]:
             if kinds[k] == POSITION:
                 found.append(SteadyNode(index[k : k + d], flat, none, turns=False, absolute=False))
                 k += d
-            elif len(kinds) - k < d or kinds[k] != kinds[min(k + d, len(kinds)) - 1] or body.size == 1:
+            elif kinds[k] == DISPLACEMENT or len(kinds) - k < d or kinds[k] != kinds[k + d - 1]:
                 absolute = d == 2 and kinds[k] == ANGLE
                 found.append(SteadyNode(none, flat, index[k : k + 1], turns=False, absolute=absolute))
                 k += 1

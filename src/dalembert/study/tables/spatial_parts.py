@@ -15,13 +15,15 @@ from pydantic import Field, PlainValidator, ValidationInfo, WithJsonSchema
 from dalembert.arguments import Checked
 from dalembert.errors import InputError
 from dalembert.multibody.components.fields import Number, number
-from dalembert.multibody.components.spatial.beam import NodePoint
 from dalembert.multibody.components.spatial.friction import ALONG, Friction
 from dalembert.multibody.components.spatial.ground_points import GroundPoint
 from dalembert.multibody.components.spatial.inertia import Inertia
+from dalembert.multibody.components.spatial.node_point import NodePoint
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose, Vector
 from dalembert.multibody.components.spatial.section import Section
+from dalembert.study.tables.data_table import DataFile
 from dalembert.study.tables.dataclass_tables import KindTable, Written, any_of, table_of
+from dalembert.study.tables.free_body_parts import FREE_BODIES
 from dalembert.study.tables.section_parts import PROFILES
 from dalembert.study.text.functions import FunctionName
 from dalembert.study.text.numbers import number as number_key
@@ -199,6 +201,10 @@ def spatial_part(name: str) -> Any:
             profiles = [table_of(profile, profile.SHAPE, prefix="Section") for profile in PROFILES]
             constants = table_of(Section, _CONSTANTS, default=True, part=spatial_part, prefix="Section")
             return any_of([constants, *profiles], _CONSTANTS)
+        case "FreeBodyModes":
+            return any_of([table_of(kind, kind.KIND, part=spatial_part, prefix="FreeBody") for kind in FREE_BODIES])
+        case "DataFile":
+            return DataFile
         case "NodePoint":
             return table_of(NodePoint, default=True, part=spatial_part)
         case "Curvature":

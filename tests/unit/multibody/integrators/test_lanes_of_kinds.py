@@ -103,10 +103,13 @@ MODELS: dict[str, Callable[[Integrator], mb.TimeResponse]] = {
     },
     **{f"space: {scene}": lambda method, scene=scene: spatial(scene, method) for scene in SCENES},
 }
+#: Masses of reduced bodies change with the coordinates, which these methods refuse.
+REFUSED = {("space: reduced body", "Variational"), ("space: reduced body", "EnergyMomentum")}
 CASES = [
     pytest.param(name, method, marks=() if name in COMMON and method == "GeneralizedAlpha" else pytest.mark.slow)
     for name in MODELS
     for method in METHODS
+    if (name, method) not in REFUSED
 ]
 
 

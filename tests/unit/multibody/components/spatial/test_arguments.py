@@ -8,6 +8,7 @@ import pytest
 import dalembert.multibody.spatial as sp
 from dalembert.errors import InputError
 from dalembert.multibody.components.fields import arguments
+from dalembert.structure import Material, box, free_body_modes, solid
 
 BOX = sp.Inertia.box(1.0, (0.1, 0.2, 0.3))
 SECTION = sp.Section((1.0,) * 6, 1.0, (1.0, 1.0))
@@ -15,6 +16,12 @@ BODY, SECOND = sp.RigidBody("body", BOX), sp.RigidBody("second", BOX)
 SIDES = {"a": sp.Ground(), "b": BODY.point("origin")}
 PIN, SLIDE = sp.RevoluteJoint("pin", **SIDES), sp.PrismaticJoint("slide", **SIDES)
 OTHER = sp.RevoluteJoint("other", sp.Ground(), SECOND.point("origin"))
+MODES = free_body_modes(
+    solid(box((0.1, 0.1, 0.1), (1, 1, 1)), Material(1e9, 0.3, 1e3), "brick 27"),
+    {"left": "left"},
+    modes=2,
+    recovery={"gauge": {"0.x": 1.0}},
+)
 COMPONENTS = {
     sp.RigidBody: {"inertia": BOX},
     sp.PointMass: {"mass": 1.0},
@@ -48,6 +55,8 @@ COMPONENTS = {
     sp.DisplacementLimit: {"joint": SLIDE, "stiffness": 1.0, "upper_limit": 1.0},
     sp.InertialSensor: {"at": BODY.point("origin")},
     sp.RelativeSensor: SIDES,
+    sp.ReducedBody: {"modes": MODES},
+    sp.RecoverySensor: {"at": sp.ReducedBody("body", MODES).point("left"), "quantity": "gauge"},
     sp.BeamSensor: {"at": sp.Beam("beam", SECTION, 1.0).end},
     sp.LineForce: {"on": sp.Beam("beam", SECTION, 1.0).end},
     sp.Inertia: {"mass": 1.0, "moments": (1.0, 1.0, 1.0)},
@@ -78,7 +87,7 @@ def test_every_component_is_here() -> None:
 def test_a_wrong_kind_of_argument_is_refused_by_its_name(component: type, argument: str) -> None:
     given = {"name": "part"} if any(entry.name == "name" for entry in fields(component)) else {}
     for wrong in WRONG:
-        if isinstance(wrong, str) and argument in (*TEXTS, "name"):
+        if isinstance(wrong, str) and (argument in (*TEXTS, "name") or (component, argument) == (sp.NodePoint, "at")):
             continue
         if (component, argument) in PAIRS and isinstance(wrong, tuple | np.ndarray) and np.shape(wrong) == (2,):
             continue

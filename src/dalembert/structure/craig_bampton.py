@@ -219,7 +219,7 @@ def craig_bampton(structure: Structure, masters: str | Sequence[str], modes: int
     master_rows = np.array(structure.rows(masters), dtype=int)
     inner = np.setdiff1d(np.arange(structure.size), master_rows)
     count = min(modes, len(inner))
-    basis = kept_basis(lambda: _basis(structure, master_rows, inner, count))
+    basis = kept_basis(lambda: held_basis(structure, master_rows, inner, count))
 
     def reduced(matrix: Matrix) -> np.ndarray:
         small = basis.T @ (matrix @ basis)
@@ -232,7 +232,7 @@ def craig_bampton(structure: Structure, masters: str | Sequence[str], modes: int
     )  # fmt: skip
 
 
-def _basis(structure: Structure, master_rows: np.ndarray, inner: np.ndarray, count: int) -> np.ndarray:
+def held_basis(structure: Structure, master_rows: np.ndarray, inner: np.ndarray, count: int) -> np.ndarray:
     """Static shapes of the masters and the lowest modes with these held, (n, masters + modes)."""
     mass, stiffness = real_part(structure.mass), real_part(structure.stiffness)
     basis = np.zeros((structure.size, len(master_rows) + count))

@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 from scipy.linalg import eigh, null_space
 
-from dalembert.arguments import array_of, takes_checked
-from dalembert.errors import InputError
-from dalembert.structure.craig_bampton import craig_bampton, kept_basis
+from dalembert.arguments import array_of, is_number, takes_checked
+from dalembert.errors import InputError, shown
+from dalembert.structure.craig_bampton import held_basis, kept_basis
 from dalembert.structure.eigenmodes import EigenModes, eigenmodes
 from dalembert.structure.free_body_rows import Rows, integrals, mass_properties, node_shapes, require_free, rows_of
 from dalembert.structure.interface_nodes import (
-    INTERFACE,
     InterfaceNode,
     Tie,
     rigid_coordinates,
@@ -25,7 +24,7 @@ from dalembert.structure.interface_nodes import (
 from dalembert.structure.structure import Structure, changed, known_nodes
 
 DEPENDENT = 1e-10
-"""Part of a motion's kinetic energy that other motions leave, below which it counts as one of theirs."""
+"""Part of a motion's energies that other motions leave, below which it counts as one of theirs."""
 LOOSE = 1e-14
 """Square of a frequency, as part of that of the highest mode, that counts as that of a free motion."""
 
@@ -111,12 +110,22 @@ class FreeBodyModes:
         """The modes of a body whose stiffness and mass are multiplied by factors.
 
         A homogeneous body of another Young's modulus or density has the same shapes, so that the reduction need not
-        be repeated. The damping stays.
+        be repeated. The damping stays, and so does ``recovery``: rows of stresses are to be multiplied by the factor of
+        the stiffness.
 
         Parameters
         ----------
         stiffness, mass : float
+            Positive.
+
+        Raises
+        ------
+        InputError
+            For a factor that is not positive.
         """
+        for name, factor in (("stiffness", stiffness), ("mass", mass)):
+            if not is_number(factor) or not np.real(factor) > 0:
+                raise InputError(f"scaled: {name} is {shown(factor)}; expected a positive factor")
         return replace(
             self,
             pseudo_inertia=mass * self.pseudo_inertia,
@@ -138,7 +147,7 @@ def free_body_modes(
 
     The static shapes of the six coordinates of each interface node are those of Craig and Bampton. Of ``modes``, half
     are the lowest modes with these nodes held, and half the lowest modes of the free body. Without the six rigid
-    motions, I interface nodes give 6 I - 6 + ``modes`` modes.
+    motions, I interface nodes give at most 6 I - 6 + ``modes`` modes.
 
     Parameters
     ----------
@@ -256,6 +265,10 @@ def _row(structure: Structure, name: str, entry: Any) -> np.ndarray:
         return row
     row = np.zeros(structure.size)
     for dof, factor in entry.items():
+        if not is_number(factor) or np.iscomplexobj(factor):
+            raise InputError(
+                f"free_body_modes: recovery {name!r} has the factor {shown(factor)} for {dof!r}; expected a real number"
+            )
         row[structure.dofs.index(dof, f"free_body_modes: recovery {name!r}")] += factor
     return row
 
@@ -267,39 +280,44 @@ def _frequencies(mass: np.ndarray, stiffness: np.ndarray) -> np.ndarray:
 
 def _shapes(structure: Structure, rows: Rows, ties: Sequence[Tie], modes: int) -> np.ndarray:
     """Motions of all rows by the modes of the free body, (n, modes), with a largest displacement of 1."""
-    whole, spread = tied(structure, ties)
-    masters = [name for name in whole.dofs.names if name.startswith(INTERFACE)]
-    held = craig_bampton(whole, masters, modes - modes // 2)
-    estimate = _elastic_modes(held.mass, held.stiffness, rigid_coordinates(ties, held.size))
-    free = eigenmodes(whole, min(6 + modes // 2, whole.size), 0.3 * estimate.frequencies[0]).shapes[:, 6:]
+    length = float(np.ptp(rows.places, axis=0).max())
+    whole, spread = tied(structure, ties, length)
+    mass, stiffness = whole.mass, whole.stiffness
+    inner, masters = np.split(np.arange(whole.size), [-6 * len(ties)])  # interface nodes stand last
+    held = held_basis(whole, masters, inner, min(modes - modes // 2, len(inner)))
+    rigid = held @ rigid_coordinates(ties, held.shape[1], length)
+    # The lowest modes of the free body: rigid ones are among them, and those above a low shift are the lowest elastic.
+    estimate = _elastic_modes(held, mass, stiffness, rigid).frequencies[0]
+    free = eigenmodes(whole, min(6 + modes // 2, whole.size), 0.05 * estimate).shapes
     # Both sets of modes: those of the free body alone miss what is held at its nodes, and the others what swings
     # freely. Six of each were as exact as twelve of the kind that suits best.
-    mixed = _orthonormal(np.hstack([held.basis, free]), whole.mass)
-    rigid = mixed.T @ (whole.mass @ (held.basis @ rigid_coordinates(ties, held.size)))
-    own = _elastic_modes(np.eye(mixed.shape[1]), mixed.T @ (whole.stiffness @ mixed), rigid)
-    motion = spread @ (mixed @ own.shapes)
+    mixed = _independent(np.hstack([held, free]), mass + stiffness / (2 * np.pi * estimate) ** 2)
+    motion = spread @ _elastic_modes(mixed, mass, stiffness, rigid).shapes
     # Rotations count by the displacement that they make over the body: modes of torsion may have no other.
-    sizes = np.abs(motion) * np.where(rows.translations, 1.0, np.ptp(rows.places, axis=0).max())[:, None]
+    sizes = np.abs(motion) * np.where(rows.translations, 1.0, length)[:, None]
     # The sign is that of the first row of nearly the largest motion, so that symmetric modes keep theirs.
     first = np.argmax(np.abs(motion) > 0.999 * np.abs(motion).max(axis=0), axis=0)
     return motion / (sizes.max(axis=0) * np.sign(motion[first, np.arange(len(first))]))
 
 
-def _orthonormal(motions: np.ndarray, mass: Any) -> np.ndarray:
-    """A basis of the motions (n, -) that is orthonormal by the mass, without what depends on the others."""
-    product = motions.T @ (mass @ motions)
+def _independent(motions: np.ndarray, metric: Any) -> np.ndarray:
+    """A basis of the motions (n, -), orthonormal by a metric (n, n), without what depends on the others."""
+    # The metric has the strain energy too: by the mass alone, motions of light soft parts would count as none.
+    product = motions.T @ (metric @ motions)
     scale = np.sqrt(np.diagonal(product))
     sizes, axes = eigh(product / np.outer(scale, scale))
     kept = sizes > DEPENDENT
     return motions / scale @ (axes[:, kept] / np.sqrt(sizes[kept]))
 
 
-def _elastic_modes(mass: np.ndarray, stiffness: np.ndarray, rigid: np.ndarray) -> EigenModes:
-    """Modes without momentum: those of the complement of the rigid motions (n, 6), shapes (n, n - 6)."""
+def _elastic_modes(basis: np.ndarray, mass: Any, stiffness: Any, rigid: np.ndarray) -> EigenModes:
+    """Modes without momentum in the span of a basis (n, -) that has the rigid motions (n, 6): shapes (n, - - 6)."""
     # Rigid motions are projected out by the mass, not told apart by their frequency: the axes are mean axes to
     # rounding, and modes of low frequencies stay.
-    others = null_space((mass @ rigid).T)
-    squares, shapes = eigh(others.T @ stiffness @ others, others.T @ mass @ others)
+    basis = basis / np.sqrt(np.einsum("ij,ij->j", basis, mass @ basis))  # displacements and rotations alike
+    momenta = (mass @ rigid).T @ basis
+    others = basis @ null_space(momenta / np.linalg.norm(momenta, axis=1)[:, None])
+    squares, shapes = eigh(others.T @ (stiffness @ others), others.T @ (mass @ others))
     if squares[0] <= LOOSE * squares[-1]:
         raise InputError(
             "free_body_modes: a part of the structure moves freely against the others; expected one connected body"

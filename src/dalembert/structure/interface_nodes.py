@@ -8,14 +8,11 @@ import numpy as np
 from scipy.sparse import csc_array, lil_array
 
 from dalembert.arguments import Checked
-from dalembert.errors import InputError
+from dalembert.errors import InputError, shown, unknown
 from dalembert.structure.dofs import Dofs
 from dalembert.structure.eigenmodes import real_part
 from dalembert.structure.free_body_rows import DIRECTIONS, Rows
 from dalembert.structure.structure import Structure
-
-INTERFACE = "interface "
-"""Beginning of the names of interface nodes among those of a structure."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +45,7 @@ def ties_of(structure: Structure, interfaces: Mapping[str, InterfaceNode], rows:
     """The ties of the interface nodes to the structure."""
     ties, owners = [], {}
     for name, interface in interfaces.items():
-        members = np.array(structure.rows(interface.nodes), dtype=int)
+        members = np.array(_members(structure, interface, name), dtype=int)
         for row in members:
             if owners.setdefault(int(row), name) != name:
                 raise InputError(
@@ -69,6 +66,25 @@ def ties_of(structure: Structure, interfaces: Mapping[str, InterfaceNode], rows:
     return ties
 
 
+def _members(structure: Structure, interface: InterfaceNode, name: str) -> list[int]:
+    """Rows of the nodes of an interface node; refuse names that are no nodes or sets, and none at all."""
+    nodes = structure.nodes
+    assert nodes is not None  # checked by the caller
+    stated = [interface.nodes] if isinstance(interface.nodes, str) else list(interface.nodes)
+    for entry in stated:
+        if entry not in nodes.sets and not structure.dofs.has_node(entry):
+            known = (*nodes.sets, *nodes.names)
+            raise InputError(unknown("node or set of nodes", entry, known, f"free_body_modes: interface node {name!r}"))
+    if not (rows := structure.rows(stated)):
+        raise InputError(f"free_body_modes: the interface node {name!r} has no nodes of the structure; expected some")
+    if interface.position is not None and not np.all(np.isfinite(interface.position)):
+        raise InputError(
+            f"free_body_modes: the position of the interface node {name!r} is {shown(interface.position)}; expected "
+            "three finite numbers in m"
+        )
+    return rows
+
+
 def rigid_motion(place: np.ndarray) -> np.ndarray:
     """Displacements and rotations of a node at a place by those of the origin, (6, 6)."""
     motion = np.eye(6)
@@ -76,22 +92,29 @@ def rigid_motion(place: np.ndarray) -> np.ndarray:
     return motion
 
 
-def rigid_coordinates(ties: Sequence[Tie], size: int) -> np.ndarray:
-    """Rigid motions in interface coordinates and modes with these held, (size, 6)."""
-    return np.vstack([*(rigid_motion(tie.place) for tie in ties), np.zeros((size - 6 * len(ties), 6))])
+def rigid_coordinates(ties: Sequence[Tie], size: int, length: float) -> np.ndarray:
+    """Rigid motions in interface coordinates and modes with these held, (size, 6), rotations times ``length``."""
+    units = np.repeat([1.0, length], 3)
+    motions = [rigid_motion(tie.place) * units[:, None] / units for tie in ties]
+    return np.vstack([*motions, np.zeros((size - 6 * len(ties), 6))])
 
 
-def tied(structure: Structure, ties: Sequence[Tie]) -> tuple[Structure, csc_array]:
-    """The structure with interface nodes in place of what is tied to them, and the motion of all rows by its own."""
+def tied(structure: Structure, ties: Sequence[Tie], length: float) -> tuple[Structure, csc_array]:
+    """The structure with interface nodes in place of what is tied to them, and the motion of all rows by its own.
+
+    Rotations of interface nodes are counted as displacements at a ``length``, so that all entries are of one size.
+    """
     others = np.setdiff1d(np.arange(structure.size), np.concatenate([tie.rows for tie in ties]))
+    if not len(others):
+        raise InputError("free_body_modes: all nodes belong to interface nodes; leave some of them free to move")
     spread = lil_array((structure.size, len(others) + 6 * len(ties)))
     spread[others, np.arange(len(others))] = 1.0
     for number, tie in enumerate(ties):
         first = len(others) + 6 * number
-        spread[tie.rows, first : first + 6] = tie.motion
+        spread[tie.rows, first : first + 6] = tie.motion / np.repeat([1.0, length], 3)
     spread = csc_array(spread)
     names = [structure.dofs.names[row] for row in others]
-    names += [f"{INTERFACE}{number}.{direction}" for number in range(len(ties)) for direction in DIRECTIONS]
+    names += [f"interface {number}.{direction}" for number in range(len(ties)) for direction in DIRECTIONS]
     matrices = {
         name: spread.T @ (csc_array(real_part(getattr(structure, name))) @ spread) for name in ("mass", "stiffness")
     }

@@ -22,6 +22,7 @@ from dalembert.structure import (
     plate,
     solid,
 )
+from dalembert.structure.craig_bampton import CachedBases
 
 STEEL = Material(210e9, 0.3, 7800.0)
 SIDES = {"foot": "left", "tip": "right"}
@@ -119,6 +120,50 @@ def test_interface_nodes_at_other_places_and_of_nodes_by_name(bar: Structure) ->
     np.testing.assert_allclose(by_name.frequencies, usual.frequencies, rtol=1e-8)
 
 
+def chain(soft: float, light: float) -> Structure:
+    """A bar of 20 elements with the exact flexibility of a slender beam; the first one is soft and light."""
+    names = tuple(f"{node}.{axis}" for node in range(21) for axis in ("x", "y", "z", "rx", "ry", "rz"))
+    places, h = np.linspace(0.0, 1.0, 21)[:, None] * np.array([1.0, 0.0, 0.0]), 0.05
+    stiffness, mass = np.zeros((2, 126, 126))
+    for element in range(20):
+        factor, heavy = (soft, light) if element == 0 else (1.0, 1.0)
+        flexibility = np.diag([1e-8, 1e-7, 1e-7, 1e-3, 1e-3, 1e-3]) * h / factor
+        carry = np.eye(6)
+        carry[1, 5], carry[2, 4] = h, -h
+        part, first = np.hstack([-carry, np.eye(6)]), 6 * element
+        stiffness[first : first + 12, first : first + 12] += part.T @ np.linalg.inv(flexibility) @ part
+        own = heavy * h * np.array([0.5] * 3 + [1e-5] * 3)
+        mass[first : first + 12, first : first + 12] += np.diag([*own, *own])
+    return Structure(mass, stiffness, Dofs(names), nodes=Nodes(tuple(map(str, range(21))), places))
+
+
+@pytest.mark.parametrize(("soft", "light"), [(1.0, 1.0), (1e-2, 1e-1), (1e-4, 1e-4), (1e-4, 1e-6), (1e-3, 1e-6)])
+def test_a_soft_stalk_keeps_its_low_modes(soft: float, light: float) -> None:
+    structure = chain(soft, light)
+    modes = free_body_modes(structure, {"foot": "0"}, modes=6)
+    exact = np.sqrt(np.clip(eigh(structure.stiffness, structure.mass, eigvals_only=True), 0.0, None)) / (2 * np.pi)
+    np.testing.assert_allclose(modes.frequencies[:3], exact[6:9], rtol=1e-5)
+    held = structure.fixed("0")
+    clamped = 1 / np.sqrt(eigh(held.mass, held.stiffness, eigvals_only=True)[-1]) / (2 * np.pi)
+    assert modes.clamped_frequency == pytest.approx(clamped, rel=1e-5)
+
+
+def test_the_unit_of_length_does_not_matter() -> None:
+    small = solid(box((4e-6, 2e-7, 3e-7), (6, 2, 2)), STEEL)
+    ratio = free_body_modes(small, SIDES, modes=4).frequencies * 1e-5
+    usual = free_body_modes(solid(box((0.4, 0.02, 0.03), (6, 2, 2)), STEEL), SIDES, modes=4).frequencies
+    np.testing.assert_allclose(ratio, usual, rtol=1e-6)
+
+
+def test_kept_bases_serve_a_builder_that_reduces_free_bodies(bar: Structure) -> None:
+    bases, answers = CachedBases(), []
+    for factor in (1.0, 1.5):
+        with bases.call():
+            answers.append(free_body_modes(replace(bar, stiffness=factor * bar.stiffness), SIDES, modes=2))
+    np.testing.assert_allclose(answers[1].stiffness, 1.5 * answers[0].stiffness, rtol=1e-9, atol=1e-3)
+    np.testing.assert_array_equal(answers[1].shapes, answers[0].shapes)
+
+
 def test_a_node_with_rotations_holds_alone() -> None:
     # A chain of three nodes with six degrees of freedom each, held together by the stiffness of a short Timoshenko beam.
     names = tuple(f"{node}.{axis}" for node in "abc" for axis in ("x", "y", "z", "rx", "ry", "rz"))
@@ -176,10 +221,19 @@ def test_messages(bar: Structure) -> None:
         (bar, {"foot": bar.nodes.members("left")[:2]}, "'foot' lie on a line or at a point"),
         (plate((1.0, 1.0), 0.01, STEEL, (2, 2)), {"a": "0"}, "moves by displacements x, y, z and rotations"),
         (replace(bar, nodes=None), SIDES, "does not say where its nodes are"),
+        (bar, {"foot": []}, "'foot' has no nodes of the structure"),
+        (bar, {"foot": "lift"}, "unknown node or set of nodes 'lift'"),
+        (bar, {"foot": InterfaceNode("left", (0.0, 0.0, np.nan))}, "the position of the interface node 'foot'"),
+        (bar, {"all": bar.nodes.names}, "all nodes belong to interface nodes"),
     ]
     for structure, interfaces, message in cases:
         with pytest.raises(InputError, match=message):
             free_body_modes(structure, interfaces)
+    for factors in ((-1.0, 1.0), (1.0, 0.0), ("a", 1.0)):
+        with pytest.raises(InputError, match="expected a positive factor"):
+            free_body_modes(bar, SIDES, 1).scaled(*factors)
+    with pytest.raises(InputError, match="expected a real number"):
+        free_body_modes(bar, SIDES, 1, {"gauge": {"0.x": 1j}})
     with pytest.raises(InputError, match="modes is 0; expected 1 or more"):
         free_body_modes(bar, SIDES, modes=0)
     corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from dalembert.kernels.lanes import WIDTH
+from dalembert.multibody.components.spatial.kinds import no_residual
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.model.lane_models import lane_model
 from dalembert.multibody.model.lowered import Lowered
@@ -14,12 +15,11 @@ from kind_scenes import HOMES
 TIME = 0.3
 #: Kinds whose kernels other tests need, too; the others are compiled for this test alone.
 COMMON = ("structural_beam", "rigid_body", "revolute", "spring")
-FORCELESS = ("relative_sensor", "inertial_sensor", "beam_sensor_2")
 KINDS = [
     pytest.param(kind, role, id=f"{kind.name}-{role}", marks=() if kind.name in COMMON else pytest.mark.slow)
     for kind in HOMES
     for role in ("residual",)
-    if kind.has(role) and kind.takes_lanes and kind.name not in FORCELESS
+    if kind.has(role) and kind.takes_lanes and kind.residual is not no_residual
 ]
 
 

@@ -23,7 +23,7 @@ from dalembert.multibody.kernels.kind import Kind
 
 @inlined
 def _term(x, p, m, inputs, g):
-    """One term of c - sum_a R_a eta_a = 0: c itself, of the factor 1, or a modal coordinate, of the factor -R_a."""
+    """One term of c - sum_a R_a eta_a / s = 0: c itself, of the factor 1, or a modal coordinate."""
     g[0] = p.factor * x[0]
 
 
@@ -34,7 +34,7 @@ def _forces(x, p, m, r):
 
 @inlined
 def _observe(x, v, a, p, m, inputs, out):
-    out[0], out[1] = x[0], v[0]
+    out[0], out[1] = p.scale * x[0], p.scale * v[0]
 
 
 TERM = Kind(
@@ -43,7 +43,7 @@ TERM = Kind(
 SENSOR = Kind(
     "recovery_sensor",
     coordinates=1,
-    numbers=(),
+    numbers=("scale",),
     residual=no_residual,
     energy=no_energy,
     outputs=(("value", ""), ("rate", "1/s")),
@@ -54,7 +54,7 @@ SENSOR = Kind(
 
 @dataclass(frozen=True)
 class RecoveredCoordinate(Body):
-    """A coordinate without mass that has the value of a sensor; the sensor has it in its ``coordinates``."""
+    """A coordinate without mass, the value of a sensor over its scale; the sensor has it in its ``coordinates``."""
 
     turns = False
 
@@ -153,8 +153,10 @@ class RecoverySensor(Load):
         (begin, *_), (own, _) = lowering.pair(self.at, None, self.name).slots, lowering.coordinate(self.coordinates[0])
         assert begin is not None
         first = begin - SLOTS * body.node_number(self.at.name) + body.size - body.modes.count
-        rows = lowering.multipliers(self.name, 1)
+        rows, factors = lowering.multipliers(self.name, 1), body.modes.recovery[self.quantity]
+        # Newton's method compares the unknown with sizes of displacements: a stress in Pa would never settle.
+        scale = float(np.linalg.norm(np.real(factors))) or 1.0
         lowering.add(TERM, [own, *rows], [1.0])
-        for mode, factor in enumerate(body.modes.recovery[self.quantity].tolist()):
+        for mode, factor in enumerate((factors / scale).tolist()):
             lowering.add(TERM, [first + mode, *rows], [-factor])
-        lowering.add(SENSOR, [own], [], name=self.name)
+        lowering.add(SENSOR, [own], [scale], name=self.name)

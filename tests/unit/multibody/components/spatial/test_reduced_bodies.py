@@ -151,7 +151,9 @@ def test_a_sensor_reads_a_combination_of_the_displacements() -> None:
     ends = [structure.nodes.nearest((x, 0.01, 0.03)) for x in (0.1, 0.2)]
     row = np.zeros(structure.size)
     row[structure.dofs.index(f"{ends[0]}.z")] = 1.0
-    recovery = {"gauge": strain_between(structure, *ends), "shift": row}
+    gauge = strain_between(structure, *ends)
+    stress = {dof: 2e11 * factor for dof, factor in gauge.items()}  # Pa
+    recovery = {"gauge": gauge, "shift": row, "stress": stress}
     modes = free_body_modes(structure, {"foot": "left", "tip": "right"}, 6, recovery)
     system = sp.SpatialSystem()
     body = system.add(sp.ReducedBody("bar", modes, anchor="foot"))
@@ -165,7 +167,10 @@ def test_a_sensor_reads_a_combination_of_the_displacements() -> None:
     np.testing.assert_allclose(motion.channels(["gauge.value"])[:, 0], eta @ strain, atol=1e-12)
     np.testing.assert_allclose(motion.channels(["gauge.rate"])[:, 0], rate @ strain, atol=1e-9)
     np.testing.assert_allclose(motion.channels(["shift.value"])[:, 0], eta @ places[0][2], atol=1e-12)
+    np.testing.assert_allclose(motion.channels(["stress.value"])[:, 0], 2e11 * (eta @ strain), atol=0.1)
     assert np.abs(eta @ strain).max() > 1e-6
+    rest = mb.equilibrium(system).channels(["gauge.value", "stress.value"])
+    assert rest[1] == pytest.approx(2e11 * rest[0], rel=1e-9)
 
 
 def test_messages_of_sensors() -> None:

@@ -30,6 +30,8 @@ class BaseBody(Checked):
     FRAME: ClassVar[tuple[str, ...]]
     dimension: ClassVar[int]
     """Number of coordinates of a position."""
+    buckles: ClassVar[bool] = True
+    """Whether its stiffness follows the forces in it, as far as it deforms."""
     has_motion_findings: ClassVar[bool] = False
     """Whether a motion may have findings on the body."""
     turns: ClassVar[bool] = True

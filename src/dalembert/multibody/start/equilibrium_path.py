@@ -1,11 +1,10 @@
 """Equilibria along a load, past limit points, with the loads at which they become unstable."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import eigh, null_space
 from scipy.optimize import root_scalar
 from scipy.sparse import bmat, csr_matrix
 from scipy.sparse.linalg import splu
@@ -13,6 +12,7 @@ from scipy.sparse.linalg import splu
 from dalembert.argument_readers import names_of
 from dalembert.arguments import takes_checked
 from dalembert.errors import InputError, SolveError, shown
+from dalembert.multibody.components.planar.markers import GROUND
 from dalembert.multibody.model.evaluate import residual, tangent
 from dalembert.multibody.model.lowered import Lowered, scales
 from dalembert.multibody.model.lowering import lower
@@ -20,6 +20,7 @@ from dalembert.multibody.model.observe import observer
 from dalembert.multibody.model.system import BaseSystem
 from dalembert.multibody.start.equilibrium_start import resting_place
 from dalembert.multibody.start.mixed_points import MixedPoints
+from dalembert.multibody.start.static_stability import Stability, stability
 from dalembert.multibody.start.statics import placed_at_start
 
 _DIFFERENCE = 1e-6
@@ -29,12 +30,20 @@ _FEW_ITERATIONS = 4
 """Iterations after which a step keeps its length; with fewer it grows, with more it shrinks."""
 _SHORTEST = 1e-4
 """Part of the first step: the path ends where it needs a shorter one."""
-_LONGEST = 4.0
+_FAR = 2.0
+"""Of the range: a path whose load goes back by more ends."""
+_LONGEST = 2.0
 """The longest step, in first steps."""
+_BALANCED = 1e-11
+"""Forces that are left, as part of those of the range of the load, at which they are rounding."""
 _CLOSED = 1e-10
 """Newton's correction, over the scales, at which an equilibrium counts as reached."""
-_ROUNDING = 1e-13
-"""Eigenvalue, as part of the largest one, of a motion without stiffness."""
+_LEAST_COSINE = 0.9
+"""Of the angle between the directions of two points that follow each other: a larger turn asks for a shorter step."""
+_FARTHEST = 0.1
+"""Distance of a point from its prediction, in steps: farther off lies another path."""
+_ASYMMETRY = 1e-8
+"""Of a stiffness, relative, beyond rounding: loads that follow the motion."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,18 +53,23 @@ class CriticalPoint:
     Parameters
     ----------
     load : float
-    kind : {"limit", "branch"}
-        At a limit point the load turns; at a branch point other equilibria begin: the structure buckles.
+    kind : {"limit", "branch", "symmetric part"}
+        At a limit point the load turns; at a branch point other equilibria begin: the structure buckles. Where the
+        stiffness is not symmetric, as under follower loads, the eigenvalue is that of its symmetric part, and the point
+        need be neither.
     x : array, shape (N + 1,)
         As of an :class:`Equilibrium`.
     shape : array, shape (N + 1,)
         The motion without stiffness; its entry of largest magnitude is 1. Rows of multipliers are zero.
+    gap : float
+        Distance of the two loads between which the point lies, where the search for it failed; else 0.
     """
 
     load: float
     kind: str
     x: np.ndarray
     shape: np.ndarray
+    gap: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,12 +85,16 @@ class EquilibriumPath:
         In the order of the path.
     x : array, shape (points, N + 1)
         States, as of an :class:`Equilibrium`.
+    ended : {"end", "points", "away"}
+        Why the path ends: the load reached ``end``; there are ``most_points``; the load went away from ``end`` by more
+        than twice the range.
     """
 
     loads: np.ndarray
     stable: np.ndarray
     critical: tuple[CriticalPoint, ...]
     x: np.ndarray
+    ended: str
     build: Callable[[float], BaseSystem]
 
     def channels(self, names: Sequence[str]) -> np.ndarray:
@@ -98,24 +116,25 @@ def equilibrium_path(
 
     The path is followed by its arc length, so that the load may fall along it, as that of an arch that snaps through.
     Between two points of which one has more motions with a negative stiffness, the load is found at which the stiffness
-    vanishes. Stiffness that is not symmetric, of follower forces, is judged by its symmetric part.
+    vanishes.
 
     Parameters
     ----------
     build : callable
-        From the load, or any other number, to a system. Only numbers of components may depend on it.
+        From the load, or any other number, to a system. Only numbers of components may depend on it. It is called with
+        loads outside the range too, as where a step ends beyond it.
     start, end : float
         The path begins at the equilibrium nearest to the placement of ``build(start)``, and ends where the load
         reaches ``end``.
     steps : int
         Number of steps in the range of the load, for the length of the first one; later ones adapt.
     most_points : int
-        Where the path ends at the latest, as where the load never reaches ``end``.
+        Where the path ends at the latest, as where the load never reaches ``end``; at least 2.
 
     Raises
     ------
     InputError
-        For a range without a length.
+        For a range without a length, and for reduced bodies: their bending stiffness does not follow axial forces.
     SolveError
         Where there is no equilibrium at the start, or the path cannot be followed from there.
 
@@ -141,38 +160,63 @@ def equilibrium_path(
     >>> [(point.kind, round(float(point.load), 3)) for point in path.critical]
     [('limit', 3.83), ('limit', -3.83)]
     """
+    if not callable(build):
+        raise InputError(f"equilibrium_path: build is {shown(build)}; expected a function from the load to a system")
     if not (np.isfinite(start) and np.isfinite(end)) or start == end:
         raise InputError(f"equilibrium_path: start and end are {shown(start)} and {shown(end)}; expected two loads")
+    if steps < 1 or most_points < 2:
+        raise InputError(
+            f"equilibrium_path: steps is {steps} and most_points {most_points}; expected 1 or more steps, and 2 or "
+            "more points"
+        )
     follower = _Follower(build, start, end, steps)
-    points, critical = [follower.first()], []
-    for point in follower.follow(points[0]):
+    points, critical, ended = [follower.first()], [], "points"
+    while len(points) < most_points and ended == "points":
+        point, ended = follower.following(points[-1])
         critical += follower.between(points[-1], point)
         points.append(point)
-        if len(points) >= most_points:
-            break
     return EquilibriumPath(
         np.array([point.load for point in points]),
-        np.array([point.negatives == 0 for point in points]),
+        np.array([point.stability.negatives == 0 for point in points]),
         tuple(critical),
         np.array([point.x for point in points]),
+        ended,
         build,
     )
 
 
 class _Point(NamedTuple):
     """An equilibrium: its load, unknowns (N + 1,), the unit direction of the path there (n + 1,) by scaled coordinates
-    and load, and eigenvalues of the scaled stiffness, ascending.
+    and load, the rates of all unknowns along it (N,), and its stability.
     """
 
     load: float
     x: np.ndarray
     direction: np.ndarray
-    eigenvalues: np.ndarray
+    rates: np.ndarray
+    stability: Stability
 
-    @property
-    def negatives(self) -> int:
-        """Number of motions with a negative stiffness."""
-        return int(np.sum(self.eigenvalues < -_ROUNDING * np.abs(self.eigenvalues).max(initial=0.0)))
+
+def _sizes(lowered: Lowered) -> np.ndarray:
+    """Size of each coordinate, (n,): the extent of the mechanism with its points of the ground for positions."""
+    structure, axes = lowered.structure, "xyz"[: lowered.dimension]
+    kinds = np.array(structure.kinds)
+    points = [np.real(lowered.x)[: structure.n][kinds == "position"].reshape(-1, lowered.dimension)]
+    for kind, data in lowered.data.items():
+        for side in "ab":
+            names = tuple(f"{side}_{axis}" for axis in axes)
+            if set(names) <= set(kind.numbers) and f"{side}_kind" in kind.integers:
+                grounded = structure.meta[kind][:, kind.integers.index(f"{side}_kind")] == GROUND
+                points.append(np.real(data[grounded][:, kind.columns(names)]))
+    extent = float(np.ptp(np.concatenate(points), axis=0).max(initial=0.0))
+    scale = scales(lowered)[: structure.n]
+    if extent > 0.0:
+        scale[np.isin(kinds, ("position", "displacement"))] = extent
+    return scale
+
+
+class _LostError(Exception):
+    """No equilibrium was found where one was searched for."""
 
 
 class _Follower:
@@ -181,9 +225,15 @@ class _Follower:
     def __init__(self, build: Callable[[float], BaseSystem], start: float, end: float, steps: int) -> None:
         self.build, self.start, self.end = build, float(start), float(end)
         self.range, self.length = end - start, 1.0 / steps
+        self.step, self.softest = self.length, 0.0
         self.placed = placed_at_start(build(self.start))
+        if linear := next((body.name for body in self.placed.bodies.values() if not body.buckles), None):
+            raise InputError(
+                f"equilibrium_path: body {linear!r} is a reduced body, whose bending stiffness does not follow axial "
+                "forces, so that it buckles at wrong loads. Use a Beam"
+            )
         self.n = self.placed.structure.n
-        self.scale = scales(self.placed)[: self.n] * np.sqrt(self.n)  # the root mean square of the coordinates
+        self.scale = _sizes(self.placed) * np.sqrt(self.n)  # the root mean square of the coordinates
 
     def lowered(self, load: float) -> Lowered:
         """The mechanism at a load."""
@@ -207,66 +257,51 @@ class _Follower:
         along[-1] = 1.0
         return self._at(self.placed, self.start, x, along)
 
-    def follow(self, point: _Point) -> Iterator[_Point]:
-        """Points of the path until the load reaches its end."""
-        step = self.length
-        while True:
-            moved = self._corrected(point, step)
-            while moved is None:
-                step /= 2
-                if step < _SHORTEST * self.length:
-                    raise SolveError(
-                        f"the path of equilibria ends at the load {point.load:.6g}: no equilibrium was found beyond. "
-                        "Another path may cross it there; begin at another load, or add an imperfection"
-                    )
-                moved = self._corrected(point, step)
-            following, iterations = moved
-            if (following.load - self.end) * self.range >= 0.0:
-                # A step that ends at the load itself.
-                last = self._at_load(point, following)
-                yield following if last is None else last
-                return
-            yield following
-            point = following
-            if (point.load - self.start) / self.range < -2.0:
-                return
-            grown = float(np.clip((_FEW_ITERATIONS / iterations) ** 0.5, 0.5, 1.5))
-            step = min(step * grown, _LONGEST * self.length)
+    def following(self, point: _Point) -> tuple[_Point, str]:
+        """The next point of the path, and whether it ends there: "end", "away", or "points" where it does not."""
+        while (moved := self._corrected(point, self.step)) is None:
+            self.step /= 2
+            if self.step < _SHORTEST * self.length:
+                raise SolveError(
+                    f"the path of equilibria ends at the load {point.load:.6g}: no equilibrium was found beyond. "
+                    "Another path may cross it there; begin at another load, or add an imperfection"
+                )
+        following, iterations = moved
+        grown = float(np.clip((_FEW_ITERATIONS / iterations) ** 0.5, 0.5, 1.5))
+        self.step = min(self.step * grown, _LONGEST * self.length)
+        if (following.load - self.end) * self.range >= 0.0:
+            return self._at_load(point, following) or following, "end"
+        return following, "away" if (following.load - self.start) / self.range < -_FAR else "points"
 
     def between(self, first: _Point, second: _Point) -> list[CriticalPoint]:
         """Points between two others at which a stiffness vanishes."""
-        lower_count, higher = sorted((first.negatives, second.negatives))
+        fewest, most = sorted((first.stability.negatives, second.stability.negatives))
         turns = first.direction[-1] * second.direction[-1] < 0.0
-        way = self._way(first, second)
-        critical = []
-        for number in range(lower_count, higher):
+        return [self._zero(first, second, number, turns and most == fewest + 1) for number in range(fewest, most)]
 
-            def stiffness(step: float, number: int = number) -> float:
-                moved = self._corrected(first, step) if step > 0.0 else (first, 0)
-                if moved is None:
-                    raise SolveError(
-                        f"the point without stiffness near the load {first.load:.6g} was not found. Use more steps"
-                    )
-                return moved[0].eigenvalues[number]
-
-            end = self._step_to(first, second, way)
-            if stiffness(0.0) * stiffness(end) < 0.0:
-                place = root_scalar(stiffness, bracket=(0.0, end), xtol=1e-9 * way).root
-            else:  # one of the two points is the critical one, to rounding
-                place = min((0.0, end), key=lambda step: abs(stiffness(step)))
-            point = moved[0] if place and (moved := self._corrected(first, place)) else first
-            critical.append(self._critical(point, number, turns and higher - lower_count == 1))
-        return critical
-
-    def _way(self, first: _Point, second: _Point) -> float:
-        """Distance of two points."""
-        gap = (second.x[: self.n] - first.x[: self.n]) / self.scale
-        return float(np.sqrt(gap @ gap + ((second.load - first.load) / self.range) ** 2))
-
-    def _step_to(self, first: _Point, second: _Point, way: float) -> float:
-        """Step along the direction of the first point that leads to the second one."""
+    def _zero(self, first: _Point, second: _Point, number: int, turns: bool) -> CriticalPoint:
+        """The point at which an eigenvalue is zero, by steps along the direction of the first point."""
         gap = np.append((second.x[: self.n] - first.x[: self.n]) / self.scale, (second.load - first.load) / self.range)
-        return max(float(first.direction @ gap), 1e-3 * way)
+        way = float(first.direction @ gap)
+        known = {0.0: first, way: second}
+
+        def stiffness(step: float) -> float:
+            if step not in known:
+                # At a branch point the direction is anyone's choice.
+                moved = self._corrected(first, step, least=-1.0)
+                if moved is None:
+                    raise _LostError
+                known[step] = moved[0]
+            return float(known[step].stability.squares[number])
+
+        width = 0.0
+        if stiffness(0.0) * stiffness(way) < 0.0:  # else one of the two points is the critical one, to rounding
+            try:
+                root_scalar(stiffness, bracket=(0.0, way), xtol=1e-9 * way)
+            except _LostError:
+                width = abs(second.load - first.load)
+        best = min(known.values(), key=lambda point: abs(point.stability.squares[number]))
+        return self._critical(best, number, turns, width)
 
     def _bordered(self, matrix: csr_matrix, by_load: np.ndarray, direction: np.ndarray) -> csr_matrix:
         """Newton's matrix with the derivative by the load, and the plane across the direction, (N + 1, N + 1)."""
@@ -278,31 +313,40 @@ class _Follower:
     def _by_load(self, lowered: Lowered, load: float, x: np.ndarray) -> np.ndarray:
         """Derivative of the forces by the load, (N,)."""
         h = _DIFFERENCE * self.range
-        return (self.forces(self.lowered(load + h), x) - self.forces(lowered, x)) / h
+        return (self.forces(lowered, x) - self.forces(self.lowered(load - h), x)) / h
 
-    def _corrected(self, point: _Point, step: float) -> tuple[_Point, int] | None:
-        """The point of the path in the plane across the direction, a step ahead, and Newton's iterations."""
+    def _corrected(self, point: _Point, step: float, least: float = _LEAST_COSINE) -> tuple[_Point, int] | None:
+        """The point of the path in the plane across the direction, a step ahead, and Newton's iterations.
+
+        None where there is none near, or where the path turns by a smaller cosine than ``least``.
+        """
         x, load = point.x.copy(), point.load + step * point.direction[-1] * self.range
-        x[: self.n] += step * point.direction[:-1] * self.scale
+        x[:-1] += step * point.rates
+        aim, ahead = load, x.copy()
         lowered = self.lowered(load)
         mixed = MixedPoints(lowered)
         for iteration in range(1, _MOST_ITERATIONS + 1):
-            still = np.zeros_like(x)
-            matrix = self._bordered(
-                tangent(mixed.lowered, x, still, (1.0, 0.0, 0.0)), self._by_load(lowered, load, x), point.direction
-            )
-            change = _solved(matrix, np.append(-self.forces(lowered, x), 0.0))
-            if change is None:
-                return None
-            size = np.abs(change[: self.n] / self.scale).max(initial=abs(change[-1] / self.range))
-            if not size < 10.0 * max(step, self.length):
-                return None
-            mixed.step(x, change[:-1])
-            x[:-1] += change[:-1]
-            load += change[-1]
-            lowered = self.lowered(load)
+            by_load, left = self._by_load(lowered, load, x), self.forces(lowered, x)
+            size = 0.0
+            # Near a branch point a step would only magnify the rounding of forces that are in balance.
+            if np.abs(left).max() > _BALANCED * np.abs(by_load * self.range).max():
+                matrix = tangent(mixed.lowered, x, np.zeros_like(x), (1.0, 0.0, 0.0))
+                change = _solved(self._bordered(matrix, by_load, point.direction), np.append(-left, 0.0))
+                if change is None:
+                    return None
+                size = np.abs(change[: self.n] / self.scale).max(initial=abs(change[-1] / self.range))
+                if not size < 10.0 * max(step, self.length):
+                    return None
+                mixed.step(x, change[:-1])
+                x[:-1] += change[:-1]
+                load += change[-1]
+                lowered = self.lowered(load)
             if size < _CLOSED:
-                return self._at(lowered, load, x, point.direction), iteration
+                gap = (x[: self.n] - ahead[: self.n]) / self.scale
+                moved = self._at(lowered, load, x, point.direction)
+                near = np.sqrt(gap @ gap + ((load - aim) / self.range) ** 2) <= _FARTHEST * step
+                turned = moved.direction @ point.direction < least
+                return (moved, iteration) if near and not turned else None
         return None
 
     def _at_load(self, point: _Point, beyond: _Point) -> _Point | None:
@@ -324,30 +368,24 @@ class _Follower:
         matrix = tangent(lowered, x, np.zeros_like(x), (1.0, 0.0, 0.0))
         by_load = self._by_load(lowered, load, x)
         way = _solved(self._bordered(matrix, by_load, before), np.append(0.0 * by_load, 1.0))
-        if way is None:
-            direction = before
-        else:
-            direction = np.append(way[: self.n] / self.scale, way[-1] / self.range)
-            direction = direction / np.linalg.norm(direction)
-        return _Point(load, x, direction, self._stiffness(matrix)[0])
+        if way is None:  # at a branch point: as before, without a change of multipliers
+            way = np.append(0.0 * by_load, before[-1] * self.range)
+            way[: self.n] = before[:-1] * self.scale
+        direction = np.append(way[: self.n] / self.scale, way[-1] / self.range)
+        length = np.linalg.norm(direction)
+        stable = stability(lowered, x, self.scale, self.softest)
+        if not self.softest:
+            self.softest = 1.0 / float(np.abs(stable.squares).min(initial=np.inf))
+        return _Point(load, x, direction / length, way[:-1] / length, stable)
 
-    def _stiffness(self, matrix: csr_matrix) -> tuple[np.ndarray, np.ndarray]:
-        """Eigenvalues of the scaled stiffness on free motions, ascending, and these motions (n, free)."""
-        full, n = matrix.toarray(), self.n
-        free = null_space(full[n:, :n] * self.scale) if len(full) > n else np.eye(n)
-        free = self.scale[:, None] * free
-        own = free.T @ full[:n, :n] @ free
-        # In units of the diagonal: stretch and bending of slender beams differ by powers of ten.
-        size = np.sqrt(np.maximum(np.abs(np.diagonal(own)), 1e-14 * np.abs(own).max(initial=1e-300)))
-        values, vectors = eigh((own + own.T) / (2.0 * np.outer(size, size)))
-        return values, free @ (vectors / size[:, None])
-
-    def _critical(self, point: _Point, number: int, turns: bool) -> CriticalPoint:
-        matrix = tangent(self.lowered(point.load), point.x, np.zeros_like(point.x), (1.0, 0.0, 0.0))
+    def _critical(self, point: _Point, number: int, turns: bool, gap: float) -> CriticalPoint:
         shape = np.zeros_like(point.x)
-        shape[: self.n] = self._stiffness(matrix)[1][:, number]
+        shape[: self.n] = point.stability.motions[:, number]
         shape /= shape[np.argmax(np.abs(shape))]
-        return CriticalPoint(point.load, "limit" if turns else "branch", point.x, shape)
+        kind = "limit" if turns else "branch"
+        if point.stability.asymmetry > _ASYMMETRY:
+            kind = "symmetric part"
+        return CriticalPoint(point.load, kind, point.x, shape, gap)
 
 
 def _solved(matrix: csr_matrix, rhs: np.ndarray) -> np.ndarray | None:

@@ -75,7 +75,7 @@ class ReducedBody(Body):
     (('centre', 'foot', 'tip'), 46)
     """
 
-    has_motion_findings = True
+    has_motion_findings, buckles = True, False
     modes: FreeBodyModes = field(metadata={"table": "FreeBodyModes"})
     position: Place = field(default=(0.0, 0.0, 0.0), metadata={"unit": "m", "shape": (3,)})
     orientation: Orientation = Orientation()

@@ -25,12 +25,13 @@ class Homogeneous(Checked, Written):
     density: Number = number("kg/m**3", above=0)
     interfaces: Mapping[str, str | list[str]] = field(default_factory=dict)
     modes: int = 12
+    element: str | None = None
     gauges: Mapping[str, list[list[float]]] = field(default_factory=dict)
 
     @property
     @abstractmethod
     def source(self) -> tuple[Any, ...]:
-        """What the mesh is made of: a path, or a size and numbers of elements."""
+        """What the mesh is made of: a path and its time, or a size and numbers of elements."""
 
     @property
     def value(self) -> FreeBodyModes:
@@ -40,7 +41,7 @@ class Homogeneous(Checked, Written):
             if [len(end) for end in ends] != [3, 3]:
                 raise InputError(f"gauge {name!r} is {shown(ends)}; expected the positions of its two ends, in m")
         gauges = tuple((name, tuple(map(tuple, ends))) for name, ends in self.gauges.items())
-        unit = _unit_modes(self.source, float(self.poisson_ratio), nodes, self.modes, gauges)
+        unit = _unit_modes(self.source, float(self.poisson_ratio), nodes, self.modes, gauges, self.element)
         return unit.scaled(self.youngs_modulus, self.density)
 
 
@@ -62,6 +63,8 @@ class BoxBody(Homogeneous):
         Interface nodes: each is tied to the nodes of a side: left, right (x), front, back (y), bottom, top (z).
     modes : int
         Number of modes beside the static shapes.
+    element : str, optional
+        Kind of element, as of :func:`dalembert.structure.solid`.
     gauges : mapping of str to two (float, float, float)
         Strain gauges for sensors: positions of their ends, m; the nearest nodes are taken.
     """
@@ -91,6 +94,8 @@ class MeshBody(Homogeneous):
         Interface nodes: each is tied to nodes of the mesh, or to its named sets.
     modes : int
         Number of modes beside the static shapes.
+    element : str, optional
+        Kind of element, as of :func:`dalembert.structure.solid`.
     gauges : mapping of str to two (float, float, float)
         Strain gauges for sensors: positions of their ends, m; the nearest nodes are taken.
     """
@@ -100,7 +105,7 @@ class MeshBody(Homogeneous):
 
     @property
     def source(self) -> tuple[Any, ...]:
-        return (str(self.mesh),)
+        return str(self.mesh), self.mesh.stat().st_mtime_ns  # a mesh that was edited is another one
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -128,12 +133,18 @@ class FunctionBody(Checked, Written):
 
 @cache
 def _unit_modes(
-    source: tuple[Any, ...], poisson_ratio: float, interfaces: tuple[Any, ...], modes: int, gauges: tuple[Any, ...]
+    source: tuple[Any, ...],
+    poisson_ratio: float,
+    interfaces: tuple[Any, ...],
+    modes: int,
+    gauges: tuple[Any, ...],
+    element: str | None,
 ) -> Any:
     """Modes of a body with a Young's modulus and a density of 1."""
     from dalembert.structure import Material, box, free_body_modes, solid, strain_between
 
-    structure = solid(source[0] if len(source) == 1 else box(*source), Material(1.0, poisson_ratio, 1.0))
+    mesh = source[0] if isinstance(source[0], str) else box(*source)
+    structure = solid(mesh, Material(1.0, poisson_ratio, 1.0), element)
     nodes: Any = structure.nodes
     recovery = {name: strain_between(structure, *map(nodes.nearest, ends)) for name, ends in gauges}
     return free_body_modes(structure, dict(interfaces), modes, recovery)

@@ -27,6 +27,8 @@ AREAS = {
         (
             "Beams",
             "Beams in space",
+            "Reduced bodies in space",
+            "Equilibria along a load",
             "Beams without locking",
             "Flexible mechanisms",
             "Gears and bushings",

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg import eigh, null_space
 
 from dalembert.arguments import array_of, is_number, takes_checked
-from dalembert.errors import InputError, shown
+from dalembert.errors import InputError, SolveError, shown
 from dalembert.structure.craig_bampton import held_basis, kept_basis
 from dalembert.structure.eigenmodes import EigenModes, eigenmodes
 from dalembert.structure.free_body_rows import Rows, integrals, mass_properties, node_shapes, require_free, rows_of
@@ -284,7 +284,14 @@ def _shapes(structure: Structure, rows: Rows, ties: Sequence[Tie], modes: int) -
     whole, spread = tied(structure, ties, length)
     mass, stiffness = whole.mass, whole.stiffness
     inner, masters = np.split(np.arange(whole.size), [-6 * len(ties)])  # interface nodes stand last
-    held = held_basis(whole, masters, inner, min(modes - modes // 2, len(inner)))
+    try:
+        held = held_basis(whole, masters, inner, min(modes - modes // 2, len(inner)))
+    except SolveError:
+        raise SolveError(
+            "free_body_modes: the structure can move without strains while its interface nodes are held: a part is "
+            "loose, or elements have motions without energy, as a row of single bricks has. Connect the part, or take "
+            'two bricks across or element="brick 27"'
+        ) from None
     rigid = held @ rigid_coordinates(ties, held.shape[1], length)
     # The lowest modes of the free body: rigid ones are among them, and those above a low shift are the lowest elastic.
     estimate = _elastic_modes(held, mass, stiffness, rigid).frequencies[0]

@@ -241,7 +241,7 @@ def test_messages(bar: Structure) -> None:
     uneven = replace(uneven, mass=np.diag([1.0, 2.0, 1.0] * 4))
     with pytest.raises(InputError, match="4, 8, 4 kg along x, y and z; expected the same positive mass"):
         free_body_modes(uneven, {"a": ["0", "1", "2"]})
-    with pytest.raises(SolveError, match="stiffness with the masters held"):
+    with pytest.raises(SolveError, match="can move without strains while its interface nodes are held"):
         free_body_modes(masses_in_space(corners, []), {"a": ["0", "1", "2"]})
 
 

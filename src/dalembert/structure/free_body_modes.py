@@ -319,8 +319,8 @@ def _independent(motions: np.ndarray, metric: Any) -> np.ndarray:
 
 def _elastic_modes(basis: np.ndarray, mass: Any, stiffness: Any, rigid: np.ndarray) -> EigenModes:
     """Modes without momentum in the span of a basis (n, -) that has the rigid motions (n, 6): shapes (n, - - 6)."""
-    # Rigid motions are projected out by the mass, not told apart by their frequency: the axes are mean axes to
-    # rounding, and modes of low frequencies stay.
+    # The mass projects rigid motions out, not a limit of the frequency: the axes are mean axes to rounding, and modes
+    # of low frequencies stay.
     basis = basis / np.sqrt(np.einsum("ij,ij->j", basis, mass @ basis))  # displacements and rotations alike
     momenta = (mass @ rigid).T @ basis
     others = basis @ null_space(momenta / np.linalg.norm(momenta, axis=1)[:, None])

@@ -95,8 +95,8 @@ class Trajectory(Summarised):
         of_motion = [*start_findings(self.system, self.lowered, states.x[0]), *skipped, *held]
         for body in self.system.bodies:
             if body.has_motion_findings:
-                own = slice(first[body.name], first[body.name] + body.size)
-                of_motion += body.motion_findings(self.run.times, states.x[:, own], states.v[:, own])
+                slots = slice(first[body.name], first[body.name] + body.size)
+                of_motion += body.motion_findings(self.run.times, states.x[:, slots], states.v[:, slots])
         if not (joints or bushings):
             return (*self.system.findings, *of_motion)
         names = [f"{name}.{own.channel}" for name, own in joints.items()]

@@ -103,8 +103,8 @@ class EquilibriumPath:
         for load, x in zip(self.loads, self.x, strict=True):
             system, still = self.build(float(load)), np.zeros((1, len(x)))
             lowered = lower(system)
-            own = observer(system, lowered, names)
-            values.append(own.read(lowered, lowered.real, (x[None], still, still), np.zeros(1))[0])
+            readers = observer(system, lowered, names)
+            values.append(readers.read(lowered, lowered.real, (x[None], still, still), np.zeros(1))[0])
         return np.array(values)
 
 
@@ -136,7 +136,7 @@ def equilibrium_path(
     InputError
         For a range without a length, and for reduced bodies: their bending stiffness does not follow axial forces.
     SolveError
-        Where there is no equilibrium at the start, or the path cannot be followed from there.
+        Where no equilibrium is found at the start, or at the end of the shortest step.
 
     References
     ----------
@@ -287,7 +287,7 @@ class _Follower:
 
         def stiffness(step: float) -> float:
             if step not in known:
-                # At a branch point the direction is anyone's choice.
+                # At a branch point the direction is arbitrary.
                 moved = self._corrected(first, step, least=-1.0)
                 if moved is None:
                     raise _LostError
@@ -343,10 +343,10 @@ class _Follower:
                 lowered = self.lowered(load)
             if size < _CLOSED:
                 gap = (x[: self.n] - ahead[: self.n]) / self.scale
+                if np.sqrt(gap @ gap + ((load - aim) / self.range) ** 2) > _FARTHEST * step:
+                    return None
                 moved = self._at(lowered, load, x, point.direction)
-                near = np.sqrt(gap @ gap + ((load - aim) / self.range) ** 2) <= _FARTHEST * step
-                turned = moved.direction @ point.direction < least
-                return (moved, iteration) if near and not turned else None
+                return (moved, iteration) if moved.direction @ point.direction >= least else None
         return None
 
     def _at_load(self, point: _Point, beyond: _Point) -> _Point | None:

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 import numpy as np
-from scipy.linalg import eigh, null_space
+from scipy.linalg import eigh
 from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import lsqr, splu
 
@@ -11,6 +11,7 @@ from dalembert.errors import ModelError, SolveError
 from dalembert.multibody.model.evaluate import residual, tangent
 from dalembert.multibody.model.lowered import Lowered, scales
 from dalembert.multibody.start.mixed_points import MixedPoints
+from dalembert.multibody.start.static_stability import free_motions
 
 _MOST_ITERATIONS = 30
 _LAST_ITERATIONS = 300  # where loads in steps lead nowhere, as a torque that rolls a beam up
@@ -58,7 +59,7 @@ def unstable_body(lowered: Lowered) -> str | None:
     n, (x, _) = lowered.structure.n, resting_place(lowered)
     matrix = tangent(lowered, x, np.zeros_like(x), (1.0, 0.0, 0.0)).toarray()
     scale = scales(lowered)[:n]
-    free = scale[:, None] * (null_space(matrix[n:, :n] * scale) if len(matrix) > n else np.eye(n))
+    free = free_motions(matrix, n, scale)
     stiffness = free.T @ matrix[:n, :n] @ free
     values, vectors = eigh((stiffness + stiffness.T) / 2)
     if len(values) == 0 or values[0] >= -_NEUTRAL * np.abs(values).max():

@@ -29,6 +29,13 @@ class Stability(NamedTuple):
         return int(np.sum(self.squares < 0.0))
 
 
+def free_motions(matrix: np.ndarray, n: int, scale: np.ndarray) -> np.ndarray:
+    """Return the motions (n, free) that the constraints leave free, by the tangent (N, N) and the size of each
+    coordinate (n,).
+    """
+    return scale[:, None] * (null_space(matrix[n:, :n] * scale) if len(matrix) > n else np.eye(n))
+
+
 def stability(lowered: Lowered, x: np.ndarray, scale: np.ndarray, softest: float = 0.0) -> Stability:
     """Return the stability of a state at rest ``x`` (N + 1,). ``scale`` (n,): size of each coordinate; ``softest``:
     compliance beside which motions count as stiff, s²; that of the softest motion here if zero.
@@ -39,7 +46,7 @@ def stability(lowered: Lowered, x: np.ndarray, scale: np.ndarray, softest: float
     n, still = lowered.structure.n, np.zeros_like(x)
     full = tangent(lowered, x, still, (1.0, 0.0, 0.0)).toarray()
     mass = tangent(lowered, x, still, (0.0, 0.0, 1.0)).toarray()[:n, :n]
-    free = scale[:, None] * (null_space(full[n:, :n] * scale) if len(full) > n else np.eye(n))
+    free = free_motions(full, n, scale)
     stiffness, mass = free.T @ full[:n, :n] @ free, free.T @ mass @ free
     symmetric = (stiffness + stiffness.T) / 2
     sizes, axes = eigh((mass + mass.T) / 2)

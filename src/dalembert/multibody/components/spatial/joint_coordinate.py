@@ -15,7 +15,7 @@ from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.base_body import ANGLE, DISPLACEMENT
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.spatial import spatial_pairs as pairs
-from dalembert.multibody.components.spatial.spatial_body import FREE, Body
+from dalembert.multibody.components.spatial.massless_coordinate import MasslessCoordinate
 from dalembert.multibody.components.spatial.spatial_joint import Joint, joint_displacement
 from dalembert.multibody.components.spatial.spatial_pairs import (
     e1,
@@ -135,16 +135,13 @@ class Paired(Protocol):
 
 
 @dataclass(frozen=True)
-class JointCoordinate(Body):
+class JointCoordinate(MasslessCoordinate):
     """A coordinate without mass that is the counted angle of a joint, or its displacement.
-
-    Components that need one return it in their ``coordinates``; no one adds it to a system.
 
     ``within`` (float, float): the angle at the start is counted from a turn that puts it between these, rad; if none
     does, it is the one nearest to their middle.
     """
 
-    turns = False
     joint: Paired
     coordinate: str = ANGLE
     within: tuple[float, float] = (-np.pi, np.pi)
@@ -160,16 +157,8 @@ class JointCoordinate(Body):
         return pair.angle + 2.0 * np.pi * _turns(np.real(pair.angle), *self.within), 0.0, 0.0
 
     @property
-    def motion(self) -> tuple[Number | None, ...]:
-        return *FREE, *FREE
-
-    @property
     def coordinate_kinds(self) -> tuple[str, ...]:
         return (self.coordinate,)
-
-    @property
-    def point_names(self) -> tuple[str, ...]:
-        return ()
 
     def placed(self, frame: np.ndarray) -> np.ndarray:
         return frame[:1]
@@ -177,13 +166,7 @@ class JointCoordinate(Body):
     def rigid_modes(self, coordinates: np.ndarray, frame: np.ndarray) -> np.ndarray:
         return np.eye(1, 6, dtype=np.result_type(coordinates, frame))
 
-    def marker(self, point: str) -> Any:
-        raise NotImplementedError  # it has no points
-
     def lower(self, lowering: SpatialRows, first: int) -> None:
         pair = self.joint.pair(lowering)
         index = [*pair.slots, first, *lowering.multipliers(self.name, 1)]
         lowering.add(TIES[self.coordinate], index, pair.data, pair.integers)
-
-    def outline(self, coordinates: np.ndarray, points: int) -> np.ndarray:
-        return np.zeros((len(coordinates), 0, 3))

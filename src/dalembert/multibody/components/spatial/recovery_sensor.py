@@ -10,11 +10,10 @@ import numpy as np
 from dalembert.errors import InputError, require_known
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.base_body import DISPLACEMENT
-from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.points import Point
 from dalembert.multibody.components.spatial.kinds import no_energy, no_residual
+from dalembert.multibody.components.spatial.massless_coordinate import MasslessCoordinate
 from dalembert.multibody.components.spatial.reduced_body import ReducedBody
-from dalembert.multibody.components.spatial.spatial_body import FREE, Body
 from dalembert.multibody.components.spatial.spatial_load import Load
 from dalembert.multibody.components.spatial.spatial_markers import SLOTS
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
@@ -53,26 +52,16 @@ SENSOR = Kind(
 
 
 @dataclass(frozen=True)
-class RecoveredCoordinate(Body):
-    """A coordinate without mass, the value of a sensor over its scale; the sensor has it in its ``coordinates``."""
-
-    turns = False
+class RecoveredCoordinate(MasslessCoordinate):
+    """The value of a sensor over its scale."""
 
     @property
     def place(self) -> Any:
         return (0.0, 0.0, 0.0)
 
     @property
-    def motion(self) -> tuple[Number | None, ...]:
-        return *FREE, *FREE
-
-    @property
     def coordinate_kinds(self) -> tuple[str, ...]:
         return (DISPLACEMENT,)
-
-    @property
-    def point_names(self) -> tuple[str, ...]:
-        return ()
 
     def placed(self, frame: np.ndarray) -> np.ndarray:
         return np.zeros(1)
@@ -80,14 +69,8 @@ class RecoveredCoordinate(Body):
     def rigid_modes(self, coordinates: np.ndarray, frame: np.ndarray) -> np.ndarray:
         return np.zeros((1, 6))
 
-    def marker(self, point: str) -> Any:
-        raise NotImplementedError  # it has no points
-
     def lower(self, lowering: SpatialRows, first: int) -> None:
         """Nothing: the sensor writes the rows."""
-
-    def outline(self, coordinates: np.ndarray, points: int) -> np.ndarray:
-        return np.zeros((len(coordinates), 0, 3))
 
 
 @dataclass(frozen=True)
@@ -150,13 +133,16 @@ class RecoverySensor(Load):
 
     def lower(self, lowering: SpatialRows) -> None:
         body: Any = self.at.body
-        (begin, *_), (own, _) = lowering.pair(self.at, None, self.name).slots, lowering.coordinate(self.coordinates[0])
+        (begin, *_), (value, _) = (
+            lowering.pair(self.at, None, self.name).slots,
+            lowering.coordinate(self.coordinates[0]),
+        )
         assert begin is not None
         first = begin - SLOTS * body.node_number(self.at.name) + body.size - body.modes.count
         rows, factors = lowering.multipliers(self.name, 1), body.modes.recovery[self.quantity]
         # Newton's method compares the unknown with sizes of displacements: a stress in Pa would never settle.
         scale = float(np.linalg.norm(np.real(factors))) or 1.0
-        lowering.add(TERM, [own, *rows], [1.0])
+        lowering.add(TERM, [value, *rows], [1.0])
         for mode, factor in enumerate((factors / scale).tolist()):
             lowering.add(TERM, [first + mode, *rows], [-factor])
-        lowering.add(SENSOR, [own], [scale], name=self.name)
+        lowering.add(SENSOR, [value], [scale], name=self.name)

@@ -148,8 +148,8 @@ class ReducedBody(Body):
         for node in range(first, coordinates[0], markers.SLOTS):
             lowering.add(DIRECTORS, list(range(node + 3, node + 12)) + lowering.multipliers(self.name, 6), [])
         for a, eta in enumerate(coordinates):
-            own = modes.second[:, :, a, a][np.triu_indices(3)].tolist()
-            numbers = [*modes.first[:, :, a].ravel().tolist(), *own, *self._modal(a, a), *lowering.gravity]
+            products = modes.second[:, :, a, a][np.triu_indices(3)].tolist()
+            numbers = [*modes.first[:, :, a].ravel().tolist(), *products, *self._modal(a, a), *lowering.gravity]
             lowering.add(MODE, [*frame, eta], numbers)
             for b in range(a + 1, modes.count):
                 both = modes.second[:, :, a, b].ravel().tolist()

@@ -55,32 +55,37 @@ def _first_transposed(p, w0, w1, w2, w3):
 
 
 @inlined
-def _own(p, w1, w2, w3):
-    """Sums of g_ij w_j over j, of a mode with itself."""
-    return (
-        combined((p.g11, p.g12, p.g13), w1, w2, w3),
-        combined((p.g12, p.g22, p.g23), w1, w2, w3),
-        combined((p.g13, p.g23, p.g33), w1, w2, w3),
-    )
+def _own(p):
+    """Rows of g_ij, of a mode with itself."""
+    return (p.g11, p.g12, p.g13), (p.g12, p.g22, p.g23), (p.g13, p.g23, p.g33)
 
 
 @inlined
-def _both(p, w1, w2, w3):
-    """Sums of g_ij w_j over j: the second mode on the first."""
-    return (
-        combined((p.g11, p.g12, p.g13), w1, w2, w3),
-        combined((p.g21, p.g22, p.g23), w1, w2, w3),
-        combined((p.g31, p.g32, p.g33), w1, w2, w3),
-    )
+def _both(p):
+    """Rows of g_ij: the second mode on the first."""
+    return (p.g11, p.g12, p.g13), (p.g21, p.g22, p.g23), (p.g31, p.g32, p.g33)
 
 
 @inlined
-def _both_transposed(p, w1, w2, w3):
-    """Sums of g_ij w_i over i: the first mode on the second."""
+def _both_transposed(p):
+    """Rows of g_ji: the first mode on the second."""
+    return (p.g11, p.g21, p.g31), (p.g12, p.g22, p.g32), (p.g13, p.g23, p.g33)
+
+
+@inlined
+def _sums(rows, w):
+    """Sums of three vectors w_j by the rows of a matrix."""
+    w1, w2, w3 = w
+    return combined(rows[0], w1, w2, w3), combined(rows[1], w1, w2, w3), combined(rows[2], w1, w2, w3)
+
+
+@inlined
+def _mixed(a, v, b, w):
+    """a v_j + b w_j of three vectors each."""
     return (
-        combined((p.g11, p.g21, p.g31), w1, w2, w3),
-        combined((p.g12, p.g22, p.g32), w1, w2, w3),
-        combined((p.g13, p.g23, p.g33), w1, w2, w3),
+        plus(times(a, v[0]), times(b, w[0])),
+        plus(times(a, v[1]), times(b, w[1])),
+        plus(times(a, v[2]), times(b, w[2])),
     )
 
 
@@ -88,12 +93,6 @@ def _both_transposed(p, w1, w2, w3):
 def _triple(x, k):
     """The directors, their velocities or their accelerations from the slot ``k`` on."""
     return at(x, k), at(x, k + 3), at(x, k + 6)
-
-
-@inlined
-def _carried(eta, rate, v, a):
-    """eta d_j'' + 2 eta' d_j', for one director: what a mode's acceleration has without that of its coordinate."""
-    return plus(times(eta, a), times(2.0 * rate, v))
 
 
 @inlined
@@ -108,36 +107,31 @@ def _work(c, d):
 @inlined
 def _mode_residual(x, v, a, p, m, inputs, r):
     """Inertia with the terms of one mode, its stiffness and damping, and its weight."""
-    (d1, d2, d3), (v1, v2, v3), (a1, a2, a3) = _triple(x, 3), _triple(v, 3), _triple(a, 3)
+    directors, rates, seconds = _triple(x, 3), _triple(v, 3), _triple(a, 3)
     eta, rate, second = x[12], v[12], a[12]
-    # Acceleration by the mode, w_j = (eta d_j)'' without and with the coordinate's own acceleration.
-    c1, c2, c3 = _carried(eta, rate, v1, a1), _carried(eta, rate, v2, a2), _carried(eta, rate, v3, a3)
-    w1, w2, w3 = plus(c1, times(second, d1)), plus(c2, times(second, d2)), plus(c3, times(second, d3))
-    fall = minus(at(a, 0), _gravity(p))
+    # Acceleration by the mode, w_j = (eta d_j)'', without and with that of the modal coordinate.
+    carried = _mixed(eta, seconds, 2.0 * rate, rates)
+    w1, w2, w3 = _mixed(1.0, carried, second, directors)
     n0, n1, n2, n3 = _first(p, w1, w2, w3)
-    b1, b2, b3 = _first_transposed(p, fall, a1, a2, a3)
-    g1, g2, g3 = _own(p, w1, w2, w3)
+    fall, (a1, a2, a3) = minus(at(a, 0), _gravity(p)), seconds
+    back = _first_transposed(p, fall, a1, a2, a3)
+    g1, g2, g3 = _mixed(eta, back, eta, _sums(_own(p), (w1, w2, w3)))
     add_at(r, 0, n0)
-    add_at(r, 3, plus(n1, times(eta, plus(b1, g1))))
-    add_at(r, 6, plus(n2, times(eta, plus(b2, g2))))
-    add_at(r, 9, plus(n3, times(eta, plus(b3, g3))))
+    add_at(r, 3, plus(n1, g1))
+    add_at(r, 6, plus(n2, g2))
+    add_at(r, 9, plus(n3, g3))
     # The directors are orthonormal: sum of g_ij d_i . d_j is the modal mass.
-    r[12] += _work((b1, b2, b3), (d1, d2, d3)) + _work(_own(p, c1, c2, c3), (d1, d2, d3))
+    r[12] += _work(back, directors) + _work(_sums(_own(p), carried), directors)
     r[12] += p.mass * second + p.damping * rate + p.stiffness * eta
 
 
 @inlined
 def _mode_energy(x, v, p, m, inputs):
     directors, rates = _triple(x, 3), _triple(v, 3)
-    (d1, d2, d3), (v1, v2, v3) = directors, rates
     eta, rate = x[12], v[12]
-    y1, y2, y3 = (
-        plus(times(rate, d1), times(eta, v1)),
-        plus(times(rate, d2), times(eta, v2)),
-        plus(times(rate, d3), times(eta, v3)),
-    )
+    y1, y2, y3 = _mixed(rate, directors, eta, rates)
     n0, n1, n2, n3 = _first(p, y1, y2, y3)
-    turning = _own(p, v1, v2, v3)
+    turning, (d1, d2, d3) = _sums(_own(p), rates), directors
     kinetic = dot(at(v, 0), n0) + _work((n1, n2, n3), rates)
     kinetic += 0.5 * p.mass * rate * rate + eta * rate * _work(turning, directors)
     kinetic += 0.5 * eta * eta * _work(turning, rates)
@@ -164,37 +158,30 @@ MODE = Kind(
 @inlined
 def _pair_residual(x, v, a, p, m, inputs, r):
     """Inertia with the terms of two modes at once, and what couples their coordinates."""
-    directors, (v1, v2, v3), (a1, a2, a3) = _triple(x, 0), _triple(v, 0), _triple(a, 0)
-    d1, d2, d3 = directors
+    directors, rates, seconds = _triple(x, 0), _triple(v, 0), _triple(a, 0)
     eta, rate, second = x[9], v[9], a[9]
     other, other_rate, other_second = x[10], v[10], a[10]
-    c1, c2, c3 = _carried(eta, rate, v1, a1), _carried(eta, rate, v2, a2), _carried(eta, rate, v3, a3)
-    e1, e2, e3 = (
-        _carried(other, other_rate, v1, a1),
-        _carried(other, other_rate, v2, a2),
-        _carried(other, other_rate, v3, a3),
-    )
-    on_first = _both(p, e1, e2, e3)
-    on_second = _both_transposed(p, c1, c2, c3)
-    f1, f2, f3 = _both(p, times(other_second, d1), times(other_second, d2), times(other_second, d3))
-    h1, h2, h3 = _both_transposed(p, times(second, d1), times(second, d2), times(second, d3))
-    k1, k2, k3 = on_first
-    l1, l2, l3 = on_second
-    add_at(r, 0, plus(times(eta, plus(k1, f1)), times(other, plus(l1, h1))))
-    add_at(r, 3, plus(times(eta, plus(k2, f2)), times(other, plus(l2, h2))))
-    add_at(r, 6, plus(times(eta, plus(k3, f3)), times(other, plus(l3, h3))))
-    r[9] += _work(on_first, directors) + p.mass * other_second + p.damping * other_rate + p.stiffness * other
-    r[10] += _work(on_second, directors) + p.mass * second + p.damping * rate + p.stiffness * eta
+    first_carried = _mixed(eta, seconds, 2.0 * rate, rates)
+    second_carried = _mixed(other, seconds, 2.0 * other_rate, rates)
+    on_first = _sums(_both(p), _mixed(1.0, second_carried, other_second, directors))
+    on_second = _sums(_both_transposed(p), _mixed(1.0, first_carried, second, directors))
+    f1, f2, f3 = _mixed(eta, on_first, other, on_second)
+    add_at(r, 0, f1)
+    add_at(r, 3, f2)
+    add_at(r, 6, f3)
+    r[9] += _work(_sums(_both(p), second_carried), directors)
+    r[9] += p.mass * other_second + p.damping * other_rate + p.stiffness * other
+    r[10] += _work(_sums(_both_transposed(p), first_carried), directors)
+    r[10] += p.mass * second + p.damping * rate + p.stiffness * eta
 
 
 @inlined
 def _pair_energy(x, v, p, m, inputs):
     directors, rates = _triple(x, 0), _triple(v, 0)
-    v1, v2, v3 = rates
     eta, rate, other, other_rate = x[9], v[9], x[10], v[10]
-    turning = _both(p, v1, v2, v3)
+    turning = _sums(_both(p), rates)
     kinetic = p.mass * rate * other_rate + rate * other * _work(turning, directors)
-    kinetic += eta * other_rate * _work(_both_transposed(p, v1, v2, v3), directors)
+    kinetic += eta * other_rate * _work(_sums(_both_transposed(p), rates), directors)
     kinetic += eta * other * _work(turning, rates)
     return kinetic, p.stiffness * eta * other, -2.0 * p.damping * rate * other_rate
 

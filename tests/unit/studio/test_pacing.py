@@ -1,49 +1,75 @@
 """Work that is repeated: for the newest state alone, or in a part of the time."""
 
 import asyncio
+from types import SimpleNamespace
 
 import pytest
 
 from dalembert.studio.pacing import Latest, Throttle
 
 
-@pytest.mark.parametrize("pause", [0.0, 0.001])
-def test_requests_during_the_work_become_one_more_turn(monkeypatch, pause):
-    state, seen = [0], []
+@pytest.fixture(autouse=True)
+def tasks(monkeypatch):
+    """Tasks in the background are those of the test's event loop."""
+    monkeypatch.setattr("nicegui.background_tasks.create", asyncio.ensure_future)
 
-    async def work():
-        seen.append(state[0])
-        await asyncio.sleep(0.01)
+
+async def idle() -> None:
+    """Let all tasks go on until each of them waits."""
+    for _ in range(20):
+        await asyncio.sleep(0.0)
+
+
+def test_requests_during_the_work_become_one_more_turn():
+    seen = []
 
     async def changes():
-        latest = Latest(work, pause)
-        for wait in (0.0, 0.005, 0.0, 0.05):
-            state[0] += 1
-            latest()
-            await asyncio.sleep(wait)
+        state, done = 0, asyncio.Event()
 
-    monkeypatch.setattr("nicegui.background_tasks.create", asyncio.ensure_future)
+        async def work():
+            seen.append(state)
+            await done.wait()
+
+        latest = Latest(work)
+        for state in range(1, 5):  # noqa: B007 - the work reads it
+            latest()
+            await idle()
+        done.set()
+        await idle()
+
     asyncio.run(changes())
-    assert seen == [1, 4] if pause == 0 else seen[-1] == 4
+    assert seen == [1, 4]
 
 
 def test_the_work_waits_for_a_pause(monkeypatch):
-    state, seen = [0], []
+    seen, pauses = [], []
 
-    async def work():
-        seen.append(state[0])
+    async def sleep(seconds):
+        pauses.append((seconds, asyncio.Event()))
+        await pauses[-1][1].wait()
+
+    monkeypatch.setattr("dalembert.studio.pacing.asyncio", SimpleNamespace(sleep=sleep))
 
     async def changes():
-        latest = Latest(work, 0.1)
-        for _ in range(5):
-            state[0] += 1
-            latest()
-            await asyncio.sleep(0.002)
-        await asyncio.sleep(0.5)
+        state = 0
 
-    monkeypatch.setattr("nicegui.background_tasks.create", asyncio.ensure_future)
+        async def work():
+            seen.append(state)
+
+        latest = Latest(work, 0.1)
+        for state in range(1, 6):  # noqa: B007 - the work reads it
+            latest()
+            await idle()
+        assert seen == []
+        pauses[0][1].set()  # requests came meanwhile, so that another pause begins
+        await idle()
+        assert seen == []
+        pauses[1][1].set()
+        await idle()
+
     asyncio.run(changes())
     assert seen == [5]
+    assert [seconds for seconds, _ in pauses] == [0.1, 0.1]
 
 
 def test_work_waits_until_it_takes_its_part_of_the_time() -> None:

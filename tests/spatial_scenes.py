@@ -260,6 +260,26 @@ def beam(degree: int = 2) -> Callable[..., sp.SpatialSystem]:
     return build
 
 
+def cable(angles, push, **fields) -> sp.SpatialSystem:
+    """A soft cable that swings from the end of a rod; both its ends are clamped, the other one at a second rod."""
+    system = sp.SpatialSystem()
+    rod = system.add(
+        sp.RigidBody("rod", sp.Inertia.box(1.3, (0.1, 0.2, 0.5)), points={"end": (0.1, 0.0, -0.4)}, anchor="end")
+    )
+    system.add(sp.SphericalJoint("hold", system.ground.point((0.0, 0.0, 0.0)), rod.point("end")))
+    own = system.add(
+        sp.Cable("part", elements=2, position=rod.point("end"), orientation=by_angles(angles), **fields)
+    )
+    bob = system.add(
+        sp.RigidBody("bob", sp.Inertia.box(0.4, (0.1, 0.1, 0.1)), own.end, by_angles(angles), anchor="origin")
+    )
+    system.add(sp.SphericalJoint("eye", rod.point("end"), own.start))
+    system.add(sp.FixedJoint("clamp", own.end, bob.point("origin")))
+    system.add(sp.CableSensor("gauge", own.node(1)))
+    system.add(sp.LineForce("push", own.end, *push))
+    return system
+
+
 def reduced(near, far, stiffness, coupling, damping, friction, angles, corner, **fields) -> sp.SpatialSystem:
     """A reduced body of six masses with three modes, which swings from a ball joint and has a corner."""
     rng = np.random.default_rng(5)
@@ -357,6 +377,22 @@ BEAM = {
 
 SCENES: dict[str, Scene] = {
     "beam": (beam(), BEAM),
+    "cable": (
+        cable,
+        {
+            "angles": (0.3, 0.9, -0.2),
+            "push": (-0.3, 0.6, 0.2),
+            "length": 0.8,
+            "axial_stiffness": 90.0,
+            "mass_per_length": 2.0,
+            "bending_stiffness": 0.3,
+            "span": 0.7,
+            "prestrain": 0.02,
+            "angular_velocity": (0.8, -0.5, 0.6),
+            "damping": 0.02,
+            "mass_damping": 0.1,
+        },
+    ),
     "reduced body": (
         reduced,
         {

@@ -80,6 +80,8 @@ SPATIAL_HOMES = {
     "BeamSensor": "components.spatial.beam_sensor",
     "Body": "components.spatial.spatial_body",
     "Bushing": "components.spatial.spatial_bushing",
+    "Cable": "components.spatial.cable",
+    "CableSensor": "components.spatial.cable_sensor",
     "ConstantVelocityJoint": "components.spatial.universal_joint",
     "CouplingJoint": "components.spatial.coupling_joint",
     "CylindricalJoint": "components.spatial.cylindrical_joint",
@@ -125,7 +127,7 @@ SPATIAL_HOMES = {
 """Module in ``dalembert.multibody`` of each public name of ``dalembert.multibody.spatial``."""
 
 SPATIAL_KINDS = {
-    "Body": ("Beam", "PointMass", "ReducedBody", "RigidBody"),
+    "Body": ("Beam", "Cable", "PointMass", "ReducedBody", "RigidBody"),
     "Joint": (
         "ConstantVelocityJoint",
         "CouplingJoint",
@@ -148,6 +150,7 @@ SPATIAL_KINDS = {
         "Armature",
         "BeamSensor",
         "Bushing",
+        "CableSensor",
         "DisplacementLimit",
         "Force",
         "InertialSensor",

@@ -137,39 +137,39 @@ MECHANISMS = {
     ),
     "a point mass in a fixed joint": (
         sides(mb.FixedJoint, "mass", "end"),
-        "FixedJoint 'link': mass.centre is a point mass, which has no direction; use a revolute or distance joint, or "
+        "FixedJoint 'link': mass.centre has no direction; use a revolute or distance joint, or "
         "a rigid body",
     ),
     "a point mass in a slide": (
         sides(mb.PrismaticJoint, "ground", "mass"),
-        "PrismaticJoint 'link': mass.centre is a point mass, which has no direction; use a revolute or distance "
+        "PrismaticJoint 'link': mass.centre has no direction; use a revolute or distance "
         "joint, or a rigid body",
     ),
     "an angle of a point mass": (
         sides(mb.PrescribedMotion, "ground", "mass"),
-        "PrescribedMotion 'link': mass.centre is a point mass, which has no direction; use a revolute or distance "
+        "PrescribedMotion 'link': mass.centre has no direction; use a revolute or distance "
         "joint, or a rigid body",
     ),
     "friction on a point mass": (
         lambda: with_mass(lambda system, own, mass: mb.RevoluteJoint("link", own.end, mass.centre, viscous=0.1)),
-        "RevoluteJoint 'link': mass.centre is a point mass, which has no direction; use a rigid body where a joint has "
+        "RevoluteJoint 'link': mass.centre has no direction; use a rigid body where a joint has "
         "friction",
     ),
     "a torque on a point mass": (
         lambda: with_mass(lambda system, own, mass: mb.Torque("motor", mass.centre, 1.0)),
-        "torque 'motor': mass.centre is a point mass, which has no direction; use a force, or a rigid body",
+        "torque 'motor': mass.centre has no direction; use a force, or a rigid body",
     ),
     "a torque against a point mass": (
         lambda: with_mass(lambda system, own, mass: mb.Torque("motor", own.end, 1.0, against=mass.centre)),
-        "torque 'motor': mass.centre is a point mass, which has no direction; use a force, or a rigid body",
+        "torque 'motor': mass.centre has no direction; use a force, or a rigid body",
     ),
     "a torsion spring on a point mass": (
         lambda: with_mass(lambda system, own, mass: mb.TorsionSpring("coil", own.end, mass.centre, 1.0)),
-        "torsion spring 'coil': mass.centre is a point mass, which has no direction; use a spring, or a rigid body",
+        "torsion spring 'coil': mass.centre has no direction; use a spring, or a rigid body",
     ),
     "a force that follows a point mass": (
         lambda: with_mass(lambda system, own, mass: mb.Force("jet", mass.centre, x=1.0, follower=True)),
-        "follower force 'jet': mass.centre is a point mass, which has no direction; use a force that does not follow, "
+        "follower force 'jet': mass.centre has no direction; use a force that does not follow, "
         "or a rigid body",
     ),
     "a rod of no length": (

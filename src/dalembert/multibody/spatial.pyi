@@ -3,6 +3,8 @@ from dalembert.multibody.components.points import Point as Point
 from dalembert.multibody.components.spatial.armature import Armature as Armature
 from dalembert.multibody.components.spatial.beam import Beam as Beam
 from dalembert.multibody.components.spatial.beam_sensor import BeamSensor as BeamSensor
+from dalembert.multibody.components.spatial.cable import Cable as Cable
+from dalembert.multibody.components.spatial.cable_sensor import CableSensor as CableSensor
 from dalembert.multibody.components.spatial.coupling_joint import CouplingJoint as CouplingJoint
 from dalembert.multibody.components.spatial.coupling_joint import GearJoint as GearJoint
 from dalembert.multibody.components.spatial.coupling_joint import RackJoint as RackJoint

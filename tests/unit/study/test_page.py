@@ -96,7 +96,7 @@ TABLES = {
 }
 """Where the page tells of a table that is not one kind of several."""
 
-BODIES = {"AncfBeam", "AncfCable", "Beam", "ReducedBody", "RigidBar", "RigidBarBetween", "RigidBody", "PointMass"}
+BODIES = {"AncfBeam", "AncfCable", "Beam", "Cable", "ReducedBody", "RigidBar", "RigidBarBetween", "RigidBody", "PointMass"}
 JOINTS = {name.removeprefix("Spatial") for name in DEFINITIONS if name.endswith(("Joint", "PrescribedMotion"))}
 LOADS = {
     "Force",
@@ -111,6 +111,7 @@ LOADS = {
     "InertialSensor",
     "RelativeSensor",
     "BeamSensor",
+    "CableSensor",
     "RecoverySensor",
     "LineForce",
 }

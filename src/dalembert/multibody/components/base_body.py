@@ -36,6 +36,8 @@ class BaseBody(Checked):
     """Whether a motion may have findings on the body."""
     turns: ClassVar[bool] = True
     """Whether the body has a direction."""
+    has_axes: ClassVar[bool] = True
+    """Whether its points have axes."""
     sensor: ClassVar[Kind]
     without_axes: ClassVar[tuple[str, ...]]
     """Outputs of the sensor that a point without axes does not have."""
@@ -138,7 +140,7 @@ class BaseBody(Checked):
     @property
     def point_outputs(self) -> tuple[tuple[str, str], ...]:
         """Names and units of the channels of a point."""
-        return tuple(entry for entry in self.sensor.outputs if self.turns or entry[0] not in self.without_axes)
+        return tuple(entry for entry in self.sensor.outputs if self.has_axes or entry[0] not in self.without_axes)
 
     def point(self, name: str) -> Point:
         """The point of this name."""

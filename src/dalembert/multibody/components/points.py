@@ -18,8 +18,8 @@ class Carrier(Protocol):
         """Of the body."""
         ...
 
-    turns: ClassVar[bool]
-    """Whether it has a direction."""
+    has_axes: ClassVar[bool]
+    """Whether its points have axes."""
 
     @property
     def rigid(self) -> bool:
@@ -70,10 +70,10 @@ class Ground:
 
 
 def require_direction(owner: str, advice: str, *sides: object) -> None:
-    """Refuse sides that have no direction: those of point masses."""
+    """Refuse sides that have no axes: points of point masses and of cables in space."""
     for side in sides:
-        if isinstance(side, Point) and not side.body.turns:
-            raise ModelError(f"{owner}: {side} is a point mass, which has no direction; use {advice}")
+        if isinstance(side, Point) and not side.body.has_axes:
+            raise ModelError(f"{owner}: {side} has no direction; use {advice}")
 
 
 #: Where a body may start: coordinates in m, or a point of a body that was added before, or of the ground.

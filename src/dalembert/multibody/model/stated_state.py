@@ -103,7 +103,7 @@ def _alone(system: Any, stated: Stated) -> list[tuple[str, str]]:
     mass to the rest has no angle of its bodies to keep.
     """
     coupled = {own.joint.name for joint in system.joints for own in joint.coordinates}
-    turning = {body.name for body in system.bodies if body.turns}
+    turning = {body.name for body in system.bodies if body.has_axes}
     ends = {joint.name: (_side(joint.a), _side(joint.b)) for joint in system.joints}
     found = []
     for joint in system.joints:

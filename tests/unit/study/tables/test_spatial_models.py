@@ -276,7 +276,7 @@ def wrong(path: Path) -> list[str]:
         (
             ("RigidBody", "RigidBar"),
             f"{HEAD}: 'RigidBar' is a planar component, and the model is in space (space = true); expected one of "
-            "Beam, PointMass, ReducedBody, RigidBody",
+            "Beam, Cable, PointMass, ReducedBody, RigidBody",
         ),
         ((INERTIA, "2"), f"{HEAD}, inertia: 2 was given; expected a table"),
         (

@@ -8,6 +8,7 @@ import numpy as np
 from dalembert.errors import InputError
 from dalembert.multibody.components.base_body import POSITION
 from dalembert.multibody.components.fields import Number, number
+from dalembert.multibody.components.hermite import line
 from dalembert.multibody.components.planar.body import GRADIENT, Body, turned
 from dalembert.multibody.components.points import Place, Point
 
@@ -64,13 +65,7 @@ class Ancf(Body):
 
     def outline(self, coordinates: np.ndarray, points: int) -> np.ndarray:
         nodes = coordinates.reshape(len(coordinates), self.elements + 1, self.vectors, 2)
-        h = np.real(self.length) / self.elements
-        xi = np.linspace(0.0, 1.0, points + 1)[:, None]
-        shape = [1 - 3 * xi**2 + 2 * xi**3, h * (xi - 2 * xi**2 + xi**3), 3 * xi**2 - 2 * xi**3, h * (xi**3 - xi**2)]
-        r, t = nodes[:, :, None, 0], nodes[:, :, None, 1]
-        line = shape[0] * r[:, :-1] + shape[1] * t[:, :-1] + shape[2] * r[:, 1:] + shape[3] * t[:, 1:]
-        inner = line[:, :, :-1].reshape(len(coordinates), -1, 2)
-        return np.concatenate([inner, line[:, -1, -1:]], axis=1)
+        return line(nodes, float(np.real(self.length)) / self.elements, points)
 
     def _check(self) -> None:
         owner = f"beam {self.name!r}"

@@ -48,7 +48,7 @@ class AngleCoordinate(Body):
     At the start it is the angle that the bodies state.
     """
 
-    turns = False
+    turns = has_axes = False
     a: Side
     b: Side
 
@@ -97,4 +97,4 @@ def counted_angle(name: str, a: Side, b: Side) -> tuple[AngleCoordinate, ...]:
 
 
 def _is_node(side: Side) -> bool:
-    return isinstance(side, Point) and side.body.turns and side.body.marker(side.name).kind == NODE
+    return isinstance(side, Point) and side.body.has_axes and side.body.marker(side.name).kind == NODE

@@ -6,27 +6,14 @@ element leaves it at zero, so that it does not lock; curvature (r' x r'')/|r'|^2
 Numbers: length h, axial stiffness EA, bending stiffness EI, mass, retardation time of the material damping, gravity.
 """
 
-import numpy as np
-
 from dalembert.kernels.kernel import inlined, inner
-from dalembert.multibody.components.planar import hermite
+from dalembert.multibody.components import hermite
+from dalembert.multibody.components.hermite import A1, A2, A5, AW, B1, B2, B5, BW, C1, C2, C5
 from dalembert.multibody.components.planar.line_bending import curvature
 from dalembert.multibody.kernels.elementary import is_zero, reciprocal, root
 from dalembert.multibody.kernels.kind import Kind
 
 WIDTH = 8
-
-
-def _points(xi: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Weights and derivatives of the Hermite functions, first (x h) and second (x h^2), at points of [-1, 1]."""
-    xi = (xi + 1) / 2
-    first = (6 * xi * (xi - 1), 1 - 4 * xi + 3 * xi**2, 3 * xi**2 - 2 * xi)
-    second = (12 * xi - 6, 6 * xi - 4, 6 * xi - 2)
-    return (weights / 2, *first, *second)
-
-
-AW, A1, A2, A5, _, _, _ = _points(np.array([-1.0, 0.0, 1.0]), np.array([1.0, 4.0, 1.0]) / 3)
-BW, B1, B2, B5, C1, C2, C5 = _points(*np.polynomial.legendre.leggauss(3))
 
 
 @inlined

@@ -58,7 +58,7 @@ class JointState(Joint):
 def stated(joint: Joint, coordinate: str, course: Signal) -> JointState:
     """Return the constraint that makes a coordinate of a joint follow a signal."""
     a, b = joint.a, joint.b
-    masses = [isinstance(side, Point) and not side.body.turns for side in (a, b)]
+    masses = [isinstance(side, Point) and not side.body.has_axes for side in (a, b)]
     if coordinate == "direction" and masses[0] and not masses[1]:  # the rod turns with the side that has axes
         a, b = b, a
     return JointState(f"{joint.name}.{coordinate}", a, b, coordinate, course, getattr(joint, "angle", 0.0))

@@ -59,7 +59,7 @@ class PointMass(Body):
         change it then.
     """
 
-    turns = False
+    turns = has_axes = False
     mass: Number = number("kg", above=0)
     position: Place = pair("m")
     velocity: tuple[Number, Number] | None = pair("m/s", None)

@@ -5,7 +5,7 @@ length, mass, rotatory mass (density x second moment of area x length), gravity.
 """
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.planar import hermite
+from dalembert.multibody.components import hermite
 
 WIDTH = 12
 

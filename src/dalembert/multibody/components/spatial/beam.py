@@ -237,12 +237,15 @@ class Beam(Body):
             numbers += self.section_at((element + share) * h).pseudo_inertia[np.triu_indices(3)].tolist()
         return [*numbers, self.damping, self.mass_damping, *gravity]
 
+    def element_index(self, first: int) -> np.ndarray:
+        """Coordinates of each element, (elements, 12 (degree + 1)), where ``first`` is that of the beam."""
+        width, step = markers.SLOTS * (self.degree + 1), markers.SLOTS * self.degree
+        return first + np.arange(width) + step * np.arange(self.elements)[:, None]
+
     def lower(self, lowering: SpatialRows, first: int) -> None:
-        width = markers.SLOTS * (self.degree + 1)
-        for element in range(self.elements):
-            begin = first + markers.SLOTS * self.degree * element
+        for element, index in enumerate(self.element_index(first)):
             numbers = self.element_numbers(element, lowering.gravity)
-            lowering.add(BEAMS[self.degree - 1], list(range(begin, begin + width)), numbers)
+            lowering.add(BEAMS[self.degree - 1], index.tolist(), numbers)
         for node in range(first, first + self.size, markers.SLOTS):
             lowering.add(DIRECTORS, list(range(node + 3, node + 12)) + lowering.multipliers(self.name, 6), [])
 
@@ -257,7 +260,8 @@ class Beam(Body):
         return _Mixed(*((1 - share) * a + share * b for a, b in zip(_parts(first), _parts(second), strict=True)))
 
     def motion_findings(self, times: np.ndarray, states: np.ndarray, rates: np.ndarray) -> tuple[Finding, ...]:
-        return turn_findings(self, times, states)
+        cosines = node_traces(self.by_element(states.reshape(len(states), -1, 4, 3))).reshape(len(states), -1)
+        return turn_findings(f"beam {self.name!r}", self.name, self.elements, times, cosines.min(axis=1))
 
     def outline(self, coordinates: np.ndarray, points: int) -> np.ndarray:
         nodes = self.by_element(coordinates.reshape(len(coordinates), -1, 4, 3))

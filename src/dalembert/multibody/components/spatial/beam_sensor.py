@@ -20,7 +20,7 @@ from dalembert.multibody.components.spatial.beam_element import BEAMS, full_prod
 from dalembert.multibody.components.spatial.kinds import no_energy, no_residual
 from dalembert.multibody.components.spatial.spatial_load import Load
 from dalembert.multibody.components.spatial.spatial_markers import SLOTS
-from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows, first_coordinate
 from dalembert.multibody.components.spatial.vectors import at, cross, dot, plus, times
 from dalembert.multibody.kernels.kind import Kind
 
@@ -143,11 +143,8 @@ class BeamSensor(Load):
     def lower(self, lowering: SpatialRows) -> None:
         beam, node = self._beam, self._beam.node_number(self.at.name)
         element = max(node // beam.degree - 1, 0)
-        (begin, *_), width = lowering.pair(self.at, None, self.name).slots, SLOTS * (beam.degree + 1)
-        assert begin is not None
-        first = begin + SLOTS * (beam.degree * element - node)
         place = beam.length * node / (beam.elements * beam.degree)
         flexibility = np.linalg.inv(beam.section_at(place).matrix)[np.triu_indices(6)].tolist()
         numbers = [*beam.element_numbers(element, lowering.gravity), *flexibility]
-        index = list(range(first, first + width))
+        index = beam.element_index(first_coordinate(lowering, self.at, self.name))[element].tolist()
         lowering.add(self.kind, index, numbers, [node - beam.degree * element], self.name)

@@ -1,20 +1,24 @@
-"""Forces along beams in space, per length: dead, or turning with the sections."""
+"""Forces along beams and cables in space, per length: dead, or turning with the sections of beams."""
 
 __all__ = ["LineForce"]
 
 from dataclasses import dataclass
 
+from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined, inner
+from dalembert.multibody.components import hermite
 from dalembert.multibody.components.fields import number
 from dalembert.multibody.components.points import Point
 from dalembert.multibody.components.signals import Course
 from dalembert.multibody.components.spatial.beam import Beam, beam_of
 from dalembert.multibody.components.spatial.beam_element import MOST_DEGREE
 from dalembert.multibody.components.spatial.beam_shapes import rule
+from dalembert.multibody.components.spatial.cable import Cable
+from dalembert.multibody.components.spatial.cable_element import WIDTH
 from dalembert.multibody.components.spatial.directors import POSE
 from dalembert.multibody.components.spatial.spatial_load import Load
 from dalembert.multibody.components.spatial.spatial_markers import SLOTS
-from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows, first_coordinate
 from dalembert.multibody.components.spatial.vectors import add_at, at, combined, dot, plus, times
 from dalembert.multibody.kernels.kind import Kind
 
@@ -66,28 +70,59 @@ def _kind(degree: int) -> Kind:
     )
 
 
+@inlined
+def _force(m, inputs):
+    return inputs.signals[m.along_x, 0], inputs.signals[m.along_y, 0], inputs.signals[m.along_z, 0]
+
+
+@inlined
+def _cable_residual(x, v, a, p, m, inputs, r):
+    """Take the work-equivalent forces off the left side, as the weight is: h f (1/2, h/12, 1/2, -h/12)."""
+    force = _force(m, inputs)
+    for i in range(3):
+        hermite.weight(p.length, p.length, force[i], i, i + 3, i + 6, i + 9, r)
+
+
+@inlined
+def _cable_energy(x, v, p, m, inputs):
+    force, power = _force(m, inputs), 0.0 * p.length * x[0]
+    for i in range(3):
+        power += p.length * force[i] * hermite.centre(p.length, i, i + 3, i + 6, i + 9, v)
+    return 0.0 * power, 0.0 * power, power
+
+
+ON_CABLE = Kind(
+    "line_force_on_cable",
+    coordinates=WIDTH,
+    numbers=("length",),
+    integers=("along_x", "along_y", "along_z"),
+    residual=_cable_residual,
+    energy=_cable_energy,
+    loads=True,
+    is_usual=False,
+)
 LINEAR, QUADRATIC, CUBIC, QUARTIC = FORCES = tuple(map(_kind, range(1, MOST_DEGREE + 1)))
 """Kinds of forces by the degree of the beam, less one."""
 
 
 @dataclass(frozen=True)
 class LineForce(Load):
-    """A force per length along a whole beam.
+    """A force per length along a whole beam or cable.
 
     Parameters
     ----------
     name : str
     on : Point
-        Any point of the beam.
+        Any point of the beam or cable.
     x, y, z : float or Signal
         Components along the fixed axes, or along those of the sections for a follower force, N/m.
     follower : bool
-        Whether the force turns with the sections.
+        Whether the force turns with the sections of a beam.
 
     Raises
     ------
     InputError
-        For a point of another body than a beam.
+        For a point of another body, and for a follower force on a cable, which has no sections.
 
     Examples
     --------
@@ -111,22 +146,25 @@ class LineForce(Load):
 
     @property
     def kind(self) -> Kind:  # type: ignore[override]
-        """Of the degree of the beam."""
-        return FORCES[self._beam.degree - 1]
+        """Of the degree of the beam, or of a cable."""
+        return ON_CABLE if isinstance(self._line, Cable) else FORCES[self._line.degree - 1]
 
     @property
-    def _beam(self) -> Beam:
-        return beam_of(f"LineForce {self.name!r}", self.on)
+    def _line(self) -> Beam | Cable:
+        owner = f"LineForce {self.name!r}"
+        if not isinstance(self.on.body, Cable):
+            return beam_of(owner, self.on)
+        if self.follower:
+            raise InputError(f"{owner}: a cable has no sections that the force can turn with; leave out follower")
+        return self.on.body
 
     def __post_init__(self) -> None:
-        _ = self._beam
+        _ = self._line
 
     def lower(self, lowering: SpatialRows) -> None:
-        beam, width = self._beam, SLOTS * (self._beam.degree + 1)
-        (begin, *_) = lowering.pair(self.on, None, self.name).slots
-        assert begin is not None
-        first = begin - SLOTS * beam.node_number(self.on.name)
-        signals = [lowering.signal(course) for course in (self.x, self.y, self.z)]
-        for element in range(beam.elements):
-            index = list(range(first + SLOTS * beam.degree * element, first + SLOTS * beam.degree * element + width))
-            lowering.add(self.kind, index, [beam.length / beam.elements], [int(self.follower), *signals])
+        line, kind = self._line, self.kind
+        integers = [lowering.signal(course) for course in (self.x, self.y, self.z)]
+        if isinstance(line, Beam):
+            integers = [int(self.follower), *integers]
+        for index in line.element_index(first_coordinate(lowering, self.on, self.name)):
+            lowering.add(kind, index.tolist(), [line.length / line.elements], integers)

@@ -13,7 +13,7 @@ from dalembert.multibody.components.spatial.spatial_body import FREE, Body
 class MasslessCoordinate(Body):
     """Base of coordinates without mass and points. Components have them in their ``coordinates``; no one adds them."""
 
-    turns = False
+    turns = has_axes = False
 
     @property
     def motion(self) -> tuple[Number | None, ...]:

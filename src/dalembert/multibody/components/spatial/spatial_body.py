@@ -15,7 +15,7 @@ from dalembert.multibody.components.spatial.orientation import Orientation, turn
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 from dalembert.multibody.components.spatial.spatial_sensor import AXIAL, SENSOR
 
-DIRECTOR = "director"
+DIRECTOR, GRADIENT = "director", "gradient"
 FREE = None, None, None
 
 
@@ -86,12 +86,15 @@ class Body(BaseBody):
         return self.marker(point).numbers
 
 
-def pose_modes(coordinates: np.ndarray, frame: np.ndarray) -> np.ndarray:
-    """Derivatives of poses (12 coordinates each) by displacements and rotations about the placed point, (size, 6)."""
-    vectors = coordinates.reshape(-1, 4, 3).copy()
-    modes = np.zeros((*vectors.shape, 6), np.result_type(coordinates, frame))
+def pose_modes(coordinates: np.ndarray, frame: np.ndarray, vectors: int = 4) -> np.ndarray:
+    """Derivatives of nodes by displacements and rotations about the placed point, (size, 6).
+
+    A node has a position and the ``vectors`` less one that turn with it, three coordinates each.
+    """
+    nodes = coordinates.reshape(-1, vectors, 3).copy()
+    modes = np.zeros((*nodes.shape, 6), np.result_type(coordinates, frame))
     modes[:, 0, :, :3] = np.eye(3)
-    vectors[:, 0] -= frame[:3]
+    nodes[:, 0] -= frame[:3]
     for axis in range(3):
-        modes[..., 3 + axis] = np.cross(np.eye(3)[axis], vectors)
+        modes[..., 3 + axis] = np.cross(np.eye(3)[axis], nodes)
     return modes.reshape(-1, 6)

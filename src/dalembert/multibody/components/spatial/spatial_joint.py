@@ -184,7 +184,7 @@ class Joint(BaseJoint):
     @property
     def _rotations(self) -> tuple[str, ...]:
         """Rotation vector of b relative to a in the axes of marker a, for joints that leave rotations free."""
-        turns = any(isinstance(side, Point) and side.body.turns for side in (self.a, self.b))
+        turns = any(isinstance(side, Point) and side.body.has_axes for side in (self.a, self.b))
         return ("rotation_x", "rotation_y", "rotation_z") if turns else ()
 
     def stating(self, coordinate: str, course: Any) -> BaseJoint:
@@ -198,7 +198,8 @@ class Joint(BaseJoint):
         from dalembert.multibody.components.spatial.spatial_joint_state import kept
 
         e, f = (
-            np.column_stack([_direction(side, number, numbers, integers, x) for number in (1, 2, 3)]) for side in (0, 1)
+            np.column_stack([axis_in_space(side, number, numbers, integers, x) for number in (1, 2, 3)])
+            for side in (0, 1)
         )
         gap = _point(1, numbers, integers, x) - _point(0, numbers, integers, x)
         return kept(self, coordinate, course, (e, f, gap))
@@ -229,7 +230,7 @@ class Joint(BaseJoint):
         return _point(0 if integers[1] == GROUND else 1, numbers, integers, x)
 
     def axis_directions(self, numbers: np.ndarray, integers: np.ndarray, x: np.ndarray) -> np.ndarray:
-        return _direction(0, 3, numbers, integers, x)
+        return axis_in_space(0, 3, numbers, integers, x)
 
     def misaligned(
         self, kind: Kind, numbers: np.ndarray, integers: np.ndarray, placed: np.ndarray, closed: np.ndarray
@@ -237,7 +238,7 @@ class Joint(BaseJoint):
         """Conditions of orthogonality have other solutions: opposite axes, and axes that have changed places."""
         for number in self.aligned:
             before, after = (
-                float(_direction(0, number, numbers, integers, x) @ _direction(1, number, numbers, integers, x))
+                float(axis_in_space(0, number, numbers, integers, x) @ axis_in_space(1, number, numbers, integers, x))
                 for x in (placed, closed)
             )
             if after < 0.5 and before > -0.999:  # a joint may be placed with opposite axes
@@ -256,7 +257,7 @@ def _point(side: int, numbers: np.ndarray, integers: np.ndarray, x: np.ndarray) 
     return x[..., k : k + 3]
 
 
-def _direction(side: int, number: int, numbers: np.ndarray, integers: np.ndarray, x: np.ndarray) -> np.ndarray:
+def axis_in_space(side: int, number: int, numbers: np.ndarray, integers: np.ndarray, x: np.ndarray) -> np.ndarray:
     """Axis with this number of a marker in the fixed axes, (..., 3), from unknowns (..., width)."""
     k = SLOTS * side
     own = numbers[k + 3 * number : k + 3 * number + 3]

@@ -58,7 +58,7 @@ class PointMass(Body):
         change it then.
     """
 
-    turns = False
+    turns = has_axes = False
     mass: Number = number("kg", above=0)
     position: Place = field(default=(0.0, 0.0, 0.0), metadata={"unit": "m", "shape": (3,)})
     velocity: Vector | None = number("m/s", None)

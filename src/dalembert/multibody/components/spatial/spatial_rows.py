@@ -5,6 +5,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from dalembert.multibody.components.fields import Number
+from dalembert.multibody.components.points import Point
 from dalembert.multibody.components.rows import Rows
 from dalembert.multibody.components.spatial.ground_points import Side
 
@@ -54,3 +55,10 @@ class SpatialRows(Rows, Protocol):
         ``turned``: rotation matrices that turn the axes of both markers into those of the joint.
         """
         ...
+
+
+def first_coordinate(lowering: SpatialRows, point: Point, owner: str) -> int:
+    """The first coordinate of the body of a point."""
+    first, own = lowering.pair(point, None, owner).slots[0], point.body.marker(point.name).slots[0]
+    assert first is not None
+    return first - own

@@ -102,6 +102,6 @@ def test_wrong_inputs() -> None:
     system.add(RelativeSensor("see", system.ground, ball.point("centre")))
     with refused(
         ModelError,
-        snapshot("RelativeSensor 'see': ball.centre is a point mass, which has no direction; use a rigid body"),
+        snapshot("RelativeSensor 'see': ball.centre has no direction; use a rigid body"),
     ):
         mb.simulate(system, 0.1)

@@ -137,7 +137,7 @@ def test_two_points_of_one_body() -> None:
 def test_point_masses_have_no_axes(make) -> None:
     system, body, mass = pair()
     system.add(make(body.point("end"), mass.point("centre")))
-    with pytest.raises(ModelError, match=r"'part': mass.centre is a point mass, which has no direction; use "):
+    with pytest.raises(ModelError, match=r"'part': mass.centre has no direction; use "):
         simulate(system, 0.1)
 
 

@@ -1,0 +1,147 @@
+"""The cable element in space: a line that stretches and bends, without shear, torsion and inertia of its sections.
+
+It is the planar gradient-deficient element (Gerstmayr and Shabana 2006) with a vector of curvature. Local coordinates:
+(r, r') at both nodes, 12 in all. With f = r' and c = r'', the stretch is |f| - 1 - its value without stress, and the
+curvature kappa = (f x c) / f.f is across the line; the stored energy is the integral of EA stretch^2 / 2 and
+EI kappa.kappa / 2.
+
+Material damping: stress = C (strain + tau strain rate). The rate of curvature is taken in sections that do not spin
+about the line, which is kappa' without its part along f. Its virtual work is that of kappa itself, since a moment m
+across the line does none along it: m.(delta kappa) = [delta f.(c x m - 2 (m.kappa) f) + delta c.(m x f)] / f.f.
+"""
+
+import numpy as np
+
+from dalembert.kernels.kernel import inlined, inner
+from dalembert.multibody.components import hermite
+from dalembert.multibody.components.hermite import A1, A2, A5, AW, B1, B2, B5, BW, C1, C2, C5
+from dalembert.multibody.components.spatial.vectors import add_at, at, cross, dot, minus, plus, times
+from dalembert.multibody.kernels.elementary import is_zero, reciprocal, root
+from dalembert.multibody.kernels.kind import Kind
+
+NODE = 6
+"""Coordinates of a node."""
+WIDTH = 2 * NODE
+
+
+@inlined
+def _line(s1, s2, s5, x):
+    """s1 (r1 - r2) + s2 r1' + s5 r2'."""
+    return plus(plus(times(s1, minus(at(x, 0), at(x, 6))), times(s2, at(x, 3))), times(s5, at(x, 9)))
+
+
+@inlined
+def _curvature(f, c):
+    """Curvature, and 1 / f.f."""
+    square = reciprocal(dot(f, f))
+    return times(square, cross(f, c)), square
+
+
+@inlined
+def _curvature_rate(f, c, df, dc, kappa, square):
+    """Rate of the curvature across the line: (f' x c + f x c') / f.f - 2 kappa f.f' / f.f + f (f'.kappa) / f.f."""
+    turning = plus(plus(cross(df, c), cross(f, dc)), times(dot(df, kappa), f))
+    return times(square, minus(turning, times(2.0 * dot(f, df), kappa)))
+
+
+@inner
+def residual(x, v, a, p, m, inputs, r):
+    """M (a + drag v) + elastic and damping forces - weight."""
+    h, delay, mass = p.length, p.delay, p.mass
+    across, rests = reciprocal(h), (p.rest_1, p.rest_2, p.rest_3)
+    # Sums over points of the force against r1 - r2, r1' and r2'.
+    zero = times(0.0, at(x, 0))
+    first, second, fifth = zero, zero, zero
+    for g in range(3):
+        s1, s2, s5 = A1[g] * across, A2[g], A5[g]
+        f = _line(s1, s2, s5, x)
+        inverse = reciprocal(root(dot(f, f)))
+        strain = 1.0 - (1.0 + rests[g]) * inverse  # over |f|
+        if not is_zero(delay):
+            strain += delay * dot(f, _line(s1, s2, s5, v)) * inverse * inverse
+        force = times(AW[g] * h * p.axial * strain, f)
+        first, second, fifth = (
+            plus(first, times(s1, force)),
+            plus(second, times(s2, force)),
+            plus(fifth, times(s5, force)),
+        )
+    for g in range(3):
+        s1, s2, s5 = B1[g] * across, B2[g], B5[g]
+        c1, c2, c5 = C1[g] * across * across, C2[g] * across, C5[g] * across
+        f, c = _line(s1, s2, s5, x), _line(c1, c2, c5, x)
+        kappa, square = _curvature(f, c)
+        moment = kappa
+        if not is_zero(delay):
+            rate = _curvature_rate(f, c, _line(s1, s2, s5, v), _line(c1, c2, c5, v), kappa, square)
+            moment = plus(kappa, times(delay, rate))
+        moment = times(BW[g] * h * p.bending * square, moment)
+        on_slope = minus(cross(c, moment), times(2.0 * dot(moment, kappa), f))
+        on_bend = cross(moment, f)
+        first = plus(first, plus(times(s1, on_slope), times(c1, on_bend)))
+        second = plus(second, plus(times(s2, on_slope), times(c2, on_bend)))
+        fifth = plus(fifth, plus(times(s5, on_slope), times(c5, on_bend)))
+    add_at(r, 0, first)
+    add_at(r, 3, second)
+    add_at(r, 6, times(-1.0, first))
+    add_at(r, 9, fifth)
+    gravity = (p.gravity_x, p.gravity_y, p.gravity_z)
+    for i in range(3):
+        hermite.inertia(mass, h, i, i + 3, i + 6, i + 9, a, r)
+        hermite.inertia(mass * p.mass_damping, h, i, i + 3, i + 6, i + 9, v, r)
+        hermite.weight(mass, h, gravity[i], i, i + 3, i + 6, i + 9, r)
+
+
+@inner
+def energy(x, v, p, m, inputs):
+    """Kinetic energy, strain and gravity energy, power of the damping."""
+    h, delay, mass = p.length, p.delay, p.mass
+    across, rests = reciprocal(h), (p.rest_1, p.rest_2, p.rest_3)
+    gravity = (p.gravity_x, p.gravity_y, p.gravity_z)
+    kinetic = 0.0 * h * x[0]
+    potential, power = kinetic, kinetic
+    for i in range(3):
+        kinetic += hermite.kinetic(mass, h, i, i + 3, i + 6, i + 9, v)
+        potential -= mass * gravity[i] * hermite.centre(h, i, i + 3, i + 6, i + 9, x)
+    power -= 2.0 * p.mass_damping * kinetic
+    for g in range(3):
+        s1, s2, s5 = A1[g] * across, A2[g], A5[g]
+        f, df = _line(s1, s2, s5, x), _line(s1, s2, s5, v)
+        size = root(dot(f, f))
+        strain, rate = size - 1.0 - rests[g], dot(f, df) / size
+        stiffness = AW[g] * h * p.axial
+        potential += 0.5 * stiffness * strain * strain
+        power -= delay * stiffness * rate * rate
+    for g in range(3):
+        s1, s2, s5 = B1[g] * across, B2[g], B5[g]
+        c1, c2, c5 = C1[g] * across * across, C2[g] * across, C5[g] * across
+        f, c = _line(s1, s2, s5, x), _line(c1, c2, c5, x)
+        kappa, square = _curvature(f, c)
+        rate = _curvature_rate(f, c, _line(s1, s2, s5, v), _line(c1, c2, c5, v), kappa, square)
+        stiffness = BW[g] * h * p.bending
+        potential += 0.5 * stiffness * dot(kappa, kappa)
+        power -= delay * stiffness * dot(rate, rate)
+    return kinetic, potential, power
+
+
+def stretches(x: np.ndarray, length: np.ndarray) -> np.ndarray:
+    """|r'| - 1 at the points of the stretch, (elements, 3), from coordinates (elements, 12) and lengths, m."""
+    (r1, t1, r2, t2), h = np.moveaxis(x.reshape(len(x), 4, 3), 1, 0), np.asarray(length)[:, None]
+    slopes = [A1[g] / h * (r1 - r2) + A2[g] * t1 + A5[g] * t2 for g in range(3)]
+    return np.sqrt(np.stack([np.sum(slope * slope, axis=-1) for slope in slopes], axis=-1)) - 1.0
+
+
+CABLE = Kind(
+    "cable_in_space",
+    coordinates=WIDTH,
+    numbers=(
+        "length", "axial", "bending", "rest_1", "rest_2", "rest_3", "mass", "delay", "mass_damping", "gravity_x",
+        "gravity_y", "gravity_z",
+    ),
+    residual=residual,
+    energy=energy,
+    lengths=("length",),
+    gravity=("gravity_x", "gravity_y", "gravity_z"),
+    dissipates=("delay", "mass_damping"),
+    strains=stretches,
+    references=("rest_1", "rest_2", "rest_3"),
+)  # fmt: skip

@@ -27,6 +27,7 @@ AREAS = {
         (
             "Beams",
             "Beams in space",
+            "Cables in space",
             "Reduced bodies in space",
             "Equilibria along a load",
             "Beams without locking",

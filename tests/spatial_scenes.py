@@ -267,9 +267,7 @@ def cable(angles, push, **fields) -> sp.SpatialSystem:
         sp.RigidBody("rod", sp.Inertia.box(1.3, (0.1, 0.2, 0.5)), points={"end": (0.1, 0.0, -0.4)}, anchor="end")
     )
     system.add(sp.SphericalJoint("hold", system.ground.point((0.0, 0.0, 0.0)), rod.point("end")))
-    own = system.add(
-        sp.Cable("part", elements=2, position=rod.point("end"), orientation=by_angles(angles), **fields)
-    )
+    own = system.add(sp.Cable("part", elements=2, position=rod.point("end"), orientation=by_angles(angles), **fields))
     bob = system.add(
         sp.RigidBody("bob", sp.Inertia.box(0.4, (0.1, 0.1, 0.1)), own.end, by_angles(angles), anchor="origin")
     )

@@ -137,23 +137,19 @@ MECHANISMS = {
     ),
     "a point mass in a fixed joint": (
         sides(mb.FixedJoint, "mass", "end"),
-        "FixedJoint 'link': mass.centre has no direction; use a revolute or distance joint, or "
-        "a rigid body",
+        "FixedJoint 'link': mass.centre has no direction; use a revolute or distance joint, or a rigid body",
     ),
     "a point mass in a slide": (
         sides(mb.PrismaticJoint, "ground", "mass"),
-        "PrismaticJoint 'link': mass.centre has no direction; use a revolute or distance "
-        "joint, or a rigid body",
+        "PrismaticJoint 'link': mass.centre has no direction; use a revolute or distance joint, or a rigid body",
     ),
     "an angle of a point mass": (
         sides(mb.PrescribedMotion, "ground", "mass"),
-        "PrescribedMotion 'link': mass.centre has no direction; use a revolute or distance "
-        "joint, or a rigid body",
+        "PrescribedMotion 'link': mass.centre has no direction; use a revolute or distance joint, or a rigid body",
     ),
     "friction on a point mass": (
         lambda: with_mass(lambda system, own, mass: mb.RevoluteJoint("link", own.end, mass.centre, viscous=0.1)),
-        "RevoluteJoint 'link': mass.centre has no direction; use a rigid body where a joint has "
-        "friction",
+        "RevoluteJoint 'link': mass.centre has no direction; use a rigid body where a joint has friction",
     ),
     "a torque on a point mass": (
         lambda: with_mass(lambda system, own, mass: mb.Torque("motor", mass.centre, 1.0)),
@@ -169,8 +165,7 @@ MECHANISMS = {
     ),
     "a force that follows a point mass": (
         lambda: with_mass(lambda system, own, mass: mb.Force("jet", mass.centre, x=1.0, follower=True)),
-        "follower force 'jet': mass.centre has no direction; use a force that does not follow, "
-        "or a rigid body",
+        "follower force 'jet': mass.centre has no direction; use a force that does not follow, or a rigid body",
     ),
     "a rod of no length": (
         sides(mb.DistanceJoint, "end", "mass"),

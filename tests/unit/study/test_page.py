@@ -96,7 +96,17 @@ TABLES = {
 }
 """Where the page tells of a table that is not one kind of several."""
 
-BODIES = {"AncfBeam", "AncfCable", "Beam", "Cable", "ReducedBody", "RigidBar", "RigidBarBetween", "RigidBody", "PointMass"}
+BODIES = {
+    "AncfBeam",
+    "AncfCable",
+    "Beam",
+    "Cable",
+    "ReducedBody",
+    "RigidBar",
+    "RigidBarBetween",
+    "RigidBody",
+    "PointMass",
+}
 JOINTS = {name.removeprefix("Spatial") for name in DEFINITIONS if name.endswith(("Joint", "PrescribedMotion"))}
 LOADS = {
     "Force",

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 import numpy as np
-from scipy.linalg import eigh
+from scipy.linalg import eigh, lstsq
 from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import lsqr, splu
 
@@ -18,6 +18,9 @@ _LAST_ITERATIONS = 300  # where loads in steps lead nowhere, as a torque that ro
 _SMALLEST_FRACTION = 1 / 1024
 _FIRST_STEP = 0.2  # of the scale
 _SLOW = 1e-9  # of the stiffness: enough for the constraints
+_FAR = 1e3  # scales that a step of Newton's method does not go
+_DENSE = 600  # unknowns up to which a dense matrix is decomposed
+_WITHOUT = 1e-13  # of the largest singular value: what counts as no stiffness
 _NEUTRAL = 1e-9  # of the largest stiffness: what counts as none
 
 Forces = Callable[[np.ndarray], np.ndarray]
@@ -108,11 +111,12 @@ def _newton(
     n, still, scale = lowered.structure.n, np.zeros_like(x), scales(lowered)[:-1]
     x, mixed = x.copy(), MixedPoints(lowered)
     for iteration in range(1, most + 1):
-        step = _solution(tangent(mixed.lowered, x, still, (1.0, 0.0, 0.0)), forces(x))
-        if step is None:
-            return None, iteration
-        size = np.max(np.abs(step[:n]) / scale[:n])
-        if not np.isfinite(size) or size > 1e3:
+        matrix, left = tangent(mixed.lowered, x, still, (1.0, 0.0, 0.0)), forces(x)
+        step = _solution(matrix, left)
+        if step is None or not np.max(np.abs(step[:n]) / scale[:n]) < _FAR:
+            step = _smallest_step(matrix, left, n)  # all but singular
+        size = np.max(np.abs(step[:n]) / scale[:n]) if step is not None else np.inf
+        if step is None or not size < _FAR:
             return None, iteration
         change = -step * (0.5 / max(size, 0.5))  # at most half the scale at a time
         mixed.step(x, change)
@@ -161,3 +165,20 @@ def _solution(matrix: csr_matrix, forces: np.ndarray) -> np.ndarray | None:
         step = lsqr(matrix, forces, atol=1e-14, btol=1e-14)[0]
         balanced = np.linalg.norm(matrix @ step - forces) <= 1e-9 * np.linalg.norm(forces)
         return step if balanced else None
+
+
+def _smallest_step(matrix: csr_matrix, forces: np.ndarray, n: int) -> np.ndarray | None:
+    """The smallest solution where some motions have no stiffness but rounding, as the free end of a hanging chain.
+
+    None where they are loaded, and for many unknowns.
+    """
+    if len(forces) > _DENSE:
+        return None
+    # Constraints as stiff as the stiffest motion: without that their singular values are its reciprocal.
+    scale = np.ones(len(forces))
+    scale[n:] = abs(matrix[:n, :n]).max()
+    scaled, wanted = scale[:, None] * matrix.toarray() * scale, scale * forces
+    step = lstsq(scaled, wanted, cond=_WITHOUT)[0]
+    left = np.abs(scaled @ step - wanted).max()
+    rounding = np.finfo(float).eps * (np.abs(scaled) @ np.abs(step)).max()
+    return scale * step if left <= 1e-9 * np.abs(wanted).max() + 10 * rounding else None

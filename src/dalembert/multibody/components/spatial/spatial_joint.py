@@ -219,9 +219,10 @@ class Joint(BaseJoint):
         lowering.add(self.kind, index, [*pair.data, *numbers], [*pair.integers, *integers], self.name)
         return index
 
-    def _oriented(self, advice: str = "a spherical or distance joint, or a rigid body") -> None:
-        """Refuse sides that have no axes."""
-        require_direction(f"{type(self).__name__} {self.name!r}", advice, self.a, self.b)
+    def _oriented(self, *sides: Side) -> None:
+        """Refuse sides that have no axes; both are asked where none is named."""
+        owner = f"{type(self).__name__} {self.name!r}"
+        require_direction(owner, "a spherical or distance joint, or a rigid body", *(sides or (self.a, self.b)))
 
     def position(self, kind: Kind, numbers: np.ndarray, integers: np.ndarray, x: np.ndarray) -> np.ndarray | None:
         """Position of the second side, or of the first one if the second is the ground, (frames, 3)."""

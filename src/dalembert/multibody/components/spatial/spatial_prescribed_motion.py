@@ -87,6 +87,7 @@ class PrescribedMotion(Joint, DrivenCoordinate):
     ----------
     name : str
     a, b : Point or ground
+        b may be a point without axes, as of a cable, where the coordinate is a displacement.
     coordinate : {"angle", "displacement"}
         The angle in rad, the displacement in m.
     motion : float or Signal
@@ -100,6 +101,6 @@ class PrescribedMotion(Joint, DrivenCoordinate):
     kind = MOTION
 
     def lower(self, lowering: SpatialRows) -> None:
-        self._oriented()
+        self._oriented(*(self.a,) * (self.coordinate == "displacement"))
         integers = self._driven(lowering)
         self._add(lowering, self.pair(lowering), integers=integers)

@@ -145,7 +145,11 @@ def jointed(joint: type, other: bool = False) -> sp.SpatialSystem:
 @pytest.mark.parametrize(
     ("make", "kind", "message"),
     [
-        (lambda: rope(elements=0), InputError, "cable 'rope': elements is 0; expected a whole number, from 1 to 100000"),
+        (
+            lambda: rope(elements=0),
+            InputError,
+            "cable 'rope': elements is 0; expected a whole number, from 1 to 100000",
+        ),
         (
             other_body,
             InputError,

@@ -2,7 +2,7 @@
 
 import ctypes
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any
 
@@ -46,7 +46,8 @@ class Signals:
 class BlockModel:
     """A whole model in real numbers, in complex ones as a direction of differentiation, in dual ones with up to eight
     directions, or in lanes of eight samples. ``size``: unknowns; ``coordinates``: unknowns that are no multipliers;
-    ``reduction``: rows of the reduced system; ``roles``: kernels that it needs at once.
+    ``reduction``: rows of the reduced system; ``roles``: kernels that it needs at once; ``averages``: whether residuals
+    are those of the middle of a step, for the kinds that have them.
     """
 
     blocks: Blocks
@@ -57,6 +58,7 @@ class BlockModel:
     dtype: type
     reduction: Reduction
     roles: tuple[str, ...] = ("residual",)
+    averages: bool = False
     _evaluator: BlockKernel = field(init=False, repr=False)
     _words: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray] = field(init=False, repr=False)
     _kernels: list[Any] = field(default_factory=list, init=False, repr=False)  # kept alive
@@ -104,9 +106,21 @@ class BlockModel:
             # start.
             for role in kind.roles.intersection(roles):
                 if block[role] == 0:
-                    kernel = kind.kernel(role, self.dtype)
+                    is_mean = self.averages and role == "residual" and kind.has("mean")
+                    kernel = kind.kernel("mean" if is_mean else role, self.dtype)
                     self._kernels.append(kernel)
                     block[role] = kernel.address
+        return self
+
+    def averaged(self) -> "BlockModel":
+        """Load the residuals of the middle of a step, by which its energy is kept, and hand the model back."""
+        head = self._words[0]
+        if head["middle"][0] == 0:
+            middle = self
+            if any(kind.has("mean") for kind in self.blocks.index):
+                middle = replace(self, averages=True, roles=("residual",))
+                self._kernels.append(middle)
+            head["middle"] = middle.address
         return self
 
     def reduced(self, spreads: bool = False) -> "BlockModel":

@@ -37,6 +37,8 @@ class Declaration:
     ``x`` behind the coordinates. A test compares it with the automatic ones.
     ``energy(x, v, p, m, inputs)`` returns the kinetic and the potential energy, J, and the power, W, of the forces
     without a potential, negative where they dissipate. Without it, all forces count as power.
+    ``mean(x, v, a, p, m, inputs, step, r)``: as ``residual``, of a step from x - step v / 2 to x + step v / 2, with
+    forces whose work is the change of the potential energy, to rounding. `EnergyMomentum` takes it.
     ``observe(x, v, a, p, m, inputs, out)`` fills the ``outputs`` (name, unit); ``observes_inputs``: whether these
     depend on signals, which are evaluated only then.
     ``angles``: outputs that are angles which are known up to whole turns. (``angle`` is one where the integer ``wraps``
@@ -74,6 +76,7 @@ class Declaration:
     constraint: Callable[..., Any] | None = None
     forces: Callable[..., Any] | None = None
     energy: Callable[..., Any] | None = None
+    mean: Callable[..., Any] | None = None
     outputs: tuple[tuple[str, str], ...] = ()
     observe: Callable[..., Any] | None = None
     angles: tuple[str, ...] = ()
@@ -206,6 +209,7 @@ class Declaration:
         acts = self.residual is not None or self.constraint is not None
         roles = {
             **dict.fromkeys(("residual", "tangent", "pullback"), acts),
+            "mean": self.mean is not None,
             "rates": self.constraint is not None,
             "energy": self.energy is not None or self.residual is not None,
             "outputs": self.observe is not None,

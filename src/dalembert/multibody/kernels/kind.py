@@ -12,6 +12,7 @@ from dalembert.multibody.kernels.loops import BlockKernel
 
 _MAKERS = {**loops.MAKERS, **nodes.MAKERS, "tangent": tangents.tangent, "pullback": pullbacks.pullback}
 _ONE_ARITHMETIC = {"tangent", "pullback"}  #: roles of which a kind has one kernel
+_WHEN_NEEDED = {"mean"}  #: roles whose kernels are not compiled ahead
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +39,7 @@ class Kind(Declaration):
         roles = [
             (role, dtype)
             for role in _MAKERS
-            if role in self.roles and role not in _ONE_ARITHMETIC
+            if role in self.roles and role not in _ONE_ARITHMETIC | _WHEN_NEEDED
             for dtype in (float, complex)
         ]
         pulled = self.is_flat and "pullback" in self.roles

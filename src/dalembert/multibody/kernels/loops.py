@@ -130,6 +130,24 @@ def residual(kind: Declaration, dtype: type) -> BlockKernel:
     return _each(kind, "residual", dtype, step)
 
 
+def mean(kind: Declaration, dtype: type) -> BlockKernel:
+    """Add the residuals of the middle of a step, by the forces whose work is the change of the energy."""
+    function: Any = kind.mean
+    width, (view, _) = kind.width, VIEWS[dtype]
+    local_r = local(dtype, width)
+
+    @inlined
+    def step(x, v, a, p, m, inputs, call, block, e):
+        index, r, own_r = integers2(block.index, block.count, width), view(call.r, call.last + 1), local_r()
+        for i in range(width):
+            own_r[i] = 0.0
+        function(x, v, a, p, m, inputs, call.step, own_r)
+        for i in range(width):
+            r[index[e, i]] += own_r[i]
+
+    return _each(kind, "mean", dtype, step)
+
+
 # -- other roles -----------------------------------------------------------------------------------------------------
 
 
@@ -193,5 +211,5 @@ def turn(kind: Declaration, dtype: type) -> BlockKernel:
 
 
 MAKERS: dict[str, Callable[[Declaration, type], BlockKernel]] = {
-    "residual": residual, "rates": rates, "energy": energy, "outputs": outputs, "turn": turn,
+    "residual": residual, "mean": mean, "rates": rates, "energy": energy, "outputs": outputs, "turn": turn,
 }  # fmt: skip

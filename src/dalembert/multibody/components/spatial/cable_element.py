@@ -13,6 +13,7 @@ across the line does none along it: m.(delta kappa) = [delta f.(c x m - 2 (m.kap
 import numpy as np
 
 from dalembert.kernels.kernel import inlined, inner
+from dalembert.kernels.views import stack
 from dalembert.multibody.components import hermite
 from dalembert.multibody.components.hermite import A1, A2, A5, AW, B1, B2, B5, BW, C1, C2, C5
 from dalembert.multibody.components.spatial.vectors import add_at, at, cross, dot, minus, plus, times
@@ -22,6 +23,8 @@ from dalembert.multibody.kernels.kind import Kind
 NODE = 6
 """Coordinates of a node."""
 WIDTH = 2 * NODE
+STILL = 1e-10
+"""Square of a change of invariants below which the correction of the gradient, of third order, is rounding."""
 
 
 @inlined
@@ -44,10 +47,35 @@ def _curvature_rate(f, c, df, dc, kappa, square):
     return times(square, minus(turning, times(2.0 * dot(f, df), kappa)))
 
 
+@inlined
+def _spread(first, second, fifth, r):
+    """Pass forces against r1 - r2, r1' and r2' to the nodes."""
+    add_at(r, 0, first)
+    add_at(r, 3, second)
+    add_at(r, 6, times(-1.0, first))
+    add_at(r, 9, fifth)
+
+
+@inlined
+def _bent(moment, f, c, kappa):
+    """Forces on f and on c of a moment over f.f."""
+    return minus(cross(c, moment), times(2.0 * dot(moment, kappa), f)), cross(moment, f)
+
+
+@inlined
+def _add_inertia(v, a, p, r):
+    """M (a + drag v) - weight."""
+    gravity = (p.gravity_x, p.gravity_y, p.gravity_z)
+    for i in range(3):
+        hermite.inertia(p.mass, p.length, i, i + 3, i + 6, i + 9, a, r)
+        hermite.inertia(p.mass * p.mass_damping, p.length, i, i + 3, i + 6, i + 9, v, r)
+        hermite.weight(p.mass, p.length, gravity[i], i, i + 3, i + 6, i + 9, r)
+
+
 @inner
 def residual(x, v, a, p, m, inputs, r):
     """M (a + drag v) + elastic and damping forces - weight."""
-    h, delay, mass = p.length, p.delay, p.mass
+    h, delay = p.length, p.delay
     across, rests = reciprocal(h), (p.rest_1, p.rest_2, p.rest_3)
     # Sums over points of the force against r1 - r2, r1' and r2'.
     zero = times(0.0, at(x, 0))
@@ -60,11 +88,8 @@ def residual(x, v, a, p, m, inputs, r):
         if not is_zero(delay):
             strain += delay * dot(f, _line(s1, s2, s5, v)) * inverse * inverse
         force = times(AW[g] * h * p.axial * strain, f)
-        first, second, fifth = (
-            plus(first, times(s1, force)),
-            plus(second, times(s2, force)),
-            plus(fifth, times(s5, force)),
-        )
+        first = plus(first, times(s1, force))
+        second, fifth = plus(second, times(s2, force)), plus(fifth, times(s5, force))
     for g in range(3):
         s1, s2, s5 = B1[g] * across, B2[g], B5[g]
         c1, c2, c5 = C1[g] * across * across, C2[g] * across, C5[g] * across
@@ -74,21 +99,72 @@ def residual(x, v, a, p, m, inputs, r):
         if not is_zero(delay):
             rate = _curvature_rate(f, c, _line(s1, s2, s5, v), _line(c1, c2, c5, v), kappa, square)
             moment = plus(kappa, times(delay, rate))
-        moment = times(BW[g] * h * p.bending * square, moment)
-        on_slope = minus(cross(c, moment), times(2.0 * dot(moment, kappa), f))
-        on_bend = cross(moment, f)
+        on_slope, on_bend = _bent(times(BW[g] * h * p.bending * square, moment), f, c, kappa)
         first = plus(first, plus(times(s1, on_slope), times(c1, on_bend)))
         second = plus(second, plus(times(s2, on_slope), times(c2, on_bend)))
         fifth = plus(fifth, plus(times(s5, on_slope), times(c5, on_bend)))
-    add_at(r, 0, first)
-    add_at(r, 3, second)
-    add_at(r, 6, times(-1.0, first))
-    add_at(r, 9, fifth)
-    gravity = (p.gravity_x, p.gravity_y, p.gravity_z)
-    for i in range(3):
-        hermite.inertia(mass, h, i, i + 3, i + 6, i + 9, a, r)
-        hermite.inertia(mass * p.mass_damping, h, i, i + 3, i + 6, i + 9, v, r)
-        hermite.weight(mass, h, gravity[i], i, i + 3, i + 6, i + 9, r)
+    _spread(first, second, fifth, r)
+    _add_inertia(v, a, p, r)
+
+
+@inlined
+def _invariants(f, c, h):
+    """f.f, f.c h and c.c h^2, which are quadratic in the coordinates; h^2 kappa.kappa, their function."""
+    a, b, d = dot(f, f), h * dot(f, c), h * h * dot(c, c)
+    return (a, b, d), (a * d - b * b) / (a * a)
+
+
+@inlined
+def _discrete_gradient(start, end, before, after):
+    """Gradient of h^2 kappa.kappa whose product with the change of the invariants is its change (Gonzalez 1996)."""
+    change = minus(end, start)
+    a, b, d = times(0.5, plus(start, end))
+    inverse = reciprocal(a * a)
+    mean = ((d - 2.0 * (a * d - b * b) * reciprocal(a)) * inverse, -2.0 * b * inverse, a * inverse)
+    missing = after - before - dot(mean, change)
+    return plus(mean, times(missing * reciprocal(dot(change, change) + STILL), change))
+
+
+@inner
+def mean(x, v, a, p, m, inputs, step, r):
+    """As `residual`, with mean elastic forces in a step, whose work is the change of the strain energy.
+
+    Stretch: (|f1| - |f0|) = 2 f_m.(f1 - f0) / (|f1| + |f0|). Bending: the discrete gradient in three invariants.
+    """
+    h, delay = p.length, p.delay
+    across, rests = reciprocal(h), (p.rest_1, p.rest_2, p.rest_3)
+    x0, x1 = stack(x, WIDTH), stack(x, WIDTH)
+    for i in range(WIDTH):
+        x0[i], x1[i] = x[i] - 0.5 * step * v[i], x[i] + 0.5 * step * v[i]
+    zero = times(0.0, at(x, 0))
+    first, second, fifth = zero, zero, zero
+    for g in range(3):
+        s1, s2, s5 = A1[g] * across, A2[g], A5[g]
+        f, f0, f1 = _line(s1, s2, s5, x), _line(s1, s2, s5, x0), _line(s1, s2, s5, x1)
+        size0, size1 = root(dot(f0, f0)), root(dot(f1, f1))
+        strain = 0.5 * (size0 + size1) - 1.0 - rests[g] + delay / step * (size1 - size0)
+        force = times(2.0 * AW[g] * h * p.axial * strain * reciprocal(size0 + size1), f)
+        first = plus(first, times(s1, force))
+        second, fifth = plus(second, times(s2, force)), plus(fifth, times(s5, force))
+    for g in range(3):
+        s1, s2, s5 = B1[g] * across, B2[g], B5[g]
+        c1, c2, c5 = C1[g] * across * across, C2[g] * across, C5[g] * across
+        f, c, size = _line(s1, s2, s5, x), _line(c1, c2, c5, x), BW[g] * h * p.bending
+        start, before = _invariants(_line(s1, s2, s5, x0), _line(c1, c2, c5, x0), h)
+        end, after = _invariants(_line(s1, s2, s5, x1), _line(c1, c2, c5, x1), h)
+        by_a, by_b, by_d = times(0.5 * size * across * across, _discrete_gradient(start, end, before, after))
+        on_slope = plus(times(2.0 * by_a, f), times(h * by_b, c))
+        on_bend = plus(times(2.0 * h * h * by_d, c), times(h * by_b, f))
+        if not is_zero(delay):
+            kappa, square = _curvature(f, c)
+            rate = _curvature_rate(f, c, _line(s1, s2, s5, v), _line(c1, c2, c5, v), kappa, square)
+            more_slope, more_bend = _bent(times(delay * size * square, rate), f, c, kappa)
+            on_slope, on_bend = plus(on_slope, more_slope), plus(on_bend, more_bend)
+        first = plus(first, plus(times(s1, on_slope), times(c1, on_bend)))
+        second = plus(second, plus(times(s2, on_slope), times(c2, on_bend)))
+        fifth = plus(fifth, plus(times(s5, on_slope), times(c5, on_bend)))
+    _spread(first, second, fifth, r)
+    _add_inertia(v, a, p, r)
 
 
 @inner
@@ -138,6 +214,7 @@ CABLE = Kind(
         "gravity_y", "gravity_z",
     ),
     residual=residual,
+    mean=mean,
     energy=energy,
     lengths=("length",),
     gravity=("gravity_x", "gravity_y", "gravity_z"),

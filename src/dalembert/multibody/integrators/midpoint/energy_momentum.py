@@ -62,12 +62,12 @@ class EnergyMomentum(Variational):
         """Those of `Variational`, of the balance, and of the components' energies."""
         own = [*super().kernels(structure, derivatives), converge, energy_history, *[converge_along] * derivatives]
         arithmetics = (float, complex) if derivatives else (float,)
-        kinds = [kind for kind in structure.index if "energy" in kind.roles]
-        return [*own, *(kind.kernel("energy", dtype) for dtype in arithmetics for kind in kinds)]
+        roles = [(kind, role) for kind in structure.index for role in ("energy", "mean") if kind.has(role)]
+        return [*own, *(kind.kernel(role, dtype) for dtype in arithmetics for kind, role in roles)]
 
     def lane_kernels(self, sample: Lowered) -> list[Compiled]:
         """Those of `Variational`, of the balance, and of the components' energies."""
-        return [*super().lane_kernels(sample), balance_lanes, *lane_kernels(sample.data, "energy")]
+        return [*super().lane_kernels(sample), balance_lanes, *lane_kernels(sample.data, "energy", "mean")]
 
     def _run_in_lanes(self, part: Batch) -> tuple[MotionState, np.ndarray]:
         """States of a group, and which samples have to run alone: all, if they do not share their rigid motions."""
@@ -85,6 +85,6 @@ class EnergyMomentum(Variational):
     ) -> tuple[float, np.ndarray, Balance]:
         """Energy at the start with its derivatives, and the force that keeps it."""
         for model in (lowered.real, *(entry.complex_model for entry in perturbed)):
-            model.need("energy")
+            model.need("energy").averaged()
         energies = first_energies(lowered, perturbed, start, dstarts, within)
         return *energies, balance_workspace(len(start.x), rigid_motions(lowered, perturbed))

@@ -57,6 +57,7 @@ from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.block_table import addresses
 from dalembert.multibody.kernels.elementary import where
 from dalembert.multibody.kernels.linear import Factors
+from dalembert.multibody.kernels.records import call_at
 from dalembert.multibody.kernels.states import Histories, MotionState, MotionStates, resting, row, rows
 from dalembert.multibody.model.lane_models import lane_model
 from dalembert.multibody.model.turns import count_turns
@@ -119,6 +120,8 @@ def run_in_lanes(
     models = [samples[number].real.need("rates") for number in filled]
     roles = ("residual", "rates", "energy") if balances else ("residual", "rates")
     together = lane_model(samples, *roles)
+    if balances:
+        together.averaged()
     energies = [balances[number][0] for number in filled] if balances else []
     motions = [balances[number][1] for number in filled] if balances else []
     middle, end, call = together.call(), together.call(), models[0].call()
@@ -272,6 +275,7 @@ def _advance(problem, pattern, t, target, within, tolerance, balance, work):
         set_lane_signals(t + 0.5 * h, within, work.source, work.middle)
         set_lane_signals(target, within, work.source, work.end)
         begin(n, h, before, missed, s)
+        call_at(step.middle).step = h if balance.converge != 0 else 0.0
         if balance.converge == 0:
             converge_lanes(problem, h, tolerance, work.least, s, step)
         else:

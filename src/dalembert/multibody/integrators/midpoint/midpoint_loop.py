@@ -36,6 +36,7 @@ from dalembert.multibody.integrators.shared.problem import (
 from dalembert.multibody.integrators.shared.settling import settle, settle_along
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.block_table import Call
+from dalembert.multibody.kernels.records import call_at
 from dalembert.multibody.kernels.states import Histories, MotionState, MotionStates, clear, copy, resting, row
 from dalembert.multibody.model.turns import STEP_END, count_turns
 
@@ -124,6 +125,7 @@ def differentiate(
         set_signals(perturbed, t + 0.5 * h, within, middle)
         set_signals(perturbed, target, within, end)
         midpoint.begin(n, h, dold, slopes[d], ds)
+        call_at(middle).step = h if balance.converge_along != 0 else 0.0
         if balance.converge_along == 0:
             midpoint.converge_along(problem, matrices, perturbed, h, step, along)
         else:
@@ -210,6 +212,7 @@ def integrate(
             set_signals(models.real, t + 0.5 * h, within, step.middle)
             set_signals(models.real, target, within, step.end)
             midpoint.begin(n, h, new, slope, s)
+            call_at(step.middle).step = h if balance.converge != 0 else 0.0
             if balance.converge == 0:
                 converged, iterations, rate, worst = midpoint.converge(
                     problem, matrices, models.real, h, step, settings.newton_tolerance, h * speed

@@ -30,6 +30,7 @@ from dalembert.multibody.integrators.shared.settling import weigh_along
 from dalembert.multibody.kernels.assembly import constraint_forces, constraint_rates, residual
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import solve
+from dalembert.multibody.kernels.records import call_at, model_at
 from dalembert.multibody.kernels.states import clear
 
 MOST_ITERATIONS = 20
@@ -148,8 +149,9 @@ def step_residuals(model, n, at, middle, end, f, gap, rate, second):
     their rates.
     """
     # M a + F(q_m, v_m) + J(q_m)^T l_m from one call of the kernels, less its constraint forces: what is left is M a +
-    # F.
-    residual(model, n, at.xm, at.vm, at.a, middle, 1.0, f)
+    # F. Methods that keep the energy take forces of the ends in place of F(q_m, v_m), where components have them.
+    forces = model if call_at(middle).step == 0.0 else model_at(model).middle
+    residual(forces, n, at.xm, at.vm, at.a, middle, 1.0, f)
     clear(gap)
     constraint_forces(model, at.xm, at.vm, at.a, middle, gap)
     for k in range(n):

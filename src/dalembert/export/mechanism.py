@@ -6,7 +6,7 @@ import numpy as np
 
 from dalembert.export.vtu import Mesh, chosen
 from dalembert.multibody import Trajectory
-from dalembert.multibody.model.drawing import draw
+from dalembert.multibody.model.drawing import Drawing, draw
 
 STEP = 1e-30
 """Of the complex step from places to velocities."""
@@ -15,7 +15,7 @@ STEP = 1e-30
 def motion(trajectory: Trajectory, frames: int | None, points: int) -> Iterator[tuple[float, Mesh]]:
     """Times and meshes of a motion: bodies as lines, or vertices where they are points, and joints as vertices.
 
-    Bodies in space with shapes are triangles, too.
+    Bodies in space with shapes are triangles, too; those of beams have strains.
     """
     rows = chosen(len(trajectory.times), frames)
     times, states = trajectory.times[rows], trajectory.states
@@ -43,9 +43,24 @@ def motion(trajectory: Trajectory, frames: int | None, points: int) -> Iterator[
     for name, values in sections.items():
         part = [float(np.real(getattr(body, name, 0.0))) for body in trajectory.system.bodies]
         values[: sum(of_bodies)] = np.repeat(part, of_bodies)
-    for time, place in zip(times, places, strict=True):
+    strains = _strains(drawn, places.shape[:2])
+    for number, (time, place) in enumerate(zip(times, places, strict=True)):
         fields = {"displacement": (place - places[0]).real, "velocity": place.imag / STEP}
+        fields |= {} if strains is None else {"strain": strains[number]}
         yield float(time), Mesh(place.real, cells, fields | sections, marks)
+
+
+def _strains(drawn: Drawing, shape: tuple[int, int]) -> np.ndarray | None:
+    """Strains along beams at their corners, (frames, points), zero at other points; None without such corners."""
+    if all(surface.strains is None for surface in drawn.surfaces.values()):
+        return None
+    values, at = np.zeros(shape), shape[1] - sum(surface.corners.shape[-2] for surface in drawn.surfaces.values())
+    for surface in drawn.surfaces.values():
+        count = surface.corners.shape[-2]
+        if surface.strains is not None:
+            values[:, at : at + count] = surface.strains
+        at += count
+    return values
 
 
 def _cells(sizes: list[int], bodies: int) -> tuple[list[tuple[str, np.ndarray]], dict[str, list[np.ndarray]]]:

@@ -26,7 +26,7 @@ class Drawing:
         Origin in m and axes of bodies in space.
     surfaces : mapping of body to Surface
         In the axes of bodies that have shapes; of beams with the section's outline in the fixed axes, with corners
-        (frames, corners, 3).
+        (frames, corners, 3), and with strains.
     ground : Surface, optional
         Of the ground, in the fixed axes.
     """

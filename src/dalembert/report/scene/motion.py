@@ -8,7 +8,7 @@ from dalembert.multibody import Drawing
 from dalembert.multibody.components.spatial.mesh_files import simplified
 from dalembert.multibody.components.spatial.shapes import Surface
 from dalembert.report.scene.mechanism import FEW_BODIES
-from dalembert.report.scene.scene import Primitive, Scene
+from dalembert.report.scene.scene import ColourBar, Primitive, Scene
 
 POINTS_A_FRAME = 1000
 """Points of lines above which lines are thinned."""
@@ -33,7 +33,8 @@ Lines = Mapping[str, np.ndarray]
 def motion_scene(drawing: Drawing, frames: np.ndarray, *, paths: Lines, measured: Lines) -> Scene:
     """Return bodies, their axes and joints of a drawing at some of its frames, paths, and measured positions.
 
-    The lines of more than seven bodies become one with gaps; so do a few poses along the motion.
+    The lines of more than seven bodies become one with gaps; so do a few poses along the motion. Beams that have strains
+    are coloured by them.
     """
     lines = {name: np.asarray(line)[frames] for name, line in drawing.lines.items()}
     joints = {name: np.asarray(at)[frames] for name, at in drawing.joints.items()}
@@ -54,18 +55,24 @@ def motion_scene(drawing: Drawing, frames: np.ndarray, *, paths: Lines, measured
     if len(drawn) > FEW_BODIES:
         drawn = {f"{len(drawn)} bodies": joined(drawn)}
     shapes += [Primitive("line", "body", name, line, numbers.get(name, 0)) for name, line in drawn.items()]
+    strains = [surface.strains[frames] for surface in surfaces.values() if surface.strains is not None]
+    highest = max((float(own.max()) for own in strains), default=0.0)
     for name, surface in surfaces.items():
         deforms = surface.corners.ndim == 3
         corners = surface.corners[frames] if deforms else surface.corners[None]
         poses = None if deforms else drawing.axes[name][frames]
-        shapes.append(Primitive("surface", "body", name, corners, numbers[name], surface.triangles, poses=poses))
+        values = None if surface.strains is None or not highest else surface.strains[frames]
+        shapes.append(
+            Primitive("surface", "body", name, corners, numbers[name], surface.triangles, poses=poses, values=values)
+        )
     size = max(float(np.ptp(Scene(tuple(shapes)).positions, axis=0).max()), 1e-9)
     for name, at in joints.items():
         is_still = float(np.ptp(at, axis=0).max()) <= STILL * size
         shapes.append(Primitive("ground" if is_still else "joint", "joint", name, at[: 1 if is_still else None, None]))
     if in_space and 0 < len(drawing.axes) <= FEW_BODIES:
         shapes += _axes({name: axes[frames] for name, axes in drawing.axes.items()}, AXIS * size)
-    return Scene(tuple(shapes), times=np.asarray(drawing.times, dtype=float)[frames])
+    bar = ColourBar("strain along beams", highest) if highest else None
+    return Scene(tuple(shapes), times=np.asarray(drawing.times, dtype=float)[frames], bar=bar)
 
 
 def thinned(lines: Lines) -> dict[str, np.ndarray]:

@@ -274,7 +274,8 @@ class Beam(Body):
         if not all(len(outline) == len(outlines[0]) > 2 for outline in outlines):
             return None
         nodes = self.by_element(coordinates.reshape(len(coordinates), -1, 4, 3))
-        places = Places.at(self.degree, np.linspace(0.0, 1.0, max(1, _RINGS // self.elements) + 1))
+        shares = np.linspace(0.0, 1.0, max(1, _RINGS // self.elements) + 1)
+        places = Places.at(self.degree, shares)
         line, axes = (self._along(part(nodes, places)) for part in (lines, frames))
         at, corners = np.linspace(0.0, float(np.real(self.length)), line.shape[1]), np.stack(outlines)
         known = np.zeros(1)
@@ -283,7 +284,21 @@ class Beam(Body):
         rings = np.stack([[np.interp(at, known, corners[:, k, c]) for c in (0, 1)] for k in range(corners.shape[1])])
         # Position of a corner: the line, y times d2 and z times d3; rings (corners, 2, rings).
         surface = line[:, :, None] + np.einsum("kcr,frcx->frkx", rings, axes[:, :, 1:])
-        return Surface(surface.reshape(len(surface), -1, 3), _tube(len(at), corners.shape[1]))
+        e = np.real(self._along(self._elastic_strains(nodes, shares)))[:, :, None]
+        # Along the line, at the corner (y, z): stretch + z K_y - y K_z.
+        strain = np.abs(e[..., 0] + rings[:, 1].T * e[..., 4] - rings[:, 0].T * e[..., 5])
+        corners = surface.reshape(len(surface), -1, 3)
+        return Surface(corners, _tube(len(at), len(rings)), strain.reshape(len(surface), -1))
+
+    def _elastic_strains(self, nodes: np.ndarray, shares: np.ndarray) -> np.ndarray:
+        """Strains less those without stress at shares of the elements, (frames, elements, shares, 6).
+
+        Those of the points, and the polynomial through them, are more accurate than strains elsewhere.
+        """
+        points = np.array(rule(self.degree, self.degree).places)
+        known = strains(nodes, Places.at(self.degree, points), np.full(1, self.length / self.elements))
+        weights = np.linalg.solve(np.vander(points).T, np.vander(shares, len(points)).T).T
+        return np.einsum("sp,fepk->fesk", weights, known - self._references)
 
     def _along(self, values: np.ndarray) -> np.ndarray:
         """Values at points of all elements (frames, elements, points, ...) along the beam, ends of elements once."""

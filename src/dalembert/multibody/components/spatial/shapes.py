@@ -24,10 +24,15 @@ AROUND = 16
 
 
 class Surface(NamedTuple):
-    """Corners (corners, 3) in the axes of a body, m, and triangles (triangles, 3) between them, by their numbers."""
+    """Corners (corners, 3) in the axes of a body, m, and triangles (triangles, 3) between them, by their numbers.
+
+    Corners of a body that deforms are (frames, corners, 3), in the fixed axes; ``strains`` (frames, corners) of it are
+    the magnitudes of its strain.
+    """
 
     corners: np.ndarray
     triangles: np.ndarray
+    strains: np.ndarray | None = None
 
 
 @dataclass(frozen=True)

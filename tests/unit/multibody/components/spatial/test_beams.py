@@ -170,6 +170,22 @@ def test_a_beam_is_drawn_by_the_outline_of_its_section():
     assert shape.points.shape[1:] == (68, 3)
 
 
+def test_a_beam_is_coloured_by_its_strain_along_the_line():
+    section = sp.Section.rectangle(0.02, 0.01, **STEEL)
+    system = _clamped(sp.Beam("strip", section, 1.0, 2, 3, prestrain=(1e-3, 0.0, 0.0, 0.0, 0.0, 0.0)))
+    strip = system.bodies[0]
+    system.add(sp.Force("pull", strip.end, y=2.0, z=3.0))
+    system.start = "equilibrium"
+    still = mb.simulate(system, 0.01, mb.GeneralizedAlpha(step=1e-3))
+    (shape,) = (entry for entry in Animation.of(still.drawing()).scene.primitives if entry.kind == "surface")
+    strains = shape.values[0].reshape(17, 4)  # rings, corners (y, z)
+    e = STEEL["youngs_modulus"]
+    about_y, about_z = 3.0 / (e * section.moments[0] / 7850.0), 2.0 / (e * section.moments[1] / 7850.0)
+    corner = np.abs(-0.005 * about_y - 0.01 * about_z)  # at the clamp, (y, z) = (0.01, 0.005) m
+    np.testing.assert_allclose(strains[:, 0], corner * np.linspace(1.0, 0.0, 17), atol=2e-3 * corner)
+    assert strains.max() == pytest.approx(Animation.of(still.drawing()).scene.bar.highest, rel=1e-6)
+
+
 def test_section_forces_are_those_of_the_clamp():
     whip = sp.Beam("whip", sp.Section.rectangle(0.02, 0.01, **STEEL), 1.0, 2, 3, curvature=(0.1, 0.5, 1.0))
     system = sp.SpatialSystem()

@@ -41,8 +41,8 @@ BLOCK = _record(
     "count index rows row_count integers numbers residual tangent rates energy outputs joins spread change restore"
 )
 #: A model: its blocks; those of the reduced system; the nodes as blocks, the row of each unknown, and kernels of all
-#: nodes; its ``middle``, see :meth:`BlockModel.averaged`; its signals, see :mod:`signals`. Without nodes a model has one
-#: system: ``reduced`` are its blocks.
+#: nodes; its ``middle``, see :meth:`BlockModel.averaged`; its signals, see :mod:`signals`. Without nodes a model has
+#: one system: ``reduced`` are its blocks.
 MODEL = _record(
     "blocks block_count reduced reduced_count nodes node_count rows spread change restore middle "
     "signal_count signal_index knots knot_count signal_data number_count callbacks callback_count evaluate"

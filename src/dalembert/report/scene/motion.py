@@ -33,8 +33,8 @@ Lines = Mapping[str, np.ndarray]
 def motion_scene(drawing: Drawing, frames: np.ndarray, *, paths: Lines, measured: Lines) -> Scene:
     """Return bodies, their axes and joints of a drawing at some of its frames, paths, and measured positions.
 
-    The lines of more than seven bodies become one with gaps; so do a few poses along the motion. Beams that have strains
-    are coloured by them.
+    The lines of more than seven bodies become one with gaps; so do a few poses along the motion. Beams have the
+    colours of their strains.
     """
     lines = {name: np.asarray(line)[frames] for name, line in drawing.lines.items()}
     joints = {name: np.asarray(at)[frames] for name, at in drawing.joints.items()}

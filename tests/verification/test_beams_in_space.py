@@ -251,3 +251,25 @@ def test_in_a_plane_it_is_the_planar_beam(record_evidence):
         "Flexible pendulum in a plane, tip", expected, ours, unit="m", tolerance=2e-3, topic=TOPIC,
         kind="other method", source="planar shear-deformable elements with Green's stretch",
     )  # fmt: skip
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("body", ["beam", "cable"])
+def test_a_free_flight_keeps_energy_over_100000_steps(record_evidence, body):
+    """A curved beam and a slack cable that tumble and vibrate, without gravity and damping."""
+    system = SpatialSystem(gravity=(0.0, 0.0, 0.0))
+    if body == "beam":
+        section = Section.rectangle(0.02, 0.01, youngs_modulus=2e9, poisson_ratio=0.3, density=1200.0)
+        system.add(Beam("b", section, 1.0, 1, 2, curvature=(0.0, 0.0, 0.3), angular_velocity=(1.0, 4.0, 3.0)))
+    else:
+        fields = {"axial_stiffness": 2e4, "bending_stiffness": 0.1, "mass_per_length": 0.2, "span": 0.9}
+        system.add(sp.Cable("b", 1.0, 2, angular_velocity=(1.0, 4.0, 3.0), **fields))
+    motion = mb.simulate(system, 500.0, mb.EnergyMomentum(step=5e-3), times=np.linspace(0.0, 500.0, 2001))
+    assert len(motion.newton_iterations) == 100_000
+    energy = motion.energies["kinetic"] + motion.energies["potential"]
+    common = {"topic": TOPIC, "kind": "conservation law", "source": "energy of a free motion"}
+    record_evidence(
+        f"Free {body}, 100,000 steps: range of its energy", 0.0, np.ptp(energy) / energy[0], tolerance=1e-10, **common
+    )
+    trend = np.polyfit(motion.times, energy / energy[0], 1)[0] * 500.0
+    record_evidence(f"Free {body}, 100,000 steps: trend of its energy", 0.0, trend, tolerance=2e-11, **common)

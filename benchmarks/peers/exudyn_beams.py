@@ -61,6 +61,50 @@ def cantilever(
         system.Assemble()
         return system, nodes[-1]
 
+    return _runner(build, end, step, radius, dense)
+
+
+def elbow(
+    elements: int, stiffness: np.ndarray, inertia: tuple[float, float], length: float, force: float, end: float,
+    step: float, radius: float, dense: bool,
+) -> Callable[[], np.ndarray]:  # fmt: skip
+    """As :func:`cantilever`, of two geometrically exact beams at a right angle whose corner a force pushes along z."""
+    mass, second = inertia
+    container = exu.SystemContainer()
+
+    def build() -> tuple[Any, int]:
+        system, h = container.AddSystem(), length / elements
+        section = exu.BeamSection()
+        section.stiffnessMatrix, section.massPerLength = np.diag(stiffness), mass
+        section.inertia = np.diag([2 * second, second, second])
+        half = np.sqrt(0.5)
+        first = [[i * h, 0, 0, 1, 0, 0, 0] for i in range(elements + 1)]
+        other = [[length, i * h, 0, half, 0, 0, half] for i in range(elements + 1)]
+        legs = [
+            [system.AddNode(items.NodeRigidBodyEP(referenceCoordinates=place)) for place in places]
+            for places in (first, other)
+        ]
+        for leg in legs:
+            for a, b in pairwise(leg):
+                system.AddObject(items.ObjectBeamGeometricallyExact(nodeNumbers=[a, b], length=h, sectionData=section))
+        ground = system.AddMarker(items.MarkerNodeRigid(nodeNumber=system.AddNode(items.NodePointGround())))
+        clamp, corner, begin = (
+            system.AddMarker(items.MarkerNodeRigid(nodeNumber=node)) for node in (legs[0][0], legs[0][-1], legs[1][0])
+        )
+        system.AddObject(items.ObjectJointGeneric(markerNumbers=[ground, clamp]))
+        quarter = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+        system.AddObject(items.ObjectJointGeneric(markerNumbers=[corner, begin], rotationMarker0=quarter))
+        system.AddLoad(items.LoadForceVector(markerNumber=corner, loadVector=[0, 0, force]))
+        system.Assemble()
+        return system, legs[1][-1]
+
+    return _runner(build, end, step, radius, dense)
+
+
+def _runner(
+    build: Callable[[], tuple[Any, int]], end: float, step: float, radius: float, dense: bool
+) -> Callable[[], np.ndarray]:
+    """A function that simulates what ``build`` makes, and returns the position of its node at the end."""
     settings = exu.SimulationSettings()
     steps = settings.timeIntegration
     steps.newton.useModifiedNewton = True

@@ -244,6 +244,7 @@ def beam(degree: int = 2) -> Callable[..., sp.SpatialSystem]:
 
     def build(mass, moment_y, moment_z, product, centre_y, centre_z, length, angles, **fields) -> sp.SpatialSystem:
         system, wind, push = sp.SpatialSystem(), fields.pop("wind"), fields.pop("push")
+        gauge = fields.pop("gauge")[:2]
         entries = [entry for k in range(7) for entry in fields.pop(f"stiffness_{k}")]
         matrix = np.zeros((6, 6), np.result_type(*entries))
         matrix[np.triu_indices(6)] = entries
@@ -252,7 +253,7 @@ def beam(degree: int = 2) -> Callable[..., sp.SpatialSystem]:
         fields |= {"orientation": by_angles(angles), "prestrain": (*fields.pop("strain"), *fields.pop("bend"))}
         own = system.add(sp.Beam("part", section, length, 1, degree, **fields))
         system.add(sp.SphericalJoint("hold", system.ground.point((0.1, 0.2, 0.3)), own.start))
-        system.add(sp.BeamSensor("gauge", own.start))
+        system.add(sp.BeamSensor("gauge", own.start, gauge))
         system.add(sp.LineForce("wind", own.end, *wind, follower=True))
         system.add(sp.LineForce("push", own.start, *push))
         return system
@@ -370,6 +371,7 @@ BEAM = {
     "damping": 0.01,
     "mass_damping": 0.1,
     "wind": (0.5, -0.4, 0.8),
+    "gauge": (0.02, -0.03, 0.0),
     "push": (-0.3, 0.6, 0.2),
 }
 

@@ -13,6 +13,7 @@ import numpy as np
 from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.kernels.views import stack
+from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.points import Point
 from dalembert.multibody.components.spatial.beam import Beam, beam_of
 from dalembert.multibody.components.spatial.beam_columns import ENTRIES
@@ -27,6 +28,7 @@ from dalembert.multibody.kernels.kind import Kind
 OUTPUTS = (
     ("force_1", "N"), ("force_2", "N"), ("force_3", "N"), ("moment_1", "N*m"), ("moment_2", "N*m"), ("moment_3", "N*m"),
     ("stretch", ""), ("shear_y", ""), ("shear_z", ""), ("twist", "1/m"), ("bend_y", "1/m"), ("bend_z", "1/m"),
+    ("strain", ""),
 )  # fmt: skip
 
 
@@ -63,11 +65,12 @@ def _kind(degree: int) -> Kind:
         out[3], out[4], out[5] = moment
         out[6], out[7], out[8] = gamma
         out[9], out[10], out[11] = kappa
+        out[12] = gamma[0] + p.gauge_z * kappa[1] - p.gauge_y * kappa[2]
 
     return Kind(
         f"beam_sensor_{degree}",
         coordinates=width,
-        numbers=(*element.numbers, *(f"s{entry[1:]}" for entry in ENTRIES)),
+        numbers=(*element.numbers, *(f"s{entry[1:]}" for entry in ENTRIES), "gauge_y", "gauge_z"),
         integers=("node",),
         residual=no_residual,
         energy=no_energy,
@@ -92,6 +95,8 @@ class BeamSensor(Load):
     name : str
     at : Point
         A node of a beam between two elements, its start or its end.
+    gauge : (float, float)
+        Point (y, z) of the section whose strain along the line is the output ``strain``, m.
 
     Raises
     ------
@@ -103,8 +108,8 @@ class BeamSensor(Load):
     Outputs in the axes of the section: ``force_1`` (axial), ``force_2``, ``force_3``, ``moment_1`` (torque),
     ``moment_2``, ``moment_3``, which the part behind the section exerts on that before it; the elastic strains
     ``stretch``, ``shear_y``, ``shear_z``, ``twist``, ``bend_y``, ``bend_z`` that the stiffness of the section has
-    under these forces. A gauge at (y, z) measures stretch + z bend_y - y bend_z. Between two elements the values are
-    those of the element before the node.
+    under these forces; and ``strain`` = stretch + z bend_y - y bend_z at the ``gauge``, as a strain gauge measures it.
+    Between two elements the values are those of the element before the node.
 
     Examples
     --------
@@ -121,6 +126,7 @@ class BeamSensor(Load):
     """
 
     at: Point
+    gauge: tuple[Number, Number] = number("m", (0.0, 0.0))
 
     @property
     def kind(self) -> Kind:  # type: ignore[override]
@@ -145,6 +151,6 @@ class BeamSensor(Load):
         element = max(node // beam.degree - 1, 0)
         place = beam.length * node / (beam.elements * beam.degree)
         flexibility = np.linalg.inv(beam.section_at(place).matrix)[np.triu_indices(6)].tolist()
-        numbers = [*beam.element_numbers(element, lowering.gravity), *flexibility]
+        numbers = [*beam.element_numbers(element, lowering.gravity), *flexibility, *self.gauge]
         index = beam.element_index(first_coordinate(lowering, self.at, self.name))[element].tolist()
         lowering.add(self.kind, index, numbers, [node - beam.degree * element], self.name)

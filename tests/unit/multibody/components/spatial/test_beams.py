@@ -193,7 +193,7 @@ def test_section_forces_are_those_of_the_clamp():
     system.add(sp.FixedJoint("clamp", system.ground, whip.start))
     system.add(sp.Force("pull", whip.end, 30.0, -20.0, 10.0))
     for name, point in (("first", whip.start), ("middle", whip.node(3)), ("last", whip.end)):
-        system.add(sp.BeamSensor(name, point))
+        system.add(sp.BeamSensor(name, point, gauge=(0.01, -0.004)))
     axes = [f"{what}_{k}" for what in ("force", "torque") for k in (1, 2, 3)]
     outputs = [f"{what}_{k}" for what in ("force", "moment") for k in (1, 2, 3)]
     motion = mb.simulate(system, 0.05, mb.GeneralizedAlpha(step=1e-3))
@@ -208,6 +208,8 @@ def test_section_forces_are_those_of_the_clamp():
     strains = rest.channels([f"middle.{name}" for name in ("stretch", "bend_y", "bend_z")])
     forces = rest.channels([f"middle.{name}" for name in ("force_1", "moment_2", "moment_3")])
     np.testing.assert_allclose(strains, forces / np.diagonal(whip.section.matrix)[[0, 4, 5]], rtol=1e-12)
+    at_gauge = rest.channels(["middle.strain"])[0]
+    assert at_gauge == pytest.approx(strains[0] - 0.004 * strains[1] - 0.01 * strains[2])
 
 
 def test_forces_along_a_line_are_its_weight_and_turn_with_it():

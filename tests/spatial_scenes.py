@@ -244,7 +244,7 @@ def beam(degree: int = 2) -> Callable[..., sp.SpatialSystem]:
 
     def build(mass, moment_y, moment_z, product, centre_y, centre_z, length, angles, **fields) -> sp.SpatialSystem:
         system, wind, push = sp.SpatialSystem(), fields.pop("wind"), fields.pop("push")
-        gauge = fields.pop("gauge")[:2]
+        gauge = fields.pop("gauge_y"), fields.pop("gauge_z")
         entries = [entry for k in range(7) for entry in fields.pop(f"stiffness_{k}")]
         matrix = np.zeros((6, 6), np.result_type(*entries))
         matrix[np.triu_indices(6)] = entries
@@ -371,7 +371,8 @@ BEAM = {
     "damping": 0.01,
     "mass_damping": 0.1,
     "wind": (0.5, -0.4, 0.8),
-    "gauge": (0.02, -0.03, 0.0),
+    "gauge_y": 0.02,
+    "gauge_z": -0.03,
     "push": (-0.3, 0.6, 0.2),
 }
 

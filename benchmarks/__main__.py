@@ -33,10 +33,12 @@ NAMES = (
     "studio",
 )
 
-PAGES = (
-    *NAMES[:-7], "vibration-cost", "plate", "flexible", "flexible-elbow", "flexible-chains", "spatial",
-    "spatial-sensitivities", *NAMES[-4:],
-)  # fmt: skip
+MORE = {
+    "bolted": ("vibration-cost",),
+    "flexible": ("flexible-elbow", "flexible-chains"),
+    "spatial": ("spatial-sensitivities",),
+}
+PAGES = tuple(page for name in NAMES for page in (name, *MORE.get(name, ())))
 """Results that the page shows, in its order."""
 
 

@@ -17,6 +17,9 @@ from dalembert.multibody.kernels.records import BLOCK, CALL, MODEL
 from dalembert.multibody.kernels.reduction import Reduction
 from dalembert.multibody.kernels.signal_values import EVALUATORS
 
+MEANS = {"residual": "mean", "energy": "mean_power"}
+"""Roles of the middle of a step, by those that they take the place of."""
+
 
 @cache
 def c_function(address: int) -> Callable[[int, int], None]:
@@ -47,7 +50,7 @@ class BlockModel:
     """A whole model in real numbers, in complex ones as a direction of differentiation, in dual ones with up to eight
     directions, or in lanes of eight samples. ``size``: unknowns; ``coordinates``: unknowns that are no multipliers;
     ``reduction``: rows of the reduced system; ``roles``: kernels that it needs at once; ``averages``: whether residuals
-    are those of the middle of a step, for the kinds that have them.
+    and powers are those of the middle of a step, for the kinds that have them.
     """
 
     blocks: Blocks
@@ -106,19 +109,19 @@ class BlockModel:
             # start.
             for role in kind.roles.intersection(roles):
                 if block[role] == 0:
-                    is_mean = self.averages and role == "residual" and kind.has("mean")
-                    kernel = kind.kernel("mean" if is_mean else role, self.dtype)
+                    mean = MEANS.get(role, "") if self.averages else ""
+                    kernel = kind.kernel(mean if kind.has(mean) else role, self.dtype)
                     self._kernels.append(kernel)
                     block[role] = kernel.address
         return self
 
     def averaged(self) -> "BlockModel":
-        """Load the residuals of the middle of a step, by which its energy is kept, and hand the model back."""
+        """Load the forces of the middle of a step by which its energy is kept, and their power; hand the model back."""
         head = self._words[0]
         if head["middle"][0] == 0:
             middle = self
             if any(kind.has("mean") for kind in self.blocks.index):
-                middle = replace(self, averages=True, roles=("residual",))
+                middle = replace(self, averages=True, roles=tuple(MEANS))
                 self._kernels.append(middle)
             head["middle"] = middle.address
         return self

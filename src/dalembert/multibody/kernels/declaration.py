@@ -38,7 +38,8 @@ class Declaration:
     ``energy(x, v, p, m, inputs)`` returns the kinetic and the potential energy, J, and the power, W, of the forces
     without a potential, negative where they dissipate. Without it, all forces count as power.
     ``mean(x, v, a, p, m, inputs, step, r)``: as ``residual``, of a step from x - step v / 2 to x + step v / 2, with
-    forces whose work is the change of the potential energy, to rounding. `EnergyMomentum` takes it.
+    forces whose work is the change of the potential energy and step times ``mean_power(x, v, p, m, inputs, step)``, W,
+    the power of those without a potential. `EnergyMomentum` takes both.
     ``observe(x, v, a, p, m, inputs, out)`` fills the ``outputs`` (name, unit); ``observes_inputs``: whether these
     depend on signals, which are evaluated only then.
     ``angles``: outputs that are angles which are known up to whole turns. (``angle`` is one where the integer ``wraps``
@@ -60,10 +61,10 @@ class Declaration:
     statics takes stresses as separate unknowns, and needs far fewer iterations.
     ``driven``, ``loads``: whether a prescribed motion, or a load, may do work.
     ``holds``: whether a component on the ground keeps the mechanism from moving freely, as joints and springs do. It
-    then has the columns ``a_kind b_kind`` (integers) and ``a_x a_y b_x b_y`` of two markers. ``holds_frame``: whether
-    it then holds the direction of a ground point, not only the point. ``lanes``: whether the functions take eight
-    samples side by side, in one call: no branch depends on the state, but `where` selects; branches on numbers ask
-    `is_zero`. By default kinds of the package do, kinds of users do not.
+    then has the columns ``a_kind b_kind`` (integers) and ``a_x a_y b_x b_y`` of two markers, in space ``a_z b_z`` too.
+    ``holds_frame``: whether it then holds the direction of a ground point, not only the point. ``lanes``: whether the
+    functions take eight samples side by side, in one call: no branch depends on the state, but `where` selects;
+    branches on numbers ask `is_zero`. By default kinds of the package do, kinds of users do not.
     """
 
     name: str
@@ -77,6 +78,7 @@ class Declaration:
     forces: Callable[..., Any] | None = None
     energy: Callable[..., Any] | None = None
     mean: Callable[..., Any] | None = None
+    mean_power: Callable[..., Any] | None = None
     outputs: tuple[tuple[str, str], ...] = ()
     observe: Callable[..., Any] | None = None
     angles: tuple[str, ...] = ()
@@ -210,6 +212,7 @@ class Declaration:
         roles = {
             **dict.fromkeys(("residual", "tangent", "pullback"), acts),
             "mean": self.mean is not None,
+            "mean_power": self.mean_power is not None,
             "rates": self.constraint is not None,
             "energy": self.energy is not None or self.residual is not None,
             "outputs": self.observe is not None,

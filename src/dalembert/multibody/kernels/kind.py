@@ -12,7 +12,7 @@ from dalembert.multibody.kernels.loops import BlockKernel
 
 _MAKERS = {**loops.MAKERS, **nodes.MAKERS, "tangent": tangents.tangent, "pullback": pullbacks.pullback}
 _ONE_ARITHMETIC = {"tangent", "pullback"}  #: roles of which a kind has one kernel
-_WHEN_NEEDED = {"mean"}  #: roles whose kernels are not compiled ahead
+_WHEN_NEEDED = {"mean", "mean_power"}  #: roles whose kernels are not compiled ahead
 
 
 @dataclass(frozen=True, eq=False)

@@ -186,6 +186,19 @@ def energy(kind: Declaration, dtype: type) -> BlockKernel:
     return _each(kind, "energy", dtype, step)
 
 
+def mean_power(kind: Declaration, dtype: type) -> BlockKernel:
+    """Add the power of the mean forces of a step that have no potential."""
+    function: Any = kind.mean_power
+    view, _ = VIEWS[dtype]
+
+    @inlined
+    def step(x, v, a, p, m, inputs, call, block, e):
+        totals = view(call.totals, 3)
+        totals[2] += function(x, v, p, m, inputs, call.step)
+
+    return _each(kind, "mean_power", dtype, step)
+
+
 def outputs(kind: Declaration, dtype: type) -> BlockKernel:
     """Fill the outputs of the components, (count, outputs), at the call's ``r``."""
     function: Any = kind.observe
@@ -211,5 +224,6 @@ def turn(kind: Declaration, dtype: type) -> BlockKernel:
 
 
 MAKERS: dict[str, Callable[[Declaration, type], BlockKernel]] = {
-    "residual": residual, "mean": mean, "rates": rates, "energy": energy, "outputs": outputs, "turn": turn,
+    "residual": residual, "mean": mean, "mean_power": mean_power, "rates": rates, "energy": energy, "outputs": outputs,
+    "turn": turn,
 }  # fmt: skip

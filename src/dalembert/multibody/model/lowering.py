@@ -33,7 +33,7 @@ class MechanismLowering(ABC):
     """Collects the rows of the kernels while the components write them."""
 
     def __init__(self, system: BaseSystem, begin: float = 0.0) -> None:
-        self.gravity = system.gravity
+        self.gravity, self.loads = system.gravity, system.loads
         self.kinks: list[tuple[float, str]] = []
         self._system = system
         self._written: dict[Kind, list[tuple]] = {}  # index, integers, numbers and component of each row

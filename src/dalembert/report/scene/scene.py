@@ -21,8 +21,8 @@ class Primitive:
     ``points`` (frames, points, 2 or 3): m, one frame if it does not move, or has poses; ``colour``: number in the
     series of a palette, or ``INK``; ``faces`` (faces, 3 or 4): corners of the faces among the points; ``along``
     (2 or 3,): direction of an arrow; ``poses`` (frames, 4, 3): origin, m, and axes of a rigid body over time. The
-    points, of one frame, are then in these axes. ``values`` (frames or 1, points): what colours ``mesh`` and ``points``
-    by the scene's colour bar, in its unit.
+    points, of one frame, are then in these axes. ``values`` (frames or 1, points): what colours faces and
+    ``points`` by the scene's colour bar, in its unit.
     """
 
     kind: str

@@ -87,7 +87,7 @@ def spatial(scene: str, method: Integrator) -> mb.TimeResponse:
     channels = [
         f"{body.name}.{body.point_names[-1]}.{entry}"
         for body in bodies
-        for entry in ("x", "ay", *(("wz", "rotation_z") if body.turns else ()))
+        for entry in ("x", "ay", *(("wz", "rotation_z") if body.has_axes else ()))
     ]
     return mb.TimeResponse(
         lambda **numbers: build(**fields_of(fields, numbers)), parameters, channels, TIMES, method, 1

@@ -5,19 +5,16 @@ from typing import Any, ClassVar, cast
 
 import numpy as np
 
-from dalembert.errors import InputError
 from dalembert.multibody.components.base_body import POSITION
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.hermite import line
+from dalembert.multibody.components.node_chain import NodeChain
 from dalembert.multibody.components.planar.body import GRADIENT, Body, turned
-from dalembert.multibody.components.points import Place, Point
-
-MOST_ELEMENTS = 100_000
-"""Of a beam: a hundred times as many as the longest chain of the benchmarks."""
+from dalembert.multibody.components.points import Place
 
 
 @dataclass(frozen=True)
-class Ancf(Body):
+class Ancf(NodeChain, Body):
     """What both beams share: a chain of equal elements between equal nodes, cubic along the axis.
 
     Its first vectors a node are the position and the gradient along the axis.
@@ -39,18 +36,6 @@ class Ancf(Body):
         node = (POSITION, POSITION) + (GRADIENT, GRADIENT) * (self.vectors - 1)
         return node * (self.elements + 1)
 
-    @property
-    def point_names(self) -> tuple[str, ...]:
-        return ("start", "end", *(f"node{k}" for k in range(self.elements + 1)))
-
-    def node(self, number: int) -> Point:
-        """Node 0 (the start) to node ``elements`` (the end)."""
-        return self.point(f"node{number}")
-
-    def _node(self, point: str) -> int:
-        ends = {"start": 0, "end": self.elements}
-        return ends[point] if point in ends else int(point.removeprefix("node"))
-
     def coordinates(self, x: Number, y: Number, angle: Number) -> np.ndarray:
         c, s = turned(1.0, 0.0, angle)
         along = np.linspace(0.0, 1.0, self.elements + 1) * self.length
@@ -66,10 +51,3 @@ class Ancf(Body):
     def outline(self, coordinates: np.ndarray, points: int) -> np.ndarray:
         nodes = coordinates.reshape(len(coordinates), self.elements + 1, self.vectors, 2)
         return line(nodes, float(np.real(self.length)) / self.elements, points)
-
-    def _check(self) -> None:
-        owner = f"beam {self.name!r}"
-        if not (isinstance(self.elements, int) and 0 < self.elements <= MOST_ELEMENTS):
-            raise InputError(
-                f"{owner}: elements is {self.elements!r}; expected a whole number, from 1 to {MOST_ELEMENTS}"
-            )

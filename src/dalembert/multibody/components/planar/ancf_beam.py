@@ -88,7 +88,7 @@ class AncfBeam(Ancf):
 
     def __post_init__(self, start: Place) -> None:
         object.__setattr__(self, "origin", start)
-        self._check()
+        self.require_elements(f"beam {self.name!r}")
         owner = f"beam {self.name!r}"
         require_known("law", self.law, LAWS, owner)
         require_known("formulation", self.formulation, FORMULATIONS, owner)
@@ -106,7 +106,7 @@ class AncfBeam(Ancf):
         return e, 0.0, shear
 
     def marker(self, point: str) -> Marker:
-        k = 6 * self._node(point)
+        k = 6 * self.node_number(point)
         # The direction of a section is that of r_y, a quarter turn ahead of the axis.
         return Marker(markers.NODE, (k, k + 1, k + 4, k + 5), (0.0, 0.0, -np.pi / 2))
 

@@ -57,14 +57,14 @@ class AncfCable(Ancf):
 
     def __post_init__(self, start: Place) -> None:
         object.__setattr__(self, "origin", start)
-        self._check()
+        self.require_elements(f"beam {self.name!r}")
 
     @property
     def findings(self) -> tuple[Finding, ...]:
         return cable_findings(self.name, float(np.real(self.length)), float(np.real(self.height)))
 
     def marker(self, point: str) -> Marker:
-        k = 4 * self._node(point)
+        k = 4 * self.node_number(point)
         return Marker(markers.NODE, (k, k + 1, k + 2, k + 3), (0.0, 0.0, 0.0))
 
     def lower(self, lowering: Lowering, first: int) -> None:

@@ -14,6 +14,7 @@ from dalembert.errors import InputError, require_known, shown
 from dalembert.findings import Finding
 from dalembert.multibody.components.base_body import POSITION, with_points
 from dalembert.multibody.components.fields import Number, number
+from dalembert.multibody.components.node_chain import NodeChain
 from dalembert.multibody.components.points import Point
 from dalembert.multibody.components.spatial import spatial_markers as markers
 from dalembert.multibody.components.spatial.beam_element import BEAMS, MOST_DEGREE
@@ -30,14 +31,14 @@ from dalembert.multibody.components.spatial.shapes import Surface
 from dalembert.multibody.components.spatial.spatial_body import DIRECTOR, Body, Marker, pose_modes
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 
-MOST_ELEMENTS = 100_000
+LIMIT = ", and it fails at 180 degrees"
 _RINGS = 16
 """Outlines of the section along a beam of few elements, for drawings."""
 
 
 @with_points("start", "end")
 @dataclass(frozen=True)
-class Beam(Body):
+class Beam(NodeChain, Body):
     """A flexible beam in space: geometrically exact, with stretch, shear, torsion and bending in two directions.
 
     Its line is along the x axis of its frame. The axes y and z of its sections follow it. Its nodes have positions and
@@ -113,14 +114,11 @@ class Beam(Body):
         owner = f"beam {self.name!r}"
         if self.degree not in range(1, MOST_DEGREE + 1):
             raise InputError(f"{owner}: degree is {shown(self.degree)}; expected 1, 2, 3 or 4")
-        if not (isinstance(self.elements, int) and 0 < self.elements <= MOST_ELEMENTS):
-            raise InputError(
-                f"{owner}: elements is {self.elements!r}; expected a whole number, from 1 to {MOST_ELEMENTS}"
-            )
+        self.require_elements(owner)
         for name, point in self.points.items():
-            if name in self._node_names:
+            if name in self.node_names:
                 raise InputError(f"{owner}: the point name {name!r} is that of a node. Choose another name")
-            require_known("node", point.at, self._node_names, f"{owner}, point {name!r}")
+            require_known("node", point.at, self.node_names, f"{owner}, point {name!r}")
         _require_table(owner, self.section, self.length)
         if not callable(self.curvature) and not _is_vector(self.curvature):
             raise InputError(
@@ -151,15 +149,11 @@ class Beam(Body):
 
     @property
     def point_names(self) -> tuple[str, ...]:
-        return (*self._node_names, *self.points)
+        return (*self.node_names, *self.points)
 
     @property
-    def _node_names(self) -> tuple[str, ...]:
-        return ("start", "end", *(f"node{k}" for k in range(self.elements * self.degree + 1)))
-
-    def node(self, number: int) -> Point:
-        """Node 0 (the start) to node ``elements`` x ``degree`` (the end)."""
-        return self.point(f"node{number}")
+    def last_node(self) -> int:
+        return self.elements * self.degree
 
     # -- the line without stress ----------------------------------------------------------------------------------
 
@@ -216,10 +210,7 @@ class Beam(Body):
         return pose_modes(coordinates, frame)
 
     def node_number(self, point: str) -> int:
-        """Number of the node of a point, from 0 at the start to ``elements`` x ``degree`` at the end."""
-        name = self.points[point].at if point in self.points else point
-        ends = {"start": 0, "end": self.elements * self.degree}
-        return ends[name] if name in ends else int(name.removeprefix("node"))
+        return super().node_number(self.points[point].at if point in self.points else point)
 
     def marker(self, point: str) -> Marker:
         k, place = markers.SLOTS * self.node_number(point), self.points.get(point) or NodePoint()
@@ -261,7 +252,7 @@ class Beam(Body):
 
     def motion_findings(self, times: np.ndarray, states: np.ndarray, rates: np.ndarray) -> tuple[Finding, ...]:
         cosines = node_traces(self.by_element(states.reshape(len(states), -1, 4, 3))).reshape(len(states), -1)
-        return turn_findings(f"beam {self.name!r}", self.name, self.elements, times, cosines.min(axis=1))
+        return turn_findings(f"beam {self.name!r}", self.name, self.elements, times, cosines.min(axis=1), LIMIT)
 
     def outline(self, coordinates: np.ndarray, points: int) -> np.ndarray:
         nodes = self.by_element(coordinates.reshape(len(coordinates), -1, 4, 3))

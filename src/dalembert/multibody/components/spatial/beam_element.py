@@ -36,7 +36,7 @@ from dalembert.multibody.components.spatial.beam_geometry import (
     weighed,
 )
 from dalembert.multibody.components.spatial.beam_kinematics import element_strains
-from dalembert.multibody.components.spatial.beam_mean_forces import mean_forces
+from dalembert.multibody.components.spatial.beam_mean_forces import MeanForces, mean_forces
 from dalembert.multibody.components.spatial.beam_shapes import rule
 from dalembert.multibody.components.spatial.directors import POSE
 from dalembert.multibody.components.spatial.function_chains import in_turn, summed
@@ -198,7 +198,7 @@ def _heavy(degree: int) -> Part:
     return Part(in_turn([add for add, _ in parts]), summed([energies for _, energies in parts]))
 
 
-def _functions(degree: int) -> tuple[Part, Callable[..., Any]]:
+def _functions(degree: int) -> tuple[Part, MeanForces]:
     """The residual and the energies of an element of a degree, and its mean forces in a step."""
     nodes, middle, entries = degree + 1, degree // 2, 4 * (degree + 1)
     fill_quaternions, fill_rates = _quaternions(degree)
@@ -230,7 +230,7 @@ def _functions(degree: int) -> tuple[Part, Callable[..., Any]]:
         stored = strain_energies(x, v, quaternions, rates, p)
         return plus(stored, inertia_energies(x, v, p, (p.gravity_x, p.gravity_y, p.gravity_z)))
 
-    return Part(residual, energy), mean_forces(degree, add_inertia)
+    return Part(residual, energy), mean_forces(degree, add_inertia, inertia_energies)
 
 
 def _kind(degree: int) -> Kind:
@@ -242,7 +242,8 @@ def _kind(degree: int) -> Kind:
         numbers=("length", *columns(degree), "delay", "mass_damping", "gravity_x", "gravity_y", "gravity_z"),
         residual=functions.add,
         energy=functions.energies,
-        mean=mean,
+        mean=mean.add,
+        mean_power=mean.power,
         lengths=("length",),
         gravity=("gravity_x", "gravity_y", "gravity_z"),
         dissipates=("delay", "mass_damping"),

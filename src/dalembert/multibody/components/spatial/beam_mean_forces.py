@@ -1,4 +1,4 @@
-"""Mean forces of a beam element in a step: their work is the change of the strain energy, to rounding.
+"""Mean forces of a beam element in a step: their work is the change of the strain energy, and what damping takes.
 
 Between the ends of a step directors are shorter than one, so strains of its middle are off in proportion to the square
 of the step, and stiff beams push back. The strains are functions of invariants pi, quadratic in the coordinates: the
@@ -12,7 +12,7 @@ momenta are kept, too.
 """
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.kernels.views import stack
@@ -31,17 +31,25 @@ from dalembert.multibody.components.spatial.beam_geometry import (
     weighed,
 )
 from dalembert.multibody.components.spatial.beam_shapes import rule
+from dalembert.multibody.components.spatial.discrete_gradient import along_change
 from dalembert.multibody.components.spatial.function_chains import in_turn, summed
 from dalembert.multibody.components.spatial.spatial_markers import SLOTS
 from dalembert.multibody.components.spatial.vectors import at, dot, minus, plus, times
 from dalembert.multibody.kernels.elementary import reciprocal
 
-STILL = 1e-10
-"""Square of a change of invariants below which the correction of the gradient, of third order, is rounding."""
+
+class MeanForces(NamedTuple):
+    """Functions of a kind: the mean forces, and the power of those without a potential."""
+
+    add: Callable[..., Any]
+    power: Callable[..., Any]
 
 
-def mean_forces(degree: int, add_inertia: Callable[..., Any]) -> Callable[..., Any]:
-    """The function of the mean forces of elements of a degree; ``add_inertia`` adds their inertia and weight."""
+def mean_forces(degree: int, add_inertia: Callable[..., Any], inertia_energies: Callable[..., Any]) -> MeanForces:
+    """The mean forces of elements of a degree.
+
+    ``add_inertia`` and ``inertia_energies``: functions of their inertia and weight.
+    """
     nodes, middle, points = degree + 1, degree // 2, rule(degree, degree)
     width, entries, lines = SLOTS * nodes, 4 * nodes, 3 * degree
 
@@ -88,6 +96,17 @@ def mean_forces(degree: int, add_inertia: Callable[..., Any]) -> Callable[..., A
         force = plus(at(on_lines, 3 * g), times(share, minus(rho1, rho0)))
         add_to_line(x, force, line, across, r, slopes, middle)
 
+    @inner
+    def point_loss(x0, x1, first, last, delay, length, step, c, values, slopes, weight):
+        """Power of the damping at a point, behind two zeros: -delay C (e1 - e0) . (e1 - e0) / step^2."""
+        across = 2.0 * reciprocal(length)
+        _, gamma0, kappa0 = strained(x0, first, across, values, slopes)
+        _, gamma1, kappa1 = strained(x1, last, across, values, slopes)
+        du, dw = minus(gamma1, gamma0), minus(kappa1, kappa0)
+        n, m = full_product(c, du, dw)
+        loss = -delay * weight * length / (step * step) * (dot(n, du) + dot(m, dw))
+        return 0.0 * loss, 0.0 * loss, loss
+
     def at_point(g):
         section, weight, values, slopes = POINTS[g], points.weights[g], points.values[g], points.slopes[g]
 
@@ -102,18 +121,27 @@ def mean_forces(degree: int, add_inertia: Callable[..., Any]) -> Callable[..., A
         def lines_of(x, x0, x1, length, on_lines, share, r):
             add_line(x, x0, x1, length, on_lines, share, r, g, slopes)
 
-        return forces_of, lines_of
+        @inlined
+        def loss_of(x0, x1, first, last, p, step):
+            return point_loss(x0, x1, first, last, p.delay, p.length, step, section(p), values, slopes, weight)
+
+        return forces_of, lines_of, loss_of
 
     parts = [at_point(g) for g in range(degree)]
-    all_forces = summed([forces for forces, _ in parts])
-    all_lines = in_turn([lines for _, lines in parts])
+    all_forces = summed([forces for forces, _, _ in parts])
+    all_lines = in_turn([lines for _, lines, _ in parts])
+    all_losses = summed([loss for _, _, loss in parts])
+
+    @inlined
+    def fill_ends(x, v, step, x0, x1):
+        for i in range(width):
+            x0[i], x1[i] = x[i] - 0.5 * step * v[i], x[i] + 0.5 * step * v[i]
 
     @inner
     def mean(x, v, a, p, m, inputs, step, r):
         """M a + mean elastic and damping forces of the step - weight."""
         x0, x1 = stack(x, width), stack(x, width)
-        for i in range(width):
-            x0[i], x1[i] = x[i] - 0.5 * step * v[i], x[i] + 0.5 * step * v[i]
+        fill_ends(x, v, step, x0, x1)
         first, last, between = stack(x, entries), stack(x, entries), stack(x, entries)
         forces, on_lines = stack(x, entries), stack(x, lines)
         for k in range(entries):
@@ -133,7 +161,7 @@ def mean_forces(degree: int, add_inertia: Callable[..., Any]) -> Callable[..., A
                 d1, d2, d3 = minus(b1, a1), minus(b2, a2), minus(b3, a3)
                 missing -= dot(y1, d1) + dot(y2, d2) + dot(y3, d3)
                 change += dot(d1, d1) + dot(d2, d2) + dot(d3, d3)
-        share = missing * reciprocal(change + STILL)
+        share = along_change(missing, change)
         for i in range(nodes):
             if i != middle:
                 (a1, a2, a3), (b1, b2, b3) = products(x0, i, middle), products(x1, i, middle)
@@ -144,4 +172,16 @@ def mean_forces(degree: int, add_inertia: Callable[..., Any]) -> Callable[..., A
         all_lines(x, x0, x1, p.length, on_lines, share, r)
         add_inertia(v, a, p, (p.gravity_x, p.gravity_y, p.gravity_z), r)
 
-    return mean
+    @inner
+    def power(x, v, p, m, inputs, step):
+        """Power of the damping by the material and by the mass, as the mean forces have it."""
+        x0, x1, first, last = stack(x, width), stack(x, width), stack(x, entries), stack(x, entries)
+        fill_ends(x, v, step, x0, x1)
+        for i in range(nodes):
+            fill_quaternion(products(x0, i, middle), i, first)
+            fill_quaternion(products(x1, i, middle), i, last)
+        _, _, by_material = all_losses(x0, x1, first, last, p, step)
+        _, _, by_mass = inertia_energies(x, v, p, (p.gravity_x, p.gravity_y, p.gravity_z))
+        return by_material + by_mass
+
+    return MeanForces(mean, power)

@@ -1,7 +1,7 @@
 """Forces, moments and elastic strains of a beam's section at the end of an element.
 
-The residual of one element, without its neighbours, is what they exert on it at its nodes. So these section forces are
-as accurate as displacements are; those of Gauss' points, extrapolated, have half of the order.
+The residual of one element with the forces along it, without its neighbours, is what they exert on it at its nodes. So
+these section forces are as accurate as displacements are; those of Gauss' points, extrapolated, have half of the order.
 """
 
 __all__ = ["BeamSensor"]
@@ -19,6 +19,7 @@ from dalembert.multibody.components.spatial.beam import Beam, beam_of
 from dalembert.multibody.components.spatial.beam_columns import ENTRIES
 from dalembert.multibody.components.spatial.beam_element import BEAMS, full_product
 from dalembert.multibody.components.spatial.kinds import no_energy, no_residual
+from dalembert.multibody.components.spatial.line_force import adding, signals_along
 from dalembert.multibody.components.spatial.spatial_load import Load
 from dalembert.multibody.components.spatial.spatial_markers import SLOTS
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows, first_coordinate
@@ -42,7 +43,7 @@ def _flexibility(p):
 
 def _kind(degree: int) -> Kind:
     """The kind of sensors on elements of a degree."""
-    element, width = BEAMS[degree - 1], SLOTS * (degree + 1)
+    element, width, add_force = BEAMS[degree - 1], SLOTS * (degree + 1), adding(degree)
     residual = element.residual
     assert residual is not None
 
@@ -53,6 +54,9 @@ def _kind(degree: int) -> Kind:
         for i in range(width):
             r[i] = 0.0 * p.length
         residual(x, v, a, p, m, inputs, r)
+        s = inputs.signals
+        add_force(x, p.length, (s[m.dead_x, 0], s[m.dead_y, 0], s[m.dead_z, 0]), 0, r)
+        add_force(x, p.length, (s[m.follower_x, 0], s[m.follower_y, 0], s[m.follower_z, 0]), 1, r)
         # At the end of an element its residual is the section force, at its start the opposite.
         k, sign = SLOTS * m.node, 1.0 if m.node > 0 else -1.0
         d1, d2, d3 = at(x, k + 3), at(x, k + 6), at(x, k + 9)
@@ -71,11 +75,12 @@ def _kind(degree: int) -> Kind:
         f"beam_sensor_{degree}",
         coordinates=width,
         numbers=(*element.numbers, *(f"s{entry[1:]}" for entry in ENTRIES), "gauge_y", "gauge_z"),
-        integers=("node",),
+        integers=("node", "dead_x", "dead_y", "dead_z", "follower_x", "follower_y", "follower_z"),
         residual=no_residual,
         energy=no_energy,
         outputs=OUTPUTS,
         observe=observe,
+        observes_inputs=True,
         charts=element.charts,
         home=__name__,
         is_usual=False,
@@ -148,9 +153,10 @@ class BeamSensor(Load):
 
     def lower(self, lowering: SpatialRows) -> None:
         beam, node = self._beam, self._beam.node_number(self.at.name)
-        element = max(node // beam.degree - 1, 0)
+        element, owner = max(node // beam.degree - 1, 0), f"BeamSensor {self.name!r}"
+        forces = [k for follower in (False, True) for k in signals_along(lowering, beam, owner, follower)]
         place = beam.length * node / (beam.elements * beam.degree)
         flexibility = np.linalg.inv(beam.section_at(place).matrix)[np.triu_indices(6)].tolist()
         numbers = [*beam.element_numbers(element, lowering.gravity), *flexibility, *self.gauge]
         index = beam.element_index(first_coordinate(lowering, self.at, self.name))[element].tolist()
-        lowering.add(self.kind, index, numbers, [node - beam.degree * element], self.name)
+        lowering.add(self.kind, index, numbers, [node - beam.degree * element, *forces], self.name)

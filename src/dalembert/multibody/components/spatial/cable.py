@@ -13,6 +13,7 @@ from dalembert.findings import Finding
 from dalembert.multibody.components.base_body import POSITION, with_points
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.hermite import line
+from dalembert.multibody.components.node_chain import NodeChain
 from dalembert.multibody.components.points import Point
 from dalembert.multibody.components.spatial import spatial_markers as markers
 from dalembert.multibody.components.spatial.beam_turns import turn_findings
@@ -22,12 +23,10 @@ from dalembert.multibody.components.spatial.orientation import Orientation, Vect
 from dalembert.multibody.components.spatial.spatial_body import GRADIENT, Body, Marker, pose_modes
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 
-MOST_ELEMENTS = 100_000
-
 
 @with_points("start", "end")
 @dataclass(frozen=True)
-class Cable(Body):
+class Cable(NodeChain, Body):
     """A rope or a wire in space: a line with a stiffness against stretch and, if wanted, against bending.
 
     It has no torsion, no shear, and no inertia of its sections: it takes long steps where a thin :class:`Beam` does
@@ -63,14 +62,14 @@ class Cable(Body):
         Initial angular velocity in the fixed axes, rad/s. If not given, zero; the joints may change it then.
     damping : float
         Retardation time of the Kelvin-Voigt material, s: force = E A (strain + damping x strain rate), likewise of
-        bending, in sections that do not spin about the line.
+        bending, in sections that do not spin about the line: a spin about the line is damped, and no torque holds it.
     mass_damping : float
         Damping force of the momenta, 1/s.
 
     Raises
     ------
     InputError
-        For a number of elements that does not exist.
+        For a number of elements that does not exist, and for too few of them for the arc.
 
     Examples
     --------
@@ -106,11 +105,14 @@ class Cable(Body):
     mass_damping: Number = number("1/s", 0.0, least=0)
 
     def __post_init__(self) -> None:
-        if not (isinstance(self.elements, int) and 0 < self.elements <= MOST_ELEMENTS):
-            raise InputError(
-                f"cable {self.name!r}: elements is {self.elements!r}; expected a whole number, from 1 to "
-                f"{MOST_ELEMENTS}"
-            )
+        self.require_elements(f"cable {self.name!r}")
+        if self.span is not None and np.real(self.span) < np.real(self.length):
+            angle = 2.0 * float(np.real(_half_angle(self.span / self.length)))
+            if angle / self.elements > np.pi / 2:
+                raise InputError(
+                    f"cable {self.name!r}: with a span of {np.real(self.span):.6g} m it is an arc of "
+                    f"{np.degrees(angle):.0f} degrees at the start, more than 90 degrees an element; use more elements"
+                )
 
     @property
     def place(self) -> Place:
@@ -119,19 +121,6 @@ class Cable(Body):
     @property
     def coordinate_kinds(self) -> tuple[str, ...]:
         return ((POSITION,) * 3 + (GRADIENT,) * 3) * (self.elements + 1)
-
-    @property
-    def point_names(self) -> tuple[str, ...]:
-        return ("start", "end", *(f"node{k}" for k in range(self.elements + 1)))
-
-    def node(self, number: int) -> Point:
-        """Node 0 (the start) to node ``elements`` (the end)."""
-        return self.point(f"node{number}")
-
-    def node_number(self, point: str) -> int:
-        """Number of the node of a point, from 0 at the start to ``elements`` at the end."""
-        ends = {"start": 0, "end": self.elements}
-        return ends[point] if point in ends else int(point.removeprefix("node"))
 
     def _shape(self) -> np.ndarray:
         """Nodes in the frame of the start, (nodes, 2, 3): position and slope."""
@@ -177,10 +166,13 @@ class Cable(Body):
         lowering.add_many(CABLE, self.element_index(first), self.element_numbers(lowering.gravity))
 
     def motion_findings(self, times: np.ndarray, states: np.ndarray, rates: np.ndarray) -> tuple[Finding, ...]:
-        slopes = states.reshape(len(states), -1, 2, 3)[:, :, 1]
-        directions = slopes / np.linalg.norm(slopes, axis=-1, keepdims=True)
-        cosines = np.sum(directions[:, 1:] * directions[:, :-1], axis=-1).min(axis=1)
-        return turn_findings(f"cable {self.name!r}", self.name, self.elements, times, cosines)
+        nodes = states.reshape(len(states), -1, 2, 3)
+        chords = np.diff(nodes[:, :, 0], axis=1)
+        lines = [nodes[:, :-1, 1], nodes[:, 1:, 1], chords]  # of each element: both slopes and the chord
+        first, second, chord = (own / (np.linalg.norm(own, axis=-1, keepdims=True) + 1e-300) for own in lines)
+        pairs = (first, second), (first, chord), (second, chord)
+        cosines = np.min([np.sum(a * b, axis=-1).min(axis=1) for a, b in pairs], axis=0)
+        return turn_findings(f"cable {self.name!r}", self.name, self.elements, times, cosines, "")
 
     def outline(self, coordinates: np.ndarray, points: int) -> np.ndarray:
         return line(

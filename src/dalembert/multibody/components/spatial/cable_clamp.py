@@ -68,4 +68,5 @@ CLAMP = Kind(
     charts=(*POSE, flat(NODE)),
     lengths=LENGTHS,
     holds=True,
+    home=__name__,
 )

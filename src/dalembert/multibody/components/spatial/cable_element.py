@@ -7,7 +7,9 @@ EI kappa.kappa / 2.
 
 Material damping: stress = C (strain + tau strain rate). The rate of curvature is taken in sections that do not spin
 about the line, which is kappa' without its part along f. Its virtual work is that of kappa itself, since a moment m
-across the line does none along it: m.(delta kappa) = [delta f.(c x m - 2 (m.kappa) f) + delta c.(m x f)] / f.f.
+across the line does none along it: m.(delta kappa) = [delta f.(c x m - 2 (m.kappa) f) + delta c.(m x f)] / f.f. A spin
+about the line is damped: without torsion nothing says whether sections follow it. As if guides held the sections, the
+damping then has a moment tau EI kappa.kappa times the spin, about the line.
 """
 
 import numpy as np
@@ -16,6 +18,7 @@ from dalembert.kernels.kernel import inlined, inner
 from dalembert.kernels.views import stack
 from dalembert.multibody.components import hermite
 from dalembert.multibody.components.hermite import A1, A2, A5, AW, B1, B2, B5, BW, C1, C2, C5
+from dalembert.multibody.components.spatial.discrete_gradient import along_change
 from dalembert.multibody.components.spatial.vectors import add_at, at, cross, dot, minus, plus, times
 from dalembert.multibody.kernels.elementary import is_zero, reciprocal, root
 from dalembert.multibody.kernels.kind import Kind
@@ -23,8 +26,6 @@ from dalembert.multibody.kernels.kind import Kind
 NODE = 6
 """Coordinates of a node."""
 WIDTH = 2 * NODE
-STILL = 1e-10
-"""Square of a change of invariants below which the correction of the gradient, of third order, is rounding."""
 
 
 @inlined
@@ -54,6 +55,12 @@ def _spread(first, second, fifth, r):
     add_at(r, 3, second)
     add_at(r, 6, times(-1.0, first))
     add_at(r, 9, fifth)
+
+
+@inlined
+def _gathered(total, s, on_slope, c, on_bend):
+    """A sum over points with forces on r' and r'' at one more."""
+    return plus(total, plus(times(s, on_slope), times(c, on_bend)))
 
 
 @inlined
@@ -100,69 +107,8 @@ def residual(x, v, a, p, m, inputs, r):
             rate = _curvature_rate(f, c, _line(s1, s2, s5, v), _line(c1, c2, c5, v), kappa, square)
             moment = plus(kappa, times(delay, rate))
         on_slope, on_bend = _bent(times(BW[g] * h * p.bending * square, moment), f, c, kappa)
-        first = plus(first, plus(times(s1, on_slope), times(c1, on_bend)))
-        second = plus(second, plus(times(s2, on_slope), times(c2, on_bend)))
-        fifth = plus(fifth, plus(times(s5, on_slope), times(c5, on_bend)))
-    _spread(first, second, fifth, r)
-    _add_inertia(v, a, p, r)
-
-
-@inlined
-def _invariants(f, c, h):
-    """f.f, f.c h and c.c h^2, which are quadratic in the coordinates; h^2 kappa.kappa, their function."""
-    a, b, d = dot(f, f), h * dot(f, c), h * h * dot(c, c)
-    return (a, b, d), (a * d - b * b) / (a * a)
-
-
-@inlined
-def _discrete_gradient(start, end, before, after):
-    """Gradient of h^2 kappa.kappa whose product with the change of the invariants is its change (Gonzalez 1996)."""
-    change = minus(end, start)
-    a, b, d = times(0.5, plus(start, end))
-    inverse = reciprocal(a * a)
-    mean = ((d - 2.0 * (a * d - b * b) * reciprocal(a)) * inverse, -2.0 * b * inverse, a * inverse)
-    missing = after - before - dot(mean, change)
-    return plus(mean, times(missing * reciprocal(dot(change, change) + STILL), change))
-
-
-@inner
-def mean(x, v, a, p, m, inputs, step, r):
-    """As `residual`, with mean elastic forces in a step, whose work is the change of the strain energy.
-
-    Stretch: (|f1| - |f0|) = 2 f_m.(f1 - f0) / (|f1| + |f0|). Bending: the discrete gradient in three invariants.
-    """
-    h, delay = p.length, p.delay
-    across, rests = reciprocal(h), (p.rest_1, p.rest_2, p.rest_3)
-    x0, x1 = stack(x, WIDTH), stack(x, WIDTH)
-    for i in range(WIDTH):
-        x0[i], x1[i] = x[i] - 0.5 * step * v[i], x[i] + 0.5 * step * v[i]
-    zero = times(0.0, at(x, 0))
-    first, second, fifth = zero, zero, zero
-    for g in range(3):
-        s1, s2, s5 = A1[g] * across, A2[g], A5[g]
-        f, f0, f1 = _line(s1, s2, s5, x), _line(s1, s2, s5, x0), _line(s1, s2, s5, x1)
-        size0, size1 = root(dot(f0, f0)), root(dot(f1, f1))
-        strain = 0.5 * (size0 + size1) - 1.0 - rests[g] + delay / step * (size1 - size0)
-        force = times(2.0 * AW[g] * h * p.axial * strain * reciprocal(size0 + size1), f)
-        first = plus(first, times(s1, force))
-        second, fifth = plus(second, times(s2, force)), plus(fifth, times(s5, force))
-    for g in range(3):
-        s1, s2, s5 = B1[g] * across, B2[g], B5[g]
-        c1, c2, c5 = C1[g] * across * across, C2[g] * across, C5[g] * across
-        f, c, size = _line(s1, s2, s5, x), _line(c1, c2, c5, x), BW[g] * h * p.bending
-        start, before = _invariants(_line(s1, s2, s5, x0), _line(c1, c2, c5, x0), h)
-        end, after = _invariants(_line(s1, s2, s5, x1), _line(c1, c2, c5, x1), h)
-        by_a, by_b, by_d = times(0.5 * size * across * across, _discrete_gradient(start, end, before, after))
-        on_slope = plus(times(2.0 * by_a, f), times(h * by_b, c))
-        on_bend = plus(times(2.0 * h * h * by_d, c), times(h * by_b, f))
-        if not is_zero(delay):
-            kappa, square = _curvature(f, c)
-            rate = _curvature_rate(f, c, _line(s1, s2, s5, v), _line(c1, c2, c5, v), kappa, square)
-            more_slope, more_bend = _bent(times(delay * size * square, rate), f, c, kappa)
-            on_slope, on_bend = plus(on_slope, more_slope), plus(on_bend, more_bend)
-        first = plus(first, plus(times(s1, on_slope), times(c1, on_bend)))
-        second = plus(second, plus(times(s2, on_slope), times(c2, on_bend)))
-        fifth = plus(fifth, plus(times(s5, on_slope), times(c5, on_bend)))
+        first = _gathered(first, s1, on_slope, c1, on_bend)
+        second, fifth = _gathered(second, s2, on_slope, c2, on_bend), _gathered(fifth, s5, on_slope, c5, on_bend)
     _spread(first, second, fifth, r)
     _add_inertia(v, a, p, r)
 
@@ -199,6 +145,85 @@ def energy(x, v, p, m, inputs):
     return kinetic, potential, power
 
 
+@inlined
+def _invariants(f, c, h):
+    """f.f, f.c h and c.c h^2, which are quadratic in the coordinates; h^2 kappa.kappa, their function."""
+    a, b, d = dot(f, f), h * dot(f, c), h * h * dot(c, c)
+    return (a, b, d), (a * d - b * b) / (a * a)
+
+
+@inlined
+def _discrete_gradient(start, end, before, after):
+    """Gradient of h^2 kappa.kappa whose product with the change of the invariants is its change (Gonzalez 1996)."""
+    change = minus(end, start)
+    a, b, d = times(0.5, plus(start, end))
+    inverse = reciprocal(a * a)
+    mean = ((d - 2.0 * (a * d - b * b) * reciprocal(a)) * inverse, -2.0 * b * inverse, a * inverse)
+    missing = after - before - dot(mean, change)
+    return plus(mean, times(along_change(missing, dot(change, change)), change))
+
+
+@inlined
+def _fill_ends(x, v, step, x0, x1):
+    """Coordinates of both ends of a step, by those of its middle."""
+    for i in range(WIDTH):
+        x0[i], x1[i] = x[i] - 0.5 * step * v[i], x[i] + 0.5 * step * v[i]
+
+
+@inner
+def mean_power(x, v, p, m, inputs, step):
+    """Power of the damping, as the mean forces have it: of the stretch by its change in the step."""
+    h, across, x0, x1 = p.length, reciprocal(p.length), stack(x, WIDTH), stack(x, WIDTH)
+    _fill_ends(x, v, step, x0, x1)
+    _, _, power = energy(x, v, p, m, inputs)
+    for g in range(3):
+        s1, s2, s5 = A1[g] * across, A2[g], A5[g]
+        f, df, f0, f1 = _line(s1, s2, s5, x), _line(s1, s2, s5, v), _line(s1, s2, s5, x0), _line(s1, s2, s5, x1)
+        rate, mean_rate = dot(f, df) / root(dot(f, f)), (root(dot(f1, f1)) - root(dot(f0, f0))) / step
+        power += p.delay * AW[g] * h * p.axial * (rate * rate - mean_rate * mean_rate)
+    return power
+
+
+@inner
+def mean(x, v, a, p, m, inputs, step, r):
+    """As `residual`, with mean elastic forces in a step, whose work is the change of the strain energy.
+
+    Stretch: (|f1| - |f0|) = 2 f_m.(f1 - f0) / (|f1| + |f0|). Bending: the discrete gradient in three invariants.
+    """
+    h, delay = p.length, p.delay
+    across, rests = reciprocal(h), (p.rest_1, p.rest_2, p.rest_3)
+    x0, x1 = stack(x, WIDTH), stack(x, WIDTH)
+    _fill_ends(x, v, step, x0, x1)
+    zero = times(0.0, at(x, 0))
+    first, second, fifth = zero, zero, zero
+    for g in range(3):
+        s1, s2, s5 = A1[g] * across, A2[g], A5[g]
+        f, f0, f1 = _line(s1, s2, s5, x), _line(s1, s2, s5, x0), _line(s1, s2, s5, x1)
+        size0, size1 = root(dot(f0, f0)), root(dot(f1, f1))
+        strain = 0.5 * (size0 + size1) - 1.0 - rests[g] + delay / step * (size1 - size0)
+        force = times(2.0 * AW[g] * h * p.axial * strain * reciprocal(size0 + size1), f)
+        first = plus(first, times(s1, force))
+        second, fifth = plus(second, times(s2, force)), plus(fifth, times(s5, force))
+    for g in range(3):
+        s1, s2, s5 = B1[g] * across, B2[g], B5[g]
+        c1, c2, c5 = C1[g] * across * across, C2[g] * across, C5[g] * across
+        f, c, size = _line(s1, s2, s5, x), _line(c1, c2, c5, x), BW[g] * h * p.bending
+        start, before = _invariants(_line(s1, s2, s5, x0), _line(c1, c2, c5, x0), h)
+        end, after = _invariants(_line(s1, s2, s5, x1), _line(c1, c2, c5, x1), h)
+        by_a, by_b, by_d = times(0.5 * size * across * across, _discrete_gradient(start, end, before, after))
+        on_slope = plus(times(2.0 * by_a, f), times(h * by_b, c))
+        on_bend = plus(times(2.0 * h * h * by_d, c), times(h * by_b, f))
+        if not is_zero(delay):
+            kappa, square = _curvature(f, c)
+            rate = _curvature_rate(f, c, _line(s1, s2, s5, v), _line(c1, c2, c5, v), kappa, square)
+            more_slope, more_bend = _bent(times(delay * size * square, rate), f, c, kappa)
+            on_slope, on_bend = plus(on_slope, more_slope), plus(on_bend, more_bend)
+        first = _gathered(first, s1, on_slope, c1, on_bend)
+        second, fifth = _gathered(second, s2, on_slope, c2, on_bend), _gathered(fifth, s5, on_slope, c5, on_bend)
+    _spread(first, second, fifth, r)
+    _add_inertia(v, a, p, r)
+
+
 def stretches(x: np.ndarray, length: np.ndarray) -> np.ndarray:
     """|r'| - 1 at the points of the stretch, (elements, 3), from coordinates (elements, 12) and lengths, m."""
     (r1, t1, r2, t2), h = np.moveaxis(x.reshape(len(x), 4, 3), 1, 0), np.asarray(length)[:, None]
@@ -215,6 +240,7 @@ CABLE = Kind(
     ),
     residual=residual,
     mean=mean,
+    mean_power=mean_power,
     energy=energy,
     lengths=("length",),
     gravity=("gravity_x", "gravity_y", "gravity_z"),

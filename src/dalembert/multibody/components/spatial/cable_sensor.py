@@ -1,6 +1,6 @@
 """The force and the moment in a cable at a node.
 
-The residual of one element, without its neighbours, is what they exert on it at its nodes.
+The residual of one element with the force along it, without its neighbours, is what they exert on it at its nodes.
 """
 
 __all__ = ["CableSensor"]
@@ -13,6 +13,7 @@ from dalembert.multibody.components.points import Point
 from dalembert.multibody.components.spatial.cable import Cable, cable_of
 from dalembert.multibody.components.spatial.cable_element import CABLE, NODE, WIDTH, residual
 from dalembert.multibody.components.spatial.kinds import no_energy, no_residual
+from dalembert.multibody.components.spatial.line_force import add_to_cable, force_of, signals_along
 from dalembert.multibody.components.spatial.spatial_load import Load
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows, first_coordinate
 from dalembert.multibody.components.spatial.vectors import at, cross, dot, times
@@ -27,6 +28,7 @@ def _observe(x, v, a, p, m, inputs, out):
     for i in range(WIDTH):
         r[i] = 0.0 * p.length
     residual(x, v, a, p, m, inputs, r)
+    add_to_cable(p.length, force_of(m, inputs), r)
     # At the end of an element its residual is the force in the cable, at its start the opposite.
     k, sign = NODE * m.node, 1.0 if m.node > 0 else -1.0
     slope, force = at(x, k + 3), times(sign, at(r, k))
@@ -41,7 +43,7 @@ SENSOR = Kind(
     "cable_sensor",
     coordinates=WIDTH,
     numbers=CABLE.numbers,
-    integers=("node",),
+    integers=("node", "along_x", "along_y", "along_z"),
     residual=no_residual,
     energy=no_energy,
     outputs=(
@@ -50,6 +52,8 @@ SENSOR = Kind(
         ("direction_x", ""), ("direction_y", ""), ("direction_z", ""),
     ),
     observe=_observe,
+    observes_inputs=True,
+    home=__name__,
 )  # fmt: skip
 
 
@@ -99,5 +103,6 @@ class CableSensor(Load):
     def lower(self, lowering: SpatialRows) -> None:
         cable, node = self._cable, self._cable.node_number(self.at.name)
         element = max(node - 1, 0)
+        forces = signals_along(lowering, cable, f"CableSensor {self.name!r}", follower=False)
         index = cable.element_index(first_coordinate(lowering, self.at, self.name))[element].tolist()
-        lowering.add(SENSOR, index, cable.element_numbers(lowering.gravity), [node - element], self.name)
+        lowering.add(SENSOR, index, cable.element_numbers(lowering.gravity), [node - element, *forces], self.name)

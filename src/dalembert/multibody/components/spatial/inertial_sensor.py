@@ -136,7 +136,7 @@ class InertialSensor(Load):
 
     def lower(self, lowering: SpatialRows) -> None:
         owner = f"InertialSensor {self.name!r}"
-        require_direction(owner, "the channels ax, ay and az of the point mass, or a rigid body", self.at)
+        require_direction(owner, "the channels ax, ay and az of the point, or a rigid body", self.at)
         pair = lowering.pair(self.at, None, self.name)
         numbers = [
             *pair.data, *lowering.gravity,

@@ -2,9 +2,11 @@
 
 __all__ = ["LineForce"]
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
-from dalembert.errors import InputError
+from dalembert.errors import InputError, ModelError
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.multibody.components import hermite
 from dalembert.multibody.components.fields import number
@@ -23,35 +25,69 @@ from dalembert.multibody.components.spatial.vectors import add_at, at, combined,
 from dalembert.multibody.kernels.kind import Kind
 
 
+@inlined
+def _at_nodes(x, k, c, follower):
+    """Components c of a force in the fixed axes, or in those of a node."""
+    return c if follower == 0 else combined(c, at(x, k + 3), at(x, k + 6), at(x, k + 9))
+
+
+def _force_along(degree: int) -> Callable[..., Any]:
+    """A function that returns the force per length at a point: that of the nodes, interpolated as the line is."""
+    nodes, values = degree + 1, rule(degree, degree + 1).values
+
+    @inlined
+    def force(x, c, follower, g):
+        total = times(values[g][0], _at_nodes(x, 0, c, follower))
+        for i in range(1, nodes):
+            total = plus(total, times(values[g][i], _at_nodes(x, SLOTS * i, c, follower)))
+        return total
+
+    return force
+
+
+def adding(degree: int) -> Callable[..., Any]:
+    """A function (x, length, c, follower, r) that adds a force along an element of a beam to its left side."""
+    nodes, points, (_, values, _, weights) = degree + 1, degree + 1, rule(degree, degree + 1)
+    force = _force_along(degree)
+
+    @inlined
+    def add(x, length, c, follower, r):
+        # The work-equivalent forces: the integral of N_i f.
+        for g in range(points):
+            f = times(weights[g] * length, force(x, c, follower, g))
+            for i in range(nodes):
+                add_at(r, SLOTS * i, times(-values[g][i], f))
+
+    return add
+
+
+@inlined
+def add_to_cable(length, c, r):
+    """Add a force along an element of a cable to its left side, as its weight: h c (1/2, h/12, 1/2, -h/12)."""
+    for i in range(3):
+        hermite.weight(length, length, c[i], i, i + 3, i + 6, i + 9, r)
+
+
+@inlined
+def force_of(m, inputs):
+    """Components of the force."""
+    return inputs.signals[m.along_x, 0], inputs.signals[m.along_y, 0], inputs.signals[m.along_z, 0]
+
+
 def _kind(degree: int) -> Kind:
     """The kind of forces on elements of a degree."""
     nodes, points, (_, values, _, weights) = degree + 1, degree + 1, rule(degree, degree + 1)
-
-    @inlined
-    def force(x, m, inputs, g):
-        """Force per length at a point: that of the nodes, interpolated as the line is."""
-        c = (inputs.signals[m.along_x, 0], inputs.signals[m.along_y, 0], inputs.signals[m.along_z, 0])
-        if m.follower == 0:
-            return combined(c, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-        total = times(values[g][0], combined(c, at(x, 3), at(x, 6), at(x, 9)))
-        for i in range(1, nodes):
-            k = SLOTS * i
-            total = plus(total, times(values[g][i], combined(c, at(x, k + 3), at(x, k + 6), at(x, k + 9))))
-        return total
+    add, force = adding(degree), _force_along(degree)
 
     @inner
     def residual(x, v, a, p, m, inputs, r):
-        """Take the work-equivalent forces off the left side: the integral of N_i f."""
-        for g in range(points):
-            f = times(weights[g] * p.length, force(x, m, inputs, g))
-            for i in range(nodes):
-                add_at(r, SLOTS * i, times(-values[g][i], f))
+        add(x, p.length, force_of(m, inputs), m.follower, r)
 
     @inner
     def energy(x, v, p, m, inputs):
         power = 0.0 * p.length * x[0]
         for g in range(points):
-            f = times(weights[g] * p.length, force(x, m, inputs, g))
+            f = times(weights[g] * p.length, force(x, force_of(m, inputs), m.follower, g))
             for i in range(nodes):
                 power += values[g][i] * dot(f, at(v, SLOTS * i))
         return 0.0 * power, 0.0 * power, power
@@ -71,21 +107,13 @@ def _kind(degree: int) -> Kind:
 
 
 @inlined
-def _force(m, inputs):
-    return inputs.signals[m.along_x, 0], inputs.signals[m.along_y, 0], inputs.signals[m.along_z, 0]
-
-
-@inlined
 def _cable_residual(x, v, a, p, m, inputs, r):
-    """Take the work-equivalent forces off the left side, as the weight is: h f (1/2, h/12, 1/2, -h/12)."""
-    force = _force(m, inputs)
-    for i in range(3):
-        hermite.weight(p.length, p.length, force[i], i, i + 3, i + 6, i + 9, r)
+    add_to_cable(p.length, force_of(m, inputs), r)
 
 
 @inlined
 def _cable_energy(x, v, p, m, inputs):
-    force, power = _force(m, inputs), 0.0 * p.length * x[0]
+    force, power = force_of(m, inputs), 0.0 * p.length * x[0]
     for i in range(3):
         power += p.length * force[i] * hermite.centre(p.length, i, i + 3, i + 6, i + 9, v)
     return 0.0 * power, 0.0 * power, power
@@ -168,3 +196,22 @@ class LineForce(Load):
             integers = [int(self.follower), *integers]
         for index in line.element_index(first_coordinate(lowering, self.on, self.name)):
             lowering.add(kind, index.tolist(), [line.length / line.elements], integers)
+
+
+def signals_along(lowering: SpatialRows, body: Any, owner: str, follower: bool) -> list[int]:
+    """Signals of the components of the force along a body, or zeros: what a sensor takes off its section forces.
+
+    Raises
+    ------
+    ModelError
+        For more than one force of the kind.
+    """
+    forces = [load for load in lowering.loads if isinstance(load, LineForce) and load.on.body.name == body.name]
+    forces = [load for load in forces if load.follower == follower]
+    if len(forces) > 1:
+        names = " and ".join(repr(load.name) for load in forces)
+        raise ModelError(
+            f"{owner}: the line forces {names} act on {body.name!r}, and the sensor takes one; add them into one force"
+        )
+    parts = (forces[0].x, forces[0].y, forces[0].z) if forces else (0.0, 0.0, 0.0)
+    return [lowering.signal(part) for part in parts]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from dalembert.multibody.components.spatial.conditions import level
 from dalembert.multibody.components.spatial.orientation import Vector
 from dalembert.multibody.components.spatial.spatial_joint import Joint, joint_kind
+from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 
 KIND = joint_kind("point_on_line", __name__, level(1), level(2), displacement=True, holds_frame=True)
 
@@ -31,6 +32,10 @@ class PointOnLineJoint(Joint):
     axis: Vector = (0.0, 0.0, 1.0)
 
     kind = KIND
+
+    def lower(self, lowering: SpatialRows) -> None:
+        self._oriented(self.a)
+        super().lower(lowering)
 
     @property
     def stated_coordinates(self) -> tuple[str, ...]:

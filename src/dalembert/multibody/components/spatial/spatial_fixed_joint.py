@@ -56,6 +56,7 @@ class FixedJoint(Joint):
             raise ModelError(
                 f"FixedJoint {self.name!r}: both sides are points of cables. Put a rigid body between them"
             )
+        self._oriented(marker)
         pair = lowering.pair(marker, line, self.name)
         first = pair.slots[SLOTS]
         assert first is not None

@@ -133,4 +133,4 @@ def kept(joint: Joint, coordinate: str, course: Signal, now: tuple[np.ndarray, n
 
 def turns(side: Any) -> bool:
     """Whether a side of a joint has axes: the ground and rigid bodies have them, point masses have none."""
-    return not isinstance(side, Point) or side.body.turns
+    return not isinstance(side, Point) or side.body.has_axes

@@ -101,6 +101,9 @@ class PrescribedMotion(Joint, DrivenCoordinate):
     kind = MOTION
 
     def lower(self, lowering: SpatialRows) -> None:
-        self._oriented(*(self.a,) * (self.coordinate == "displacement"))
+        if self.coordinate == "displacement":
+            self._oriented(self.a)
+        else:
+            self._oriented()
         integers = self._driven(lowering)
         self._add(lowering, self.pair(lowering), integers=integers)

@@ -1,5 +1,6 @@
 """What spatial components call while a system is lowered."""
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -48,6 +49,8 @@ class SpatialRows(Rows, Protocol):
     """Collects the rows of the kernels of a mechanism in space."""
 
     gravity: tuple[Number, Number, Number]
+    loads: Sequence[Any]
+    """Of the mechanism."""
 
     def pair(self, a: Side, b: Side | None, owner: str, turned: tuple[np.ndarray, np.ndarray] | None = None) -> Pair:
         """The markers of two sides; a bare ground stands where the other side is.

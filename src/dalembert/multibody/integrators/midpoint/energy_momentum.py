@@ -26,6 +26,9 @@ from dalembert.multibody.model.lane_models import lane_kernels
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.structure import Structure
 
+_ROLES = "energy", "mean", "mean_power"
+"""Roles of components that the balance needs."""
+
 
 @dataclass(frozen=True)
 class EnergyMomentum(Variational):
@@ -62,12 +65,12 @@ class EnergyMomentum(Variational):
         """Those of `Variational`, of the balance, and of the components' energies."""
         own = [*super().kernels(structure, derivatives), converge, energy_history, *[converge_along] * derivatives]
         arithmetics = (float, complex) if derivatives else (float,)
-        roles = [(kind, role) for kind in structure.index for role in ("energy", "mean") if kind.has(role)]
+        roles = [(kind, role) for kind in structure.index for role in _ROLES if kind.has(role)]
         return [*own, *(kind.kernel(role, dtype) for dtype in arithmetics for kind, role in roles)]
 
     def lane_kernels(self, sample: Lowered) -> list[Compiled]:
         """Those of `Variational`, of the balance, and of the components' energies."""
-        return [*super().lane_kernels(sample), balance_lanes, *lane_kernels(sample.data, "energy", "mean")]
+        return [*super().lane_kernels(sample), balance_lanes, *lane_kernels(sample.data, *_ROLES)]
 
     def _run_in_lanes(self, part: Batch) -> tuple[MotionState, np.ndarray]:
         """States of a group, and which samples have to run alone: all, if they do not share their rigid motions."""
@@ -76,7 +79,7 @@ class EnergyMomentum(Variational):
             within = 0.5 * (part.problem.edges[number, 0] + part.problem.edges[number, 1])
             energy, _, balance = self._balance(lowered, (), row(part.states, number), part.dstates, within)
             balances.append((energy, balance.rigid))
-        if any(not np.array_equal(rigid.spin, balances[0][1].spin) for _, rigid in balances):
+        if any(not np.array_equal(rigid.sign, balances[0][1].sign) for _, rigid in balances):
             return resting(len(balances), *part.shape), np.ones(len(balances), dtype=bool)
         return run_in_lanes(part, float(self.step), float(self.newton_tolerance), balances)
 

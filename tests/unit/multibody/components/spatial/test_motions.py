@@ -44,7 +44,7 @@ def response(build, fields: dict) -> mb.TimeResponse:
     names = [
         f"{body.name}.{body.point_names[-1]}.{entry}"
         for body in system.bodies
-        for entry in ("x", "vy", "az", *(("wx", "rotation_z", "q1") if body.turns else ()))
+        for entry in ("x", "vy", "az", *(("wx", "rotation_z", "q1") if body.has_axes else ()))
     ]
     names += ["system.total_energy", *(f"{joint.name}.{entry}" for joint in system.joints for entry in outputs(joint))]
     names += [f"{load.name}.{entry}" for load in system.loads for entry, _ in load.kind.outputs]

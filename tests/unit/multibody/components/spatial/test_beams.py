@@ -7,6 +7,7 @@ from scipy.spatial.transform import Rotation
 import dalembert.multibody as mb
 import dalembert.multibody.spatial as sp
 from dalembert.errors import InputError
+from dalembert.export.mechanism import motion as vtk_motion
 from dalembert.multibody.components.spatial.beam_element import BEAMS
 from dalembert.multibody.components.spatial.beam_kinematics import frames, lines, strains
 from dalembert.multibody.components.spatial.beam_shapes import Places, rule
@@ -184,6 +185,9 @@ def test_a_beam_is_coloured_by_its_strain_along_the_line():
     corner = np.abs(-0.005 * about_y - 0.01 * about_z)  # at the clamp, (y, z) = (0.01, 0.005) m
     np.testing.assert_allclose(strains[:, 0], corner * np.linspace(1.0, 0.0, 17), atol=2e-3 * corner)
     assert strains.max() == pytest.approx(Animation.of(still.drawing()).scene.bar.highest, rel=1e-6)
+    ((_, mesh), *_) = vtk_motion(still, 1, 4)
+    np.testing.assert_allclose(mesh.fields["strain"][-68:], strains.ravel())
+    assert not mesh.fields["strain"][:-68].any()
 
 
 def test_section_forces_are_those_of_the_clamp():
@@ -218,7 +222,15 @@ def test_forces_along_a_line_are_its_weight_and_turn_with_it():
     system.add(sp.FixedJoint("clamp", system.ground.point((0.0, 0.0, 0.0), whip.orientation), whip.start))
     system.add(sp.LineForce("push", whip.end, 1.0, 2.0, 3.0))
     system.add(sp.LineForce("wind", whip.end, z=5.0, follower=True))
-    held = mb.equilibrium(system).channels([f"clamp.force_{axis}" for axis in "xyz"])
+    system.add(sp.BeamSensor("gauge", whip.start))
+    rest = mb.equilibrium(system)
+    held = rest.channels([f"clamp.force_{axis}" for axis in "xyz"])
+    outputs = [
+        [f"{owner}_{k}" for k in (1, 2, 3)] for owner in ("gauge.moment", "clamp.torque", "gauge.force", "clamp.force")
+    ]
+    moment, torque, section, clamp = map(rest.channels, outputs)
+    np.testing.assert_allclose(moment, -torque, atol=1e-9)
+    np.testing.assert_allclose(section, -clamp, atol=1e-9)
     turned = whip.orientation.matrix @ [0.0, 0.0, 5.0]
     np.testing.assert_allclose(held, -0.2 * (np.array([1.0, 2.0, 3.0]) + turned), rtol=1e-4)
 

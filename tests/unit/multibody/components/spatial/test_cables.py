@@ -108,6 +108,23 @@ def test_forces_along_a_cable_are_as_its_weight():
     np.testing.assert_allclose(*ends, rtol=1e-9)
 
 
+def test_a_sensor_takes_the_force_along_the_line_into_account():
+    system = between(rope(span=1.8), (1.8, 0.0, 0.0))
+    system.add(sp.LineForce("wind", system.bodies[0].end, y=3.0, z=-1.0))
+    for name, node in (("first", 0), ("last", 4)):
+        system.add(sp.CableSensor(name, system.bodies[0].node(node)))
+    rest = mb.equilibrium(system)
+    forces = {
+        owner: rest.channels([f"{owner}.force_{axis}" for axis in "xyz"])
+        for owner in ("first", "last", "left", "right")
+    }
+    np.testing.assert_allclose(forces["first"], -forces["left"], atol=1e-9)
+    np.testing.assert_allclose(forces["last"], forces["right"], atol=1e-9)
+    system.add(sp.LineForce("rain", system.bodies[0].end, z=-1.0))
+    with pytest.raises(ModelError, match=says("the line forces 'wind' and 'rain' act on 'rope', and the sensor takes")):
+        mb.equilibrium(system)
+
+
 def test_a_cable_is_drawn_along_its_line():
     arc = rope(span=4.0 / np.pi)  # half of a circle
     nodes = arc.placed(arc.frame((0.0, 0.0, 0.0)))[None]
@@ -120,7 +137,7 @@ def test_a_cable_is_drawn_along_its_line():
 
 @pytest.mark.parametrize(("elements", "codes"), [(1, ["beam-turn"]), (4, [])])
 def test_a_line_that_turns_far_in_an_element_is_a_finding(elements, codes):
-    motion = mb.simulate(between(rope(span=0.4, elements=elements * 2), (0.4, 0.0, 0.0)), 0.01, ALPHA)
+    motion = mb.simulate(between(rope(span=0.7, elements=elements * 2 + 1), (0.7, 0.0, 0.0)), 0.01, ALPHA)
     assert [finding.code for finding in motion.findings if finding.code == "beam-turn"] == codes
 
 
@@ -132,11 +149,12 @@ def other_body() -> sp.SpatialSystem:
     return system
 
 
-def jointed(joint: type, other: bool = False) -> sp.SpatialSystem:
-    """A cable on a joint to the ground, or to another cable."""
+def jointed(joint: type, other: bool = False, mass: bool = False) -> sp.SpatialSystem:
+    """A cable on a joint to the ground, to another cable, or to a point mass."""
     system = sp.SpatialSystem()
     cable = system.add(rope())
     side = system.add(sp.Cable("other", 1.0, 1, 1e4, 0.5)).end if other else system.ground
+    side = system.add(sp.PointMass("ball", 1.0)).point("centre") if mass else side
     system.add(joint("pin", side, cable.start))
     mb.simulate(system, 0.01, ALPHA)
     return system
@@ -149,6 +167,17 @@ def jointed(joint: type, other: bool = False) -> sp.SpatialSystem:
             lambda: rope(elements=0),
             InputError,
             "cable 'rope': elements is 0; expected a whole number, from 1 to 100000",
+        ),
+        (
+            lambda: rope(elements=2, span=0.1),
+            InputError,
+            "cable 'rope': with a span of 0.1 m it is an arc of 342 degrees at the start, more than 90 degrees an "
+            "element; use more elements",
+        ),
+        (
+            lambda: jointed(sp.FixedJoint, mass=True),
+            ModelError,
+            "FixedJoint 'pin': ball.centre has no direction; use a spherical or distance joint, or a rigid body",
         ),
         (
             other_body,

@@ -11,7 +11,7 @@ import dalembert.multibody as mb
 import dalembert.multibody.spatial as sp
 
 FOLDER = Path(__file__).parent
-MODULUS, DAMPING, SPEED = 3e9, 2e-4, 30.0  # Pa, s, rad/s
+MODULUS, DAMPING, SPEED = 3e9, 2e-4, 25.0  # Pa, s, rad/s
 NOISE = 0.05  # mm
 CRANK, ROD, PIN = 0.08, 0.3, (0.0, 0.1, 0.12)  # m
 
@@ -23,11 +23,11 @@ def mechanism(elements: int, degree: int) -> sp.SpatialSystem:
     system, along = sp.SpatialSystem(), (1.0, 0.0, 0.0)
     inertia = sp.Inertia(0.12, (1e-3, 1e-3, 1e-3))
     crank = system.add(sp.RigidBody("crank", inertia, PIN, points={"end": (0.0, 0.0, CRANK)}))
-    section = sp.Section.rectangle(0.012, 0.004, youngs_modulus=MODULUS, poisson_ratio=0.4, density=1150.0)
+    section = sp.Section.rectangle(0.012, 0.005, youngs_modulus=MODULUS, poisson_ratio=0.4, density=1150.0)
     turn = sp.Orientation.by_axes((0.0, -high, PIN[1]), (way, -PIN[1], -high))
     rod = sp.Beam("rod", section, ROD, elements, degree, (0.0, PIN[1], high), turn, damping=DAMPING)
     rod = system.add(rod)
-    slider = system.add(sp.RigidBody("slider", sp.Inertia.box(0.5, (0.05, 0.05, 0.05)), (way, 0.0, 0.0)))
+    slider = system.add(sp.RigidBody("slider", sp.Inertia.box(0.3, (0.05, 0.05, 0.05)), (way, 0.0, 0.0)))
     bearing, slide = system.ground.point(PIN), system.ground.point((0.0, 0.0, 0.0))
     course = mb.Polynomial([0.0, SPEED])
     for joint in (

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
+import beam_coverage
 from correlated_coverage import CASES, TABLE
 from correlated_noise import autoregressive
 from dalembert.data import Measurements
@@ -174,3 +175,18 @@ def test_profile_likelihood_of_a_linear_case(record_evidence):
         source="estimate ∓ quantile × deviation",
         noisy=True,
     )
+
+
+def test_intervals_of_a_beam_in_space(record_evidence):
+    """Of 400 seeds 368 to 391 intervals contain the truth with a probability of 98.5 %; the first ones are repeated."""
+    table = json.loads(beam_coverage.TABLE.read_text(encoding="utf-8"))
+    assert (table["seeds"], table["first"]) == (beam_coverage.SEEDS, beam_coverage.FIRST)
+    for name, count in table["contained"].items():
+        record_evidence(
+            f"coverage of 95 % intervals of a short beam from the motion of its tip, {name}", LEVEL,
+            count / table["seeds"], tolerance=0.03, topic=TOPIC, kind="known truth",
+            source="the definition of a confidence interval, 400 seeds",
+        )  # fmt: skip
+        assert 368 <= count <= 391
+    first = [beam_coverage.contains(seed) for seed in range(beam_coverage.FIRST, beam_coverage.FIRST + 10)]
+    assert np.array(first).sum(axis=0).tolist() == table["in the first ten"]

@@ -1,6 +1,7 @@
 """The static equilibrium of a mechanism, with its derivatives, and motions that begin there."""
 
 from collections.abc import Callable
+from typing import cast
 
 import numpy as np
 from scipy.linalg import eigh, lstsq
@@ -178,7 +179,7 @@ def _smallest_step(matrix: csr_matrix, forces: np.ndarray, n: int) -> np.ndarray
     scale = np.ones(len(forces))
     scale[n:] = abs(matrix[:n, :n]).max()
     scaled, wanted = scale[:, None] * matrix.toarray() * scale, scale * forces
-    step = lstsq(scaled, wanted, cond=_WITHOUT)[0]
+    step = cast(tuple[np.ndarray, ...], lstsq(scaled, wanted, cond=_WITHOUT))[0]
     left = np.abs(scaled @ step - wanted).max()
     rounding = np.finfo(float).eps * (np.abs(scaled) @ np.abs(step)).max()
     return scale * step if left <= 1e-9 * np.abs(wanted).max() + 10 * rounding else None

@@ -7,7 +7,6 @@ import dalembert.multibody as mb
 import dalembert.multibody.spatial as sp
 from dalembert.errors import InputError
 from dalembert.multibody.integrators.midpoint.symmetries import rigid_motions
-from dalembert.multibody.model.evaluate import tangent
 from dalembert.multibody.start.assemble import assembled
 from mechanisms import cable, plate
 from slopes import errors
@@ -66,18 +65,18 @@ def scene(gravity: tuple[float, float], *holds: str) -> mb.System:
 @pytest.mark.parametrize(
     ("gravity", "holds", "spins"),
     [
-        ((0.0, 0.0), (), [False, False, True]),
-        ((0.0, -9.81), (), [False]),
+        ((0.0, 0.0), (), [0.0, 0.0, 1.0]),
+        ((0.0, -9.81), (), [0.0]),
         ((1.0, -9.81), (), []),
-        ((0.0, 0.0), ("pin",), [True]),
-        ((0.0, 0.0), ("pin", "spring"), [True]),
+        ((0.0, 0.0), ("pin",), [1.0]),
+        ((0.0, 0.0), ("pin", "spring"), [1.0]),
         ((0.0, 0.0), ("spring", "other"), []),
         ((0.0, 0.0), ("torsion",), []),
         ((0.0, -9.81), ("pin",), []),
     ],
 )
-def test_free_rigid_motions(gravity: tuple[float, float], holds: tuple[str, ...], spins: list[bool]) -> None:
-    assert rigid_motions(assembled(scene(gravity, *holds)), ()).sign.any(axis=1).tolist() == spins
+def test_free_rigid_motions(gravity: tuple[float, float], holds: tuple[str, ...], spins: list[float]) -> None:
+    assert rigid_motions(assembled(scene(gravity, *holds)), ()).spin.tolist() == spins
 
 
 def test_a_mass_that_turns_about_a_point_has_no_other_motion() -> None:
@@ -89,61 +88,13 @@ def test_a_mass_that_turns_about_a_point_has_no_other_motion() -> None:
     np.testing.assert_allclose(total, 9.0, rtol=1e-13)
 
 
-def in_space(gravity: tuple[float, float, float], *holds: str) -> sp.SpatialSystem:
-    system = sp.SpatialSystem(gravity=gravity)
-    box = system.add(sp.RigidBody("box", sp.Inertia.box(1.0, (0.1, 0.2, 0.3)), angular_velocity=(3.0, 1.0, -2.0)))
-    rope = system.add(sp.Cable("rope", 1.0, 2, axial_stiffness=1e3, mass_per_length=0.2, position=box.point("centre")))
-    system.add(sp.SphericalJoint("eye", box.point("centre"), rope.start))
-    if "ball" in holds:
-        system.add(sp.SphericalJoint("ball", system.ground.point((0.0, 0.0, 0.0)), box.point("origin")))
-    if "spring" in holds:
-        system.add(sp.Spring("spring", system.ground.point((0.3, 0.2, 0.1)), rope.end, 50.0))
-    return system
-
-
-@pytest.mark.parametrize(
-    ("gravity", "holds", "turns"),
-    [
-        ((0.0, 0.0, 0.0), (), [False] * 3 + [True] * 3),
-        ((0.0, 0.0, -9.81), (), [False] * 2 + [True]),
-        ((0.0, 0.0, -9.81), ("ball",), [True]),
-        ((0.0, 3.0, -9.81), (), [False]),
-        ((0.0, 0.0, 0.0), ("ball",), [True] * 3),
-        ((0.0, 0.0, 0.0), ("ball", "spring"), []),
-    ],
-)
-def test_free_rigid_motions_in_space(gravity, holds, turns) -> None:
-    assert rigid_motions(assembled(in_space(gravity, *holds)), ()).sign.any(axis=1).tolist() == turns
-
-
-def angular_momentum(motion: mb.Trajectory) -> np.ndarray:
-    """Sum of x x (M v) over all vectors, about the origin, (times, 3)."""
-    lowered, states = motion.lowered, motion.states
-    n = lowered.structure.n
-    still = np.zeros(n)
-    mass = tangent(lowered, lowered.x, np.zeros_like(lowered.x), (0.0, 0.0, 1.0)).toarray()[:n, :n]
-    momenta = states.v[:, :n] @ mass + still
-    vectors, momenta = (part.reshape(len(motion.times), -1, 3) for part in (states.x[:, :n], momenta))
-    return np.cross(vectors, momenta).sum(axis=1)
-
-
-@pytest.mark.parametrize("holds", [(), ("ball",)])
-def test_the_angular_momentum_in_space_is_kept(holds) -> None:
-    """Of a rigid body with a cable, free, and held at the origin."""
-    motion = mb.simulate(in_space((0.0, 0.0, 0.0), *holds), 1.0, mb.EnergyMomentum(step=5e-3))
-    momenta, total = angular_momentum(motion), motion.energies["total"]
-    np.testing.assert_allclose(momenta, np.tile(momenta[0], (len(momenta), 1)), atol=1e-11 * np.abs(momenta).max())
-    np.testing.assert_allclose(total, total[0], rtol=1e-12)
-
-
-@pytest.mark.slow
-def test_damping_leaves_a_rigid_rotation() -> None:
-    """A damped beam that spins steadily loses nothing, once its vibrations have died."""
+def test_the_energy_in_space_is_kept_with_few_steps() -> None:
+    """A beam that tumbles and vibrates: its stretch is stiff, and no step is cut."""
     section = sp.Section.rectangle(0.02, 0.01, youngs_modulus=2e9, poisson_ratio=0.3, density=1200.0)
     system = sp.SpatialSystem(gravity=(0.0, 0.0, 0.0))
-    system.add(sp.Beam("b", section, 0.5, 1, angular_velocity=(0.0, 0.0, 50.0), damping=2e-3))
-    motion = mb.simulate(system, 3.0, mb.EnergyMomentum(step=2e-3))
-    total = motion.energies["total"][motion.times > 2.0]
-    np.testing.assert_allclose(total, total[0], rtol=1e-9)
-    momenta = angular_momentum(motion)
-    np.testing.assert_allclose(momenta[:, 2], momenta[0, 2], rtol=1e-11)
+    fields = {"angular_velocity": (1.0, 4.0, 3.0), "curvature": (0.0, 0.0, 0.3)}
+    system.add(sp.Beam("b", section, 1.0, 1, **fields))
+    motion = mb.simulate(system, 0.2, mb.EnergyMomentum(step=1e-3))
+    assert len(motion.newton_iterations) == 200
+    total = motion.energies["total"]
+    np.testing.assert_allclose(total, total[0], rtol=1e-12)

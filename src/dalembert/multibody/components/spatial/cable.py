@@ -3,7 +3,7 @@
 __all__ = ["Cable"]
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from scipy.optimize import brentq
@@ -91,7 +91,7 @@ class Cable(NodeChain, Body):
     has_axes = False
     has_motion_findings = True
     length: Number = number("m", above=0)
-    elements: int
+    elements: int = cast(Any, field())  # as a field of ours is to a type checker: any
     axial_stiffness: Number = number("N", above=0)
     mass_per_length: Number = number("kg/m", above=0)
     bending_stiffness: Number = number("N*m**2", 0.0, least=0)
@@ -189,6 +189,6 @@ def cable_of(owner: str, point: Point) -> Cable:
 
 def _half_angle(share: Number) -> Any:
     """Half of the angle of an arc whose chord is a ``share`` of its length: sin(t) / t = share; complex-safe."""
-    angle = brentq(lambda t: np.sinc(t / np.pi) - np.real(share), 0.0, np.pi)
+    angle = float(cast(float, brentq(lambda t: np.sinc(t / np.pi) - np.real(share), 0.0, np.pi)))
     # A step of Newton's method with a complex share adds the derivative.
     return angle - (np.sin(angle) - share * angle) / (np.cos(angle) - share)

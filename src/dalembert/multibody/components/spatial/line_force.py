@@ -178,7 +178,7 @@ class LineForce(Load):
         return ON_CABLE if isinstance(self._line, Cable) else FORCES[self._line.degree - 1]
 
     @property
-    def _line(self) -> Beam | Cable:
+    def _line(self) -> Any:
         owner = f"LineForce {self.name!r}"
         if not isinstance(self.on.body, Cable):
             return beam_of(owner, self.on)

@@ -79,7 +79,7 @@ class EnergyMomentum(Variational):
             within = 0.5 * (part.problem.edges[number, 0] + part.problem.edges[number, 1])
             energy, _, balance = self._balance(lowered, (), row(part.states, number), part.dstates, within)
             balances.append((energy, balance.rigid))
-        if any(not np.array_equal(rigid.sign, balances[0][1].sign) for _, rigid in balances):
+        if any(not np.array_equal(rigid.spin, balances[0][1].spin) for _, rigid in balances):
             return resting(len(balances), *part.shape), np.ones(len(balances), dtype=bool)
         return run_in_lanes(part, float(self.step), float(self.newton_tolerance), balances)
 

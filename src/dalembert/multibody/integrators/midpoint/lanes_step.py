@@ -120,7 +120,7 @@ def converge_lanes(problem, h, tolerance, least, s, scratch):
             gap[k] = where(sizes(gap[k]) <= closed, zero, gap[k])
         numbers[REMAINING] = largest_lanes(f, 0, n, zero)
         if iteration == 1:  # of the prediction, and of the constraints
-            numbers[FORCE] = larger(numbers[REMAINING], largest_lanes(s.a, n, size, zero))
+            numbers[FORCE] = larger(numbers[REMAINING], largest_lanes(s.x0, n, size, zero))
         # The difference of both equations, as for one sample; then Newton's correction by the kept matrices.
         add_product(n, masses, masses.mass, first, 1.0, gap)
         scale_constraints(n, size, h, f, gap, rate)

@@ -251,7 +251,7 @@ def converge(
                 gap[k] = 0.0
         remaining = largest_entry(f, 0, n)
         if iteration == 1:  # of the prediction, and of the constraints
-            force = max(remaining, largest_entry(s.a, n, size))
+            force = max(remaining, largest_entry(s.x0, n, size))
         # The difference of both equations: M (b - a) + (J(q_1)^T l_1 - J(q_0)^T l_0) = 0.
         add_product(n, matrices, mass, first, 1.0, gap)
         _correct(n, size, matrices, h, f, gap, rate, first, other, s)

@@ -4,64 +4,56 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from dalembert.multibody.components.base_body import ANGLE, POSITION
 from dalembert.multibody.components.planar.markers import GROUND
-from dalembert.multibody.components.spatial.spatial_body import DIRECTOR, GRADIENT
 from dalembert.multibody.integrators.midpoint.energy_balance import FreeRigidMotions
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.model.lowered import Lowered
 
 
 def rigid_motions(lowered: Lowered, perturbed: Sequence[Lowered]) -> FreeRigidMotions:
-    """The free translations and rotations of a mechanism, by its gravity and what holds it to the ground.
-    Without any hold, those are the translations across gravity, and the rotations about it or, without gravity, about
-    all axes. Pins, rods and springs at one point of the ground leave the rotations about it. What else may be free
-    (along a slide) is not looked for.
+    """The free translations and the free rotation of a mechanism, by its gravity and what holds it to the ground.
+    Without any hold, those are the translations across gravity, and without gravity the rotation, too. Pins, rods and
+    springs at one point of the ground leave the rotation about it. What else may be free (along a slide) is not looked
+    for.
     """
-    kinds, dimension = np.array(lowered.structure.kinds), lowered.dimension
+    if lowered.dimension == 3:
+        return _translations(lowered, len(perturbed))
+    kinds = np.array(lowered.structure.kinds)
+    vectors, positions = np.flatnonzero(kinds != "angle"), np.flatnonzero(kinds == "position")
+    partner, sign = np.arange(len(kinds)), np.zeros(len(kinds))
+    partner[vectors[::2]], partner[vectors[1::2]] = vectors[1::2], vectors[::2]
+    sign[vectors[::2]], sign[vectors[1::2]] = -1.0, 1.0
     held, points = _held(lowered)
-    gravity = _gravity(lowered).any(axis=0)
-    shifts = [axis for axis in range(dimension) if not (held or len(points) or gravity[axis])]
-    at_one_point = not np.any(np.ptp(np.real(points), axis=0) if len(points) else 0.0)
-    planes = _planes(gravity) if at_one_point and not held else []
-    partner = np.tile(np.arange(len(kinds)), (len(shifts) + len(planes), 1))
-    sign = np.zeros(partner.shape)
-    first = _vectors(kinds, dimension)
-    for row, (one, other) in enumerate(planes, start=len(shifts)):
-        # A vector turns from the first axis of the plane to the second one: its rates are -other and +one.
-        partner[row, first + one], sign[row, first + one] = first + other, -1.0
-        partner[row, first + other], sign[row, first + other] = first + one, 1.0
-    moved = [_shifts(entry, kinds, shifts, planes) for entry in (lowered, *perturbed)]
-    along = np.array(moved[1:], dtype=complex).reshape(len(perturbed), *moved[0].shape)
-    return FreeRigidMotions(partner, sign, np.ascontiguousarray(moved[0].real), along)
+    gravity = _gravity(lowered)
+    free = [not held and len(points) == 0 and not np.any(gravity[:, axis]) for axis in range(2)]
+    turns = not held and not np.any(gravity) and not np.any(np.ptp(np.real(points), axis=0) if len(points) else 0.0)
+    shifts = []
+    for entry in (lowered, *perturbed):
+        rows = []
+        for axis in np.flatnonzero(free):
+            rows.append(np.zeros(len(kinds), dtype=complex))
+            rows[-1][positions[axis::2]] = 1.0
+        if turns:
+            places = _held(entry)[1]
+            x, y = places[0] if len(places) else (0.0, 0.0)
+            rows.append(np.where(kinds == "angle", 1.0 + 0j, 0j))
+            rows[-1][positions[::2]], rows[-1][positions[1::2]] = y, -x
+        shifts.append(np.array(rows).reshape(len(rows), len(kinds)))
+    spin = np.array([0.0] * sum(free) + [1.0] * turns)
+    along = np.array(shifts[1:], dtype=complex).reshape(len(perturbed), *shifts[0].shape)
+    return FreeRigidMotions(partner, sign, spin, np.ascontiguousarray(shifts[0].real), along)
 
 
-def _planes(gravity: np.ndarray) -> list[tuple[int, int]]:
-    """Planes in which a mechanism may turn, by the axes (dimension,) along which gravity acts."""
-    planes = [(0, 1)] if len(gravity) == 2 else [(1, 2), (2, 0), (0, 1)]
-    return [plane for plane in planes if not gravity[list(plane)].any()]
-
-
-def _vectors(kinds: np.ndarray, dimension: int) -> np.ndarray:
-    """First coordinates of all vectors, of positions, slopes and directors."""
-    return np.flatnonzero(np.isin(kinds, (POSITION, GRADIENT, DIRECTOR)))[::dimension]
-
-
-def _shifts(
-    lowered: Lowered, kinds: np.ndarray, shifts: Sequence[int], planes: Sequence[tuple[int, int]]
-) -> np.ndarray:
-    """What rigid motions have beside the turn of vectors about the origin, (motions, n)."""
-    rows = np.zeros((len(shifts) + len(planes), len(kinds)), dtype=complex)
-    places = np.flatnonzero(kinds == POSITION)[:: lowered.dimension]
-    for row, axis in zip(rows, shifts, strict=False):
-        row[places + axis] = 1.0
-    points = _held(lowered)[1]
-    at = points[0] if len(points) else np.zeros(lowered.dimension)
-    for row, (one, other) in zip(rows[len(shifts) :], planes, strict=True):
-        if lowered.dimension == 2:
-            row[kinds == ANGLE] = 1.0
-        row[places + one], row[places + other] = at[other], -at[one]
-    return rows
+def _translations(lowered: Lowered, directions: int) -> FreeRigidMotions:
+    """The free translations of a mechanism in space: across gravity, where nothing holds it."""
+    kinds = np.array(lowered.structure.kinds)
+    held = any(kind.holds and np.any(_grounded(lowered, kind)) for kind in lowered.data)
+    free = [] if held else [axis for axis in range(3) if not np.any(_gravity(lowered)[:, axis])]
+    shift = np.zeros((len(free), len(kinds)))
+    for row, axis in enumerate(free):
+        shift[row, np.flatnonzero(kinds == "position")[axis::3]] = 1.0
+    along = np.tile(shift.astype(complex), (directions, 1, 1))
+    return FreeRigidMotions(np.arange(len(kinds)), np.zeros(len(kinds)), np.zeros(len(free)), shift, along)
 
 
 def _grounded(lowered: Lowered, kind: Kind) -> np.ndarray:
@@ -77,13 +69,12 @@ def _gravity(lowered: Lowered) -> np.ndarray:
 
 
 def _held(lowered: Lowered) -> tuple[bool, np.ndarray]:
-    """Whether a frame of the ground holds the mechanism, and the points of the ground that do, (points, 2 or 3)."""
-    axes = "xyz"[: lowered.dimension]
-    found, held = [np.zeros((0, len(axes)))], False
+    """Whether a frame of the ground holds the mechanism, and the points of the ground that do, (points, 2)."""
+    found, held = [np.zeros((0, 2))], False
     for kind, data in lowered.data.items():
         if not kind.holds:
             continue
         for side, grounded in zip("ab", _grounded(lowered, kind).T, strict=True):
             held = held or (kind.holds_frame and bool(np.any(grounded)))
-            found.append(data[grounded][:, kind.columns(tuple(f"{side}_{axis}" for axis in axes))])
+            found.append(data[grounded][:, kind.columns((f"{side}_x", f"{side}_y"))])
     return held, np.vstack(found)
